@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// Everything an embedding needs; each header also stands alone.
+#include "dfdyn/estimator.hpp"
+#include "dfdyn/features/random_fourier.hpp"
+#include "dfdyn/input/derivative_free.hpp"
+#include "dfdyn/input/derivative_free_reduced.hpp"
+#include "dfdyn/input/derivative_free_structured.hpp"
+#include "dfdyn/input/standard.hpp"
+#include "dfdyn/learner/cholesky_information.hpp"
+#include "dfdyn/learner/ud_covariance.hpp"
+#include "dfdyn/model.hpp"

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/budget.hpp"
+#include "dfdyn/model.hpp"
+#include "dfdyn/snapshot.hpp"
+#include "dfdyn/status.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace dfdyn {
+
+/// What one tick gives. Where nothing could be predicted the prediction is 0, so that a careless feed-forward
+/// adds no torque, and its standard deviation is infinite.
+template <class Scalar, int m>
+struct Estimate {
+    Storage<Scalar, m> prediction;         ///< in the output's unit, made before the sample was learned
+    Storage<Scalar, m> standard_deviation; ///< of the measurement about it: parameter uncertainty and noise
+    Storage<Scalar, m> innovation;         ///< measured - prediction; 0 without a usable measurement
+    Scalar normalised_innovation_squared;  ///< over the outputs; about m while the model holds, 0 without a
+                                           ///< measurement
+    Status status;
+};
+
+/// How often each reason occurred since the last reset; never decreases in between.
+struct Counters {
+    std::uint32_t ticks = 0;
+    std::uint32_t predicted = 0;
+    std::uint32_t learned = 0;
+    Storage<std::uint32_t, reason_count>
+        reasons{}; ///< by the reason's number: of prediction, or of learning if predicted
+};
+
+/// Learns an arm's inverse dynamics tick by tick and predicts in every tick. The whole state is in this
+/// object: no heap, no globals; give it static storage (it may be large). Refers to `constants`, which must
+/// outlive it. Not thread-safe: one thread ticks it.
+template <class ModelType>
+class Estimator {
+  public:
+    using Model = ModelType;
+    using Scalar = typename Model::Scalar;
+    using Constants = typename Model::Constants;
+    using Sample = typename Model::Sample;
+    using Estimate = dfdyn::Estimate<Scalar, Model::outputs>;
+
+    static_assert(Learner<typename Model::Learner, Scalar>);
+
+    /// Consecutive samples from the past after which the sender's clock is taken to have been set back.
+    static constexpr int clock_restart_samples = 3;
+
+    explicit Estimator(const Constants& constants) noexcept
+        : constants_(&constants), sizes_(constants.sizes),
+          input_(constants.input, sizes_.joint_count, sizes_.lag_count, sizes_.features_per_joint),
+          learner_(constants.learner, sizes_.column_count(), sizes_.output_count),
+          xi_(Inputs::zeros(sizes_.input_count())), phi_(Columns::zeros(sizes_.column_count())),
+          target_(Outputs::zeros(sizes_.output_count)) {}
+
+    /// Predicts the sample's output from its position and the past, then learns it as far as the budget goes.
+    /// A refused sample changes nothing but the counters and, for time that runs backward, the count towards
+    /// a clock restart. Cost: `cost()`, bounded whatever the input.
+    Estimate tick(const Sample& sample, Budget budget) noexcept {
+        Estimate estimate = unknown();
+        Status& status = estimate.status;
+        status.prediction = accept(sample);
+        if (status.predicted() && !evaluate_features()) {
+            status.prediction = Reason::input_out_of_range;
+        }
+        if (status.predicted()) {
+            learner_.predict(phi_.data(), estimate.prediction.data());
+            status.learning = check_output(sample);
+            learn(sample, budget, estimate);
+        } else {
+            work(budget);
+        }
+        count(status);
+        return estimate;
+    }
+
+    /// Back to the state after construction: the start that the constants give, an empty window, counters at
+    /// zero.
+    void reset() noexcept {
+        learner_.reset();
+        restart_window();
+        counters_ = {};
+    }
+
+    /// Begins a new recording or motion: the window and the clock start again, what has been learned stays.
+    void restart_window() noexcept {
+        input_.restart();
+        has_time_ = false;
+        past_samples_ = 0;
+        implausible_samples_ = 0;
+    }
+
+    /// Bytes of a snapshot: what has been learned, including a sample still being learned. Not the window:
+    /// positions of the past are of no use to a later start.
+    [[nodiscard]] std::size_t snapshot_bytes() const noexcept { return dfdyn::snapshot_bytes(learner_); }
+
+    /// A buffer of this many bytes holds any snapshot of a firmware model.
+    static constexpr std::size_t snapshot_capacity = sizeof(SnapshotHeader) + sizeof(typename Model::Learner);
+
+    /// Writes a snapshot to the front of `buffer`, of at least `snapshot_bytes()`.
+    [[nodiscard]] SnapshotResult snapshot(std::span<std::byte> buffer) const noexcept {
+        return write_snapshot(learner_, model_identity(), buffer);
+    }
+
+    /// Restores a snapshot of an estimator of the same model and restarts the window; rejects it whole if
+    /// anything is wrong.
+    [[nodiscard]] SnapshotResult restore(std::span<const std::byte> buffer) noexcept {
+        const SnapshotResult result = read_snapshot(learner_, model_identity(), buffer);
+        if (result == SnapshotResult::ok) {
+            restart_window();
+        }
+        return result;
+    }
+
+    [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
+    [[nodiscard]] const typename Model::Learner& learner() const noexcept { return learner_; }
+
+    /// The columns φ of the last tick that predicted.
+    [[nodiscard]] const Scalar* columns() const noexcept { return phi_.data(); }
+
+    /// Cost of a tick's parts in multiply-adds, a constant expression for a firmware model.
+    [[nodiscard]] static constexpr Cost cost(const typename Model::Sizes& sizes = {}) noexcept {
+        Cost cost = Model::Learner::cost(sizes.column_count(), sizes.output_count);
+        cost.predict += Model::InputMap::cost(sizes.joint_count, sizes.lag_count, sizes.features_per_joint) +
+                        Model::Features::cost(sizes.input_count(), sizes.feature_count);
+        return cost;
+    }
+
+  private:
+    using Inputs = Storage<Scalar, Model::inputs>;
+    using Columns = Storage<Scalar, Model::columns>;
+    using Outputs = Storage<Scalar, Model::outputs>;
+
+    [[nodiscard]] Estimate unknown() const noexcept {
+        Estimate estimate{Outputs::zeros(sizes_.output_count),
+                          Outputs::zeros(sizes_.output_count),
+                          Outputs::zeros(sizes_.output_count),
+                          0,
+                          {}};
+        for (Scalar& deviation : estimate.standard_deviation) {
+            deviation = std::numeric_limits<Scalar>::infinity();
+        }
+        return estimate;
+    }
+
+    /// The gates of positions and time; what passes enters the window.
+    Reason accept(const Sample& sample) noexcept {
+        const Reason fault = check_position(sample);
+        if (fault != Reason::ok) {
+            return fault;
+        }
+        Reason filling = Reason::window_filling;
+        if (has_time_ && sample.time_ns <= last_time_ns_) {
+            if (!clock_restarted(sample.time_ns)) {
+                return Reason::time_not_increasing;
+            }
+            input_.restart();
+            filling = Reason::clock_restarted;
+        } else if (has_time_ && time_since_last(sample) > static_cast<std::uint64_t>(constants_->gap_ns)) {
+            input_.restart();
+            filling = Reason::gap;
+        }
+        past_samples_ = 0;
+        has_time_ = true;
+        last_time_ns_ = sample.time_ns;
+        input_.push(sample);
+        return input_.ready() ? Reason::ok : filling;
+    }
+
+    /// Of a sample later than the last (ns); the difference of two stamps may need all 64 bits.
+    [[nodiscard]] std::uint64_t time_since_last(const Sample& sample) const noexcept {
+        return static_cast<std::uint64_t>(sample.time_ns) - static_cast<std::uint64_t>(last_time_ns_);
+    }
+
+    [[nodiscard]] Reason check_position(const Sample& sample) const noexcept {
+        for (int i = 0; i < sizes_.joint_count; ++i) {
+            if (!std::isfinite(sample.position[i])) {
+                return Reason::position_not_finite;
+            }
+            if (std::abs(sample.position[i]) > constants_->position_limit[i]) {
+                return Reason::position_out_of_range;
+            }
+        }
+        return Reason::ok;
+    }
+
+    [[nodiscard]] Reason check_output(const Sample& sample) const noexcept {
+        if (!sample.output_valid) {
+            return Reason::output_missing;
+        }
+        for (int k = 0; k < sizes_.output_count; ++k) {
+            if (!std::isfinite(sample.output[k])) {
+                return Reason::output_not_finite;
+            }
+            if (std::abs(sample.output[k]) > constants_->output_limit[k]) {
+                return Reason::output_out_of_range;
+            }
+        }
+        return Reason::ok;
+    }
+
+    /// A stamp that is not later than the last: one such sample is a stray, several from the past in a row
+    /// are a new clock.
+    bool clock_restarted(std::int64_t time_ns) noexcept {
+        past_samples_ = time_ns < last_time_ns_ ? past_samples_ + 1 : 0;
+        return past_samples_ == clock_restart_samples;
+    }
+
+    bool evaluate_features() noexcept {
+        input_.evaluate(xi_.data());
+        return Model::Features::template evaluate<Scalar, Model::inputs>(
+            constants_->features, sizes_.input_count(), sizes_.feature_count, xi_.data(), phi_.data());
+    }
+
+    /// Learns what the budget allows, oldest first, and completes the estimate. The variance comes with a
+    /// sweep that starts and ends in this tick; otherwise, or if it decides whether to learn at all, it takes
+    /// a pass of its own.
+    void learn(const Sample& sample, Budget budget, Estimate& estimate) noexcept {
+        const bool measured = estimate.status.learning == Reason::ok;
+        const Scalar error_square = measured ? normalise(sample, estimate) : Scalar(0);
+        const bool doubtful = error_square > constants_->innovation_limit;
+        const bool at_once = measured && !doubtful && learner_.idle() && budget.affords(cost(sizes_).learn);
+        Scalar ratio = at_once ? Scalar(1) : 1 + learner_.variance(phi_.data());
+        if (measured && !plausible(error_square / ratio)) {
+            estimate.status.learning = Reason::innovation_too_large;
+        }
+        const bool usable = estimate.status.learning == Reason::ok;
+        if (work(budget) && usable) {
+            learner_.begin(phi_.data(), target_.data());
+            work(budget);
+            estimate.status.learning = learner_.sample_pending() ? Reason::learning_in_progress : Reason::ok;
+        } else if (usable) {
+            estimate.status.learning = Reason::learner_busy;
+        }
+        if (at_once) {
+            ratio = learner_.last_ratio();
+        }
+        complete(sample, measured, ratio, estimate);
+        estimate.normalised_innovation_squared = error_square / ratio;
+    }
+
+    /// Whether to learn a sample with this normalised innovation: not if it is too large, unless that goes
+    /// on.
+    bool plausible(Scalar normalised_innovation_squared) noexcept {
+        if (normalised_innovation_squared <= constants_->innovation_limit) {
+            implausible_samples_ = 0;
+        } else if (implausible_samples_ <= constants_->innovation_patience) {
+            ++implausible_samples_;
+        }
+        return implausible_samples_ == 0 || implausible_samples_ > constants_->innovation_patience;
+    }
+
+    /// Goes on with what the learner has in hand; true when it has nothing left.
+    bool work(Budget& budget) noexcept {
+        const bool pending = learner_.sample_pending();
+        const bool idle = learner_.advance(budget);
+        counters_.learned += pending && !learner_.sample_pending() ? 1 : 0;
+        return idle;
+    }
+
+    /// The measured outputs in units of their noise about their offset, as the learner sees them; returns the
+    /// square of their difference from the prediction.
+    Scalar normalise(const Sample& sample, const Estimate& estimate) noexcept {
+        Scalar error_square = 0;
+        for (int k = 0; k < sizes_.output_count; ++k) {
+            target_[k] = (sample.output[k] - constants_->output_offset[k]) / constants_->output_noise_std[k];
+            const Scalar error = target_[k] - estimate.prediction[k];
+            error_square += error * error;
+        }
+        return error_square;
+    }
+
+    /// From the learner's units to the output's; `ratio` is 1 + φ'Pφ.
+    void complete(const Sample& sample, bool measured, Scalar ratio, Estimate& estimate) const noexcept {
+        const Scalar root = std::sqrt(ratio);
+        for (int k = 0; k < sizes_.output_count; ++k) {
+            const Scalar noise = constants_->output_noise_std[k];
+            estimate.prediction[k] = constants_->output_offset[k] + noise * estimate.prediction[k];
+            estimate.standard_deviation[k] = noise * root;
+            estimate.innovation[k] = measured ? sample.output[k] - estimate.prediction[k] : Scalar(0);
+        }
+    }
+
+    void count(const Status& status) noexcept {
+        ++counters_.ticks;
+        counters_.predicted += status.predicted() ? 1 : 0;
+        ++counters_.reasons[static_cast<int>(status.reason())];
+    }
+
+    /// Sizes and scalar as well as the constants' identity: two builds may share the latter.
+    [[nodiscard]] std::uint32_t model_identity() const noexcept {
+        const std::int32_t parts[] = {sizes_.joint_count,        sizes_.output_count,  sizes_.lag_count,
+                                      sizes_.features_per_joint, sizes_.feature_count, sizeof(Scalar)};
+        return crc32(std::as_bytes(std::span(parts)), constants_->identity);
+    }
+
+    const Constants* constants_;
+    [[no_unique_address]] typename Model::Sizes sizes_;
+    typename Model::InputMap input_;
+    typename Model::Learner learner_;
+    Inputs xi_;
+    Columns phi_;
+    Outputs target_;
+    Counters counters_;
+    std::int64_t last_time_ns_ = 0;
+    bool has_time_ = false;
+    int past_samples_ = 0;
+    std::int32_t implausible_samples_ = 0; ///< in a row
+};
+
+} // namespace dfdyn

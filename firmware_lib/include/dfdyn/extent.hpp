@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace dfdyn {
+
+/// Marks a size that only the host's tools know at run time. Firmware never uses it: every size is then a
+/// template argument and the whole state is one object of constant size.
+inline constexpr int dynamic = -1;
+
+/// A size. Fixed sizes take no memory and fold to constants.
+template <int value>
+struct Extent {
+    constexpr operator int() const noexcept {
+        return value;
+    } // NOLINT(google-explicit-constructor): it is a number
+};
+
+template <>
+struct Extent<dynamic> {
+    int value = 0;
+    constexpr operator int() const noexcept {
+        return value;
+    } // NOLINT(google-explicit-constructor): it is a number
+};
+
+/// Makes an extent from a number; for a fixed extent the number must be that value and is ignored.
+template <int value>
+constexpr Extent<value> extent([[maybe_unused]] int number) noexcept {
+    if constexpr (value == dynamic) {
+        return Extent<dynamic>{number};
+    } else {
+        return {};
+    }
+}
+
+/// Products and sums of template sizes, `dynamic` if any operand is.
+constexpr int product(int a, int b) noexcept { return a == dynamic || b == dynamic ? dynamic : a * b; }
+
+constexpr int sum(int a, int b) noexcept { return a == dynamic || b == dynamic ? dynamic : a + b; }
+
+} // namespace dfdyn

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/vector.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <type_traits>
+
+namespace dfdyn {
+
+/// Arguments up to this size (rad) keep the full accuracy of `cos_sin`.
+template <class Scalar>
+inline constexpr Scalar largest_cos_sin_argument = 8192;
+
+namespace detail {
+
+/// π/2 in parts whose products with a whole number below 2¹³ are exact, largest first; the last part takes
+/// the rest. Cody, Waite, "Software Manual for the Elementary Functions", 1980: subtracting them in turn
+/// loses nothing.
+template <class Scalar>
+struct HalfPi;
+
+template <>
+struct HalfPi<float> {
+    static constexpr float parts[] = {0x1.92p+0F, 0x1.fb4p-12F, 0x1.444p-24F, 0x1.68c234p-39F};
+};
+
+template <>
+struct HalfPi<double> {
+    static constexpr double parts[] = {0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2e037073p-69};
+};
+
+/// Taylor coefficients suffice on [-π/4, π/4]: the first term left out is below the scalar's precision.
+template <class Scalar>
+inline constexpr int taylor_terms = std::is_same_v<Scalar, float> ? 5 : 8;
+
+/// Coefficients of r² in cos r (parity 0) or (sin r)/r (parity 1), highest power first: ±1/(2i + parity)!.
+template <class Scalar, int parity>
+struct Taylor {
+    static constexpr int count = taylor_terms<Scalar> + 1 - parity;
+    Scalar coefficients[count];
+
+    constexpr Taylor() noexcept : coefficients{} {
+        for (int power = 0; power < count; ++power) {
+            long double value = power % 2 == 0 ? 1 : -1;
+            for (int factor = 2; factor <= 2 * power + parity; ++factor) {
+                value /= factor;
+            }
+            coefficients[count - 1 - power] = static_cast<Scalar>(value);
+        }
+    }
+
+    template <class VectorType>
+    static void evaluate(const VectorType& square, VectorType& value) noexcept {
+        constexpr Taylor taylor;
+        value = VectorType{} + taylor.coefficients[0];
+        for (int i = 1; i < count; ++i) {
+            value = value * square + taylor.coefficients[i];
+        }
+    }
+};
+
+/// `lanes` cosines and sines at once; `outside` gets every lane set whose argument is no number or too large.
+template <class Scalar, int lanes, class Mask>
+void cos_sin_lanes(const Scalar* argument, Scalar amplitude, Scalar* cosine, Scalar* sine,
+                   Mask& outside) noexcept {
+    using Lanes = Vector<Scalar, lanes>;
+    using Type = typename Lanes::Type;
+    constexpr Scalar limit = largest_cos_sin_argument<Scalar>;
+    constexpr Type zero{};
+    Type x;
+    Lanes::load(argument, x);
+    const Mask inside = (x >= -limit) & (x <= limit);
+    outside |= ~inside;
+    x = inside ? x : zero;
+    const Type half = x < zero ? zero - Scalar(0.5) : zero + Scalar(0.5);
+    const Mask quadrant =
+        __builtin_convertvector(x * static_cast<Scalar>(std::numbers::inv_pi * 2) + half, Mask);
+    const Type whole = __builtin_convertvector(quadrant, Type);
+    for (const Scalar part : HalfPi<Scalar>::parts) {
+        x -= whole * part;
+    }
+    const Type square = x * x;
+    Type c;
+    Type s;
+    Taylor<Scalar, 0>::evaluate(square, c);
+    Taylor<Scalar, 1>::evaluate(square, s);
+    c *= amplitude;
+    s *= amplitude * x;
+    const Mask odd = (quadrant & 1) != 0;
+    const Type unsigned_cosine = odd ? s : c;
+    const Type unsigned_sine = odd ? c : s;
+    Lanes::store(((quadrant + 1) & 2) != 0 ? -unsigned_cosine : unsigned_cosine, cosine);
+    Lanes::store((quadrant & 2) != 0 ? -unsigned_sine : unsigned_sine, sine);
+}
+
+} // namespace detail
+
+/// Cosine and sine of `count` arguments, each times `amplitude`; `cosine` may be `argument` itself. Returns
+/// whether every argument was a number of size at most `largest_cos_sin_argument`; if not, the values are not
+/// to be used. Absolute error below 1.2e-7 (float) and 3e-16 (double) for amplitude 1. About 30 operations
+/// per argument, no branches, no calls.
+template <class Scalar>
+bool cos_sin(const Scalar* argument, int count, Scalar amplitude, Scalar* cosine, Scalar* sine) noexcept {
+    constexpr int lanes = detail::wide<Scalar>;
+    using Type = typename detail::Vector<Scalar, lanes>::Type;
+    using Mask = decltype(Type{} < Type{});
+    Mask outside{};
+    int i = 0;
+    for (; i + lanes <= count; i += lanes) {
+        detail::cos_sin_lanes<Scalar, lanes>(argument + i, amplitude, cosine + i, sine + i, outside);
+    }
+    if (i < count) {
+        Scalar padded[3][lanes] = {};
+        std::copy_n(argument + i, count - i, padded[0]);
+        detail::cos_sin_lanes<Scalar, lanes>(padded[0], amplitude, padded[1], padded[2], outside);
+        std::copy_n(padded[1], count - i, cosine + i);
+        std::copy_n(padded[2], count - i, sine + i);
+    }
+    bool inside = true;
+    for (int lane = 0; lane < lanes; ++lane) {
+        inside = inside && outside[lane] == 0;
+    }
+    return inside;
+}
+
+} // namespace dfdyn

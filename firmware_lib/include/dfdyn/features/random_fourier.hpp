@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/features/cos_sin.hpp"
+#include "dfdyn/storage.hpp"
+
+#include <cstdint>
+
+namespace dfdyn {
+
+/// Random Fourier features of the Gaussian kernel K_G = exp(-|ξ-ξ'|²/(2ℓ²)): φ = [cos(Ωξ); sin(Ωξ)]/√d, 2d
+/// columns (paper, eq. eq:basis_function with one length scale ℓ: Ω = ω/ℓ, ω ~ N(0, I)). Orthogonal random
+/// features (Yu et al. 2016) are the same map with another draw of ω: the training tool makes either.
+/// Evaluate costs d·dim(ξ) + about 30 d multiply-adds.
+template <int d>
+struct RandomFourier {
+    static constexpr int count = d;
+    static constexpr int columns = product(2, d);
+
+    template <class Scalar, int inputs>
+    struct Constants {
+        /// Ω by inputs: element (input a, feature b) at a·d + b. Already divided by the length scale.
+        Storage<Scalar, product(inputs, d)> frequencies;
+        Scalar amplitude; ///< 1/√d
+    };
+
+    /// Writes φ (2d values). False if an argument is not finite or so large that its cosine means nothing; φ
+    /// is then void.
+    template <class Scalar, int inputs>
+    static bool evaluate(const Constants<Scalar, inputs>& constants, Extent<inputs> input_count,
+                         Extent<d> feature_count, const Scalar* xi, Scalar* phi) noexcept {
+        for (int b = 0; b < feature_count; ++b) {
+            phi[b] = 0;
+        }
+        for (int a = 0; a < input_count; ++a) {
+            const Scalar* frequency = constants.frequencies.data() + a * feature_count;
+            for (int b = 0; b < feature_count; ++b) {
+                phi[b] += frequency[b] * xi[a];
+            }
+        }
+        return cos_sin(phi, feature_count, constants.amplitude, phi, phi + feature_count);
+    }
+
+    [[nodiscard]] static constexpr std::int64_t cost(int input_count, int feature_count) noexcept {
+        return std::int64_t{feature_count} * (input_count + 30);
+    }
+};
+
+} // namespace dfdyn

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/lag_window.hpp"
+#include "dfdyn/sample.hpp"
+
+namespace dfdyn {
+
+/// Input DF: ξ_i = q_i(t⁻), the last M+1 positions themselves (paper, "Derivative-free features", R = I),
+/// scaled.
+///
+/// An input is a type that names its sizes and holds a `Map`: the map keeps what it needs of the past
+/// (`push`), says when it has enough (`ready`), and computes ξ on request (`evaluate`). Element (i, j) of ξ,
+/// feature j of joint i, has index i·k + j. Evaluate costs n (M+1) multiplications.
+template <int M>
+struct DerivativeFree {
+    static constexpr int lags = M;
+    static constexpr int features_per_joint = sum(M, 1);
+    template <class Scalar, int n, int m>
+    using Sample = dfdyn::Sample<Scalar, n, m>;
+
+    template <class Scalar, int n>
+    struct Constants {
+        Storage<Scalar, product(n, features_per_joint)>
+            scale; ///< of each element of ξ; 1 / (its standard deviation)
+    };
+
+    template <class Scalar, int n>
+    class Map {
+      public:
+        using Constants = DerivativeFree::Constants<Scalar, n>;
+
+        constexpr Map(const Constants& constants, Extent<n> joints, Extent<M> lag_count,
+                      Extent<features_per_joint> /*rows*/) noexcept
+            : scale_(constants.scale.data()), joints_(joints), window_(joints, lag_count) {}
+
+        constexpr void restart() noexcept { window_.restart(); }
+        [[nodiscard]] constexpr bool ready() const noexcept { return window_.full(); }
+
+        template <class AnySample>
+        constexpr void push(const AnySample& sample) noexcept {
+            window_.push(sample.position.data());
+        }
+
+        constexpr void evaluate(Scalar* xi) const noexcept {
+            for (int i = 0; i < joints_; ++i) {
+                for (int lag = 0; lag < window_.capacity(); ++lag) {
+                    const int element = i * window_.capacity() + lag;
+                    xi[element] = scale_[element] * window_.row(lag)[i];
+                }
+            }
+        }
+
+        [[nodiscard]] static constexpr std::int64_t cost(int joints, int lag_count, int /*rows*/) noexcept {
+            return std::int64_t{joints} * (lag_count + 1);
+        }
+
+      private:
+        const Scalar* scale_;
+        [[no_unique_address]] Extent<n> joints_;
+        LagWindow<Scalar, n, M> window_;
+    };
+};
+
+/// Input DFW: ξ_i = diag(r) q_i(t⁻) (paper, eq. eqRdiag). The weight of each lag is part of the element's
+/// scale, so the computation is that of DF.
+template <int M>
+struct DerivativeFreeWeighted : DerivativeFree<M> {};
+
+} // namespace dfdyn

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/input/adaptive_window.hpp"
+#include "dfdyn/lag_window.hpp"
+#include "dfdyn/sample.hpp"
+
+namespace dfdyn {
+
+/// Input STD with derivatives estimated from the positions: ξ_i = (q_i, q̇_i, q̈_i) (paper, eq. eq:x), by the
+/// adaptive window over at most M+1 positions. Causal and bounded; evaluate costs O(n M²).
+template <int M>
+struct Standard {
+    static_assert(M == dynamic || M >= 2, "an acceleration needs three positions");
+    static constexpr int lags = M;
+    static constexpr int features_per_joint = 3;
+    template <class Scalar, int n, int m>
+    using Sample = dfdyn::Sample<Scalar, n, m>;
+
+    template <class Scalar, int n>
+    struct Constants {
+        Scalar position_noise_bound; ///< largest error of a measured position (rad), e.g. one encoder count
+        Storage<Scalar, product(n, 3)> scale; ///< of each element of ξ; relevance / standard deviation
+    };
+
+    template <class Scalar, int n>
+    class Map {
+      public:
+        using Constants = Standard::Constants<Scalar, n>;
+
+        constexpr Map(const Constants& constants, Extent<n> joints, Extent<M> lag_count,
+                      Extent<3> /*rows*/) noexcept
+            : constants_(&constants), joints_(joints), window_(joints, lag_count),
+              times_(Extent<1>{}, lag_count), ages_s_(Ages::zeros(extent<sum(M, 1)>(lag_count + 1))) {}
+
+        constexpr void restart() noexcept {
+            window_.restart();
+            times_.restart();
+        }
+
+        [[nodiscard]] constexpr bool ready() const noexcept { return window_.full(); }
+
+        template <class AnySample>
+        constexpr void push(const AnySample& sample) noexcept {
+            window_.push(sample.position.data());
+            times_.push(&sample.time_ns);
+            for (int lag = 0; lag < times_.filled(); ++lag) {
+                ages_s_[lag] = static_cast<Scalar>(*times_.row(lag) - sample.time_ns) * Scalar(1e-9);
+            }
+        }
+
+        constexpr void evaluate(Scalar* xi) const noexcept {
+            for (int i = 0; i < joints_; ++i) {
+                const AdaptiveWindow<Scalar> derivatives(ages_s_.data(), window_.row(0) + i, joints_,
+                                                         window_.filled(), constants_->position_noise_bound);
+                xi[3 * i] = constants_->scale[3 * i] * window_.row(0)[i];
+                xi[3 * i + 1] = constants_->scale[3 * i + 1] * derivatives.velocity();
+                xi[3 * i + 2] = constants_->scale[3 * i + 2] * derivatives.acceleration();
+            }
+        }
+
+        [[nodiscard]] static constexpr std::int64_t cost(int joints, int lag_count, int /*rows*/) noexcept {
+            return std::int64_t{joints} * 8 * (lag_count + 1) * (lag_count + 1);
+        }
+
+      private:
+        using Ages = Storage<Scalar, sum(M, 1)>;
+
+        const Constants* constants_;
+        [[no_unique_address]] Extent<n> joints_;
+        LagWindow<Scalar, n, M> window_;
+        LagWindow<std::int64_t, 1, M> times_;
+        Ages ages_s_; ///< time of each row minus the newest
+    };
+};
+
+/// Input STD with measured derivatives: the sample brings q̇ and q̈. Evaluate costs O(n).
+struct StandardMeasured {
+    static constexpr int lags = 0;
+    static constexpr int features_per_joint = 3;
+    template <class Scalar, int n, int m>
+    using Sample = SampleWithDerivatives<Scalar, n, m>;
+
+    template <class Scalar, int n>
+    struct Constants {
+        Storage<Scalar, product(n, 3)> scale; ///< of each element of ξ; relevance / standard deviation
+    };
+
+    template <class Scalar, int n>
+    class Map {
+      public:
+        using Constants = StandardMeasured::Constants<Scalar, n>;
+
+        constexpr Map(const Constants& constants, Extent<n> joints, Extent<0> /*lags*/,
+                      Extent<3> /*rows*/) noexcept
+            : constants_(&constants), joints_(joints),
+              state_(State::zeros(extent<product(n, 3)>(3 * joints))) {}
+
+        constexpr void restart() noexcept { ready_ = 0; }
+        [[nodiscard]] constexpr bool ready() const noexcept { return ready_ != 0; }
+
+        template <class AnySample>
+        constexpr void push(const AnySample& sample) noexcept {
+            for (int i = 0; i < joints_; ++i) {
+                state_[3 * i] = sample.position[i];
+                state_[3 * i + 1] = sample.velocity[i];
+                state_[3 * i + 2] = sample.acceleration[i];
+            }
+            ready_ = 1;
+        }
+
+        constexpr void evaluate(Scalar* xi) const noexcept {
+            for (int element = 0; element < 3 * joints_; ++element) {
+                xi[element] = constants_->scale[element] * state_[element];
+            }
+        }
+
+        [[nodiscard]] static constexpr std::int64_t cost(int joints, int /*lags*/, int /*rows*/) noexcept {
+            return std::int64_t{joints} * 3;
+        }
+
+      private:
+        using State = Storage<Scalar, product(n, 3)>;
+
+        const Constants* constants_;
+        [[no_unique_address]] Extent<n> joints_;
+        State state_;
+        int ready_ = 0;
+    };
+};
+
+} // namespace dfdyn

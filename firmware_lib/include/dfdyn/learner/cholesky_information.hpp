@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/learner/forgetting.hpp"
+#include "dfdyn/learner/kernels.hpp"
+#include "dfdyn/learner/learner.hpp"
+
+#include <cmath>
+
+namespace dfdyn {
+
+/// Recursive least squares by the Cholesky factor of the information matrix, R'R = P⁻¹, as in the paper
+/// ("Cholesky-based updates"): each row is folded in by Givens rotations, and the right-hand sides ride
+/// along, R w = z, so that single precision loses nothing. Weights come from back-substitution: for several
+/// outputs that costs more than the update, which is why `UdCovariance` is the default. A row is folded in
+/// one piece: a budget below `cost().learn` learns nothing.
+///
+/// R is stored by rows above and on its diagonal. Memory about p²/2 + (2m+2) p.
+template <class Scalar, int p, int m>
+class CholeskyInformation {
+  public:
+    using Constants = LearnerConstants<Scalar, p, m>;
+
+    CholeskyInformation(const Constants& constants, Extent<p> columns, Extent<m> outputs) noexcept
+        : constants_(&constants), columns_(columns), outputs_(outputs),
+          forgetting_(constants.forgetting_factor, columns),
+          factor_(Factor::zeros(extent<factor_size(p)>(factor_size(columns)))),
+          right_hand_sides_(PerOutput::zeros(extent<product(m, p)>(outputs * columns))),
+          weights_(right_hand_sides_), row_(Columns::zeros(columns)), scratch_(Columns::zeros(columns)),
+          target_(Outputs::zeros(outputs)) {
+        reset();
+    }
+
+    void reset() noexcept {
+        const Scalar diagonal = 1 / std::sqrt(constants_->prior_variance);
+        for (int i = 0; i < columns_; ++i) {
+            for (int j = i; j < columns_; ++j) {
+                factor_row(i)[j - i] = i == j ? diagonal : Scalar(0);
+            }
+        }
+        for (Scalar& z : right_hand_sides_) {
+            z = 0;
+        }
+        if (constants_->start != nullptr) {
+            load(*constants_->start);
+        }
+        solve_weights();
+        for (Scalar& value : row_) {
+            value = 0;
+        }
+        for (Scalar& value : target_) {
+            value = 0;
+        }
+        forgetting_.restart();
+        pending_ = 0;
+        ratio_ = 1;
+    }
+
+    void predict(const Scalar* row, Scalar* means) const noexcept {
+        for (int k = 0; k < outputs_; ++k) {
+            means[k] = detail::dot(weights(k), row, columns_);
+        }
+    }
+
+    /// |R⁻ᵀφ|²
+    [[nodiscard]] Scalar variance(const Scalar* row) const noexcept {
+        for (int j = 0; j < columns_; ++j) {
+            scratch_[j] = row[j];
+        }
+        return scratch_square(0);
+    }
+
+    [[nodiscard]] bool idle() const noexcept { return pending_ == 0; }
+    [[nodiscard]] bool sample_pending() const noexcept { return pending_ != 0; }
+
+    void begin(const Scalar* row, const Scalar* target) noexcept {
+        for (int j = 0; j < columns_; ++j) {
+            row_[j] = row[j];
+        }
+        for (int k = 0; k < outputs_; ++k) {
+            target_[k] = target[k];
+        }
+        pending_ = 1;
+    }
+
+    bool advance(Budget& budget) noexcept {
+        if (idle()) {
+            return true;
+        }
+        if (!budget.spend(cost(columns_, outputs_).learn)) {
+            return false;
+        }
+        ratio_ = 1 + variance(row_.data());
+        fold(0);
+        if (forgetting_.active()) {
+            forget();
+        }
+        solve_weights();
+        pending_ = 0;
+        return true;
+    }
+
+    [[nodiscard]] Scalar last_ratio() const noexcept { return ratio_; }
+
+    [[nodiscard]] const Scalar* weights(int output) const noexcept {
+        return weights_.data() + output * columns_;
+    }
+
+    [[nodiscard]] Scalar parameter_variance(int i) const noexcept {
+        for (Scalar& value : scratch_) {
+            value = 0;
+        }
+        scratch_[i] = 1;
+        return scratch_square(i);
+    }
+
+    [[nodiscard]] static constexpr Cost cost(int columns, int outputs) noexcept {
+        const std::int64_t half_square = std::int64_t{columns} * (columns + 1) / 2;
+        const std::int64_t learn = half_square * (1 + 4 + outputs);
+        return {std::int64_t{columns} * outputs, half_square, learn, learn};
+    }
+
+    template <class Self, class Visitor>
+    static void visit_state(Self& self, Visitor& visitor) noexcept {
+        for (int i = 0; i < self.columns_; ++i) {
+            visitor.positive_array(self.factor_row(i), 1);
+            visitor.array(self.factor_row(i) + 1, self.columns_ - i - 1);
+        }
+        visitor.array(self.right_hand_sides_.data(), self.right_hand_sides_.size());
+        visitor.array(self.weights_.data(), self.weights_.size());
+        visitor.array(self.row_.data(), self.row_.size());
+        visitor.array(self.target_.data(), self.target_.size());
+        visitor.positive_array(&self.ratio_, 1);
+        visitor.ranged(self.pending_, 0, 1);
+        Forgetting<Scalar>::visit_state(self.forgetting_, visitor);
+    }
+
+  private:
+    static constexpr int factor_size(int columns) noexcept {
+        return columns == dynamic ? dynamic : columns * (columns + 1) / 2;
+    }
+
+    using Columns = Storage<Scalar, p>;
+    using Factor = Storage<Scalar, factor_size(p)>;
+    using PerOutput = Storage<Scalar, product(m, p)>;
+    using Outputs = Storage<Scalar, m>;
+
+    /// Row i of R from its diagonal on: columns_ - i entries.
+    [[nodiscard]] Scalar* factor_row(int i) noexcept { return factor_.data() + row_offset(i); }
+    [[nodiscard]] const Scalar* factor_row(int i) const noexcept { return factor_.data() + row_offset(i); }
+    [[nodiscard]] int row_offset(int i) const noexcept { return i * columns_ - i * (i - 1) / 2; }
+
+    [[nodiscard]] Scalar& right_hand_side(int k, int i) noexcept {
+        return right_hand_sides_[k * columns_ + i];
+    }
+
+    /// R = D^(-1/2) U⁻¹ and z = R w.
+    void load(const LearnerStart<Scalar, p, m>& start) noexcept {
+        for (int i = 0; i < columns_; ++i) {
+            Scalar* row = factor_row(i);
+            row[0] = 1 / std::sqrt(start.diagonal[i]);
+            for (int j = i + 1; j < columns_; ++j) {
+                const Scalar* column = start.unit_upper.data() + j * (j - 1) / 2;
+                row[j - i] = -detail::dot(row, column + i, j - i);
+            }
+            for (int k = 0; k < outputs_; ++k) {
+                right_hand_side(k, i) =
+                    detail::dot(row, start.weights.data() + k * columns_ + i, columns_ - i);
+            }
+        }
+    }
+
+    /// Rotates the row in hand, zero before column `first`, into R, and its targets into z.
+    void fold(int first) noexcept {
+        for (int i = first; i < columns_; ++i) {
+            if (row_[i] == 0) {
+                continue;
+            }
+            Scalar* factor = factor_row(i);
+            const Scalar length = std::hypot(factor[0], row_[i]);
+            const Scalar cosine = factor[0] / length;
+            const Scalar sine = row_[i] / length;
+            rotate(cosine, sine, factor, row_.data() + i, columns_ - i);
+            for (int k = 0; k < outputs_; ++k) {
+                rotate(cosine, sine, &right_hand_side(k, i), &target_[k], 1);
+            }
+        }
+    }
+
+    static void rotate(Scalar cosine, Scalar sine, Scalar* __restrict upper, Scalar* __restrict lower,
+                       int count) noexcept {
+        for (int j = 0; j < count; ++j) {
+            const Scalar old = upper[j];
+            upper[j] = cosine * old + sine * lower[j];
+            lower[j] = cosine * lower[j] - sine * old;
+        }
+    }
+
+    void solve_weights() noexcept {
+        for (int k = 0; k < outputs_; ++k) {
+            Scalar* w = weights_.data() + k * columns_;
+            for (int i = columns_ - 1; i >= 0; --i) {
+                const Scalar* row = factor_row(i);
+                const Scalar known = detail::dot(row + 1, w + i + 1, columns_ - i - 1);
+                w[i] = (right_hand_side(k, i) - known) / row[0];
+            }
+        }
+    }
+
+    /// |R⁻ᵀs|² of the scratch vector s, which is zero before `first`.
+    [[nodiscard]] Scalar scratch_square(int first) const noexcept {
+        Scalar total = 0;
+        for (int i = first; i < columns_; ++i) {
+            const Scalar* row = factor_row(i);
+            const Scalar x = scratch_[i] / row[0];
+            detail::add_scaled(-x, row + 1, scratch_.data() + i + 1, columns_ - i - 1);
+            total += x * x;
+        }
+        return total;
+    }
+
+    void forget() noexcept {
+        const Scalar shrink = std::sqrt(forgetting_.factor_after(ratio_));
+        for (Scalar& value : factor_) {
+            value *= shrink;
+        }
+        for (Scalar& value : right_hand_sides_) {
+            value *= shrink;
+        }
+        bound_variance(forgetting_.next_parameter());
+    }
+
+    /// See UdCovariance::bound_variance.
+    void bound_variance(int i) noexcept {
+        const Scalar ceiling = constants_->prior_variance;
+        const Scalar present = parameter_variance(i);
+        if (present <= ceiling) {
+            return;
+        }
+        const Scalar precision = std::sqrt(1 / ceiling - 1 / present);
+        solve_weights();
+        for (Scalar& value : row_) {
+            value = 0;
+        }
+        row_[i] = precision;
+        for (int k = 0; k < outputs_; ++k) {
+            target_[k] = precision * weights(k)[i];
+        }
+        fold(i);
+    }
+
+    const Constants* constants_;
+    [[no_unique_address]] Extent<p> columns_;
+    [[no_unique_address]] Extent<m> outputs_;
+    Forgetting<Scalar> forgetting_;
+    Factor factor_;
+    PerOutput right_hand_sides_; ///< m × p
+    PerOutput weights_;          ///< m × p
+    Columns row_;
+    mutable Columns scratch_; ///< of `variance`
+    Outputs target_;
+    Scalar ratio_ = 1;
+    int pending_ = 0;
+};
+
+} // namespace dfdyn

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+
+namespace dfdyn {
+
+/// Exponential forgetting that cannot outrun the excitation.
+///
+/// A factor λ < 1 gives away log(1/λ) nats of information about every one of p parameters with every sample;
+/// a sample that brings less makes the covariance grow along everything the motion does not touch, without
+/// bound while the arm stands still. So forgetting is paid for from an account: each sample pays in `payback`
+/// times the information log(1 + φ'Pφ) that it brought, and forgetting is reduced to what the account covers.
+/// While the motion excites at least 1/`payback` of the parameters, λ is applied exactly; at a standstill
+/// forgetting stops by itself. What grows nevertheless is bounded by the learner, which looks at one
+/// parameter per sample and takes its variance back to the prior's.
+template <class Scalar>
+class Forgetting {
+  public:
+    /// 0.5 < `factor` ≤ 1; `parameters` ≥ 1.
+    constexpr Forgetting(Scalar factor, int parameters) noexcept
+        : factor_(factor), parameters_(static_cast<Scalar>(parameters)) {
+        restart();
+    }
+
+    [[nodiscard]] constexpr bool active() const noexcept { return factor_ < 1; }
+
+    /// A full account: one horizon 1/(1-λ) of forgetting without excitation, which lets variances grow by at
+    /// most e.
+    constexpr void restart() noexcept {
+        account_ = active() ? capacity() : Scalar(0);
+        next_parameter_ = 0;
+    }
+
+    /// The factor to apply after a sample whose predictive variance was `ratio` = 1 + φ'Pφ times the noise's.
+    [[nodiscard]] Scalar factor_after(Scalar ratio) noexcept {
+        if (!active()) {
+            return 1;
+        }
+        account_ += payback * std::log(ratio);
+        account_ = account_ < capacity() ? account_ : capacity();
+        const Scalar price = parameters_ * -std::log(factor_);
+        if (account_ >= price) {
+            account_ -= price;
+            return factor_;
+        }
+        const Scalar affordable = std::exp(-account_ / parameters_);
+        account_ = 0;
+        return affordable;
+    }
+
+    /// The parameters in turn, for the look at their variances.
+    [[nodiscard]] constexpr int next_parameter() noexcept {
+        const int parameter = next_parameter_;
+        next_parameter_ = parameter + 1 < static_cast<int>(parameters_) ? parameter + 1 : 0;
+        return parameter;
+    }
+
+    template <class Self, class Visitor>
+    static constexpr void visit_state(Self& self, Visitor& visitor) noexcept {
+        visitor.ranged(self.account_, Scalar(0), self.capacity());
+        visitor.ranged(self.next_parameter_, 0, static_cast<int>(self.parameters_) - 1);
+    }
+
+  private:
+    static constexpr Scalar payback = 20;
+
+    /// log(1/λ)/(1-λ) ≈ 1 nat per parameter: what one horizon of forgetting costs.
+    [[nodiscard]] constexpr Scalar capacity() const noexcept { return parameters_; }
+
+    Scalar factor_;
+    Scalar parameters_;
+    Scalar account_ = 0;
+    int next_parameter_ = 0;
+};
+
+} // namespace dfdyn

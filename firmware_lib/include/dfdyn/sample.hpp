@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/storage.hpp"
+
+#include <cstdint>
+
+namespace dfdyn {
+
+/// What the sensors showed at one instant.
+template <class Scalar, int n, int m>
+struct Sample {
+    std::int64_t time_ns;        ///< on any clock that runs forward; only differences matter
+    Storage<Scalar, n> position; ///< rad (m for prismatic joints), base to tip
+    Storage<Scalar, m> output;   ///< N·m, N, A …, as the model was trained
+    bool output_valid;           ///< false: nothing was measured; predict only
+};
+
+/// A sample of an arm whose velocities and accelerations are measured (input `Standard` with
+/// `MeasuredDerivatives`).
+template <class Scalar, int n, int m>
+struct SampleWithDerivatives : Sample<Scalar, n, m> {
+    Storage<Scalar, n> velocity;     ///< rad/s
+    Storage<Scalar, n> acceleration; ///< rad/s²
+};
+
+} // namespace dfdyn

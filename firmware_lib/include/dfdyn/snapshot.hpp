@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
+
+namespace dfdyn {
+
+/// Why a snapshot was not taken or not restored; in every case but `ok` nothing changed.
+enum class SnapshotResult : std::uint8_t {
+    ok = 0,
+    wrong_size =
+        1, ///< the buffer is smaller than the snapshot, or the snapshot of another size than this state
+    not_a_snapshot = 2, ///< the first bytes are not a snapshot's, or its byte order differs
+    wrong_version = 3,  ///< written by another version of the format
+    wrong_model = 4,    ///< taken from an estimator with other sizes, another scalar type or other constants
+    corrupted = 5,      ///< the checksum does not match, or the content cannot be a state
+};
+
+/// CRC-32 (ISO 3309, reflected 0xEDB88320) of some bytes, going on from `crc`.
+constexpr std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t crc = 0) noexcept {
+    crc = ~crc;
+    for (const std::byte byte : bytes) {
+        crc ^= static_cast<std::uint32_t>(byte);
+        for (int bit = 0; bit < 8; ++bit) {
+            crc = (crc >> 1) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
+        }
+    }
+    return ~crc;
+}
+
+/// The head of a snapshot, in the machine's byte order.
+struct SnapshotHeader {
+    static constexpr std::uint32_t expected_magic = 0x59444644; // "DFDY"
+    static constexpr std::uint32_t expected_version = 1;
+
+    std::uint32_t magic = expected_magic;
+    std::uint32_t version = expected_version;
+    std::uint32_t model = 0;
+    std::uint32_t payload_bytes = 0;
+    std::uint32_t payload_crc = 0;
+};
+
+namespace detail {
+
+/// Visitors of a state. A state names its parts once, in `visit_state`: each array, and each index with its
+/// range; then a snapshot can be measured, written, checked as a whole before anything is changed, and read.
+class SnapshotMeasure {
+  public:
+    template <class T>
+    constexpr void array(const T* /*values*/, int count) noexcept {
+        bytes_ += sizeof(T) * static_cast<std::size_t>(count);
+    }
+    template <class T>
+    constexpr void positive_array(const T* values, int count) noexcept {
+        array(values, count);
+    }
+    template <class T>
+    constexpr void ranged(const T& value, T /*low*/, T /*high*/) noexcept {
+        array(&value, 1);
+    }
+    [[nodiscard]] constexpr std::size_t bytes() const noexcept { return bytes_; }
+
+  private:
+    std::size_t bytes_ = 0;
+};
+
+class SnapshotWriter {
+  public:
+    explicit SnapshotWriter(std::byte* cursor) noexcept : cursor_(cursor) {}
+
+    template <class T>
+    void array(const T* values, int count) noexcept {
+        static_assert(std::is_trivially_copyable_v<T>);
+        const std::size_t bytes = sizeof(T) * static_cast<std::size_t>(count);
+        std::memcpy(cursor_, values, bytes);
+        cursor_ += bytes;
+    }
+    template <class T>
+    void positive_array(const T* values, int count) noexcept {
+        array(values, count);
+    }
+    template <class T>
+    void ranged(const T& value, T /*low*/, T /*high*/) noexcept {
+        array(&value, 1);
+    }
+
+  private:
+    std::byte* cursor_;
+};
+
+class SnapshotReader {
+  public:
+    explicit SnapshotReader(const std::byte* cursor) noexcept : cursor_(cursor) {}
+
+    template <class T>
+    void array(T* values, int count) noexcept {
+        static_assert(std::is_trivially_copyable_v<T>);
+        const std::size_t bytes = sizeof(T) * static_cast<std::size_t>(count);
+        std::memcpy(values, cursor_, bytes);
+        cursor_ += bytes;
+    }
+    template <class T>
+    void positive_array(T* values, int count) noexcept {
+        array(values, count);
+    }
+    template <class T>
+    void ranged(T& value, T /*low*/, T /*high*/) noexcept {
+        array(&value, 1);
+    }
+
+  private:
+    const std::byte* cursor_;
+};
+
+/// Reads without writing: is every number finite, every variance positive, every index in its range?
+class SnapshotCheck {
+  public:
+    explicit SnapshotCheck(const std::byte* cursor) noexcept : reader_(cursor) {}
+
+    template <class T>
+    void array(const T* /*values*/, int count) noexcept {
+        for (int i = 0; i < count; ++i) {
+            valid_ = std::isfinite(next<T>()) && valid_;
+        }
+    }
+    template <class T>
+    void positive_array(const T* /*values*/, int count) noexcept {
+        for (int i = 0; i < count; ++i) {
+            const T value = next<T>();
+            valid_ = std::isfinite(value) && value > 0 && valid_;
+        }
+    }
+    template <class T>
+    void ranged(const T& /*value*/, T low, T high) noexcept {
+        const T value = next<T>();
+        valid_ = value >= low && value <= high && valid_;
+    }
+    [[nodiscard]] bool valid() const noexcept { return valid_; }
+
+  private:
+    template <class T>
+    T next() noexcept {
+        T value{};
+        reader_.array(&value, 1);
+        return value;
+    }
+
+    SnapshotReader reader_;
+    bool valid_ = true;
+};
+
+} // namespace detail
+
+/// Bytes that a snapshot of `state` takes.
+template <class State>
+std::size_t snapshot_bytes(const State& state) noexcept {
+    detail::SnapshotMeasure measure;
+    State::visit_state(state, measure);
+    return sizeof(SnapshotHeader) + measure.bytes();
+}
+
+/// Writes `state`, marked with the model it belongs to, into the front of `buffer`. O(bytes).
+template <class State>
+SnapshotResult write_snapshot(const State& state, std::uint32_t model, std::span<std::byte> buffer) noexcept {
+    const std::size_t bytes = snapshot_bytes(state);
+    if (buffer.size() < bytes) {
+        return SnapshotResult::wrong_size;
+    }
+    const std::span<std::byte> payload =
+        buffer.subspan(sizeof(SnapshotHeader), bytes - sizeof(SnapshotHeader));
+    detail::SnapshotWriter writer(payload.data());
+    State::visit_state(state, writer);
+    SnapshotHeader header;
+    header.model = model;
+    header.payload_bytes = static_cast<std::uint32_t>(payload.size());
+    header.payload_crc = crc32(payload);
+    std::memcpy(buffer.data(), &header, sizeof header);
+    return SnapshotResult::ok;
+}
+
+/// Reads `state` back from the front of `buffer`, whole or not at all. O(bytes).
+template <class State>
+SnapshotResult read_snapshot(State& state, std::uint32_t model, std::span<const std::byte> buffer) noexcept {
+    SnapshotHeader header;
+    if (buffer.size() < sizeof header) {
+        return SnapshotResult::wrong_size;
+    }
+    std::memcpy(&header, buffer.data(), sizeof header);
+    if (header.magic != SnapshotHeader::expected_magic) {
+        return SnapshotResult::not_a_snapshot;
+    }
+    if (header.version != SnapshotHeader::expected_version) {
+        return SnapshotResult::wrong_version;
+    }
+    if (header.model != model) {
+        return SnapshotResult::wrong_model;
+    }
+    const std::size_t bytes = snapshot_bytes(state);
+    if (buffer.size() < bytes || header.payload_bytes != bytes - sizeof header) {
+        return SnapshotResult::wrong_size;
+    }
+    const std::span<const std::byte> payload = buffer.subspan(sizeof header, header.payload_bytes);
+    detail::SnapshotCheck check(payload.data());
+    State::visit_state(state, check);
+    if (header.payload_crc != crc32(payload) || !check.valid()) {
+        return SnapshotResult::corrupted;
+    }
+    detail::SnapshotReader reader(payload.data());
+    State::visit_state(state, reader);
+    return SnapshotResult::ok;
+}
+
+} // namespace dfdyn

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstring>
+
+namespace dfdyn::detail {
+
+#if defined(__AVX512F__)
+inline constexpr int vector_bytes = 64;
+#elif defined(__AVX__)
+inline constexpr int vector_bytes = 32;
+#else
+inline constexpr int vector_bytes = 16; // without vector instructions: unrolled scalars
+#endif
+
+/// Scalars per vector of the machine.
+template <class Scalar>
+inline constexpr int wide = vector_bytes / static_cast<int>(sizeof(Scalar));
+
+/// `lanes` numbers as one. The compilers' own vector type, because a sum that is kept in lanes by hand is
+/// vectorised by some versions at some levels only. Values move by reference: how a call passes a vector
+/// depends on the machine's options.
+template <class Scalar, int lanes>
+struct Vector {
+    typedef Scalar Type
+        __attribute__((vector_size(lanes * sizeof(Scalar)))); // NOLINT: an attribute that `using` lacks
+
+    static void load(const Scalar* address, Type& vector) noexcept {
+        std::memcpy(&vector, address, sizeof vector);
+    }
+    static void store(const Type& vector, Scalar* address) noexcept {
+        std::memcpy(address, &vector, sizeof vector);
+    }
+
+    static Scalar total(const Type& vector) noexcept {
+        Scalar result = 0;
+        for (int lane = 0; lane < lanes; ++lane) {
+            result += vector[lane];
+        }
+        return result;
+    }
+};
+
+} // namespace dfdyn::detail
