@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/common/progress.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <fcntl.h>
+#include <string>
+#include <thread>
+#include <unistd.h>
+
+namespace {
+
+using dfdyn::tools::Progress;
+
+/// A terminal whose screen the test reads.
+class PseudoTerminal {
+  public:
+    PseudoTerminal() : master_(::posix_openpt(O_RDWR | O_NOCTTY)) {
+        REQUIRE(master_ >= 0);
+        REQUIRE(::grantpt(master_) == 0);
+        REQUIRE(::unlockpt(master_) == 0);
+        std::array<char, 64> name{};
+        REQUIRE(::ptsname_r(master_, name.data(), name.size()) == 0);
+        slave_ = ::open(name.data(), O_RDWR | O_NOCTTY);
+        REQUIRE(slave_ >= 0);
+        REQUIRE(::fcntl(master_, F_SETFL, O_NONBLOCK) == 0);
+    }
+    ~PseudoTerminal() {
+        ::close(slave_);
+        ::close(master_);
+    }
+    PseudoTerminal(const PseudoTerminal&) = delete;
+    PseudoTerminal& operator=(const PseudoTerminal&) = delete;
+
+    int descriptor() const { return slave_; }
+
+    std::string written() const {
+        std::array<char, 4096> text{};
+        const ssize_t count = ::read(master_, text.data(), text.size());
+        return {text.data(), count < 0 ? 0 : static_cast<std::size_t>(count)};
+    }
+
+  private:
+    int master_;
+    int slave_ = -1;
+};
+
+void wait_one_period() { std::this_thread::sleep_for(std::chrono::milliseconds(110)); }
+
+} // namespace
+
+TEST_CASE("Progress shows one line on a terminal and erases it") {
+    const PseudoTerminal terminal;
+    {
+        Progress progress("train", 400, terminal.descriptor());
+        wait_one_period();
+        progress.update(100);
+        CHECK(terminal.written() == "\r\x1b[Ktrain: 100 of 400 (25 %)");
+    }
+    CHECK(terminal.written() == "\r\x1b[K");
+}
+
+TEST_CASE("Progress without a known end shows the count alone") {
+    const PseudoTerminal terminal;
+    Progress progress("fit", 0, terminal.descriptor());
+    wait_one_period();
+    progress.update(7);
+    CHECK(terminal.written() == "\r\x1b[Kfit: 7");
+}
+
+TEST_CASE("Progress writes nothing for short work, and at most once a period") {
+    const PseudoTerminal terminal;
+    const auto wait_ms = GENERATE(0, 110);
+    const auto start = std::chrono::steady_clock::now();
+    Progress progress("work", 1000, terminal.descriptor());
+    std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+    for (std::size_t done = 1; done <= 1000; ++done) {
+        progress.update(done);
+    }
+    const auto periods = (std::chrono::steady_clock::now() - start) / std::chrono::milliseconds(100);
+    const std::string written = terminal.written();
+    CAPTURE(wait_ms, written, periods); // one period, unless the machine is very busy
+    CHECK(std::count(written.begin(), written.end(), '\r') <= periods);
+}
+
+TEST_CASE("Progress is silent in a pipe") {
+    std::array<int, 2> ends{};
+    REQUIRE(::pipe(ends.data()) == 0);
+    {
+        Progress progress("train", 400, ends[1]);
+        wait_one_period();
+        progress.update(100);
+    }
+    ::close(ends[1]);
+    char byte = 0;
+    CHECK(::read(ends[0], &byte, 1) == 0);
+    ::close(ends[0]);
+}

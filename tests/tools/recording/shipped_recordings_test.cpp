@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/catch.hpp"
+#include "tools/recording/recording.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace dfdyn::tools;
+
+Recording read_ur5(const std::string& name) {
+    return read_recording(std::filesystem::path(DFDYN_TEST_DATA_DIR) / "ur5_kufieta" / name,
+                          {.joint_count = 6, .outputs = OutputKind::motor_current, .velocity = true});
+}
+
+std::int64_t longest_step_ns(const Recording& recording) {
+    std::int64_t longest = 0;
+    for (std::size_t row = 1; row < recording.row_count(); ++row) {
+        longest = std::max(longest, recording.time_ns[row] - recording.time_ns[row - 1]);
+    }
+    return longest;
+}
+
+} // namespace
+
+TEST_CASE("the shipped recordings of the UR5 are read whole") {
+    const auto [name, rows, end_ns,
+                longest_ns] = GENERATE(table<std::string, std::size_t, std::int64_t, std::int64_t>({
+        {"Movement_No3_Acc.csv", 1251, 19'855'437'000, 24'367'000},
+        {"Movement_No6_Acc_slow_Verify_Model.csv", 10264, 82'104'000'000, 8'000'000},
+        {"Movement_No7_Acc_slow_Verify_Model_short.csv", 3470, 27'752'000'000, 8'000'000},
+        {"Movement_No7_Acc_slow_Verify_Model_short_with_disturbance.csv", 3420, 27'352'000'000, 8'000'000},
+    }));
+    CAPTURE(name);
+    const Recording recording = read_ur5(name);
+    CHECK(recording.row_count() == rows);
+    CHECK(recording.time_ns.back() == end_ns);
+    CHECK(longest_step_ns(recording) == longest_ns);
+    CHECK(std::count(recording.gap_before.begin(), recording.gap_before.end(), 1) == 1);
+    CHECK(recording.ignored_columns == joint_names("taur", 6));
+}
+
+TEST_CASE("values of a shipped recording land in their columns") {
+    const Recording recording = read_ur5("Movement_No6_Acc_slow_Verify_Model.csv");
+    CHECK(recording.position.row(0)[0] == -1.570796);
+    CHECK(recording.position.row(0)[5] == -0.000299);
+    CHECK(recording.velocity.row(0)[0] == 0);
+    CHECK(recording.output.row(1)[0] == 0.006725);
+    CHECK(recording.output.row(1)[5] == 0.091502);
+}

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace dfdyn::tools {
+
+enum class NumberFault { none, not_a_number, out_of_range };
+
+struct ParsedNumber {
+    double value = 0.0; ///< meaningful only where `fault` is `none`
+    NumberFault fault = NumberFault::none;
+};
+
+/// Reads the whole of `text` as a decimal number (`-1.5`, `+2`, `1e-3`), whatever the locale. `out_of_range`:
+/// infinite, nan, or not representable as a double (`1e999`). Anything else, hexadecimal and empty text
+/// included, is `not_a_number`.
+ParsedNumber parse_number(std::string_view text) noexcept;
+
+/// The shortest decimal text that `parse_number` reads back as the same double; `nan` and `inf` where it is
+/// not finite.
+std::string number_text(double value);
+
+} // namespace dfdyn::tools
