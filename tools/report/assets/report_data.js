@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+"use strict";
+
+// Turns what the program put into the page (base64 of little-endian numbers) into the arrays that the charts
+// draw. What is not finite becomes null, which the charts show as a gap.
+
+const gap_in_sample_times = 10;
+
+function decode_bytes(base64) {
+    const text = atob(base64);
+    const bytes = new Uint8Array(text.length);
+    for (let i = 0; i < text.length; ++i) {
+        bytes[i] = text.charCodeAt(i);
+    }
+    return bytes.buffer;
+}
+
+function median(values) {
+    return values.slice().sort((a, b) => a - b)[values.length >> 1];
+}
+
+function time_steps(time) {
+    return Array.from(time.subarray(1), (t, i) => t - time[i]);
+}
+
+// The rows before which every line is interrupted: where a recording begins, and where rows are missing.
+function break_rows(time, recordings) {
+    const steps = time_steps(time);
+    const longest = gap_in_sample_times * median(steps);
+    const starts = recordings.map(recording => recording.start_s);
+    const crosses_start = i => starts.some(start => time[i] < start && start <= time[i + 1]);
+    return steps.flatMap((step, i) => (step > longest || crosses_start(i) ? [i + 1] : []));
+}
+
+// `values` with `filler(row)` inserted before each of the rows `breaks`.
+function insert_at_breaks(values, breaks, filler) {
+    const result = [];
+    let next = 0;
+    for (let row = 0; row < values.length; ++row) {
+        if (row === breaks[next]) {
+            result.push(filler(row));
+            ++next;
+        }
+        result.push(values[row]);
+    }
+    return result;
+}
+
+function finite_or_null(value) {
+    return Number.isFinite(value) ? value : null;
+}
+
+function combine(a, b, operation) {
+    return a.map((value, i) => (value === null || b[i] === null ? null : operation(value, b[i])));
+}
+
+function decode_output(series, decode) {
+    const measured = decode(series.measured);
+    const predicted = decode(series.predicted);
+    const margin = decode(series.standard_deviation).map(deviation =>
+        deviation === null ? null : 2 * deviation,
+    );
+    return {
+        name: series.name,
+        unit: series.unit,
+        measured,
+        predicted,
+        margin,
+        upper: combine(predicted, margin, (value, m) => value + m),
+        lower: combine(predicted, margin, (value, m) => value - m),
+        error: combine(measured, predicted, (m, p) => m - p),
+        margin_below: margin.map(m => (m === null ? null : -m)),
+    };
+}
+
+function decode_innovation(innovation, decode) {
+    const values = decode(innovation.normalised_squared);
+    return {
+        // what a logarithmic axis can show
+        values: values.map(value => (value !== null && value > 0 ? value : null)),
+        threshold: innovation.threshold,
+        threshold_label: innovation.threshold_label,
+    };
+}
+
+function decode_report(text) {
+    const packed = JSON.parse(text);
+    const time = new Float64Array(decode_bytes(packed.time_s));
+    const breaks = break_rows(time, packed.recordings);
+    const decode = base64 =>
+        insert_at_breaks(new Float32Array(decode_bytes(base64)), breaks, () => null).map(finite_or_null);
+    return {
+        time: insert_at_breaks(time, breaks, row => (time[row - 1] + time[row]) / 2),
+        sample_time: time.length > 1 ? median(time_steps(time)) : 1,
+        outputs: packed.series.map(series => decode_output(series, decode)),
+        innovation: packed.innovation === null ? null : decode_innovation(packed.innovation, decode),
+        intervals: packed.intervals,
+        marks: packed.marks,
+        recordings: packed.recordings,
+    };
+}
