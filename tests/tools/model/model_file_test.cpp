@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/support/temporary_directory.hpp"
+#include "tests/tools/support/small_model.hpp"
+#include "tools/common/error.hpp"
+#include "tools/model/model_file.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <optional>
+#include <utility>
+
+namespace {
+
+using namespace dfdyn::tools;
+using dfdyn::tests::small_model;
+
+constexpr InputKind all_inputs[] = {InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR,
+                                    InputKind::DFSR};
+
+/// What is said about `text`; nothing when it is a model.
+std::optional<std::string> refusal(const std::string& text) {
+    try {
+        model_from_json(text, "m.json");
+        return std::nullopt;
+    } catch (const InputError& error) {
+        return error.what();
+    }
+}
+
+/// The same for a good model of input DFR in which the field at `pointer` is replaced.
+std::optional<std::string> refusal_with(const std::string& pointer, const nlohmann::json& value) {
+    std::mt19937_64 engine(1);
+    nlohmann::json json = nlohmann::json::parse(model_to_json(small_model(engine, InputKind::DFR)));
+    json[nlohmann::json::json_pointer(pointer)] = value;
+    return refusal(json.dump());
+}
+
+} // namespace
+
+TEST_CASE("a model reads back bit for bit in single precision") {
+    DFDYN_SEEDED_ENGINE(engine);
+    for (const InputKind kind : all_inputs) {
+        CAPTURE(to_string(kind));
+        const TrainedModel written = small_model(engine, kind);
+        const std::string text = model_to_json(written);
+        const TrainedModel read = model_from_json(text, "m.json");
+        CHECK(model_to_json(read) == text);
+        CHECK(read.input.kind == kind);
+        CHECK(read.input.rows == written.input.rows);
+        REQUIRE(read.start.unit_upper.size() == written.start.unit_upper.size());
+        for (std::size_t i = 0; i < read.start.unit_upper.size(); ++i) {
+            CHECK(static_cast<float>(read.start.unit_upper[i]) ==
+                  static_cast<float>(written.start.unit_upper[i]));
+        }
+        CHECK(model_identity(read) == model_identity(written));
+    }
+}
+
+TEST_CASE("models that differ in one number differ in identity") {
+    std::mt19937_64 engine(1);
+    TrainedModel model = small_model(engine, InputKind::DFR);
+    const auto identity = model_identity(model);
+    model.features.omega.back() += 1e-3;
+    CHECK(model_identity(model) != identity);
+}
+
+TEST_CASE("every truncation of a model file is refused in one line") {
+    std::mt19937_64 engine(1);
+    const std::string text = model_to_json(small_model(engine, InputKind::DFSR));
+    for (std::size_t length = 0; length + 2 < text.size(); ++length) {
+        const auto message = refusal(text.substr(0, length));
+        REQUIRE(message);
+        REQUIRE_THAT(*message, Catch::Matchers::StartsWith("m.json: "));
+        REQUIRE(message->find('\n') == std::string::npos);
+    }
+}
+
+TEST_CASE("what is wrong with a model is said with the field, the expected and the found") {
+    const std::pair<std::pair<std::string, nlohmann::json>, std::string> cases[] = {
+        {{"/schema", "dfdyn.model/2"}, "m.json: schema: expected \"dfdyn.model/1\", found \"dfdyn.model/2\""},
+        {{"/structure", "XP"}, "m.json: structure: expected \"NP\", found \"XP\""},
+        {{"/joints", 0}, "m.json: joints: expected a whole number from 1 to 64, found \"0\""},
+        {{"/joints", 3}, "m.json: input.scale: expected 9 numbers, found 6"},
+        {{"/joints", 2.5}, "m.json: joints: expected a whole number from 1 to 64, found \"2.5\""},
+        {{"/joints", 18446744073709551615ULL},
+         "m.json: joints: expected a whole number from 1 to 64, found \"18446744073709551615\""},
+        {{"/joints", "two"}, "m.json: joints: expected a whole number from 1 to 64, found \"two\""},
+        {{"/sample_period_s", -1}, "m.json: sample_period_s: expected a positive number, found -1"},
+        {{"/sample_period_s", 1e300},
+         "m.json: sample_period_s: expected a number that single precision holds, found \"1e+300\""},
+        {{"/forgetting_factor", 1.01},
+         "m.json: forgetting_factor: expected a number from 0.5 to 1, found 1.01"},
+        {{"/input", 1}, "m.json: input: expected an object, found \"1\""},
+        {{"/input/kind", "DFX"}, "input: expected STD, DF, DFW, DFR or DFSR, found \"DFX\""},
+        {{"/input/lags", 1000000},
+         "m.json: input.lags: expected a whole number from 0 to 1000, found \"1000000\""},
+        {{"/input/rows", {1, 2}}, "m.json: input.rows: expected 15 numbers, found 2"},
+        {{"/input/rows_per_joint", 6},
+         "m.json: input.rows_per_joint: expected a number that fits input DFR with 4 lags, found 6"},
+        {{"/input/rows/3", nullptr},
+         "m.json: input.rows: expected a number that single precision holds, found \"null\""},
+        {{"/features/count", 2147483647},
+         "m.json: features.count: expected a whole number from 1 to 5000, found \"2147483647\""},
+        {{"/features/count", 4}, "m.json: features.omega: expected 24 numbers, found 18"},
+        {{"/features/orthogonal", 1}, "m.json: features.orthogonal: expected true or false, found \"1\""},
+        {{"/features/length_scale", 0}, "m.json: features.length_scale: expected a positive number, found 0"},
+        {{"/outputs/names", nlohmann::json::array()},
+         "m.json: outputs.names: expected 1 to 64 texts, found 0"},
+        {{"/outputs/noise_std/0", 0}, "m.json: outputs.noise_std: expected positive numbers, found 0"},
+        {{"/outputs/noise_std/0", 1e-60},
+         "m.json: outputs.noise_std: expected positive numbers, found 1e-60"},
+        {{"/start/diagonal/2", -1}, "m.json: start.diagonal: expected positive numbers, found -1"},
+        {{"/start/unit_upper", {1}}, "m.json: start.unit_upper: expected 15 numbers, found 1"},
+        {{"/limits/innovation", 0}, "m.json: limits.innovation: expected a positive number, found 0"},
+        {{"/training/seed", -1},
+         "m.json: training.seed: expected a whole number that is not negative, found \"-1\""},
+    };
+    for (const auto& [change, message] : cases) {
+        CAPTURE(change.first);
+        CHECK(refusal_with(change.first, change.second) == message);
+    }
+}
+
+TEST_CASE("a model without one of its fields is refused by the field's name") {
+    std::mt19937_64 engine(1);
+    const nlohmann::json good = nlohmann::json::parse(model_to_json(small_model(engine, InputKind::DFSR)));
+    for (const auto& [name, value] : good.items()) {
+        nlohmann::json json = good;
+        json.erase(name);
+        CHECK(refusal(json.dump()) == "m.json: " + name + ": expected this field, found none");
+    }
+}
+
+TEST_CASE("files that are no JSON objects are refused") {
+    CHECK(refusal("[1]") == "m.json: expected a JSON object, found an array");
+    CHECK(refusal("\x89PNG") == "m.json: byte 1: expected JSON, found something else or the end of the file");
+    CHECK(refusal("{\"schema\": 1e999}") ==
+          "m.json: expected numbers that a double holds, found a larger one");
+    CHECK(refusal(std::string(100000, '[')).has_value());
+}
+
+TEST_CASE("a model file that cannot be read is named with the reason") {
+    const dfdyn::tests::TemporaryDirectory directory;
+    const std::string missing = directory.path() / "none.json";
+    CHECK_THROWS_WITH(read_model(missing),
+                      Catch::Matchers::StartsWith(missing + ": cannot be read as a model: No such"));
+    CHECK_THROWS_AS(read_model(directory.path()), InputError);
+    CHECK_THROWS_AS(read_model(directory.write("empty.json", "")), InputError);
+}

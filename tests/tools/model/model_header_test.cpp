@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/support/temporary_directory.hpp"
+#include "tests/tools/support/small_model.hpp"
+#include "tools/host/host_estimator.hpp"
+#include "tools/model/model_file.hpp"
+#include "tools/model/model_header.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+namespace {
+
+using namespace dfdyn::tools;
+using dfdyn::tests::file_content;
+using dfdyn::tests::small_model;
+using dfdyn::tests::TemporaryDirectory;
+
+/// A program that ticks the estimator of the header over a fixed motion and prints every prediction and
+/// deviation.
+constexpr const char* program = R"(
+#include "m.hpp"
+#include <cstdio>
+static dfdyn::Estimator<m::Model> estimator(m::constants);
+int main() {
+    for (int t = 0; t < 40; ++t) {
+        decltype(estimator)::Sample sample{.time_ns = 4000000LL * t, .position = {}, .output = {}, .output_valid = true};
+        for (int i = 0; i < 2; ++i) sample.position[i] = static_cast<float>(((t * (7 + 5 * i)) % 23) / 16.0);
+        for (int k = 0; k < 6; ++k) sample.output[k] = static_cast<float>(((t * (3 + k)) % 17) / 8.0 - 1);
+        const auto estimate = estimator.tick(sample, dfdyn::Budget::unlimited());
+        for (int k = 0; k < 6; ++k)
+            std::printf("%a %a\n", static_cast<double>(estimate.prediction[k]),
+                        static_cast<double>(estimate.standard_deviation[k]));
+    }
+}
+)";
+
+std::vector<double> run_header(const TemporaryDirectory& directory, const TrainedModel& model) {
+    directory.write("m.hpp", model_to_header(model, "m"));
+    const std::string source = directory.write("main.cpp", program);
+    const std::string binary = directory.path() / "main";
+    const std::string output = directory.path() / "out.txt";
+    const std::string compile = std::string(DFDYN_CXX) +
+                                " -std=c++20 -O1 -Wall -Wextra -Wpedantic -Wconversion -Werror" +
+                                " -fno-exceptions -fno-rtti -I " DFDYN_FIRMWARE_INCLUDE " " + source +
+                                " -o " + binary + " && " + binary + " > " + output;
+    REQUIRE(std::system(compile.c_str()) == 0);
+    std::istringstream text(file_content(output));
+    std::vector<double> values;
+    for (std::string word; text >> word;) {
+        values.push_back(std::strtod(word.c_str(), nullptr));
+    }
+    return values;
+}
+
+std::vector<double> run_host(const TrainedModel& model) {
+    const auto estimator = make_estimator(model, false);
+    std::vector<double> values;
+    for (int t = 0; t < 40; ++t) {
+        std::array<double, 2> position{};
+        std::array<double, 6> output{};
+        for (int i = 0; i < 2; ++i) {
+            position[static_cast<std::size_t>(i)] = ((t * (7 + 5 * i)) % 23) / 16.0;
+        }
+        for (int k = 0; k < 6; ++k) {
+            output[static_cast<std::size_t>(k)] = ((t * (3 + k)) % 17) / 8.0 - 1;
+        }
+        const Tick tick = estimator->tick(4000000LL * t, position, output);
+        for (std::size_t k = 0; k < 6; ++k) {
+            values.push_back(static_cast<double>(tick.prediction[k]));
+            values.push_back(static_cast<double>(tick.standard_deviation[k]));
+        }
+    }
+    return values;
+}
+
+} // namespace
+
+TEST_CASE("the header compiles without exceptions, and predicts as the model file does") {
+    DFDYN_SEEDED_ENGINE(engine);
+    for (const InputKind kind :
+         {InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR}) {
+        CAPTURE(to_string(kind));
+        const TrainedModel model = model_from_json(model_to_json(small_model(engine, kind)), "m.json");
+        const TemporaryDirectory directory;
+        const std::vector<double> embedded = run_header(directory, model);
+        const std::vector<double> host = run_host(model);
+        REQUIRE(embedded.size() == host.size());
+        for (std::size_t i = 0; i < host.size(); ++i) {
+            CAPTURE(i);
+            // Two builds with other flags may round differently, at most a few units in the last place per
+            // operation.
+            CHECK(
+                (embedded[i] == host[i] || std::abs(embedded[i] - host[i]) < 1e-3 * (1 + std::abs(host[i]))));
+        }
+    }
+}
+
+TEST_CASE("hostile names do not leave their comment") {
+    std::mt19937_64 engine(1);
+    TrainedModel model = small_model(engine, InputKind::DF);
+    model.training.recordings = {"a\nint x;\\"};
+    const std::string header = model_to_header(model, "m");
+    CHECK(header.find("\nint x;") == std::string::npos);
+    CHECK(header.find("a?int x;?") != std::string::npos);
+}
+
+TEST_CASE("any file stem becomes an identifier") {
+    CHECK(to_identifier("model") == "model");
+    CHECK(to_identifier("my-arm 2") == "my_arm_2");
+    CHECK(to_identifier("2dof") == "model_2dof");
+    CHECK(to_identifier("") == "model_");
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/evaluation/horizon_error.hpp"
+#include "tools/host/host_estimator.hpp"
+#include "tools/recording/recording.hpp"
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// What the embedded estimator did with one recording, tick by tick. Vectors over ticks; those of outputs row
+/// by row.
+struct ReplayedRecording {
+    std::string source;
+    std::vector<double> time_s;
+    std::vector<double> measured;                     ///< ticks × m
+    std::vector<float> predicted;                     ///< ticks × m; NaN where nothing was predicted
+    std::vector<float> standard_deviation;            ///< ticks × m; likewise
+    std::vector<float> normalised_innovation_squared; ///< per tick; NaN likewise
+    std::vector<Status> status;
+    std::vector<double> duration_us; ///< of each tick, on this machine
+    std::vector<HorizonIndex> horizon;
+};
+
+/// Runs `estimator` over `recording`, learning on throughout; what it has learned before stays. `on_tick` is
+/// told the number of ticks done. `horizon`: T of the index ε, 0 for none. Throws InputError when the
+/// recording has not the `joints` joints and `outputs` outputs of the estimator's model.
+ReplayedRecording replay(HostEstimator& estimator, const TrainedModel& model, const Recording& recording,
+                         std::size_t horizon, const std::function<void(std::size_t)>& on_tick);
+
+/// rms(measured - predicted) / std(measured) of one output over the predicted ticks in [first, last); NaN if
+/// there are none.
+double normalised_error(const ReplayedRecording& replayed, std::size_t outputs, std::size_t output,
+                        std::size_t first, std::size_t last);
+
+/// The median of ε of one output over the times t in [from_s, to_s) since the recording's start; NaN if there
+/// are none. The median, because ε is relative: while an output rests near zero it is as large as one likes.
+double median_horizon_index(const ReplayedRecording& replayed, std::size_t output, double from_s,
+                            double to_s);
+
+/// The value that a share `quantile` (0 … 1) of `values` does not exceed; `values` not empty.
+double quantile_of(std::vector<double> values, double quantile);
+
+} // namespace dfdyn::tools

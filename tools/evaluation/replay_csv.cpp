@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/evaluation/replay_csv.hpp"
+
+#include "dfdyn/status.hpp"
+#include "tools/recording/csv_writer.hpp"
+
+namespace dfdyn::tools {
+
+namespace {
+
+std::vector<std::string> column_names(const TrainedModel& model) {
+    std::vector<std::string> names{"t"};
+    for (const std::string& output : model.outputs.names) {
+        names.insert(names.end(), {output, output + "_pred", output + "_std"});
+    }
+    names.insert(names.end(), {"nis", "learned", "status"});
+    return names;
+}
+
+void write_row(CsvWriter& writer, const ReplayedRecording& recording, std::size_t tick, std::size_t outputs) {
+    writer.field(recording.time_s[tick]);
+    for (std::size_t element = tick * outputs; element < (tick + 1) * outputs; ++element) {
+        writer.field(recording.measured[element])
+            .field(static_cast<double>(recording.predicted[element]))
+            .field(static_cast<double>(recording.standard_deviation[element]));
+    }
+    const Status& status = recording.status[tick];
+    writer.field(static_cast<double>(recording.normalised_innovation_squared[tick]))
+        .field(status.learned() ? 1 : 0)
+        .name(name(status.reason()));
+    writer.end_row();
+}
+
+} // namespace
+
+void write_replay_csv(std::ostream& out, const TrainedModel& model,
+                      std::span<const ReplayedRecording> recordings) {
+    CsvWriter writer(out, column_names(model));
+    for (const ReplayedRecording& recording : recordings) {
+        for (std::size_t tick = 0; tick < recording.time_s.size(); ++tick) {
+            write_row(writer, recording, tick, model.outputs.names.size());
+        }
+    }
+}
+
+} // namespace dfdyn::tools

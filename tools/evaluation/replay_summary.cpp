@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/evaluation/replay_summary.hpp"
+
+#include "tools/build_flags.hpp"
+#include "tools/model/model_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+
+namespace dfdyn::tools {
+
+namespace {
+
+RecordingFigures figures_of(const ReplayedRecording& replayed, const TrainedModel& model) {
+    const std::size_t outputs = model.outputs.names.size();
+    const std::size_t ticks = replayed.time_s.size();
+    RecordingFigures figures;
+    figures.name = std::filesystem::path(replayed.source).filename().string();
+    figures.ticks = ticks;
+    for (const Status& status : replayed.status) {
+        figures.predicted += status.predicted() ? 1 : 0;
+        figures.learned += status.learned() ? 1 : 0;
+    }
+    for (std::size_t k = 0; k < outputs; ++k) {
+        figures.normalised_error.push_back(normalised_error(replayed, outputs, k, 0, ticks));
+        figures.normalised_error_second_half.push_back(
+            normalised_error(replayed, outputs, k, ticks / 2, ticks));
+        figures.horizon_transient.push_back(median_horizon_index(replayed, k, 0, transient_s));
+        figures.horizon_steady.push_back(
+            median_horizon_index(replayed, k, transient_s, std::numeric_limits<double>::infinity()));
+    }
+    figures.contradictions = find_contradictions(replayed, model.limits.innovation);
+    return figures;
+}
+
+std::string describe_model(const TrainedModel& model) {
+    const InputModel& input = model.input;
+    return model.structure + ", input " + to_string(input.kind) + " (" + std::to_string(input.lags) +
+           " lags, " + std::to_string(input.rows_per_joint) + " features per joint), " +
+           std::to_string(2 * model.features.count) + " random " +
+           (model.features.orthogonal ? "orthogonal " : "") + "Fourier columns";
+}
+
+std::string formatted(const char* format, double value) {
+    if (std::isnan(value)) {
+        return "-";
+    }
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), format, value);
+    return text.data();
+}
+
+void print_line(std::ostream& out, const std::string& label, std::span<const std::string> cells) {
+    out << "  " << label << std::string(label.size() < 26 ? 26 - label.size() : 1, ' ');
+    for (const std::string& cell : cells) {
+        out << std::string(cell.size() < 8 ? 8 - cell.size() : 1, ' ') << cell;
+    }
+    out << '\n';
+}
+
+void print_values(std::ostream& out, const std::string& label, const std::vector<double>& values) {
+    std::vector<std::string> cells;
+    for (const double value : values) {
+        cells.push_back(formatted("%.3f", value));
+    }
+    print_line(out, label, cells);
+}
+
+} // namespace
+
+ReplaySummary summarise(const TrainedModel& model, const HostEstimator& estimator,
+                        std::span<const ReplayedRecording> replayed, std::size_t horizon) {
+    ReplaySummary summary;
+    summary.outputs = model.outputs.names;
+    summary.horizon = horizon;
+    summary.model = describe_model(model);
+    summary.state_bytes = estimator.state_bytes();
+    summary.operations = estimator.cost().predict + estimator.cost().learn;
+    std::vector<double> durations;
+    for (const ReplayedRecording& recording : replayed) {
+        summary.recordings.push_back(figures_of(recording, model));
+        durations.insert(durations.end(), recording.duration_us.begin(), recording.duration_us.end());
+    }
+    summary.median_us = quantile_of(durations, 0.5);
+    summary.p99_us = quantile_of(durations, 0.99);
+    summary.longest_us = quantile_of(durations, 1);
+    return summary;
+}
+
+void print_summary(std::ostream& out, const ReplaySummary& summary) {
+    out << "model: " << summary.model << '\n';
+    for (const RecordingFigures& recording : summary.recordings) {
+        out << recording.name << ": " << recording.ticks << " ticks, " << recording.predicted
+            << " predicted, " << recording.learned << " learned\n";
+        print_line(out, "", summary.outputs);
+        print_values(out, "nRMSE, one step", recording.normalised_error);
+        print_values(out, "nRMSE, second half", recording.normalised_error_second_half);
+        for (const Contradiction& contradiction : recording.contradictions) {
+            out << "  contradicts the model from " << formatted("%.2f", contradiction.start_s) << " to "
+                << formatted("%.2f", contradiction.end_s) << " s (nis up to "
+                << formatted("%.0f", contradiction.peak) << ")\n";
+        }
+        if (summary.horizon > 0) {
+            const std::string index = "epsilon (T=" + std::to_string(summary.horizon) + ")";
+            print_values(out, index + ", first 30 s", recording.horizon_transient);
+            print_values(out, index + ", after", recording.horizon_steady);
+        }
+    }
+    out << "time per tick on this machine: median " << formatted("%.1f", summary.median_us) << " us, 99 % "
+        << formatted("%.1f", summary.p99_us) << " us, longest " << formatted("%.1f", summary.longest_us)
+        << " us (" << summary.operations << " multiply-adds)\n"
+        << "learned state: " << summary.state_bytes << " bytes\n"
+        << "build: " << build_flags() << '\n';
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/budget.hpp"
+#include "dfdyn/status.hpp"
+#include "tools/model/model.hpp"
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// What one tick of the embedded estimator gave.
+struct Tick {
+    std::span<const float> prediction; ///< of each output; 0 where the status says that nothing was predicted
+    std::span<const float> standard_deviation; ///< of each output
+    float normalised_innovation_squared = 0;
+    Status status;
+    std::chrono::nanoseconds duration{}; ///< of `Estimator::tick` alone
+};
+
+/// The embedded estimator of any model, whatever its sizes and input: what the firmware runs, behind one
+/// interface.
+class HostEstimator {
+  public:
+    virtual ~HostEstimator() = default;
+
+    /// One tick with an unlimited budget. `position`: n values, `output`: m values. The spans in the result
+    /// live until the next tick.
+    virtual Tick tick(std::int64_t time_ns, std::span<const double> position,
+                      std::span<const double> output) = 0;
+
+    /// What the columns of the last tick predict with other weights (as `weights` gave them); m values into
+    /// `prediction`.
+    virtual void predict_with(std::span<const float> weights, std::span<float> prediction) const = 0;
+
+    /// The present weights of all outputs, m × 2d.
+    virtual void copy_weights(std::span<float> weights) const = 0;
+
+    /// Begins a recording: the window restarts, what has been learned stays.
+    virtual void begin_recording() = 0;
+
+    /// Bytes of all state in the firmware's types.
+    virtual std::size_t state_bytes() const = 0;
+    virtual Cost cost() const = 0;
+};
+
+/// The estimator of `model`, from its trained start or from the prior. Keeps no reference to `model`.
+std::unique_ptr<HostEstimator> make_estimator(const TrainedModel& model, bool from_prior);
+
+} // namespace dfdyn::tools

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/common/error.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// The JSON in `text`; throws InputError with source and position in one line.
+nlohmann::json parse_json(const std::string& text, const std::string& source);
+
+/// Reads the fields of one JSON object. Every method throws InputError `SOURCE: path.to.field: expected …,
+/// found …` when the field is missing, of another type, of another size or out of its range; all numbers must
+/// be finite, and finite in single precision. Refers to `json`.
+class JsonReader {
+  public:
+    JsonReader(const nlohmann::json& json, std::string source);
+
+    JsonReader object(const std::string& name) const;
+    std::string text(const std::string& name) const;
+    std::vector<std::string> texts(const std::string& name, int at_most) const;
+    bool flag(const std::string& name) const;
+    int whole_number(const std::string& name, int low, int high) const;
+    std::uint64_t seed(const std::string& name) const;
+    double number(const std::string& name) const;
+    double positive_number(const std::string& name) const;
+    double number_within(const std::string& name, double low, double high) const;
+    std::vector<double> numbers(const std::string& name) const;
+    std::vector<double> numbers(const std::string& name, int count) const;
+    std::vector<double> positive_numbers(const std::string& name, int count) const;
+
+    InputError error(const std::string& name, const std::string& expected, const std::string& found) const;
+
+  private:
+    JsonReader(const nlohmann::json& json, std::string source, std::string path);
+
+    const nlohmann::json& field(const std::string& name) const;
+    const nlohmann::json& array(const std::string& name) const;
+    double checked(const nlohmann::json& value, const std::string& name) const;
+
+    const nlohmann::json* json_;
+    std::string source_;
+    std::string path_; ///< "" or "input."
+};
+
+} // namespace dfdyn::tools

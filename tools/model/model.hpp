@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// The five inputs of the paper (section "Derivative-free Learning"), by their names on the command line.
+enum class InputKind { STD, DF, DFW, DFR, DFSR };
+
+/// How each joint's last positions become k features: xi_(i,j) = relevance-scaled row j of R applied to joint
+/// i. Element (i, j) of xi has index i * rows_per_joint + j.
+struct InputModel {
+    InputKind kind = InputKind::DFR;
+    int lags = 0; ///< M; the window holds M+1 positions per joint. STD: the longest window minus one.
+    int rows_per_joint = 0; ///< k
+    /// k x (M+1), row-major, newest lag first; empty for STD. DF: identity, DFW: diagonal, DFR: free rows
+    /// (row 0 = position), DFSR: rows that follow from `alpha` and `beta`.
+    std::vector<double> rows;
+    std::vector<double> scale; ///< n*k factors applied to R q (relevance / standard deviation over training)
+    std::array<double, 2> alpha{};   ///< DFSR only: gains of the velocity and acceleration rows
+    std::array<double, 2> beta{};    ///< DFSR only: poles of their low-pass filters, in (0, 1)
+    double position_noise_bound = 0; ///< STD only: bound of the position error (rad) for the adaptive window
+};
+
+/// Random features: phi = [cos(omega xi / l); sin(omega xi / l)] / sqrt(d).
+struct FeatureModel {
+    bool orthogonal = false;
+    int count = 0;             ///< d; 2d columns
+    std::uint64_t seed = 0;    ///< the seed that drew omega (kept for the record; omega itself is stored)
+    std::vector<double> omega; ///< d x (n*k), row-major, before division by the length scale
+    double length_scale = 1;   ///< l of K_G = exp(-|x-x'|^2 / (2 l^2))
+};
+
+/// Per output: y = offset + noise_std * (phi' w + e), e ~ N(0, 1), w ~ N(0, prior_variance I).
+struct OutputModel {
+    std::vector<std::string> names; ///< column names, e.g. i1 … i6
+    std::vector<double> offset;
+    std::vector<double> noise_std;
+    double prior_variance = 1; ///< rho^2 / sigma^2, shared: the outputs share one factor
+};
+
+/// What the sensors can plausibly show; samples beyond are refused.
+struct LimitModel {
+    std::vector<double> position_rad; ///< |q_i| at most
+    std::vector<double> output;       ///< |y_k| at most
+    double innovation = 0;            ///< normalised innovation squared at most
+    int innovation_patience = 0;      ///< samples in a row beyond it that are not learned
+};
+
+/// Where learning starts: weights of each output and the unit-upper-triangular / diagonal factor of the
+/// covariance P = U D U'.
+struct StartModel {
+    std::vector<double> weights; ///< m x 2d, row-major, in units of noise_std
+    std::vector<double>
+        unit_upper; ///< strictly upper part of U by columns: column j holds rows 0 … j-1; 2d(2d-1)/2 values
+    std::vector<double> diagonal; ///< 2d values of D
+};
+
+/// Where the constants came from.
+struct TrainingRecord {
+    std::vector<std::string> recordings; ///< file names without folders
+    std::string rows;                    ///< FIRST:LAST as given
+    std::string method;                  ///< "ML"
+    std::uint64_t seed = 0;
+    int likelihood_rows = 0;        ///< samples in the exact kernel
+    double log_likelihood = 0;      ///< of the winning start
+    std::vector<double> all_starts; ///< log likelihood reached from each start
+};
+
+/// Everything that `dfdyn train` fixes: the content of model.json.
+struct TrainedModel {
+    std::string structure = "NP";
+    int joints = 0;
+    double sample_period_s = 0;
+    double forgetting_factor = 1;
+    InputModel input;
+    FeatureModel features;
+    OutputModel outputs;
+    LimitModel limits;
+    StartModel start;
+    TrainingRecord training;
+};
+
+} // namespace dfdyn::tools
