@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 
 namespace dfdyn::detail {
@@ -9,13 +10,15 @@ namespace dfdyn::detail {
 inline constexpr int vector_bytes = 64;
 #elif defined(__AVX__)
 inline constexpr int vector_bytes = 32;
+#elif defined(__SSE2__) || defined(__ARM_NEON)
+inline constexpr int vector_bytes = 16;
 #else
-inline constexpr int vector_bytes = 16; // without vector instructions: unrolled scalars
+inline constexpr int vector_bytes = 0; // no vector instructions: one scalar at a time
 #endif
 
 /// Scalars per vector of the machine.
 template <class Scalar>
-inline constexpr int wide = vector_bytes / static_cast<int>(sizeof(Scalar));
+inline constexpr int wide = std::max(1, vector_bytes / static_cast<int>(sizeof(Scalar)));
 
 /// `lanes` numbers as one. The compilers' own vector type, because a sum that is kept in lanes by hand is
 /// vectorised by some versions at some levels only. Values move by reference: how a call passes a vector
@@ -39,6 +42,16 @@ struct Vector {
         }
         return result;
     }
+};
+
+/// A machine without vectors: plain scalars, which stay in its floating-point registers.
+template <class Scalar>
+struct Vector<Scalar, 1> {
+    using Type = Scalar;
+
+    static void load(const Scalar* address, Type& vector) noexcept { vector = *address; }
+    static void store(const Type& vector, Scalar* address) noexcept { *address = vector; }
+    static Scalar total(const Type& vector) noexcept { return vector; }
 };
 
 } // namespace dfdyn::detail

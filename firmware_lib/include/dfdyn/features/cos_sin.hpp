@@ -103,7 +103,7 @@ void cos_sin_lanes(const Scalar* argument, Scalar amplitude, Scalar* cosine, Sca
 /// per argument, no branches, no calls.
 template <class Scalar>
 bool cos_sin(const Scalar* argument, int count, Scalar amplitude, Scalar* cosine, Scalar* sine) noexcept {
-    constexpr int lanes = detail::wide<Scalar>;
+    constexpr int lanes = std::max(4, detail::wide<Scalar>);
     using Type = typename detail::Vector<Scalar, lanes>::Type;
     using Mask = decltype(Type{} < Type{});
     Mask outside{};

@@ -9,6 +9,12 @@ namespace dfdyn::detail {
 /// them.
 inline constexpr int panel_width = 4;
 
+/// Where the last whole vector of elements `begin` … `count` - 1 ends.
+template <int lanes>
+constexpr int whole_vectors(int begin, int count) noexcept {
+    return begin + (count - begin) / lanes * lanes;
+}
+
 /// Adds the products of elements `begin` … of `columns` columns with one row, `lanes` at a time as far as
 /// they go; returns where that is.
 template <class Scalar, int lanes, int columns>
@@ -18,8 +24,8 @@ int add_dots(const Scalar* matrix, const Scalar* row, int begin, int count,
     typename Lanes::Type partial[columns] = {};
     typename Lanes::Type x;
     typename Lanes::Type u;
-    int i = begin;
-    for (; i + lanes <= count; i += lanes) {
+    const int whole = whole_vectors<lanes>(begin, count);
+    for (int i = begin; i < whole; i += lanes) {
         Lanes::load(row + i, x);
         for (int c = 0; c < columns; ++c) {
             Lanes::load(matrix + c * count + i, u);
@@ -29,7 +35,7 @@ int add_dots(const Scalar* matrix, const Scalar* row, int begin, int count,
     for (int c = 0; c < columns; ++c) {
         products[c] += Lanes::total(partial[c]);
     }
-    return i;
+    return whole;
 }
 
 /// a'b over `count` elements.
@@ -48,14 +54,14 @@ void add_scaled(Scalar factor, const Scalar* x, Scalar* y, int count) noexcept {
     using Wide = Vector<Scalar, wide<Scalar>>;
     typename Wide::Type from;
     typename Wide::Type to;
-    int i = 0;
-    for (; i + wide<Scalar> <= count; i += wide<Scalar>) {
+    const int whole = whole_vectors<wide<Scalar>>(0, count);
+    for (int i = 0; i < whole; i += wide<Scalar>) {
         Wide::load(x + i, from);
         Wide::load(y + i, to);
         to += factor * from;
         Wide::store(to, y + i);
     }
-    for (; i < count; ++i) {
+    for (int i = whole; i < count; ++i) {
         y[i] += factor * x[i];
     }
 }
@@ -78,8 +84,8 @@ int update_panel_from(Scalar* columns, Scalar* gain, int begin, int count, const
     using Lanes = Vector<Scalar, lanes>;
     typename Lanes::Type k;
     typename Lanes::Type u;
-    int i = begin;
-    for (; i + lanes <= count; i += lanes) {
+    const int whole = whole_vectors<lanes>(begin, count);
+    for (int i = begin; i < whole; i += lanes) {
         Lanes::load(gain + i, k);
         for (int c = 0; c < panel_width; ++c) {
             Lanes::load(columns + c * count + i, u);
@@ -88,7 +94,7 @@ int update_panel_from(Scalar* columns, Scalar* gain, int begin, int count, const
         }
         Lanes::store(k, gain + i);
     }
-    return i;
+    return whole;
 }
 
 /// Bierman's update of four columns (as in `panel_dots`) above their diagonal block: for each column in turn

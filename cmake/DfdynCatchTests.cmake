@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: Apache-2.0
+# Test programs with Catch2, version 2 or 3.
+find_package(Catch2 QUIET)
+if(NOT TARGET Catch2::Catch2WithMain)
+    message(FATAL_ERROR "The tests need Catch2 with its main, which was not found. On Debian or Ubuntu: apt-get install catch2")
+endif()
+list(APPEND CMAKE_MODULE_PATH "${Catch2_DIR}")
+include(Catch)
+
+# A test program whose sources the subfolders add. Each test case is a ctest entry with the label `label`. With LONG, the test
+# cases with the tag [.long] are entries too, with the label `long`.
+function(dfdyn_add_catch_program target label)
+    cmake_parse_arguments(PARSE_ARGV 2 arg "LONG" "" "")
+    add_executable(${target})
+    dfdyn_compile_strictly(${target})
+    target_link_libraries(${target} PRIVATE dfdyn_test_support Catch2::Catch2WithMain)
+    target_compile_definitions(${target} PRIVATE DFDYN_TEST_DATA_DIR="${PROJECT_SOURCE_DIR}/tests/data")
+    catch_discover_tests(${target} TEST_PREFIX "${label}/" PROPERTIES LABELS ${label} TIMEOUT 300)
+    if(arg_LONG)
+        catch_discover_tests(${target} TEST_SPEC "[.long]" TEST_PREFIX "${label}/" PROPERTIES LABELS long TIMEOUT 3600)
+    endif()
+endfunction()

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ticks with little budget: learning is spread over several, and changes nothing of the result.
+#include "dfdyn/estimator.hpp"
+
+#include "tests/firmware_lib/support/test_model.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace {
+
+using namespace dfdyn;
+using namespace dfdyn::tests;
+
+template <class Scalar, template <class, int, int> class Form>
+using ModelOf = TestModel<Scalar, DerivativeFreeReduced<6, 3>, 15, Form>;
+using UdFloat = ModelOf<float, UdCovariance>;
+using UdDouble = ModelOf<double, UdCovariance>;
+using InformationFloat = ModelOf<float, CholeskyInformation>;
+using InformationDouble = ModelOf<double, CholeskyInformation>;
+
+template <class Model>
+constexpr Cost cost_of() {
+    return Estimator<Model>::cost();
+}
+
+/// Whether a sample was taken in by this tick, to be learned at once or in slices.
+bool taken(const Status& status) {
+    return status.predicted() && (status.learning == Reason::ok || status.learning == Reason::learning_in_progress);
+}
+
+template <class Model>
+bool same_weights(const Estimator<Model>& a, const Estimator<Model>& b) {
+    return std::equal(a.learner().weights(0), a.learner().weights(0) + Model::columns, b.learner().weights(0)) &&
+           std::equal(a.learner().weights(1), a.learner().weights(1) + Model::columns, b.learner().weights(1));
+}
+
+template <class Scalar, int m>
+double largest_difference(const Storage<Scalar, m>& a, const Storage<Scalar, m>& b) {
+    double largest = 0;
+    for (int k = 0; k < a.size(); ++k) {
+        largest = std::max(largest, std::abs(static_cast<double>((a[k] - b[k]) / b[k])));
+    }
+    return largest;
+}
+
+} // namespace
+
+// The whole estimator learns exactly the samples that the sliced one took in.
+TEMPLATE_TEST_CASE("random budgets learn the same as unlimited ones, bit for bit", "", UdFloat, UdDouble, InformationFloat,
+                   InformationDouble) {
+    DFDYN_SEEDED_ENGINE(engine);
+    const auto constants = make_constants<TestType>(engine, 0.99);
+    Estimator<TestType> sliced(constants);
+    Estimator<TestType> whole(constants);
+    std::uniform_int_distribution<std::int64_t> operations(0, cost_of<TestType>().learn * 3 / 2);
+    int compared = 0;
+    int different = 0;
+    for (int t = 0; t < 3000; ++t) {
+        auto sample = moving_sample<TestType>(t, engine);
+        const bool to_the_end = t % 10 == 9;
+        const auto estimate = sliced.tick(sample, to_the_end ? Budget::unlimited() : Budget{operations(engine)});
+        sample.output_valid = taken(estimate.status);
+        whole.tick(sample, Budget::unlimited());
+        if (sliced.learner().idle()) {
+            ++compared;
+            different += same_weights(sliced, whole) ? 0 : 1;
+        }
+    }
+    CHECK(compared >= 300);
+    CHECK(different == 0);
+    CHECK(sliced.counters().reasons[static_cast<int>(Reason::learner_busy)] > 300);
+}
+
+TEMPLATE_TEST_CASE("while a sample is being learned the estimates are those of before", "", UdFloat, UdDouble,
+                   InformationFloat, InformationDouble) {
+    DFDYN_SEEDED_ENGINE(engine);
+    const double rounding = std::is_same_v<typename TestType::Scalar, float> ? 1e-4 : 1e-12;
+    const auto constants = make_constants<TestType>(engine, 0.999);
+    Estimator<TestType> estimator(constants);
+    for (int t = 0; t < 50; ++t) {
+        estimator.tick(moving_sample<TestType>(t, engine), Budget::unlimited());
+    }
+    estimator.tick(moving_sample<TestType>(50, engine), Budget{100'000}); // nothing is left in hand
+    Estimator<TestType> before = estimator;
+    int busy = 0;
+    for (int t = 51; t < 500; ++t) {
+        auto sample = moving_sample<TestType>(t, engine);
+        const bool idle = estimator.learner().idle();
+        const auto estimate = estimator.tick(sample, Budget{cost_of<TestType>().largest_step / 3});
+        sample.output_valid = false;
+        const auto expected = before.tick(sample, Budget::unlimited());
+        REQUIRE(same(estimate.prediction, expected.prediction));
+        REQUIRE(largest_difference(estimate.standard_deviation, expected.standard_deviation) < rounding);
+        busy += idle ? 0 : 1;
+        REQUIRE(estimate.status.learning == (idle ? Reason::learning_in_progress : Reason::learner_busy));
+        if (t % 60 == 0) { // let it finish, and look at another sample
+            estimator.tick(moving_sample<TestType>(++t, engine), Budget::unlimited());
+            before = estimator;
+        }
+    }
+    CHECK(busy > 100);
+}
+
+TEMPLATE_TEST_CASE("samples that arrive meanwhile are skipped, and counted", "", UdFloat, InformationDouble) {
+    DFDYN_SEEDED_ENGINE(engine);
+    const auto constants = make_constants<TestType>(engine);
+    Estimator<TestType> estimator(constants);
+    std::uniform_int_distribution<std::int64_t> operations(0, 2 * cost_of<TestType>().learn);
+    std::uint32_t begun = 0;
+    for (int t = 0; t < 2000; ++t) {
+        begun += taken(estimator.tick(moving_sample<TestType>(t, engine), Budget{operations(engine)}).status) ? 1 : 0;
+        const Counters& counters = estimator.counters();
+        const auto count_of = [&](Reason reason) { return counters.reasons[static_cast<int>(reason)]; };
+        REQUIRE(counters.ticks == static_cast<std::uint32_t>(t + 1));
+        REQUIRE(counters.learned + (estimator.learner().sample_pending() ? 1 : 0) == begun);
+        REQUIRE(begun == count_of(Reason::ok) + count_of(Reason::learning_in_progress));
+        REQUIRE(counters.predicted == begun + count_of(Reason::learner_busy));
+    }
+    CHECK(begun > 200);
+    CHECK(begun < 1900);
+}
+
+TEMPLATE_TEST_CASE("a budget of the largest step always gets on, a smaller one never finishes", "", UdFloat, UdDouble,
+                   InformationFloat, InformationDouble) {
+    DFDYN_SEEDED_ENGINE(engine);
+    const auto constants = make_constants<TestType>(engine);
+    Estimator<TestType> enough(constants);
+    Estimator<TestType> too_little(constants);
+    constexpr Cost cost = cost_of<TestType>();
+    for (int t = 0; t < 500; ++t) {
+        const auto sample = moving_sample<TestType>(t, engine);
+        enough.tick(sample, Budget{cost.largest_step});
+        too_little.tick(sample, Budget{cost.largest_step - 1});
+    }
+    const auto steps = static_cast<std::uint32_t>(2 * cost.learn / cost.largest_step + 1);
+    CHECK(enough.counters().learned >= 494 / steps);
+    CHECK(too_little.counters().learned == 0);
+    CHECK(std::all_of(too_little.learner().weights(0), too_little.learner().weights(0) + TestType::columns,
+                      [](auto weight) { return weight == 0; }));
+}
+
+TEST_CASE("a sample in hand is learned on in ticks that are refused or blind") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const auto constants = make_constants<UdFloat>(engine);
+    Estimator<UdFloat> estimator(constants);
+    constexpr Cost cost = cost_of<UdFloat>();
+    for (int t = 0; t <= 6; ++t) {
+        estimator.tick(moving_sample<UdFloat>(t, engine), Budget{cost.largest_step - 1});
+    }
+    REQUIRE(estimator.learner().sample_pending());
+    auto refused = moving_sample<UdFloat>(7, engine);
+    refused.position[0] = 1e9F;
+    estimator.tick(refused, Budget::unlimited());
+    CHECK(estimator.learner().idle());
+    CHECK(estimator.counters().learned == 1);
+}
+
+TEST_CASE("the cost of a tick is a constant expression of the model") {
+    constexpr Cost cost = Estimator<UdFloat>::cost();
+    static_assert(cost.predict > 0 && cost.variance > 0 && cost.learn > cost.largest_step);
+    // inputs: n k (M+2); features: d (n k + 30); weights: m 2d
+    static_assert(cost.predict == 2 * 3 * 8 + 15 * (6 + 30) + 2 * 30);
+    SUCCEED();
+}

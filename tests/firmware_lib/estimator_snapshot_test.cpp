@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/estimator.hpp"
+
+#include "tests/firmware_lib/support/test_model.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+
+namespace {
+
+using namespace dfdyn;
+using namespace dfdyn::tests;
+using Bytes = std::vector<std::byte>;
+
+template <class Scalar, template <class, int, int> class Form>
+using ModelOf = TestModel<Scalar, DerivativeFreeReduced<6, 3>, 5, Form>;
+using UdFloat = ModelOf<float, UdCovariance>;
+using UdDouble = ModelOf<double, UdCovariance>;
+using InformationFloat = ModelOf<float, CholeskyInformation>;
+using InformationDouble = ModelOf<double, CholeskyInformation>;
+
+/// An estimator with a past; `tiny` leaves a sample half learned.
+template <class Model>
+void give_past(Estimator<Model>& estimator, std::mt19937_64& engine, bool tiny) {
+    for (int t = 0; t < 80; ++t) {
+        estimator.tick(moving_sample<Model>(t, engine), Budget::unlimited());
+    }
+    if (tiny) {
+        estimator.tick(moving_sample<Model>(80, engine), Budget{Estimator<Model>::cost().largest_step - 1});
+    }
+}
+
+/// Puts the right checksum on changed bytes.
+void seal(Bytes& bytes) {
+    const std::uint32_t crc = crc32(std::span(bytes).subspan(sizeof(SnapshotHeader)));
+    std::memcpy(bytes.data() + offsetof(SnapshotHeader, payload_crc), &crc, sizeof crc);
+}
+
+/// Restores changed bytes into an estimator that has learned something else; a rejection must change nothing.
+template <class Model>
+SnapshotResult restored(Estimator<Model>& other, const Bytes& bytes) {
+    const Bytes before = snapshot_of(other);
+    const SnapshotResult result = other.restore(bytes);
+    if (result != SnapshotResult::ok && snapshot_of(other) != before) {
+        FAIL("a rejected snapshot changed the state");
+    }
+    return result;
+}
+
+/// A model's constants, an estimator with a snapshot, and another estimator of the same model.
+template <class Model>
+struct Pair {
+    typename Model::Constants constants;
+    Estimator<Model> original;
+    Estimator<Model> other;
+
+    explicit Pair(std::mt19937_64& engine, bool tiny = false)
+        : constants(make_constants<Model>(engine, 0.999)), original(constants), other(constants) {
+        give_past(original, engine, tiny);
+        for (int t = 0; t < 20; ++t) {
+            other.tick(moving_sample<Model>(5000 + t, engine), Budget::unlimited());
+        }
+    }
+};
+
+} // namespace
+
+TEMPLATE_TEST_CASE("a restored estimator goes on as the original does, once its window has filled", "", UdFloat, UdDouble,
+                   InformationFloat, InformationDouble) {
+    DFDYN_SEEDED_ENGINE(engine);
+    for (const bool half_learned : {false, true}) {
+        CAPTURE(half_learned);
+        Pair<TestType> pair(engine, half_learned);
+        REQUIRE(pair.original.learner().sample_pending() == half_learned);
+        REQUIRE(restored(pair.other, snapshot_of(pair.original)) == SnapshotResult::ok);
+        CHECK((snapshot_of(pair.other) == snapshot_of(pair.original)));
+        int compared = 0;
+        for (int t = 81; t < 200; ++t) {
+            auto sample = moving_sample<TestType>(t, engine);
+            sample.output_valid = t > 90; // while one of them cannot learn, neither does
+            const auto expected = pair.original.tick(sample, Budget{t < 100 ? 100 : 3000});
+            const auto estimate = pair.other.tick(sample, Budget{t < 100 ? 100 : 3000});
+            if (estimate.status.predicted()) {
+                REQUIRE(same(estimate, expected));
+                ++compared;
+            }
+        }
+        CHECK(compared == 200 - 81 - 6);
+        CHECK((snapshot_of(pair.other) == snapshot_of(pair.original)));
+    }
+}
+
+TEMPLATE_TEST_CASE("every changed byte and every truncation of a snapshot is rejected whole", "", UdFloat, UdDouble,
+                   InformationFloat, InformationDouble) {
+    DFDYN_SEEDED_ENGINE(engine);
+    Pair<TestType> pair(engine, true);
+    const Bytes bytes = snapshot_of(pair.original);
+    std::size_t rejected = 0;
+    for (std::size_t place = 0; place < bytes.size(); ++place) {
+        Bytes damaged = bytes;
+        damaged[place] ^= static_cast<std::byte>(1 + engine() % 255);
+        rejected += restored(pair.other, damaged) != SnapshotResult::ok ? 1 : 0;
+        const Bytes truncated(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(place));
+        rejected += restored(pair.other, truncated) == SnapshotResult::wrong_size ? 1 : 0;
+    }
+    CHECK(rejected == 2 * bytes.size());
+}
+
+TEMPLATE_TEST_CASE("no number of a snapshot may be missing, whatever the checksum says", "", UdFloat, UdDouble,
+                   InformationFloat, InformationDouble) {
+    DFDYN_SEEDED_ENGINE(engine);
+    Pair<TestType> pair(engine, true);
+    const Bytes bytes = snapshot_of(pair.original);
+    // all ones: not a number in either precision, and no index or size either
+    constexpr std::size_t width = sizeof(typename TestType::Scalar);
+    std::size_t wrongly_restored = 0;
+    for (std::size_t place = sizeof(SnapshotHeader); place + width <= bytes.size(); place += sizeof(float)) {
+        Bytes forged = bytes;
+        std::fill_n(forged.begin() + static_cast<std::ptrdiff_t>(place), width, std::byte{0xFF});
+        seal(forged);
+        wrongly_restored += restored(pair.other, forged) == SnapshotResult::corrupted ? 0 : 1;
+    }
+    CHECK(wrongly_restored == 0);
+}
+
+// The snapshot of U-D begins with its panels and triangles, then the variances; that of the information form with its
+// factor, whose rows begin with their diagonal element.
+TEST_CASE("variances and diagonals of a snapshot must be positive, whatever the checksum says") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const auto with_number = [&]<class Model>(Pair<Model>& pair, std::size_t index, float number) {
+        Bytes forged = snapshot_of(pair.original);
+        std::memcpy(forged.data() + sizeof(SnapshotHeader) + index * sizeof number, &number, sizeof number);
+        seal(forged);
+        return restored(pair.other, forged);
+    };
+    constexpr std::size_t columns = UdFloat::columns;
+    constexpr std::size_t panels = (columns + 3) / 4;
+    Pair<UdFloat> ud(engine);
+    Pair<InformationFloat> information(engine);
+    for (const float number : {0.0F, -0.0F, -1.0F}) {
+        std::size_t row = 0;
+        for (std::size_t j = 0; j < columns; ++j) {
+            CAPTURE(number, j);
+            const std::size_t variance = 8 * panels * (panels - 1) + 6 * panels + j;
+            CHECK(with_number(ud, variance, number) == SnapshotResult::corrupted);
+            CHECK(with_number(information, row, number) == SnapshotResult::corrupted);
+            row += columns - j;
+        }
+    }
+    CHECK(with_number(ud, 8 * panels * (panels - 1) + 6 * panels, 2.0F) == SnapshotResult::ok);
+    CHECK(with_number(information, 0, 2.0F) == SnapshotResult::ok);
+}
+
+TEST_CASE("a snapshot of another model is rejected") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Pair<UdFloat> pair(engine);
+    const Bytes bytes = snapshot_of(pair.original);
+    const auto result_in = [&]<class Model>(Model, std::uint32_t identity) {
+        auto constants = make_constants<Model>(engine);
+        constants.identity = identity;
+        Estimator<Model> estimator(constants);
+        return estimator.restore(bytes);
+    };
+    constexpr std::uint32_t identity = 0x1234;
+    CHECK(result_in(UdFloat{}, identity) == SnapshotResult::ok);
+    CHECK(result_in(UdFloat{}, identity + 1) == SnapshotResult::wrong_model);
+    CHECK(result_in(UdDouble{}, identity) == SnapshotResult::wrong_model);
+    CHECK(result_in(TestModel<float, DerivativeFreeReduced<6, 3>, 6>{}, identity) == SnapshotResult::wrong_model);
+    CHECK(result_in(TestModel<float, DerivativeFreeReduced<7, 3>, 5>{}, identity) == SnapshotResult::wrong_model);
+    CHECK(result_in(InformationFloat{}, identity) != SnapshotResult::ok);
+}
+
+TEST_CASE("foreign bytes and other versions are rejected") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Pair<UdFloat> pair(engine);
+    Bytes bytes = snapshot_of(pair.original);
+    ++*reinterpret_cast<unsigned char*>(bytes.data() + offsetof(SnapshotHeader, version));
+    CHECK(restored(pair.other, bytes) == SnapshotResult::wrong_version);
+    for (int trial = 0; trial < 1000; ++trial) {
+        Bytes foreign(engine() % 2000);
+        std::generate(foreign.begin(), foreign.end(), [&] { return static_cast<std::byte>(engine()); });
+        REQUIRE(restored(pair.other, foreign) != SnapshotResult::ok);
+    }
+}
+
+TEST_CASE("restoring restarts the window and keeps the counters") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Pair<UdFloat> pair(engine);
+    const auto ticks = pair.other.counters().ticks;
+    REQUIRE(pair.other.restore(snapshot_of(pair.original)) == SnapshotResult::ok);
+    CHECK(pair.other.counters().ticks == ticks);
+    CHECK(pair.other.tick(moving_sample<UdFloat>(1, engine), Budget::unlimited()).status.prediction == Reason::window_filling);
+    CHECK(pair.original.snapshot_bytes() <= Estimator<UdFloat>::snapshot_capacity);
+    std::vector<std::byte> small(pair.original.snapshot_bytes() - 1);
+    CHECK(pair.original.snapshot(small) == SnapshotResult::wrong_size);
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/learner/forgetting.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace {
+
+using dfdyn::Forgetting;
+
+constexpr double payback = 20; // nats given away per nat that a sample brings, as documented
+
+/// Nats per parameter that were forgotten over `samples` samples, each of which brought nothing.
+template <class Scalar>
+double forgotten_at_rest(Forgetting<Scalar>& forgetting, int samples) {
+    double nats = 0;
+    for (int t = 0; t < samples; ++t) {
+        nats -= std::log(static_cast<double>(forgetting.factor_after(1)));
+    }
+    return nats;
+}
+
+} // namespace
+
+TEMPLATE_TEST_CASE("a factor of one never forgets", "", float, double) {
+    Forgetting<TestType> forgetting(1, 10);
+    CHECK_FALSE(forgetting.active());
+    CHECK(forgetting.factor_after(100) == 1);
+    CHECK(forgetting.factor_after(1) == 1);
+}
+
+TEMPLATE_TEST_CASE("while samples bring enough, the factor is applied exactly", "", float, double) {
+    const auto factor = TestType(0.999);
+    constexpr int parameters = 100;
+    const double price = -parameters * std::log(static_cast<double>(factor));
+    const auto ratio = static_cast<TestType>(std::exp(1.001 * price / payback));
+    Forgetting<TestType> forgetting(factor, parameters);
+    int exact = 0;
+    for (int t = 0; t < 100'000; ++t) {
+        exact += forgetting.factor_after(ratio) == factor ? 1 : 0;
+    }
+    CHECK(forgetting.active());
+    CHECK(exact == 100'000);
+}
+
+TEMPLATE_TEST_CASE("a standstill forgets one horizon, and then nothing", "", float, double) {
+    for (const double factor : {0.9, 0.999, 0.9995}) {
+        for (const int parameters : {1, 7, 1000}) {
+            CAPTURE(factor, parameters);
+            Forgetting<TestType> forgetting(static_cast<TestType>(factor), parameters);
+            const double tolerance = 1e4 * static_cast<double>(std::numeric_limits<TestType>::epsilon());
+            CHECK(forgotten_at_rest(forgetting, 10'000) == Approx(1).epsilon(tolerance));
+            CHECK(forgetting.factor_after(1) == 1);
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("excitation is not saved up beyond one horizon, and restart fills the account", "", float, double) {
+    Forgetting<TestType> forgetting(TestType(0.99), 5);
+    for (int t = 0; t < 1000; ++t) {
+        static_cast<void>(forgetting.factor_after(1000));
+    }
+    const double tolerance = 1e4 * static_cast<double>(std::numeric_limits<TestType>::epsilon());
+    // the last of the samples has taken its share
+    CHECK(forgotten_at_rest(forgetting, 10'000) == Approx(1 + std::log(0.99)).epsilon(tolerance));
+    CHECK(forgotten_at_rest(forgetting, 10'000) == 0);
+    forgetting.restart();
+    CHECK(forgotten_at_rest(forgetting, 10'000) == Approx(1).epsilon(tolerance));
+}
+
+TEST_CASE("what is forgotten is never more than was brought in, and as much as that allows") {
+    DFDYN_SEEDED_ENGINE(engine);
+    constexpr int parameters = 30;
+    constexpr double factor = 0.99;
+    const double price = -parameters * std::log(factor);
+    std::exponential_distribution<double> brought(1 / (0.9 * price / payback));
+    Forgetting<double> forgetting(factor, parameters);
+    double account = parameters;
+    int paid_in_full = 0;
+    for (int t = 0; t < 10'000; ++t) {
+        const double nats = brought(engine);
+        account = std::min<double>(account + payback * nats, parameters);
+        const double applied = forgetting.factor_after(std::exp(nats));
+        REQUIRE(applied == Approx(account >= price ? factor : std::exp(-account / parameters)).epsilon(1e-9));
+        paid_in_full += account >= price ? 1 : 0;
+        account = std::max(account - price, 0.0);
+    }
+    CHECK(paid_in_full > 1000); // both branches were taken
+    CHECK(paid_in_full < 9000);
+}
+
+TEST_CASE("the parameters come in turn") {
+    Forgetting<float> forgetting(0.99F, 3);
+    for (const int parameter : {0, 1, 2, 0, 1}) {
+        CHECK(forgetting.next_parameter() == parameter);
+    }
+    forgetting.restart();
+    CHECK(forgetting.next_parameter() == 0);
+}

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/storage.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tools/host/dynamic_storage.hpp"
+
+#include <cstdint>
+#include <numeric>
+#include <type_traits>
+
+namespace {
+
+using namespace dfdyn;
+
+template <class S>
+bool aligned(const S& storage, std::uintptr_t bytes) {
+    return reinterpret_cast<std::uintptr_t>(storage.data()) % bytes == 0;
+}
+
+template <class S>
+void check_holds_numbers(S& storage) {
+    CHECK(std::accumulate(storage.begin(), storage.end(), 0.0F) == 0);
+    std::iota(storage.begin(), storage.end(), 1.0F);
+    CHECK(storage[0] == 1);
+    CHECK(storage.data()[storage.size() - 1] == static_cast<float>(storage.size()));
+    CHECK(storage.end() - storage.begin() == storage.size());
+}
+
+} // namespace
+
+TEST_CASE("storage of a fixed size is an aggregate in place, aligned for vectors") {
+    auto storage = Storage<float, 7>::zeros({});
+    check_holds_numbers(storage);
+    CHECK(aligned(storage, 32));
+    static_assert(std::is_aggregate_v<Storage<float, 7>> && std::is_trivially_copyable_v<Storage<float, 7>>);
+    static_assert(sizeof(Storage<float, 8>) == 32);
+    static constexpr Storage<double, 2> table{{1, 2}}; // as a table of constants in flash
+    static_assert(table[1] == 2 && table.size() == 2);
+}
+
+TEST_CASE("the host's storage of a size known at run time does the same") {
+    auto storage = Storage<float, dynamic>::zeros({7});
+    CHECK(storage.size() == 7);
+    check_holds_numbers(storage);
+    CHECK(aligned(storage, 16));
+}
+
+TEST_CASE("an extent of a fixed size takes no memory and knows its number") {
+    struct Holder {
+        [[no_unique_address]] Extent<3> three;
+        float number;
+    };
+    static_assert(sizeof(Holder) == sizeof(float));
+    static_assert(Extent<3>{} == 3 && extent<3>(3) == 3);
+    static_assert(extent<dynamic>(5) == 5);
+    static_assert(product(2, 3) == 6 && sum(2, 3) == 5);
+    static_assert(product(dynamic, 3) == dynamic && product(3, dynamic) == dynamic);
+    static_assert(sum(dynamic, 1) == dynamic && sum(1, dynamic) == dynamic);
+    SUCCEED();
+}

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+namespace {
+
+using dfdyn::tests::file_content;
+using dfdyn::tests::TemporaryDirectory;
+
+struct Outcome {
+    int status;
+    std::string out;
+    std::string error;
+};
+
+/// Runs the program with standard error and output in files, as a script would.
+Outcome run(const TemporaryDirectory& directory, const std::string& arguments) {
+    const std::string out = directory.path() / "out";
+    const std::string error = directory.path() / "error";
+    const std::string command = std::string(DFDYN_PROGRAM) + " " + arguments + " >" + out + " 2>" + error;
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_content(out), file_content(error)};
+}
+
+long line_count(const std::string& text) { return std::ranges::count(text, '\n'); }
+
+const std::string log_file = DFDYN_TEST_DATA_DIR "/ur5_kufieta/Movement_No7_Acc_slow_Verify_Model_short.csv";
+const std::string quick =
+    " --outputs i --features 20 --starts 1 --likelihood-rows 60 --lags 4 --rows 0:1200 ";
+
+} // namespace
+
+TEST_CASE("help and version end with status 0, and every subcommand shows an example") {
+    const TemporaryDirectory directory;
+    CHECK(run(directory, "--help").status == 0);
+    CHECK_THAT(run(directory, "--version").out, Catch::Matchers::StartsWith("dfdyn "));
+    for (const std::string command : {"train", "replay"}) {
+        const Outcome outcome = run(directory, command + " --help");
+        CHECK(outcome.status == 0);
+        CHECK_THAT(outcome.out, Catch::Matchers::ContainsSubstring("Example:"));
+    }
+}
+
+TEST_CASE("bad usage and bad input end with status 2 and one line") {
+    const TemporaryDirectory directory;
+    directory.write("bad.csv", "t,q1,i1\n0,1,2\n0,1,2\n");
+    directory.write("bad.json", "{\"schema\": \"dfdyn.model/9\"}");
+    const std::string in = directory.path().string();
+    const std::string cases[] = {
+        "",
+        "fly",
+        "train",
+        "train --log none.csv --outputs i -o x.json",
+        "train --log " + in + "/bad.csv --outputs i -o " + in + "/x.json",
+        "train --log " + log_file + " --outputs wind -o " + in + "/x.json",
+        "train --log " + log_file + " --outputs i --input DFX -o " + in + "/x.json",
+        "train --log " + log_file + " --outputs i --model XP -o " + in + "/x.json",
+        "train --log " + log_file + " --outputs i --rows 9:3 -o " + in + "/x.json",
+        "train --log " + log_file + " --outputs i --lags 0 -o " + in + "/x.json",
+        "train --log " + log_file + " --outputs i --features 0 -o " + in + "/x.json",
+        "train --log " + log_file + " --outputs i --forgetting 1.5 -o " + in + "/x.json",
+        "replay --model " + in + "/bad.json --log " + log_file,
+        "replay --model none.json --log " + log_file,
+    };
+    for (const std::string& arguments : cases) {
+        CAPTURE(arguments);
+        const Outcome outcome = run(directory, arguments);
+        CHECK(outcome.status == 2);
+        CHECK(outcome.out.empty());
+        CHECK_THAT(outcome.error, Catch::Matchers::ContainsSubstring("dfdyn: "));
+        CHECK(line_count(outcome.error.substr(outcome.error.find("dfdyn: "))) == 1);
+        CHECK_FALSE(std::filesystem::exists(directory.path() / "x.json"));
+    }
+}
+
+TEST_CASE("train and replay work together for every input, twice with the same bytes") {
+    const TemporaryDirectory directory;
+    const std::string in = directory.path().string();
+    for (const std::string input : {"STD", "DF", "DFW", "DFR", "DFSR"}) {
+        CAPTURE(input);
+        const std::string train = "train --log " + log_file + quick + "--input " + input + " -o " + in;
+        const Outcome trained = run(directory, train + "/a.json --header " + in + "/a.hpp");
+        CAPTURE(trained.error);
+        REQUIRE(trained.status == 0);
+        REQUIRE(run(directory, train + "/b.json").status == 0);
+        CHECK(file_content(directory.path() / "a.json") == file_content(directory.path() / "b.json"));
+        CHECK_FALSE(file_content(directory.path() / "a.hpp").empty());
+        const Outcome replayed =
+            run(directory, "replay --model " + in + "/a.json --log " + log_file + " --rows 1200: -o " + in +
+                               "/r.csv --report " + in + "/r.html");
+        CAPTURE(replayed.error);
+        REQUIRE(replayed.status == 0);
+        CHECK_THAT(replayed.out, Catch::Matchers::ContainsSubstring("nRMSE, second half"));
+        CHECK(line_count(file_content(directory.path() / "r.csv")) == 1 + 3470 - 1200);
+        CHECK_THAT(file_content(directory.path() / "r.html"), Catch::Matchers::ContainsSubstring("</html>"));
+    }
+}
+
+TEST_CASE("a replay of a recording with other outputs than the model's is refused") {
+    const TemporaryDirectory directory;
+    const std::string in = directory.path().string();
+    REQUIRE(run(directory, "train --log " + log_file + quick + "-o " + in + "/m.json").status == 0);
+    directory.write("torques.csv", "t,q1,q2,q3,q4,q5,q6,tau1\n0,1,1,1,1,1,1,1\n0.008,1,1,1,1,1,1,1\n");
+    const Outcome outcome = run(directory, "replay --model " + in + "/m.json --log " + in + "/torques.csv");
+    CHECK(outcome.status == 2);
+    CHECK(line_count(outcome.error) == 1);
+}

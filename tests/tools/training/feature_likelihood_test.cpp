@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/training/feature_likelihood.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/training/arm_data.hpp"
+#include "tests/tools/training/numerics.hpp"
+
+#include <cmath>
+
+namespace tools = dfdyn::tools;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr int lags = 4;
+constexpr int features = 8;
+
+struct Problem {
+    tools::NormalSource random{dfdyn::tests::seed()};
+    tools::RowList rows = dfdyn::tests::rows_between(lags, 45);
+    tools::TrainingData data = dfdyn::tests::arm_data(45, 2, 3, random);
+    std::unique_ptr<tools::InputMap> input = tools::lag_input(
+        data.positions, rows, tools::LagSpread(data.positions, rows, lags), tools::structured_rows(lags));
+    MatrixXd outputs = data.outputs(rows, Eigen::all).rowwise() - data.outputs.colwise().mean();
+    MatrixXd omega = random.matrix(features, 6);
+    VectorXd theta{{-3.0, 0.7, 0.1, -0.2, 0.3, -0.4}};
+};
+
+} // namespace
+
+TEST_CASE("FeatureLikelihood is the normal density of the outputs under the features' kernel plus noise") {
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    const Problem problem;
+    const MatrixXd phases =
+        problem.input->inputs(problem.theta.tail(4)) * problem.omega.transpose() / std::exp(problem.theta[1]);
+    MatrixXd covariance(phases.rows(), phases.rows());
+    for (Eigen::Index s = 0; s < phases.rows(); ++s) {
+        for (Eigen::Index t = 0; t < phases.rows(); ++t) {
+            covariance(s, t) = (phases.row(s) - phases.row(t)).array().cos().mean() +
+                               (s == t ? std::exp(problem.theta[0]) : 0);
+        }
+    }
+    const tools::FeatureLikelihood likelihood(*problem.input, problem.outputs, problem.omega);
+    const auto value = likelihood.evaluate(problem.theta);
+    REQUIRE(value);
+    double expected = 0;
+    for (Eigen::Index k = 0; k < problem.outputs.cols(); ++k) {
+        expected +=
+            dfdyn::tests::log_normal_density(problem.outputs.col(k), value->output_variance[k] * covariance);
+    }
+    CHECK(-0.5 * value->point.value == Approx(expected).epsilon(1e-9));
+}
+
+TEST_CASE("the gradient of FeatureLikelihood is its derivative") {
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    const Problem problem;
+    const tools::FeatureLikelihood likelihood(*problem.input, problem.outputs, problem.omega);
+    const auto value_at = [&](const VectorXd& at) { return likelihood.evaluate(at)->point.value; };
+    CHECK(dfdyn::tests::relative_error(likelihood.evaluate(problem.theta)->point.gradient,
+                                       dfdyn::tests::differences(value_at, problem.theta)) < 1e-6);
+}

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/training/lag_window.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/training/arm_data.hpp"
+#include "tests/tools/training/numerics.hpp"
+
+#include <cmath>
+
+namespace tools = dfdyn::tools;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr int lags = 4;
+
+double naive_deviation(const MatrixXd& positions, const tools::RowList& rows, Eigen::Index joint,
+                       const VectorXd& row) {
+    const MatrixXd windows = tools::lag_windows(positions.col(joint), rows, static_cast<int>(row.size()) - 1);
+    const VectorXd values = windows * row;
+    return std::sqrt((values.array() - values.mean()).square().mean());
+}
+
+} // namespace
+
+TEST_CASE("lag_windows holds each joint's positions, newest first") {
+    const MatrixXd positions{{0, 100}, {1, 101}, {2, 102}, {3, 103}, {4, 104}};
+    const MatrixXd expected{{2, 1, 0, 102, 101, 100}, {4, 3, 2, 104, 103, 102}};
+    CHECK(tools::lag_windows(positions, {2, 4}, 2) == expected);
+}
+
+TEST_CASE("LagSpread has the standard deviation of any row, and its gradient") {
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    tools::NormalSource random(dfdyn::tests::seed());
+    const MatrixXd positions = dfdyn::tests::arm_data(1500, 3, 1, random).positions;
+    const tools::RowList rows = dfdyn::tests::rows_between(100, 1500); // more than two blocks
+    const tools::LagSpread spread(positions, rows, lags);
+    for (Eigen::Index joint = 0; joint < 3; ++joint) {
+        const VectorXd row = random.matrix(lags + 1, 1);
+        CHECK(spread.deviation(joint, row) ==
+              Approx(naive_deviation(positions, rows, joint, row)).epsilon(1e-10));
+        const auto deviation = [&](const VectorXd& at) { return spread.deviation(joint, at); };
+        CHECK(dfdyn::tests::relative_error(spread.deviation_gradient(joint, row),
+                                           dfdyn::tests::differences(deviation, row)) < 1e-7);
+    }
+}
+
+TEST_CASE("LagSpread keeps the digits of second differences of a slow motion far from zero") {
+    MatrixXd positions(2000, 1);
+    for (Eigen::Index t = 0; t < 2000; ++t) {
+        positions(t, 0) = 3 + std::sin(0.002 * static_cast<double>(t)); // second differences of 4e-6
+    }
+    const tools::RowList rows = dfdyn::tests::rows_between(2, 2000);
+    const VectorXd row{{1, -2, 1}};
+    const double deviation = tools::LagSpread(positions, rows, 2).deviation(0, row);
+    CHECK(deviation == Approx(naive_deviation(positions, rows, 0, row)).epsilon(1e-7));
+}
+
+TEST_CASE("LagSpread calls constant what does not move") {
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    tools::NormalSource random(dfdyn::tests::seed());
+    MatrixXd positions = dfdyn::tests::arm_data(300, 4, 1, random).positions;
+    positions.col(1).setConstant(0.3);
+    for (Eigen::Index t = 0; t < 300; ++t) {
+        positions(t, 2) = 1 + 1e-4 * static_cast<double>(t % 2); // a held joint whose encoder flickers
+        positions(t, 3) = 0.01 * static_cast<double>(t);         // constant velocity
+    }
+    const tools::LagSpread spread(positions, dfdyn::tests::rows_between(2, 300), 2);
+    const VectorXd position{{1, 0, 0}};
+    const VectorXd velocity{{1, -1, 0}};
+    CHECK(spread.deviation(0, position) > 0.1);
+    CHECK(spread.deviation(1, position) == 0);
+    CHECK(spread.deviation(2, position) == 0);
+    CHECK(spread.deviation(2, velocity) == 0);
+    CHECK(spread.deviation(3, position) > 0.1);
+    CHECK(spread.deviation(3, velocity) == 0);
+}
+
+TEST_CASE("the pooled factor measures rows in a typical joint's deviation") {
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    tools::NormalSource random(dfdyn::tests::seed());
+    MatrixXd positions = dfdyn::tests::arm_data(400, 3, 1, random).positions;
+    positions.col(1).setConstant(1);
+    const tools::LagSpread spread(positions, dfdyn::tests::rows_between(lags, 400), lags);
+    const VectorXd position = VectorXd::Unit(lags + 1, 0);
+    for (int i = 0; i < 5; ++i) {
+        const VectorXd row = random.matrix(lags + 1, 1);
+        const double ratio_0 = spread.deviation(0, row) / spread.deviation(0, position);
+        const double ratio_2 = spread.deviation(2, row) / spread.deviation(2, position);
+        const double expected = std::sqrt((ratio_0 * ratio_0 + ratio_2 * ratio_2) / 2);
+        CHECK((spread.pooled_factor() * row).norm() == Approx(expected).epsilon(1e-5));
+    }
+    CHECK(spread.pooled_factor().diagonal().cwiseAbs().minCoeff() > 1e-7);
+}

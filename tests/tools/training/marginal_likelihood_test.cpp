@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/training/marginal_likelihood.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/training/arm_data.hpp"
+#include "tests/tools/training/numerics.hpp"
+#include "tools/training/input_map.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace tools = dfdyn::tools;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr int lags = 5;
+
+/// A small training problem: scales from all rows, likelihood on every ninth.
+struct Problem {
+    tools::NormalSource random;
+    tools::TrainingData data;
+    tools::RowList rows = dfdyn::tests::rows_between(lags, 250, 9);
+    std::unique_ptr<tools::InputMap> input;
+    MatrixXd outputs;
+
+    Problem(const std::string& kind, std::uint64_t seed) : random(seed) {
+        data = dfdyn::tests::arm_data(250, 3, 2, random);
+        data.positions += 1e-3 * random.matrix(250, 3); // rows off the derivatives matter
+        data.positions.col(1).setConstant(-0.4);
+        const tools::RowList all = dfdyn::tests::rows_between(lags, 250);
+        const tools::LagSpread spread(data.positions, all, lags);
+        input = kind == "STD" ? tools::derivative_input(data, rows, all, spread)
+                              : tools::lag_input(data.positions, rows, spread, family(kind, spread));
+        outputs = data.outputs(rows, Eigen::all);
+        outputs.rowwise() -= outputs.colwise().mean().eval();
+    }
+
+    static std::unique_ptr<tools::RowFamily> family(const std::string& kind, const tools::LagSpread& spread) {
+        if (kind == "DF") {
+            return tools::identity_rows(lags);
+        }
+        if (kind == "DFW") {
+            return tools::diagonal_rows(lags);
+        }
+        if (kind == "DFSR") {
+            return tools::structured_rows(lags);
+        }
+        return tools::free_rows(lags, kind.back() - '0', spread.pooled_factor());
+    }
+};
+
+} // namespace
+
+TEST_CASE("the gradient of the marginal likelihood is its derivative, for every input") {
+    const std::string kind = GENERATE("STD", "DF", "DFW", "DFSR", "DFR1", "DFR2", "DFR3", "DFR5");
+    const std::uint64_t seed = dfdyn::tests::seed() + GENERATE(0U, 1U, 2U);
+    CAPTURE(kind, seed);
+    Problem problem(kind, seed);
+    const tools::ProfiledVarianceLikelihood outputs(problem.outputs);
+    const tools::MarginalLikelihood likelihood(*problem.input, outputs);
+    VectorXd theta = likelihood.start(5, problem.random);
+    theta.head(2) += 0.5 * problem.random.matrix(2, 1);
+    const auto value_at = [&](const VectorXd& at) {
+        return likelihood.evaluate(at)->minus_two_log_likelihood;
+    };
+    const auto value = likelihood.evaluate(theta);
+    REQUIRE(value);
+    CHECK(dfdyn::tests::relative_error(value->gradient, dfdyn::tests::differences(value_at, theta, 1e-3)) <
+          1e-6);
+}
+
+TEST_CASE("the marginal likelihood is the normal density of the outputs under kernel plus noise") {
+    const std::string kind = GENERATE("STD", "DFR3");
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    Problem problem(kind, dfdyn::tests::seed());
+    const tools::ProfiledVarianceLikelihood outputs(problem.outputs);
+    const tools::MarginalLikelihood likelihood(*problem.input, outputs);
+    const VectorXd theta = likelihood.start(3, problem.random);
+    const tools::Hyperparameters parameters = likelihood.split(theta);
+    const MatrixXd inputs = problem.input->inputs(parameters.input);
+    MatrixXd covariance(inputs.rows(), inputs.rows());
+    for (Eigen::Index s = 0; s < inputs.rows(); ++s) {
+        for (Eigen::Index t = 0; t < inputs.rows(); ++t) {
+            const double distance = (inputs.row(s) - inputs.row(t)).norm() / std::exp(theta[1]);
+            covariance(s, t) = std::exp(-0.5 * distance * distance) + (s == t ? std::exp(theta[0]) : 0);
+        }
+    }
+    const auto value = likelihood.evaluate(theta);
+    double expected = 0;
+    for (Eigen::Index k = 0; k < problem.outputs.cols(); ++k) {
+        expected +=
+            dfdyn::tests::log_normal_density(problem.outputs.col(k), value->output_variance[k] * covariance);
+    }
+    CHECK(-0.5 * value->minus_two_log_likelihood == Approx(expected).epsilon(1e-9));
+}
+
+TEST_CASE("the marginal likelihood has no value where it cannot be computed") {
+    Problem problem("DFSR", dfdyn::tests::seed());
+    SECTION("outputs beyond doubles") {
+        const tools::ProfiledVarianceLikelihood outputs(1e200 * problem.outputs);
+        const tools::MarginalLikelihood likelihood(*problem.input, outputs);
+        CHECK_FALSE(likelihood.evaluate(likelihood.start(0, problem.random)));
+    }
+    SECTION("a parameter that is not a number") {
+        const tools::ProfiledVarianceLikelihood outputs(problem.outputs);
+        const tools::MarginalLikelihood likelihood(*problem.input, outputs);
+        VectorXd theta = likelihood.start(0, problem.random);
+        theta[2] = std::numeric_limits<double>::quiet_NaN();
+        CHECK_FALSE(likelihood.evaluate(theta));
+    }
+    SECTION("no noise and one sample twice") {
+        problem.rows[1] = problem.rows[0];
+        const tools::TrainingData& data = problem.data;
+        const tools::LagSpread spread(data.positions, dfdyn::tests::rows_between(lags, 250), lags);
+        const auto input =
+            tools::lag_input(data.positions, problem.rows, spread, tools::structured_rows(lags));
+        const tools::ProfiledVarianceLikelihood outputs(problem.outputs);
+        const tools::MarginalLikelihood likelihood(*input, outputs);
+        VectorXd theta = likelihood.start(0, problem.random);
+        theta[0] = -1000;
+        CHECK_FALSE(likelihood.evaluate(theta));
+    }
+}

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <cmath>
+#include <numbers>
+
+namespace dfdyn::tests {
+
+/// Gradient of `function` at `point` by fourth-order central differences.
+template <class Function>
+Eigen::VectorXd differences(const Function& function, const Eigen::VectorXd& point, double step = 1e-3) {
+    Eigen::VectorXd gradient(point.size());
+    for (Eigen::Index i = 0; i < point.size(); ++i) {
+        const auto at = [&](double steps) {
+            Eigen::VectorXd moved = point;
+            moved[i] += steps * step;
+            return function(moved);
+        };
+        gradient[i] = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * step);
+    }
+    return gradient;
+}
+
+/// The largest error of an element, relative to the element plus a thousandth of the largest element.
+inline double relative_error(const Eigen::MatrixXd& found, const Eigen::MatrixXd& expected) {
+    const double floor = 1e-3 * expected.cwiseAbs().maxCoeff();
+    return ((found - expected).array().abs() / (expected.array().abs() + floor)).maxCoeff();
+}
+
+/// log N(y; 0, covariance), as in the textbook: explicit determinant and inverse.
+inline double log_normal_density(const Eigen::VectorXd& y, const Eigen::MatrixXd& covariance) {
+    const Eigen::FullPivLU<Eigen::MatrixXd> lu(2 * std::numbers::pi * covariance);
+    return -0.5 * std::log(lu.determinant()) - 0.5 * y.dot(covariance.fullPivLu().inverse() * y);
+}
+
+} // namespace dfdyn::tests

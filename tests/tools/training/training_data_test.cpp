@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/training/training_data.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/tools/training/arm_data.hpp"
+#include "tools/common/error.hpp"
+
+#include <limits>
+#include <string>
+
+namespace tools = dfdyn::tools;
+using tools::InputKind;
+
+namespace {
+
+tools::TrainingData small_data() {
+    tools::NormalSource random(1);
+    return dfdyn::tests::arm_data(30, 2, 3, random);
+}
+
+std::string message(const tools::TrainingData& data, InputKind kind = InputKind::STD) {
+    try {
+        tools::check_training_data(data, kind);
+    } catch (const tools::InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+} // namespace
+
+TEST_CASE("sound training data pass") { CHECK(message(small_data()).empty()); }
+
+TEST_CASE("training data are refused by row and column") {
+    tools::TrainingData data = small_data();
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    SECTION("position") {
+        data.positions(7, 1) = nan;
+        CHECK(message(data) ==
+              "training data: row 7, position of joint 2: expected a finite number, found nan");
+    }
+    SECTION("output") {
+        data.outputs(0, 2) = std::numeric_limits<double>::infinity();
+        CHECK(message(data) == "training data: row 0, output 3: expected a finite number, found inf");
+    }
+    SECTION("velocity") {
+        data.velocities(3, 0) = nan;
+        CHECK(message(data) ==
+              "training data: row 3, velocity of joint 1: expected a finite number, found nan");
+    }
+    SECTION("acceleration") {
+        data.accelerations(3, 0) = nan;
+        CHECK(message(data) ==
+              "training data: row 3, acceleration of joint 1: expected a finite number, found nan");
+    }
+}
+
+TEST_CASE("training data of the wrong shape are refused") {
+    tools::TrainingData data = small_data();
+    SECTION("outputs") {
+        data.outputs.conservativeResize(29, 3);
+        CHECK(message(data) == "training data: expected outputs of 30 x 3, found 29 x 3");
+    }
+    SECTION("gaps") {
+        data.gap_before.pop_back();
+        CHECK(message(data) == "training data: expected 30 gap flags, found 29");
+    }
+    SECTION("names") {
+        data.output_names.pop_back();
+        CHECK(message(data) == "training data: expected 3 output names, found 2");
+    }
+    SECTION("accelerations") {
+        data.accelerations.resize(0, 0);
+        CHECK(message(data) == "training data: expected accelerations of 30 x 2, found 0 x 0");
+    }
+    SECTION("no output") {
+        data.outputs.resize(30, 0);
+        CHECK(message(data) == "training data: expected at least one joint and one output, found 2 and 0");
+    }
+}
+
+TEST_CASE("derivatives are not asked for where the input does without") {
+    tools::TrainingData data = small_data();
+    data.velocities.resize(0, 0);
+    data.accelerations.setConstant(std::numeric_limits<double>::quiet_NaN());
+    CHECK(message(data, InputKind::DFR).empty());
+}

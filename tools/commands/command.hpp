@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+
+namespace dfdyn::tools {
+
+/// A subcommand's work once its options are parsed; returns the program's exit status.
+using Command = std::function<int()>;
+
+/// Each adds a subcommand to `app` and stores its work in `chosen` when the user calls it.
+void add_train_command(CLI::App& app, Command& chosen);
+void add_replay_command(CLI::App& app, Command& chosen);
+
+} // namespace dfdyn::tools

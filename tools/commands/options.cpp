@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/commands/options.hpp"
+
+#include "tools/common/error.hpp"
+#include "tools/common/text.hpp"
+
+#include <iostream>
+
+namespace dfdyn::tools {
+
+void RecordingOptions::add_to(CLI::App& command) {
+    command.add_option("--log", logs, "Recording(s), CSV, in order; the lag window restarts between them")
+        ->required()
+        ->delimiter(',')
+        ->type_name("L.csv[,L2.csv...]");
+    command
+        .add_option("--rows", rows,
+                    "Only rows FIRST:LAST of each (from 0, LAST not included, either may be empty)")
+        ->type_name("FIRST:LAST")
+        ->capture_default_str();
+    command.add_flag("--skip-bad-rows", skip_bad_rows,
+                     "Leave bad rows out, as gaps, instead of refusing the file");
+}
+
+std::vector<Recording> RecordingOptions::read(std::size_t joint_count, OutputKind outputs) const {
+    ReadOptions options;
+    options.joint_count = joint_count;
+    options.outputs = outputs;
+    options.rows = parse_row_range(rows);
+    options.skip_bad_rows = skip_bad_rows;
+    std::vector<Recording> recordings = read_recordings(logs, options);
+    for (const Recording& recording : recordings) {
+        if (&recording == &recordings.front() && !recording.ignored_columns.empty()) {
+            std::cerr << recording.source << ": columns not used: " << listed(recording.ignored_columns)
+                      << '\n';
+        }
+        if (recording.skipped.total() > 0) {
+            std::cerr << recording.source << ": " << describe(recording.skipped) << '\n';
+        }
+    }
+    return recordings;
+}
+
+OutputKind kind_of_outputs(const std::vector<std::string>& names, std::size_t joint_count) {
+    for (const OutputKind kind : {OutputKind::joint_torque, OutputKind::motor_current, OutputKind::wrench}) {
+        if (output_names(kind, joint_count) == names) {
+            return kind;
+        }
+    }
+    throw InputError(
+        "outputs.names: expected the names of joint torques, motor currents or a wrench, found " +
+        listed(names));
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/recording/recording.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// The options with which every subcommand names its recordings.
+struct RecordingOptions {
+    std::vector<std::filesystem::path> logs;
+    std::string rows = ":";
+    bool skip_bad_rows = false;
+
+    void add_to(CLI::App& command);
+
+    /// Reads them all, and says once on stderr which columns were ignored and which rows skipped.
+    std::vector<Recording> read(std::size_t joint_count, OutputKind outputs) const;
+};
+
+/// The kind of outputs that has these column names; throws InputError when none has.
+OutputKind kind_of_outputs(const std::vector<std::string>& names, std::size_t joint_count);
+
+} // namespace dfdyn::tools

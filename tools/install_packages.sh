@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# install_packages.sh demo|test: installs the Debian packages that are missing for building and running the demo, or for the
+# tests as well. Where nothing is missing it changes nothing and needs no network.
+set -euo pipefail
+
+# package:what is missing without it
+demo_packages=(
+    "cmake:nothing can be built"
+    "ninja-build:nothing can be built with the presets"
+    "g++:nothing can be built"
+    "libeigen3-dev:nothing can be built"
+    "libcli11-dev:the program dfdyn cannot be built"
+    "nlohmann-json3-dev:the program dfdyn cannot be built"
+    "libnlopt-cxx-dev:dfdyn train cannot be built"
+)
+test_packages=(
+    "catch2:the unit tests cannot be built"
+    "libbenchmark-dev:the benchmarks cannot be built"
+    "clang:no build with a second compiler"
+    "clang-format:no check of the formatting"
+    "clang-tidy:no static analysis"
+    "shellcheck:no check of the scripts"
+    "gcc-arm-none-eabi:no build for the Cortex-M7"
+    "libnewlib-arm-none-eabi:no build for the Cortex-M7"
+    "libstdc++-arm-none-eabi-newlib:no build for the Cortex-M7"
+    "qemu-system-arm:no run on the Cortex-M7"
+)
+
+is_installed() {
+    [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]
+}
+
+# The packages of the arguments "package:consequence" that are not installed.
+missing_of() {
+    local entry
+    for entry in "$@"; do
+        is_installed "${entry%%:*}" || echo "${entry%%:*}"
+    done
+}
+
+as_root() {
+    if [[ $(id -u) -eq 0 ]]; then
+        env DEBIAN_FRONTEND=noninteractive "$@"
+    else
+        sudo env DEBIAN_FRONTEND=noninteractive "$@"
+    fi
+}
+
+apt_install() {
+    as_root apt-get -o DPkg::Lock::Timeout=300 install --yes --no-install-recommends "$@"
+}
+
+# What is still missing after all tries, each with apt's own reason and with what does not work without it.
+explain_missing() {
+    local entry package
+    for entry in "${packages[@]}"; do
+        package=${entry%%:*}
+        if ! is_installed "$package"; then
+            echo "not installed: $package, so ${entry#*:}. apt-get says:" >&2
+            apt_install "$package" 2>&1 | grep -E '^(E|W):|sudo:' | tail -n 3 | sed 's/^/    /' >&2
+        fi
+    done
+}
+
+case ${1:-} in
+demo) packages=("${demo_packages[@]}") ;;
+test) packages=("${demo_packages[@]}" "${test_packages[@]}") ;;
+*)
+    echo "usage: install_packages.sh demo|test" >&2
+    exit 2
+    ;;
+esac
+
+if ! command -v dpkg-query >/dev/null; then
+    echo "not a Debian system: make sure that what these packages hold is installed: ${packages[*]%%:*}" >&2
+    exit 0
+fi
+
+mapfile -t missing < <(missing_of "${packages[@]}")
+if [[ ${#missing[@]} -eq 0 ]]; then
+    echo "all ${#packages[@]} packages are there"
+    exit 0
+fi
+
+echo "installing: ${missing[*]}"
+if ! apt_install "${missing[@]}"; then
+    echo "apt-get could not; once more with a fresh list of packages"
+    as_root apt-get update || echo "apt-get update failed too"
+    for package in "${missing[@]}"; do
+        apt_install "$package" || echo "apt-get could not install $package"
+    done
+fi
+
+mapfile -t missing < <(missing_of "${packages[@]}")
+if [[ ${#missing[@]} -gt 0 ]]; then
+    explain_missing
+    exit 1
+fi

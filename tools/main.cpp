@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/build_flags.hpp"
+#include "tools/commands/command.hpp"
+#include "tools/common/error.hpp"
+
+#include <exception>
+#include <iostream>
+
+namespace {
+
+int run(int argc, char** argv) {
+    CLI::App app("Learns a robot arm's inverse dynamics from joint positions, tick by tick, in fixed memory.",
+                 "dfdyn");
+    app.require_subcommand(1);
+    app.set_version_flag("--version", dfdyn::tools::build_flags());
+    dfdyn::tools::Command command;
+    dfdyn::tools::add_train_command(app, command);
+    dfdyn::tools::add_replay_command(app, command);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& request) {
+        return app.exit(request); // --help, --version
+    } catch (const CLI::ParseError& failure) {
+        throw dfdyn::tools::InputError(std::string(failure.what()) + " (dfdyn --help tells the usage)");
+    }
+    return command();
+}
+
+} // namespace
+
+/// Exit status: 0 done, 1 the work ran and its answer is negative, 2 bad usage or input, 3 a fault of the
+/// program.
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const dfdyn::tools::InputError& error) {
+        std::cerr << "dfdyn: " << error.what() << '\n';
+        return 2;
+    } catch (const std::exception& error) {
+        std::cerr << "dfdyn: internal error: " << error.what() << '\n';
+        return 3;
+    }
+}

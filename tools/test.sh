@@ -1,0 +1,112 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# test.sh [--long]: installs what is missing, builds and runs all checks. --long adds the tests that take minutes. The logs are
+# in build/logs; the last line says whether all passed, or which step failed and where its log is.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+jobs=$(nproc)
+log_dir=build/logs
+
+# All but the headers that make_ur5_headers.sh writes.
+all_sources() {
+    find firmware_lib tools tests '(' -name '*.hpp' -o -name '*.cpp' ')' ! -name 'ur5_*.hpp' -print0
+}
+
+install_packages() { tools/install_packages.sh test; }
+
+check_style() {
+    all_sources | xargs -0 clang-format --dry-run --Werror
+    find .ci cmake tools tests firmware_lib '(' -name '*.sh' -o -path .ci/run ')' -print0 | xargs -0 shellcheck
+}
+
+# build PRESET [TARGET...]
+build() {
+    local preset=$1
+    shift
+    cmake --preset "$preset"
+    cmake --build --preset "$preset" --parallel "$jobs" ${1:+--target "$@"}
+}
+
+run_tests() {
+    ctest --preset "$1" --parallel "$jobs" "${@:2}"
+}
+
+build_release() { build release; }
+test_units() { run_tests release --label-regex '^(firmware|tools|embedding)$'; }
+check_headers() { run_tests release --label-regex '^headers$'; }
+test_consumers() { run_tests release --label-regex '^consumer$'; }
+test_cortex_m7() { run_tests release --label-regex '^cortex_m7$' --verbose; }
+test_long() { ctest --test-dir build/release --label-regex '^long$' --parallel "$jobs" --output-on-failure --no-tests=error; }
+
+test_sanitized() {
+    build asan-ubsan dfdyn_embedding dfdyn_firmware_tests dfdyn_tools_tests
+    run_tests asan-ubsan --label-regex '^(firmware|tools|embedding)$'
+}
+
+test_clang() {
+    build clang dfdyn_embedding dfdyn_firmware_headers dfdyn_firmware_tests
+    run_tests clang --label-regex '^(firmware|embedding|headers)$'
+}
+
+# With the flags of the clang build.
+analyse() {
+    cmake --preset clang
+    run-clang-tidy -quiet -p build/clang -j "$jobs" "$PWD/(firmware_lib|hal|tools|tests)/.*"
+}
+
+steps=(
+    "install_packages:Debian packages"
+    "check_style:formatting and scripts"
+    "build_release:release build"
+    "test_units:unit tests"
+    "check_headers:firmware headers"
+    "test_consumers:installation and use by another project"
+    "test_cortex_m7:bare Cortex-M7 under QEMU"
+    "test_sanitized:address and undefined-behaviour sanitizers"
+    "test_clang:clang++ build of the firmware"
+    "analyse:static analysis"
+)
+case ${1:-} in
+"") ;;
+--long) steps+=("test_long:long tests") ;;
+*)
+    echo "usage: tools/test.sh [--long]" >&2
+    exit 2
+    ;;
+esac
+
+# The lines of a log that belong on the terminal.
+highlights() {
+    grep -hE 'tests passed|cortex-m7: |not installed:' "$1" | sed -E 's/^[0-9]+: //; s/^/        /' || return 0
+}
+
+# run_step NUMBER FUNCTION TITLE
+run_step() {
+    local log status=0 start=$SECONDS
+    log=$log_dir/$(printf '%02d' "$1")-$2.log
+    printf '[%d/%d] %s ... ' "$1" "${#steps[@]}" "$3"
+    set +e
+    (
+        set -euo pipefail
+        "$2"
+    ) >"$log" 2>&1
+    status=$?
+    set -e
+    if [[ $status -ne 0 ]]; then
+        echo "failed after $((SECONDS - start)) s"
+        tail -n 40 "$log"
+        echo "FAILED after $SECONDS s: step $1 of ${#steps[@]}, $3; the log is $log"
+        exit 1
+    fi
+    echo "$((SECONDS - start)) s"
+    highlights "$log"
+}
+
+mkdir -p "$log_dir"
+number=0
+for step in "${steps[@]}"; do
+    number=$((number + 1))
+    run_step "$number" "${step%%:*}" "${step#*:}"
+done
+echo "PASSED: all ${#steps[@]} steps, $SECONDS s"

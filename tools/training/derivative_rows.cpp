@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/training/derivative_rows.hpp"
+
+#include <Eigen/QR>
+
+#include <cmath>
+
+namespace dfdyn::tools {
+
+Eigen::VectorXd filtered_velocity_row(double beta, int lags) {
+    Eigen::VectorXd row(lags + 1);
+    row[0] = 1;
+    for (Eigen::Index t = 1; t <= lags; ++t) {
+        row[t] = std::pow(beta, t - 1) * (beta - 1);
+    }
+    return row;
+}
+
+Eigen::VectorXd filtered_acceleration_row(double beta, int lags) {
+    Eigen::VectorXd row(lags + 1);
+    row[0] = 1;
+    for (Eigen::Index t = 1; t <= lags; ++t) {
+        row[t] = t == 1 ? beta - 2 : std::pow(beta, t - 2) * (beta - 1) * (beta - 1);
+    }
+    return row;
+}
+
+Eigen::VectorXd filtered_velocity_row_slope(double beta, int lags) {
+    Eigen::VectorXd slope = Eigen::VectorXd::Zero(lags + 1);
+    for (Eigen::Index t = 1; t <= lags; ++t) {
+        slope[t] = std::pow(beta, t - 1) + static_cast<double>(t - 1) * std::pow(beta, t - 2) * (beta - 1);
+    }
+    return slope;
+}
+
+Eigen::VectorXd filtered_acceleration_row_slope(double beta, int lags) {
+    Eigen::VectorXd slope = Eigen::VectorXd::Zero(lags + 1);
+    for (Eigen::Index t = 1; t <= lags; ++t) {
+        slope[t] = t == 1 ? 1
+                          : 2 * std::pow(beta, t - 2) * (beta - 1) +
+                                static_cast<double>(t - 2) * std::pow(beta, t - 3) * (beta - 1) * (beta - 1);
+    }
+    return slope;
+}
+
+Eigen::VectorXd polynomial_derivative_row(int order, int degree, int lags) {
+    Eigen::MatrixXd powers(lags + 1,
+                           degree + 1); // of time in windows: 0 at the newest sample, -1 at the oldest
+    for (Eigen::Index lag = 0; lag <= lags; ++lag) {
+        for (Eigen::Index power = 0; power <= degree; ++power) {
+            powers(lag, power) = std::pow(-static_cast<double>(lag) / lags, static_cast<double>(power));
+        }
+    }
+    const Eigen::MatrixXd fit = powers.completeOrthogonalDecomposition().pseudoInverse();
+    return fit.row(order).transpose();
+}
+
+} // namespace dfdyn::tools
