@@ -78,7 +78,7 @@ esac
 
 # The lines of a log that belong on the terminal.
 highlights() {
-    grep -hE 'tests passed|cortex-m7: |not installed:' "$1" | sed -E 's/^[0-9]+: //; s/^/        /' || return 0
+    grep -hE '^[0-9]+% tests passed|cortex-m7: |not installed:' "$1" | sed -E 's/^([0-9]+: )+//; s/^/        /' || return 0
 }
 
 # run_step NUMBER FUNCTION TITLE

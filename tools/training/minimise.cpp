@@ -71,10 +71,10 @@ void descend(Search& search, const Bounds& bounds, const Eigen::VectorXd& start,
     try {
         optimiser.optimize(point, value);
     } catch (const std::runtime_error&) {
-        // Otherwise NLopt's word for a line search that finds nothing lower: the best point stands.
-        if (search.error) {
-            std::rethrow_exception(search.error);
-        }
+        // NLopt's word for a line search that finds nothing lower, or the function's own error.
+    }
+    if (search.error) {
+        std::rethrow_exception(search.error);
     }
 }
 

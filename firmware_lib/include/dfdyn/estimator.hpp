@@ -57,8 +57,8 @@ class Estimator {
           target_(Outputs::zeros(sizes_.output_count)) {}
 
     /// Predicts the sample's output from its position and the past, then learns it as far as the budget goes.
-    /// A refused sample changes nothing but the counters and, for time that runs backward, the count towards
-    /// a clock restart. Cost: `cost()`, bounded whatever the input.
+    /// A refused sample leaves what has been learned as it is. Cost: `cost()`, bounded whatever the input;
+    /// with forgetting, learning may take a second sweep.
     Estimate tick(const Sample& sample, Budget budget) noexcept {
         Estimate estimate = unknown();
         Status& status = estimate.status;

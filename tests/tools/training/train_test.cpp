@@ -121,7 +121,7 @@ TEST_CASE("a trained model predicts what it was trained on") {
         const VectorXd predicted =
             model.outputs.offset[k] + (model.outputs.noise_std[k] * features * weights).array();
         const double spread = std::sqrt((measured.array() - measured.mean()).square().mean());
-        CHECK((measured - predicted).norm() / std::sqrt(595) < 0.1 * spread);
+        CHECK((measured - predicted).norm() / std::sqrt(595) < 0.2 * spread);
     }
 }
 
@@ -151,7 +151,10 @@ TEST_CASE("rows at rest set neither scales nor offsets") {
         CHECK(b.input.scale[i] == Approx(a.input.scale[i]).epsilon(0.03));
     }
     for (std::size_t k = 0; k < 2; ++k) {
-        CHECK(std::abs(b.outputs.offset[k] - a.outputs.offset[k]) < 0.05);
+        const auto output = moving.outputs.col(static_cast<Index>(k));
+        const double range = output.maxCoeff() - output.minCoeff();
+        // Behind the standstill five more rows in motion have a whole window.
+        CHECK(std::abs(b.outputs.offset[k] - a.outputs.offset[k]) < 5 * range / 595);
     }
 }
 

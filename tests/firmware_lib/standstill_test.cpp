@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+// An arm that stands still for a long time under forgetting, and then moves on.
+#include "dfdyn/estimator.hpp"
+
+#include "tests/firmware_lib/support/slow_build.hpp"
+#include "tests/firmware_lib/support/test_model.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+namespace {
+
+using namespace dfdyn;
+using namespace dfdyn::tests;
+
+template <class Scalar, template <class, int, int> class Form>
+using ModelOf = TestModel<Scalar, DerivativeFreeStructuredRecursive<6>, 32, Form>;
+using UdFloat = ModelOf<float, UdCovariance>;
+using UdDouble = ModelOf<double, UdCovariance>;
+using InformationFloat = ModelOf<float, CholeskyInformation>;
+using InformationDouble = ModelOf<double, CholeskyInformation>;
+
+constexpr int stop_ticks = 500;
+constexpr double encoder_count = 6e-6; // 20 bits per turn
+
+/// An arm that moves, stops smoothly, stands and starts smoothly: the moving arm's path at another rate.
+class StoppingArm {
+  public:
+    explicit StoppingArm(std::mt19937_64& engine) : engine_(&engine) {}
+
+    template <class Model>
+    typename Model::Sample moving() {
+        return next<Model>(1, 0);
+    }
+    template <class Model>
+    typename Model::Sample standing() {
+        return next<Model>(0, 0);
+    }
+    /// Tick number `t` of `stop_ticks` of a stop.
+    template <class Model>
+    typename Model::Sample stopping(int t) {
+        const auto [rate, change] = half_cosine(t);
+        return next<Model>(rate, change);
+    }
+    template <class Model>
+    typename Model::Sample starting(int t) {
+        const auto [rate, change] = half_cosine(t);
+        return next<Model>(1 - rate, -change);
+    }
+
+  private:
+    static std::pair<double, double> half_cosine(int t) {
+        const double angle = std::acos(-1.0) * t / stop_ticks;
+        return {0.5 + 0.5 * std::cos(angle), -0.5 * std::acos(-1.0) / (stop_ticks * period_s) * std::sin(angle)};
+    }
+
+    /// `rate` is that of the path, per second of the moving arm, and `change` its derivative.
+    template <class Model>
+    typename Model::Sample next(double rate, double change) {
+        path_s_ += rate * period_s;
+        ArmState arm = moving_arm(path_s_);
+        for (std::size_t i = 0; i < 2; ++i) {
+            arm.acceleration[i] = arm.acceleration[i] * rate * rate + arm.velocity[i] * change;
+            arm.velocity[i] *= rate;
+        }
+        return sample_of<Model>(arm, tick_++, *engine_);
+    }
+
+    std::mt19937_64* engine_;
+    double path_s_ = 0;
+    std::int64_t tick_ = 0;
+};
+
+/// Of an arm with low-pass filters, so that one count of the encoder makes less of an acceleration than the motion.
+template <class Model>
+typename Model::Constants filtered_constants(std::mt19937_64& engine, double forgetting_factor) {
+    using Scalar = typename Model::Scalar;
+    auto constants = make_constants<Model>(engine, forgetting_factor);
+    constants.input.filters = {Scalar(100), Scalar(1e5), Scalar(0.9), Scalar(0.9)};
+    return constants;
+}
+
+struct Restart {
+    double largest_variance = 0; ///< of a parameter during the standstill, in units of the prior's
+    double error = 0;            ///< rms of the innovations in the first second of the motion after it
+    double twins_error = 0;      ///< the same of a twin that learned nothing during the standstill
+    bool finite = true;
+};
+
+template <class Model>
+double largest_parameter_variance(const Estimator<Model>& estimator) {
+    double largest = 0;
+    for (int i = 0; i < Model::columns; ++i) {
+        largest = std::max(largest, static_cast<double>(estimator.learner().parameter_variance(i)));
+    }
+    return largest;
+}
+
+template <class Model>
+class Standstill {
+  public:
+    Standstill(std::mt19937_64& engine, double forgetting_factor, double noise)
+        : engine_(&engine), arm_(engine), constants_(filtered_constants<Model>(engine, forgetting_factor)), noise_(noise),
+          estimator_(std::make_unique<Estimator<Model>>(constants_)) {}
+
+    Restart run(int standing_ticks) {
+        for (int t = 0; t < 5000; ++t) {
+            tick(*estimator_, arm_.template moving<Model>());
+        }
+        for (int t = 1; t <= stop_ticks; ++t) {
+            tick(*estimator_, arm_.template stopping<Model>(t));
+        }
+        auto twin = std::make_unique<Estimator<Model>>(*estimator_);
+        stand(*twin, standing_ticks);
+        move_on(*twin);
+        return result_;
+    }
+
+  private:
+    void tick(Estimator<Model>& estimator, const typename Model::Sample& sample) {
+        const auto estimate = estimator.tick(sample, Budget::unlimited());
+        result_.finite = result_.finite && std::isfinite(estimate.prediction[0] + estimate.prediction[1]) &&
+                         !std::isnan(estimate.standard_deviation[0]);
+    }
+
+    void stand(Estimator<Model>& twin, int ticks) {
+        for (int t = 0; t < ticks; ++t) {
+            auto sample = arm_.template standing<Model>();
+            for (auto& position : sample.position) {
+                position += static_cast<typename Model::Scalar>(noise_ * static_cast<double>((*engine_)() % 2));
+            }
+            tick(*estimator_, sample);
+            if (t % 1000 == 0) {
+                result_.largest_variance = std::max(result_.largest_variance, largest_parameter_variance(*estimator_) / 1000);
+            }
+            if (ticks - t <= 20) { // only its window follows
+                sample.output_valid = false;
+                tick(twin, sample);
+            }
+        }
+    }
+
+    void move_on(Estimator<Model>& twin) {
+        constexpr int ticks = 1000;
+        double squares[2] = {0, 0};
+        for (int t = 1; t <= ticks; ++t) {
+            const auto sample = t <= stop_ticks ? arm_.template starting<Model>(t) : arm_.template moving<Model>();
+            const auto estimate = estimator_->tick(sample, Budget::unlimited());
+            const auto twins = twin.tick(sample, Budget::unlimited());
+            for (int k = 0; k < 2; ++k) {
+                squares[0] += std::pow(static_cast<double>(estimate.innovation[k]), 2);
+                squares[1] += std::pow(static_cast<double>(twins.innovation[k]), 2);
+            }
+        }
+        result_.error = std::sqrt(squares[0] / (2 * ticks));
+        result_.twins_error = std::sqrt(squares[1] / (2 * ticks));
+    }
+
+    std::mt19937_64* engine_;
+    StoppingArm arm_;
+    typename Model::Constants constants_;
+    double noise_;
+    std::unique_ptr<Estimator<Model>> estimator_;
+    Restart result_;
+};
+
+template <class Model>
+Restart after_standstill(std::mt19937_64& engine, double forgetting_factor, double noise, int ticks) {
+    return Standstill<Model>(engine, forgetting_factor, noise).run(slow_build ? ticks / 20 : ticks);
+}
+
+/// A variance that reached the prior's just after it was looked at grows for another p - 1 samples, then it is taken back.
+template <class Model>
+double variance_bound(double forgetting_factor) {
+    return std::pow(forgetting_factor, -Model::columns) * 1.001;
+}
+
+template <class Model>
+constexpr int standing_ticks = std::is_same_v<typename Model::Learner, UdCovariance<typename Model::Scalar, Model::columns, 2>>
+                                   ? 1'000'000
+                                   : 200'000; // the information form is three times slower
+
+/// Textbook recursive least squares with exponential forgetting, dense and in double.
+class TextbookForgetting {
+  public:
+    TextbookForgetting(int columns, double prior_variance, double forgetting_factor)
+        : factor_(forgetting_factor), covariance_(Eigen::MatrixXd::Identity(columns, columns) * prior_variance),
+          weights_(Eigen::VectorXd::Zero(columns)) {}
+
+    /// Learns a row; returns the innovation.
+    double learn(const Eigen::VectorXd& row, double target) {
+        const Eigen::VectorXd projected = covariance_ * row;
+        const Eigen::VectorXd gain = projected / (factor_ + row.dot(projected));
+        const double innovation = target - row.dot(weights_);
+        weights_ += gain * innovation;
+        covariance_ = (covariance_ - gain * projected.transpose()) / factor_;
+        return innovation;
+    }
+
+  private:
+    double factor_;
+    Eigen::MatrixXd covariance_;
+    Eigen::VectorXd weights_;
+};
+
+} // namespace
+
+// One horizon's worth of forgetting is given away at a standstill, no more: variances grow by at most e. A twin whose
+// parameters cost it p (1-λ) = 6 % of the noise's variance then pays 17 %: 5 % in the root.
+TEMPLATE_TEST_CASE("after a long rest the motion is predicted as if learning had been switched off", "", UdFloat,
+                   UdDouble, InformationFloat, InformationDouble) {
+    DFDYN_SEEDED_ENGINE(engine);
+    for (const double lambda : {0.999, 0.9995}) {
+        const Restart restart = after_standstill<TestType>(engine, lambda, 0, standing_ticks<TestType>);
+        CAPTURE(lambda, restart.error, restart.twins_error);
+        CHECK(restart.finite);
+        CHECK(restart.largest_variance <= variance_bound<TestType>(lambda));
+        CHECK(restart.twins_error < 1.2 * torque_noise);
+        CHECK(restart.error < 1.05 * restart.twins_error);
+    }
+}
+
+// The encoder's noise looks like motion that needs no torque: near this position the model is taught so, and has to unlearn
+// it in the first tenths of a second.
+TEMPLATE_TEST_CASE("after a long rest with an encoder's noise the motion is predicted nearly as well", "", UdFloat, UdDouble,
+                   InformationFloat, InformationDouble) {
+    DFDYN_SEEDED_ENGINE(engine);
+    for (const double lambda : {0.999, 0.9995}) {
+        const Restart restart = after_standstill<TestType>(engine, lambda, encoder_count, standing_ticks<TestType>);
+        CAPTURE(lambda, restart.error, restart.twins_error);
+        CHECK(restart.finite);
+        CHECK(restart.largest_variance <= variance_bound<TestType>(lambda));
+        CHECK(restart.twins_error < 1.2 * torque_noise);
+        CHECK(restart.error < 1.5 * restart.twins_error);
+    }
+}
+
+TEST_CASE("textbook forgetting does not survive the same standstill, even in double") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const auto constants = filtered_constants<UdDouble>(engine, 0.999);
+    Estimator<UdDouble> columns(constants); // not told of any output: it makes the rows
+    TextbookForgetting textbook(UdDouble::columns, 1000, 0.999);
+    StoppingArm arm(engine);
+    const auto learn = [&](UdDouble::Sample sample) {
+        const double target = (sample.output[0] - constants.output_offset[0]) / constants.output_noise_std[0];
+        sample.output_valid = false;
+        const bool predicted = columns.tick(sample, Budget::predict_only()).status.predicted();
+        const Eigen::Map<const Eigen::VectorXd> row(columns.columns(), UdDouble::columns);
+        return predicted ? textbook.learn(row, target) * constants.output_noise_std[0] : 0;
+    };
+    double squares_before = 0;
+    for (int t = 0; t < 5000; ++t) {
+        const double innovation = learn(arm.moving<UdDouble>());
+        squares_before += t < 4000 ? 0 : innovation * innovation;
+    }
+    CHECK(std::sqrt(squares_before / 1000) < 1.2 * torque_noise);
+    for (int t = 0; t < (slow_build ? 40'000 : 100'000); ++t) {
+        learn(arm.standing<UdDouble>());
+    }
+    double largest = 0;
+    for (int t = 1; t <= stop_ticks; ++t) {
+        const double innovation = std::abs(learn(arm.starting<UdDouble>(t)));
+        largest = innovation <= largest ? largest : innovation; // also if it is no number
+    }
+    CHECK_FALSE(largest < 1000 * torque_noise);
+}

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace dfdyn::tests {
+
+/// Whether this build checks every access and is some twenty times slower: the longest tests then do less.
+#if defined(__SANITIZE_ADDRESS__)
+inline constexpr bool slow_build = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+inline constexpr bool slow_build = true;
+#else
+inline constexpr bool slow_build = false;
+#endif
+#else
+inline constexpr bool slow_build = false;
+#endif
+
+} // namespace dfdyn::tests
