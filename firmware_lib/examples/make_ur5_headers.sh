@@ -17,7 +17,7 @@ awk -F, '
     NR == 1 {
         print "// SPDX-License-Identifier: Apache-2.0"
         print "// Written by make_ur5_headers.sh: 2.4 s of a UR5 in motion (provenance: tests/data/ur5_kufieta)."
-        print "#pragma once\n\n#include <cstdint>\n"
+        print "// clang-format off\n#pragma once\n\n#include <cstdint>\n"
         print "struct Ur5Sample {\n    std::int64_t time_us;\n    float position_rad[6];\n    float current_A[6];\n};\n"
         print "inline constexpr Ur5Sample ur5_samples[] = {"
     }

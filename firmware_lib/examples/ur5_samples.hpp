@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Written by make_ur5_headers.sh: 2.4 s of a UR5 in motion (provenance: tests/data/ur5_kufieta).
+// clang-format off
 #pragma once
 
 #include <cstdint>

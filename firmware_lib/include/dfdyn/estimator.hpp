@@ -50,7 +50,7 @@ class Estimator {
     static constexpr int clock_restart_samples = 3;
 
     explicit Estimator(const Constants& constants) noexcept
-        : constants_(&constants), sizes_(constants.sizes),
+        : constants_(&constants), sizes_(constants.sizes), learn_cost_(cost(constants.sizes).learn),
           input_(constants.input, sizes_.joint_count, sizes_.lag_count, sizes_.features_per_joint),
           learner_(constants.learner, sizes_.column_count(), sizes_.output_count),
           xi_(Inputs::zeros(sizes_.input_count())), phi_(Columns::zeros(sizes_.column_count())),
@@ -222,7 +222,7 @@ class Estimator {
         const bool measured = estimate.status.learning == Reason::ok;
         const Scalar error_square = measured ? normalise(sample, estimate) : Scalar(0);
         const bool doubtful = error_square > constants_->innovation_limit;
-        const bool at_once = measured && !doubtful && learner_.idle() && budget.affords(cost(sizes_).learn);
+        const bool at_once = measured && !doubtful && learner_.idle() && budget.affords(learn_cost_);
         Scalar ratio = at_once ? Scalar(1) : 1 + learner_.variance(phi_.data());
         if (measured && !plausible(error_square / ratio)) {
             estimate.status.learning = Reason::innovation_too_large;
@@ -299,6 +299,7 @@ class Estimator {
 
     const Constants* constants_;
     [[no_unique_address]] typename Model::Sizes sizes_;
+    std::int64_t learn_cost_;
     typename Model::InputMap input_;
     typename Model::Learner learner_;
     Inputs xi_;
