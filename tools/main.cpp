@@ -23,7 +23,12 @@ int run(int argc, char** argv) {
     } catch (const CLI::ParseError& failure) {
         throw dfdyn::tools::InputError(std::string(failure.what()) + " (dfdyn --help tells the usage)");
     }
-    return command();
+    const int status = command();
+    if (!std::cout.flush()) {
+        throw dfdyn::tools::InputError(
+            "standard output: expected to write all of it, found that the system refused");
+    }
+    return status;
 }
 
 } // namespace

@@ -35,6 +35,7 @@ run_tests() {
 build_release() { build release; }
 test_units() { run_tests release --label-regex '^(firmware|tools|embedding)$'; }
 check_headers() { run_tests release --label-regex '^headers$'; }
+test_promises() { run_tests release --label-regex '^acceptance$'; }
 test_consumers() { run_tests release --label-regex '^consumer$'; }
 test_cortex_m7() { run_tests release --label-regex '^cortex_m7$' --verbose; }
 test_long() { ctest --test-dir build/release --label-regex '^long$' --parallel "$jobs" --output-on-failure --no-tests=error; }
@@ -61,6 +62,7 @@ steps=(
     "build_release:release build"
     "test_units:unit tests"
     "check_headers:firmware headers"
+    "test_promises:promises on real recordings (the demo)"
     "test_consumers:installation and use by another project"
     "test_cortex_m7:bare Cortex-M7 under QEMU"
     "test_sanitized:address and undefined-behaviour sanitizers"

@@ -16,7 +16,8 @@ namespace {
 using namespace dfdyn;
 using namespace dfdyn::tests;
 
-/// Ticks of every kind: filling, learned at once, in slices, blind, refused, after a gap and after a clock restart.
+/// Ticks of every kind: filling, learned at once, in slices, blind, refused, after a gap and after a clock
+/// restart.
 template <class Model>
 std::vector<typename Model::Sample> samples_of_every_kind(std::mt19937_64& engine) {
     std::vector<typename Model::Sample> samples;
@@ -49,7 +50,8 @@ void use(const Estimator<Model>& estimator) {
 
 /// Calls every function of an estimator; returns the heap calls on the way.
 template <class Model>
-HeapCalls heap_calls(const typename Model::Constants& constants, const std::vector<typename Model::Sample>& samples) {
+HeapCalls heap_calls(const typename Model::Constants& constants,
+                     const std::vector<typename Model::Sample>& samples) {
     std::array<std::byte, Estimator<Model>::snapshot_capacity> buffer{};
     const AllocationGuard guard;
     Estimator<Model> estimator(constants);
@@ -79,9 +81,9 @@ void check(std::mt19937_64& engine) {
 
 } // namespace
 
-TEMPLATE_TEST_CASE("nothing in an estimator's life calls the heap", "", DerivativeFree<5>, DerivativeFreeWeighted<5>,
-                   (DerivativeFreeReduced<5, 3>), DerivativeFreeStructured<5>, DerivativeFreeStructuredRecursive<5>,
-                   Standard<5>, StandardMeasured) {
+TEMPLATE_TEST_CASE("nothing in an estimator's life calls the heap", "", DerivativeFree<5>,
+                   DerivativeFreeWeighted<5>, (DerivativeFreeReduced<5, 3>), DerivativeFreeStructured<5>,
+                   DerivativeFreeStructuredRecursive<5>, Standard<5>, StandardMeasured) {
     DFDYN_SEEDED_ENGINE(engine);
     check<float, TestType, UdCovariance>(engine);
     check<double, TestType, UdCovariance>(engine);

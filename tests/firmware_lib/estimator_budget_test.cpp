@@ -28,13 +28,16 @@ constexpr Cost cost_of() {
 
 /// Whether a sample was taken in by this tick, to be learned at once or in slices.
 bool taken(const Status& status) {
-    return status.predicted() && (status.learning == Reason::ok || status.learning == Reason::learning_in_progress);
+    return status.predicted() &&
+           (status.learning == Reason::ok || status.learning == Reason::learning_in_progress);
 }
 
 template <class Model>
 bool same_weights(const Estimator<Model>& a, const Estimator<Model>& b) {
-    return std::equal(a.learner().weights(0), a.learner().weights(0) + Model::columns, b.learner().weights(0)) &&
-           std::equal(a.learner().weights(1), a.learner().weights(1) + Model::columns, b.learner().weights(1));
+    return std::equal(a.learner().weights(0), a.learner().weights(0) + Model::columns,
+                      b.learner().weights(0)) &&
+           std::equal(a.learner().weights(1), a.learner().weights(1) + Model::columns,
+                      b.learner().weights(1));
 }
 
 template <class Scalar, int m>
@@ -49,8 +52,8 @@ double largest_difference(const Storage<Scalar, m>& a, const Storage<Scalar, m>&
 } // namespace
 
 // The whole estimator learns exactly the samples that the sliced one took in.
-TEMPLATE_TEST_CASE("random budgets learn the same as unlimited ones, bit for bit", "", UdFloat, UdDouble, InformationFloat,
-                   InformationDouble) {
+TEMPLATE_TEST_CASE("random budgets learn the same as unlimited ones, bit for bit", "", UdFloat, UdDouble,
+                   InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine, 0.99);
     Estimator<TestType> sliced(constants);
@@ -61,7 +64,8 @@ TEMPLATE_TEST_CASE("random budgets learn the same as unlimited ones, bit for bit
     for (int t = 0; t < 3000; ++t) {
         auto sample = moving_sample<TestType>(t, engine);
         const bool to_the_end = t % 10 == 9;
-        const auto estimate = sliced.tick(sample, to_the_end ? Budget::unlimited() : Budget{operations(engine)});
+        const auto estimate =
+            sliced.tick(sample, to_the_end ? Budget::unlimited() : Budget{operations(engine)});
         sample.output_valid = taken(estimate.status);
         whole.tick(sample, Budget::unlimited());
         if (sliced.learner().idle()) {
@@ -111,20 +115,22 @@ TEMPLATE_TEST_CASE("samples that arrive meanwhile are skipped, and counted", "",
     std::uniform_int_distribution<std::int64_t> operations(0, 2 * cost_of<TestType>().learn);
     std::uint32_t begun = 0;
     for (int t = 0; t < 2000; ++t) {
-        begun += taken(estimator.tick(moving_sample<TestType>(t, engine), Budget{operations(engine)}).status) ? 1 : 0;
+        begun += taken(estimator.tick(moving_sample<TestType>(t, engine), Budget{operations(engine)}).status)
+                     ? 1
+                     : 0;
         const Counters& counters = estimator.counters();
         const auto count_of = [&](Reason reason) { return counters.reasons[static_cast<int>(reason)]; };
         REQUIRE(counters.ticks == static_cast<std::uint32_t>(t + 1));
         REQUIRE(counters.learned + (estimator.learner().sample_pending() ? 1 : 0) == begun);
         REQUIRE(begun == count_of(Reason::ok) + count_of(Reason::learning_in_progress));
-        REQUIRE(counters.predicted == begun + count_of(Reason::learner_busy));
+        REQUIRE(counters.predicted == begun + count_of(Reason::learner_busy) + count_of(Reason::no_budget));
     }
     CHECK(begun > 200);
     CHECK(begun < 1900);
 }
 
-TEMPLATE_TEST_CASE("a budget of the largest step always gets on, a smaller one never finishes", "", UdFloat, UdDouble,
-                   InformationFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("a budget of the largest step always gets on, a smaller one never finishes", "", UdFloat,
+                   UdDouble, InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine);
     Estimator<TestType> enough(constants);
@@ -140,6 +146,21 @@ TEMPLATE_TEST_CASE("a budget of the largest step always gets on, a smaller one n
     CHECK(too_little.counters().learned == 0);
     CHECK(std::all_of(too_little.learner().weights(0), too_little.learner().weights(0) + TestType::columns,
                       [](auto weight) { return weight == 0; }));
+}
+
+TEST_CASE("without any budget a sample is predicted and not taken in") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const auto constants = make_constants<UdFloat>(engine);
+    Estimator<UdFloat> estimator(constants);
+    const auto before = snapshot_of(estimator);
+    for (int t = 0; t < 20; ++t) {
+        const Budget budget = t % 2 == 0 ? Budget::predict_only() : Budget{-5};
+        const auto estimate = estimator.tick(moving_sample<UdFloat>(t, engine), budget);
+        CHECK((t < 6 || estimate.status.reason() == Reason::no_budget));
+        CHECK((t < 6 || std::isfinite(estimate.standard_deviation[0])));
+    }
+    CHECK((snapshot_of(estimator) == before));
+    CHECK(estimator.counters().learned == 0);
 }
 
 TEST_CASE("a sample in hand is learned on in ticks that are refused or blind") {

@@ -58,7 +58,8 @@ TEMPLATE_TEST_CASE("a short contact is predicted, shown and not learned", "", Ud
     CHECK(static_cast<double>(estimate.normalised_innovation_squared) == Approx(62.5 * 62.5).epsilon(0.3));
 }
 
-TEMPLATE_TEST_CASE("a sample is learned if it is plausible or follows enough that are not", "", UdFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("a sample is learned if it is plausible or follows enough that are not", "", UdFloat,
+                   InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     WatchfulArm<TestType> arm(engine);
     int implausible_in_a_row = 0;
@@ -102,7 +103,8 @@ TEST_CASE("a new window begins with new patience") {
     CHECK(arm.refused(arm.touched(5)) == Reason::innovation_too_large);
 }
 
-// The limit is on the innovation over its own variance: where the model knows nothing, nothing contradicts it.
+// The limit is on the innovation over its own variance: where the model knows nothing, nothing contradicts
+// it.
 TEST_CASE("an estimator that has learned nothing yet refuses nothing") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = WatchfulArm<UdFloat>::watchful(engine);
@@ -111,6 +113,7 @@ TEST_CASE("an estimator that has learned nothing yet refuses nothing") {
         estimator.tick(moving_sample<UdFloat>(t, engine), Budget::unlimited());
     }
     auto sample = moving_sample<UdFloat>(6, engine);
-    sample.output[1] += 5; // 60 times the noise, but less than twice the prior's deviation of 32 times the noise
+    sample.output[1] +=
+        5; // 60 times the noise, but less than twice the prior's deviation of 32 times the noise
     CHECK(estimator.tick(sample, Budget::unlimited()).status.learned());
 }

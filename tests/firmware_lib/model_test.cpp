@@ -27,7 +27,8 @@ static_assert(Estimator<LargeModel>::cost().predict < 100'000);
 static_assert(Estimator<LargeModel>::snapshot_capacity < large_bytes);
 
 using FixedModel = TestModel<float>;
-using DynamicModel = Model<float, Joints<dynamic, dynamic>, DerivativeFreeReduced<dynamic, dynamic>, RandomFourier<dynamic>>;
+using DynamicModel =
+    Model<float, Joints<dynamic, dynamic>, DerivativeFreeReduced<dynamic, dynamic>, RandomFourier<dynamic>>;
 
 template <int count>
 Storage<float, dynamic> on_heap(const Storage<float, count>& values) {
@@ -38,8 +39,11 @@ Storage<float, dynamic> on_heap(const Storage<float, count>& values) {
 
 DynamicModel::Constants on_heap(const FixedModel::Constants& fixed) {
     DynamicModel::Constants constants{};
-    constants.sizes = {{FixedModel::joints}, {FixedModel::outputs}, {FixedModel::Input::lags},
-                       {FixedModel::Input::features_per_joint}, {FixedModel::Features::count}};
+    constants.sizes = {{FixedModel::joints},
+                       {FixedModel::outputs},
+                       {FixedModel::Input::lags},
+                       {FixedModel::Input::features_per_joint},
+                       {FixedModel::Features::count}};
     constants.identity = fixed.identity;
     constants.gap_ns = fixed.gap_ns;
     constants.input.rows = on_heap(fixed.input.rows);
@@ -82,8 +86,8 @@ TEST_CASE("a model whose sizes are known at run time behaves as the firmware's")
     CHECK(Estimator<DynamicModel>::cost(host_constants.sizes).learn == Estimator<FixedModel>::cost().learn);
     for (int t = 0; t < 500; ++t) {
         const auto sample = moving_sample<FixedModel>(t == 250 ? 240 : t, engine);
-        const Estimator<DynamicModel>::Sample host_sample{sample.time_ns, on_heap(sample.position), on_heap(sample.output),
-                                                          sample.output_valid};
+        const Estimator<DynamicModel>::Sample host_sample{sample.time_ns, on_heap(sample.position),
+                                                          on_heap(sample.output), sample.output_valid};
         const auto expected = firmware.tick(sample, Budget{2000});
         const auto estimate = host.tick(host_sample, Budget{2000});
         REQUIRE(estimate.status.reason() == expected.status.reason());

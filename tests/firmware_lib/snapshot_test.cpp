@@ -70,7 +70,8 @@ TEST_CASE("a snapshot uses the front of a larger buffer and leaves the rest alon
     const State state;
     std::vector<std::byte> buffer(snapshot_bytes(state) + 10, std::byte{0xAB});
     CHECK(write_snapshot(state, model, buffer) == SnapshotResult::ok);
-    CHECK(std::vector<std::byte>(buffer.end() - 10, buffer.end()) == std::vector<std::byte>(10, std::byte{0xAB}));
+    CHECK(std::vector<std::byte>(buffer.end() - 10, buffer.end()) ==
+          std::vector<std::byte>(10, std::byte{0xAB}));
     CHECK(read(buffer) == SnapshotResult::ok);
 }
 
@@ -91,7 +92,8 @@ TEST_CASE("every flipped bit and every truncation is rejected, and changes nothi
             damaged[place] ^= std::byte{1} << bit;
             CHECK(read(damaged) != SnapshotResult::ok);
         }
-        CHECK(read({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(place)}) == SnapshotResult::wrong_size);
+        CHECK(read({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(place)}) ==
+              SnapshotResult::wrong_size);
     }
 }
 

@@ -21,6 +21,7 @@ constexpr std::pair<int, const char*> published[] = {
     {4, "output_missing"},
     {5, "learning_in_progress"},
     {6, "learner_busy"},
+    {7, "no_budget"},
     {32, "position_not_finite"},
     {33, "position_out_of_range"},
     {34, "time_not_increasing"},
@@ -28,6 +29,7 @@ constexpr std::pair<int, const char*> published[] = {
     {36, "output_not_finite"},
     {37, "output_out_of_range"},
     {38, "innovation_too_large"},
+    {39, "state_not_finite"},
 };
 
 } // namespace

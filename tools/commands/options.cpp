@@ -41,6 +41,22 @@ std::vector<Recording> RecordingOptions::read(std::size_t joint_count, OutputKin
     return recordings;
 }
 
+void check_distinct(const std::vector<std::filesystem::path>& outputs,
+                    std::vector<std::filesystem::path> inputs) {
+    for (const std::filesystem::path& output : outputs) {
+        if (output.empty()) {
+            continue;
+        }
+        for (const std::filesystem::path& other : inputs) {
+            if (std::filesystem::weakly_canonical(output) == std::filesystem::weakly_canonical(other)) {
+                throw InputError(shown(output) +
+                                 ": expected a file of its own, found one that another option names");
+            }
+        }
+        inputs.push_back(output);
+    }
+}
+
 OutputKind kind_of_outputs(const std::vector<std::string>& names, std::size_t joint_count) {
     for (const OutputKind kind : {OutputKind::joint_torque, OutputKind::motor_current, OutputKind::wrench}) {
         if (output_names(kind, joint_count) == names) {

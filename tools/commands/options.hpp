@@ -24,6 +24,10 @@ struct RecordingOptions {
     std::vector<Recording> read(std::size_t joint_count, OutputKind outputs) const;
 };
 
+/// Throws InputError when two outputs, or an output and an input, are the same file. Empty paths are none.
+void check_distinct(const std::vector<std::filesystem::path>& outputs,
+                    std::vector<std::filesystem::path> inputs);
+
 /// The kind of outputs that has these column names; throws InputError when none has.
 OutputKind kind_of_outputs(const std::vector<std::string>& names, std::size_t joint_count);
 

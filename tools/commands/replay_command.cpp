@@ -40,6 +40,9 @@ std::vector<ReplayedRecording> replay_all(const ReplayOptions& options, const Tr
 }
 
 int run(const ReplayOptions& options) {
+    std::vector<std::filesystem::path> inputs = options.recordings.logs;
+    inputs.push_back(options.model);
+    check_distinct({options.csv, options.report}, std::move(inputs));
     const TrainedModel model = read_model(options.model);
     const auto estimator = make_estimator(model, options.from_prior);
     const std::vector<ReplayedRecording> replayed = replay_all(options, model, *estimator);

@@ -31,10 +31,13 @@ struct TrainOptions {
 
 void add_training_options(CLI::App& command, TrainingOptions& training) {
     command.add_option("--lags", training.lags, "M: the window holds M+1 positions per joint")
+        ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command.add_option("--features-per-joint", training.rows_per_joint, "k: rows of R (DFR)")
+        ->check(CLI::Range(1, 1001))
         ->capture_default_str();
     command.add_option("--features", training.feature_count, "d random features: 2d columns")
+        ->check(CLI::Range(1, 5000))
         ->capture_default_str();
     command.add_flag("--orthogonal,!--independent", training.orthogonal,
                      "Orthogonal (default) or independent random features");
@@ -42,15 +45,19 @@ void add_training_options(CLI::App& command, TrainingOptions& training) {
         .add_option("--forgetting", training.forgetting_factor, "Forgetting factor of the learner; 1: none")
         ->capture_default_str();
     command.add_option("--likelihood-rows", training.likelihood_rows, "Samples in the exact kernel, at most")
+        ->check(CLI::Range(20, 20000))
         ->capture_default_str();
     command
         .add_option("--refinement", training.refinement_evaluations,
                     "Evaluations, at most, of the likelihood of the random features on all rows; 0: exact "
                     "kernel only")
+        ->check(CLI::Range(0, 100000))
         ->capture_default_str();
     command.add_option("--starts", training.starts, "Local searches from different starts")
+        ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command.add_option("--seed", training.seed, "Of the starts and of the random features")
+        ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
 }
 
@@ -88,6 +95,7 @@ void print_outcome(const TrainedModel& model, const std::string& trained_on) {
 }
 
 int run(const TrainOptions& options) {
+    check_distinct({options.model, options.header}, options.recordings.logs);
     const OutputKind outputs = parse_output_kind(options.outputs);
     TrainingOptions training = options.training;
     training.input = parse_input_kind(options.input);
@@ -101,7 +109,9 @@ int run(const TrainOptions& options) {
     const std::string trained_on = file_names(recordings, model.training);
     model.training.rows = options.recordings.rows;
     calibrate_innovation_limit(model, recordings);
-    write_file(options.model, model_to_json(model));
+    const std::string json = model_to_json(model);
+    model_from_json(json, shown(options.model)); // nothing is written that `replay` would refuse
+    write_file(options.model, json);
     if (!options.header.empty()) {
         write_file(options.header, model_to_header(model, to_identifier(options.header.stem().string())));
     }

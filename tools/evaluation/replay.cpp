@@ -2,10 +2,12 @@
 #include "tools/evaluation/replay.hpp"
 
 #include "tools/common/error.hpp"
+#include "tools/common/text.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace dfdyn::tools {
 
@@ -20,7 +22,8 @@ void check_fit(const TrainedModel& model, const Recording& recording) {
                          " joints as the model has, found " + std::to_string(recording.joint_count()));
     }
     if (recording.output.names != model.outputs.names) {
-        throw InputError(recording.source + ": its outputs are not those of the model");
+        throw InputError(recording.source + ": expected the model's outputs " + listed(model.outputs.names) +
+                         ", found " + listed(recording.output.names));
     }
 }
 
@@ -65,23 +68,37 @@ ReplayedRecording replay(HostEstimator& estimator, const TrainedModel& model, co
 
 double normalised_error(const ReplayedRecording& replayed, std::size_t outputs, std::size_t output,
                         std::size_t first, std::size_t last) {
-    double count = 0;
+    std::vector<double> measured;
     double error_square = 0;
-    double sum = 0;
-    double square = 0;
     for (std::size_t tick = first; tick < last; ++tick) {
-        const double measured = replayed.measured[tick * outputs + output];
         const auto predicted = static_cast<double>(replayed.predicted[tick * outputs + output]);
-        if (std::isnan(predicted)) {
-            continue;
+        if (!std::isnan(predicted)) {
+            measured.push_back(replayed.measured[tick * outputs + output]);
+            error_square += (measured.back() - predicted) * (measured.back() - predicted);
         }
-        count += 1;
-        error_square += (measured - predicted) * (measured - predicted);
-        sum += measured;
-        square += measured * measured;
     }
-    return count > 0 ? std::sqrt(error_square / (square - sum * sum / count))
-                     : std::numeric_limits<double>::quiet_NaN();
+    const double mean =
+        std::accumulate(measured.begin(), measured.end(), 0.0) / static_cast<double>(measured.size());
+    const double variation =
+        std::accumulate(measured.begin(), measured.end(), 0.0,
+                        [mean](double sum, double y) { return sum + (y - mean) * (y - mean); });
+    return std::sqrt(error_square / variation);
+}
+
+double share_within_two_deviations(const ReplayedRecording& replayed, std::size_t outputs,
+                                   std::size_t output) {
+    std::size_t predicted = 0;
+    std::size_t within = 0;
+    for (std::size_t element = output; element < replayed.predicted.size(); element += outputs) {
+        if (!std::isnan(replayed.predicted[element])) {
+            const double error =
+                replayed.measured[element] - static_cast<double>(replayed.predicted[element]);
+            ++predicted;
+            within +=
+                std::abs(error) <= 2 * static_cast<double>(replayed.standard_deviation[element]) ? 1 : 0;
+        }
+    }
+    return static_cast<double>(within) / static_cast<double>(predicted);
 }
 
 double median_horizon_index(const ReplayedRecording& replayed, std::size_t output, double from_s,

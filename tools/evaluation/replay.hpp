@@ -37,6 +37,11 @@ ReplayedRecording replay(HostEstimator& estimator, const TrainedModel& model, co
 double normalised_error(const ReplayedRecording& replayed, std::size_t outputs, std::size_t output,
                         std::size_t first, std::size_t last);
 
+/// The share of predicted ticks whose output lies within two standard deviations of its prediction; NaN if
+/// there are none.
+double share_within_two_deviations(const ReplayedRecording& replayed, std::size_t outputs,
+                                   std::size_t output);
+
 /// The median of ε of one output over the times t in [from_s, to_s) since the recording's start; NaN if there
 /// are none. The median, because ε is relative: while an output rests near zero it is as large as one likes.
 double median_horizon_index(const ReplayedRecording& replayed, std::size_t output, double from_s,

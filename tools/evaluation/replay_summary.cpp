@@ -10,10 +10,21 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <map>
 
 namespace dfdyn::tools {
 
 namespace {
+
+std::vector<std::pair<std::string, std::size_t>> count_refusals(const ReplayedRecording& replayed) {
+    std::map<std::string, std::size_t> counts;
+    for (const Status& status : replayed.status) {
+        if (status.reason() != Reason::ok) {
+            ++counts[name(status.reason())];
+        }
+    }
+    return {counts.begin(), counts.end()};
+}
 
 RecordingFigures figures_of(const ReplayedRecording& replayed, const TrainedModel& model) {
     const std::size_t outputs = model.outputs.names.size();
@@ -25,10 +36,12 @@ RecordingFigures figures_of(const ReplayedRecording& replayed, const TrainedMode
         figures.predicted += status.predicted() ? 1 : 0;
         figures.learned += status.learned() ? 1 : 0;
     }
+    figures.refusals = count_refusals(replayed);
     for (std::size_t k = 0; k < outputs; ++k) {
         figures.normalised_error.push_back(normalised_error(replayed, outputs, k, 0, ticks));
         figures.normalised_error_second_half.push_back(
             normalised_error(replayed, outputs, k, ticks / 2, ticks));
+        figures.within_two_deviations.push_back(share_within_two_deviations(replayed, outputs, k));
         figures.horizon_transient.push_back(median_horizon_index(replayed, k, 0, transient_s));
         figures.horizon_steady.push_back(
             median_horizon_index(replayed, k, transient_s, std::numeric_limits<double>::infinity()));
@@ -83,11 +96,17 @@ ReplaySummary summarise(const TrainedModel& model, const HostEstimator& estimato
     std::vector<double> durations;
     for (const ReplayedRecording& recording : replayed) {
         summary.recordings.push_back(figures_of(recording, model));
-        durations.insert(durations.end(), recording.duration_us.begin(), recording.duration_us.end());
+        for (std::size_t tick = 0; tick < recording.status.size(); ++tick) {
+            if (recording.status[tick].learned()) {
+                durations.push_back(recording.duration_us[tick]);
+            }
+        }
     }
-    summary.median_us = quantile_of(durations, 0.5);
-    summary.p99_us = quantile_of(durations, 0.99);
-    summary.longest_us = quantile_of(durations, 1);
+    if (!durations.empty()) {
+        summary.median_us = quantile_of(durations, 0.5);
+        summary.p99_us = quantile_of(durations, 0.99);
+        summary.longest_us = quantile_of(durations, 1);
+    }
     return summary;
 }
 
@@ -96,9 +115,13 @@ void print_summary(std::ostream& out, const ReplaySummary& summary) {
     for (const RecordingFigures& recording : summary.recordings) {
         out << recording.name << ": " << recording.ticks << " ticks, " << recording.predicted
             << " predicted, " << recording.learned << " learned\n";
+        for (const auto& [reason, count] : recording.refusals) {
+            out << "  " << count << " x " << reason << '\n';
+        }
         print_line(out, "", summary.outputs);
         print_values(out, "nRMSE, one step", recording.normalised_error);
         print_values(out, "nRMSE, second half", recording.normalised_error_second_half);
+        print_values(out, "share within 2 sigma", recording.within_two_deviations);
         for (const Contradiction& contradiction : recording.contradictions) {
             out << "  contradicts the model from " << formatted("%.2f", contradiction.start_s) << " to "
                 << formatted("%.2f", contradiction.end_s) << " s (nis up to "
@@ -110,9 +133,9 @@ void print_summary(std::ostream& out, const ReplaySummary& summary) {
             print_values(out, index + ", after", recording.horizon_steady);
         }
     }
-    out << "time per tick on this machine: median " << formatted("%.1f", summary.median_us) << " us, 99 % "
-        << formatted("%.1f", summary.p99_us) << " us, longest " << formatted("%.1f", summary.longest_us)
-        << " us (" << summary.operations << " multiply-adds)\n"
+    out << "time of a tick that learns, on this machine: median " << formatted("%.1f", summary.median_us)
+        << " us, 99 % " << formatted("%.1f", summary.p99_us) << " us, longest "
+        << formatted("%.1f", summary.longest_us) << " us (" << summary.operations << " multiply-adds)\n"
         << "learned state: " << summary.state_bytes << " bytes\n"
         << "build: " << build_flags() << '\n';
 }

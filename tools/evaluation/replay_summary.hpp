@@ -14,7 +14,9 @@ namespace dfdyn::tools {
 struct RecordingFigures {
     std::string name; ///< file name without folders
     std::size_t ticks = 0, predicted = 0, learned = 0;
-    std::vector<double> normalised_error;             ///< one-step nRMSE over all ticks
+    std::vector<std::pair<std::string, std::size_t>> refusals; ///< reasons other than ok, and how often
+    std::vector<double> within_two_deviations;                 ///< share of ticks
+    std::vector<double> normalised_error;                      ///< one-step nRMSE over all ticks
     std::vector<double> normalised_error_second_half; ///< over the second half of the recording's ticks
     std::vector<double> horizon_transient;            ///< median of ε over the first 30 s
     std::vector<double> horizon_steady;               ///< median of ε after that
@@ -27,8 +29,8 @@ struct ReplaySummary {
     std::size_t horizon = 0;
     std::string model; ///< one line: structure, input, features
     std::size_t state_bytes = 0;
-    std::int64_t operations = 0; ///< multiply-adds per tick that learns
-    double median_us = 0, p99_us = 0, longest_us = 0;
+    std::int64_t operations = 0;                      ///< multiply-adds per tick that learns
+    double median_us = 0, p99_us = 0, longest_us = 0; ///< of the ticks that learned
 };
 
 /// The time after which the paper takes a model to have settled.

@@ -44,7 +44,7 @@ class HostEstimator {
     /// Begins a recording: the window restarts, what has been learned stays.
     virtual void begin_recording() = 0;
 
-    /// Bytes of all state in the firmware's types.
+    /// Bytes of what has been learned (a snapshot of it), in the firmware's types.
     virtual std::size_t state_bytes() const = 0;
     virtual Cost cost() const = 0;
 };

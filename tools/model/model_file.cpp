@@ -184,10 +184,11 @@ TrainedModel read_fields(const JsonReader& reader) {
         throw reader.error("structure", "\"NP\"", in_quotes(model.structure));
     }
     model.joints = reader.whole_number("joints", 1, largest_joint_count);
-    model.sample_period_s = reader.positive_number("sample_period_s");
-    model.forgetting_factor = reader.number_within("forgetting_factor", 0.5, 1);
+    model.sample_period_s = reader.number_within("sample_period_s", 1e-6, 10);
     model.input = read_input(reader.object("input"), model.joints);
     model.features = read_features(reader.object("features"), model.joints * model.input.rows_per_joint);
+    model.forgetting_factor =
+        reader.number_within("forgetting_factor", least_forgetting_factor(model.features.count), 1);
     model.outputs = read_outputs(reader.object("outputs"));
     const int outputs = static_cast<int>(model.outputs.names.size());
     const JsonReader limits = reader.object("limits");
@@ -200,6 +201,8 @@ TrainedModel read_fields(const JsonReader& reader) {
 }
 
 } // namespace
+
+double least_forgetting_factor(int feature_count) { return 1 - 1 / (2.0 * feature_count); }
 
 std::string to_string(InputKind kind) {
     for (const auto& [known, name] : input_names) {

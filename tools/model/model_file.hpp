@@ -15,6 +15,10 @@ std::string to_string(InputKind kind);
 /// The input of that name; throws InputError listing the names for any other.
 InputKind parse_input_kind(const std::string& name);
 
+/// The smallest forgetting factor of a model with d random features: a memory of one sample per column. A
+/// shorter one determines none of the weights.
+double least_forgetting_factor(int feature_count);
+
 /// The text of a model.json (schema dfdyn.model/1). Numbers are those of single precision, which is what the
 /// firmware runs with; reading the text back gives them bit for bit.
 std::string model_to_json(const TrainedModel& model);

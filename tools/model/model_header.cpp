@@ -110,7 +110,8 @@ std::string model_to_header(const TrainedModel& model, const std::string& name_s
            << ".\n"
            << "// Trained on " << comment(joined(model.training.recordings)) << ", rows "
            << comment(model.training.rows) << ", sampled every " << model.sample_period_s << " s.\n"
-           << "// clang-format off\n#pragma once\n\n#include \"dfdyn/dfdyn.hpp\"\n\nnamespace " << name_space << " {\n\n"
+           << "// clang-format off\n#pragma once\n\n#include \"dfdyn/dfdyn.hpp\"\n\nnamespace " << name_space
+           << " {\n\n"
            << "using Model = dfdyn::Model<float, dfdyn::Joints<" << model.joints << ", " << outputs
            << ">, dfdyn::" << input_type(model.input) << ", dfdyn::RandomFourier<" << model.features.count
            << ">>;\n\n"

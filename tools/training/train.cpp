@@ -3,6 +3,7 @@
 
 #include "tools/common/error.hpp"
 #include "tools/common/number.hpp"
+#include "tools/model/model_file.hpp"
 #include "tools/training/feature_likelihood.hpp"
 #include "tools/training/input_map.hpp"
 #include "tools/training/marginal_likelihood.hpp"
@@ -44,8 +45,12 @@ void check_options(const TrainingOptions& options) {
     expect(options.starts >= 1, "at least 1 start", options.starts);
     expect(options.evaluations_per_start >= 1, "at least 1 evaluation per start",
            options.evaluations_per_start);
+    expect(options.refinement_evaluations >= 0, "at least 0 evaluations of the refinement",
+           options.refinement_evaluations);
     expect(options.threads >= 1, "at least 1 thread", options.threads);
-    expect(options.forgetting_factor > 0 && options.forgetting_factor <= 1, "a forgetting factor in (0, 1]",
+    const double least = least_forgetting_factor(options.feature_count);
+    expect(options.forgetting_factor >= least && options.forgetting_factor <= 1,
+           "a forgetting factor from 1 - 1/(2 features) = " + std::to_string(least) + " to 1",
            options.forgetting_factor);
 }
 

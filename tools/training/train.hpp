@@ -13,19 +13,17 @@ namespace dfdyn::tools {
 /// How to train; the values here are the defaults.
 struct TrainingOptions {
     InputKind input = InputKind::DFR;
-    int lags = 10;           ///< M >= 1 (DFSR: >= 2); STD: the longest window minus one
-    int rows_per_joint = 3;  ///< k of DFR, 1 … M+1; the other inputs have their own
-    int feature_count = 250; ///< d >= 1
-    bool orthogonal = true;  ///< orthogonal random features
-    int likelihood_rows =
-        1000;       ///< at most so many samples in the exact kernel, >= 20; time goes with the cube
-    int starts = 6; ///< local searches, >= 1
-    int evaluations_per_start = 200; ///< at most
-    int refinement_evaluations =
-        40;          ///< at most, of the likelihood of the random features over all rows; 0: no refinement
-    int threads = 2; ///< >= 1; does not change the result
+    int lags = 10;                   ///< M >= 1 (DFSR: >= 2); STD: the longest window minus one
+    int rows_per_joint = 3;          ///< k of DFR, 1 … M+1; the other inputs have their own
+    int feature_count = 250;         ///< d >= 1
+    bool orthogonal = true;          ///< orthogonal random features
+    int likelihood_rows = 1000;      ///< samples in the exact kernel, at most; >= 20; time goes with the cube
+    int starts = 6;                  ///< local searches, >= 1
+    int evaluations_per_start = 200; ///< at most, >= 1
+    int refinement_evaluations = 40; ///< at most, by FeatureLikelihood over all rows; 0: no refinement
+    int threads = 2;                 ///< >= 1; does not change the result
     std::uint64_t seed = 1;          ///< of the starts and of omega
-    double forgetting_factor = 1;    ///< of the learner, in (0, 1]
+    double forgetting_factor = 1;    ///< of the learner, in [1 - 1/(2d), 1]
     double position_noise_bound = 0; ///< STD only, copied into the model
 };
 

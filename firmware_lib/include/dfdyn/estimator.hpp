@@ -49,6 +49,7 @@ class Estimator {
     /// Consecutive samples from the past after which the sender's clock is taken to have been set back.
     static constexpr int clock_restart_samples = 3;
 
+    explicit Estimator(const Constants&&) = delete; // it would refer to a temporary
     explicit Estimator(const Constants& constants) noexcept
         : constants_(&constants), sizes_(constants.sizes), learn_cost_(cost(constants.sizes).learn),
           input_(constants.input, sizes_.joint_count, sizes_.lag_count, sizes_.features_per_joint),
@@ -57,8 +58,9 @@ class Estimator {
           target_(Outputs::zeros(sizes_.output_count)) {}
 
     /// Predicts the sample's output from its position and the past, then learns it as far as the budget goes.
-    /// A refused sample leaves what has been learned as it is. Cost: `cost()`, bounded whatever the input;
-    /// with forgetting, learning may take a second sweep.
+    /// A refused sample leaves what has been learned as it is. At most
+    /// `cost().predict` + `cost().variance` + the budget multiply-adds, whatever the input; with forgetting,
+    /// learning may take a second sweep of `cost().learn`, within the budget too.
     Estimate tick(const Sample& sample, Budget budget) noexcept {
         Estimate estimate = unknown();
         Status& status = estimate.status;
@@ -67,9 +69,7 @@ class Estimator {
             status.prediction = Reason::input_out_of_range;
         }
         if (status.predicted()) {
-            learner_.predict(phi_.data(), estimate.prediction.data());
-            status.learning = check_output(sample);
-            learn(sample, budget, estimate);
+            predict(sample, budget, estimate);
         } else {
             work(budget);
         }
@@ -209,37 +209,72 @@ class Estimator {
         return past_samples_ == clock_restart_samples;
     }
 
+    void predict(const Sample& sample, Budget budget, Estimate& estimate) noexcept {
+        learner_.predict(phi_.data(), estimate.prediction.data());
+        if (finite(estimate.prediction)) {
+            estimate.status.learning = check_output(sample);
+            learn(sample, budget, estimate);
+        }
+        if (!finite(estimate.prediction) || !finite(estimate.standard_deviation)) {
+            estimate = unknown();
+            estimate.status.prediction = Reason::state_not_finite;
+        }
+    }
+
+    [[nodiscard]] static bool finite(const Outputs& values) noexcept {
+        bool all = true;
+        for (const Scalar value : values) {
+            all = all && std::isfinite(value);
+        }
+        return all;
+    }
+
     bool evaluate_features() noexcept {
         input_.evaluate(xi_.data());
         return Model::Features::template evaluate<Scalar, Model::inputs>(
             constants_->features, sizes_.input_count(), sizes_.feature_count, xi_.data(), phi_.data());
     }
 
-    /// Learns what the budget allows, oldest first, and completes the estimate. The variance comes with a
-    /// sweep that starts and ends in this tick; otherwise, or if it decides whether to learn at all, it takes
-    /// a pass of its own.
+    /// Gates the measurement, learns what the budget allows, oldest first, and completes the estimate. The
+    /// variance comes with a sweep that starts and ends in this tick; otherwise, or if it decides whether to
+    /// learn at all, it takes a pass of its own.
     void learn(const Sample& sample, Budget budget, Estimate& estimate) noexcept {
-        const bool measured = estimate.status.learning == Reason::ok;
-        const Scalar error_square = measured ? normalise(sample, estimate) : Scalar(0);
+        Status& status = estimate.status;
+        Scalar error_square = status.learning == Reason::ok ? normalise(sample, estimate) : Scalar(0);
+        if (!std::isfinite(error_square)) {
+            status.learning = Reason::output_out_of_range;
+            error_square = 0;
+        }
+        const bool measured = status.learning == Reason::ok;
         const bool doubtful = error_square > constants_->innovation_limit;
         const bool at_once = measured && !doubtful && learner_.idle() && budget.affords(learn_cost_);
         Scalar ratio = at_once ? Scalar(1) : 1 + learner_.variance(phi_.data());
         if (measured && !plausible(error_square / ratio)) {
-            estimate.status.learning = Reason::innovation_too_large;
+            status.learning = Reason::innovation_too_large;
         }
-        const bool usable = estimate.status.learning == Reason::ok;
-        if (work(budget) && usable) {
-            learner_.begin(phi_.data(), target_.data());
-            work(budget);
-            estimate.status.learning = learner_.sample_pending() ? Reason::learning_in_progress : Reason::ok;
-        } else if (usable) {
-            estimate.status.learning = Reason::learner_busy;
-        }
+        fold(budget, status);
         if (at_once) {
             ratio = learner_.last_ratio();
         }
         complete(sample, measured, ratio, estimate);
         estimate.normalised_innovation_squared = error_square / ratio;
+    }
+
+    /// Goes on with an earlier sample, then with this one unless it was refused.
+    void fold(Budget& budget, Status& status) noexcept {
+        const bool idle = work(budget);
+        if (status.learning != Reason::ok) {
+            return;
+        }
+        if (!idle) {
+            status.learning = Reason::learner_busy;
+        } else if (budget.operations <= 0) {
+            status.learning = Reason::no_budget;
+        } else {
+            learner_.begin(phi_.data(), target_.data());
+            work(budget);
+            status.learning = learner_.sample_pending() ? Reason::learning_in_progress : Reason::ok;
+        }
     }
 
     /// Whether to learn a sample with this normalised innovation: not if it is too large, unless that goes

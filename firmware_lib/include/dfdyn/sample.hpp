@@ -16,8 +16,8 @@ struct Sample {
     bool output_valid;           ///< false: nothing was measured; predict only
 };
 
-/// A sample of an arm whose velocities and accelerations are measured (input `Standard` with
-/// `MeasuredDerivatives`).
+/// A sample of an arm whose velocities and accelerations are measured (input
+/// `StandardMeasured`).
 template <class Scalar, int n, int m>
 struct SampleWithDerivatives : Sample<Scalar, n, m> {
     Storage<Scalar, n> velocity;     ///< rad/s

@@ -26,6 +26,9 @@ enum class Reason : std::uint8_t {
     /// features.
     learner_busy = 6,
 
+    /// The budget was not positive: predicted, not learned.
+    no_budget = 7,
+
     /// A position is NaN or infinite.
     position_not_finite = 32,
     /// A position is beyond the model's limit. Cure: check the encoder and its unit (radians).
@@ -43,10 +46,13 @@ enum class Reason : std::uint8_t {
     /// learn. Predicted, not learned, for as many samples in a row as the model's patience; then the arm is
     /// taken to have changed.
     innovation_too_large = 38,
+    /// What has been learned is not finite, or overflows: constants or a snapshot with absurd numbers.
+    /// Nothing is predicted or learned. Cure: `reset()`, or restore a sound snapshot.
+    state_not_finite = 39,
 };
 
 /// One past the largest number of a reason; sizes tables indexed by it.
-inline constexpr int reason_count = 39;
+inline constexpr int reason_count = 40;
 
 /// The reason's name as written in recordings and logs ("ok" for none).
 constexpr const char* name(Reason reason) noexcept {
@@ -65,6 +71,8 @@ constexpr const char* name(Reason reason) noexcept {
         return "learning_in_progress";
     case Reason::learner_busy:
         return "learner_busy";
+    case Reason::no_budget:
+        return "no_budget";
     case Reason::position_not_finite:
         return "position_not_finite";
     case Reason::position_out_of_range:
@@ -79,6 +87,8 @@ constexpr const char* name(Reason reason) noexcept {
         return "output_out_of_range";
     case Reason::innovation_too_large:
         return "innovation_too_large";
+    case Reason::state_not_finite:
+        return "state_not_finite";
     }
     return "unknown";
 }

@@ -6,8 +6,7 @@
 namespace dfdyn {
 
 /// `count` numbers in place, aligned for vector loads. An aggregate, so that a table of constants can live in
-/// flash. Eigen's fixed-size matrices are limited to 128 KB; this is not, and Eigen maps lie over it where
-/// they help.
+/// flash. Eigen's fixed-size matrices are limited to 128 KB; this is not.
 template <class T, int count>
 struct Storage {
     static_assert(count > 0);

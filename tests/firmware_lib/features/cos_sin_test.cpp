@@ -27,7 +27,8 @@ double largest_error(const std::vector<Scalar>& arguments, Scalar amplitude = 1)
     long double largest = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const long double x = arguments[i];
-        largest = std::max({largest, std::abs(cosine[i] - amplitude * std::cos(x)), std::abs(sine[i] - amplitude * std::sin(x))});
+        largest = std::max({largest, std::abs(cosine[i] - amplitude * std::cos(x)),
+                            std::abs(sine[i] - amplitude * std::sin(x))});
     }
     return static_cast<double>(largest);
 }
@@ -67,7 +68,8 @@ TEMPLATE_TEST_CASE("cosine and sine are as accurate as documented over the whole
     DFDYN_SEEDED_ENGINE(engine);
     for (const double largest : {1.0, 10.0, 100.0, 8192.0}) {
         CAPTURE(largest);
-        CHECK(largest_error(random_arguments<TestType>(engine, largest, 200'000)) < documented_error<TestType>);
+        CHECK(largest_error(random_arguments<TestType>(engine, largest, 200'000)) <
+              documented_error<TestType>);
     }
     CHECK(largest_error(quadrant_borders<TestType>()) < documented_error<TestType>);
 }
@@ -75,8 +77,9 @@ TEMPLATE_TEST_CASE("cosine and sine are as accurate as documented over the whole
 TEMPLATE_TEST_CASE("zero, the smallest and the largest arguments", "", float, double) {
     using Limits = std::numeric_limits<TestType>;
     const TestType largest = largest_cos_sin_argument<TestType>;
-    CHECK(largest_error<TestType>({0, -TestType(0), Limits::denorm_min(), -Limits::denorm_min(), Limits::min(),
-                                   Limits::epsilon(), largest, -largest}) < documented_error<TestType>);
+    CHECK(largest_error<TestType>({0, -TestType(0), Limits::denorm_min(), -Limits::denorm_min(),
+                                   Limits::min(), Limits::epsilon(), largest, -largest}) <
+          documented_error<TestType>);
     const TestType zero = 0;
     TestType cosine = 9;
     TestType sine = 9;
@@ -94,7 +97,8 @@ TEMPLATE_TEST_CASE("the amplitude scales both", "", float, double) {
 TEMPLATE_TEST_CASE("arguments that mean nothing are flagged, wherever they are", "", float, double) {
     using Limits = std::numeric_limits<TestType>;
     const TestType outside = std::nextafter(largest_cos_sin_argument<TestType>, TestType(1e9));
-    for (const TestType bad : {outside, -outside, Limits::max(), Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()}) {
+    for (const TestType bad :
+         {outside, -outside, Limits::max(), Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()}) {
         CHECK_FALSE(accepted(bad));
         for (std::size_t place = 0; place < 37; ++place) {
             std::vector<TestType> arguments(37, TestType(0.5));

@@ -21,7 +21,8 @@ using Constants = Features::Constants<double, inputs>;
 using Input = std::vector<double>;
 
 Constants random_constants(std::mt19937_64& engine, int feature_count) {
-    Constants constants{Storage<double, dynamic>::zeros({inputs * feature_count}), 1 / std::sqrt(feature_count)};
+    Constants constants{Storage<double, dynamic>::zeros({inputs * feature_count}),
+                        1 / std::sqrt(feature_count)};
     std::normal_distribution<double> normal;
     std::generate(constants.frequencies.begin(), constants.frequencies.end(), [&] { return normal(engine); });
     return constants;
@@ -37,7 +38,8 @@ Input random_input(std::mt19937_64& engine) {
 std::vector<double> features(const Constants& constants, const Input& xi) {
     const int feature_count = constants.frequencies.size() / inputs;
     std::vector<double> phi(2 * static_cast<std::size_t>(feature_count));
-    REQUIRE(Features::evaluate(constants, Extent<inputs>{}, Extent<dynamic>{feature_count}, xi.data(), phi.data()));
+    REQUIRE(Features::evaluate(constants, Extent<inputs>{}, Extent<dynamic>{feature_count}, xi.data(),
+                               phi.data()));
     return phi;
 }
 
@@ -96,8 +98,8 @@ TEST_CASE("the columns of any input have length one") {
     }
 }
 
-// φ'φ' is a mean of d bounded terms whose expectation is the kernel: its error falls as 1/√d. 400 draws know each error to
-// about 4 %.
+// φ'φ' is a mean of d bounded terms whose expectation is the kernel: its error falls as 1/√d. 400 draws know
+// each error to about 4 %.
 TEST_CASE("the columns approximate the Gaussian kernel, better with the square root of their number") {
     DFDYN_SEEDED_ENGINE(engine);
     const double few = kernel_error(engine, 16);
@@ -110,12 +112,14 @@ TEST_CASE("the columns approximate the Gaussian kernel, better with the square r
 TEST_CASE("inputs that are not numbers, or far outside anything trained, are flagged") {
     DFDYN_SEEDED_ENGINE(engine);
     const Constants constants = random_constants(engine, 20);
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300, 1e6}) {
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300, 1e6}) {
         for (std::size_t place = 0; place < inputs; ++place) {
             Input xi = random_input(engine);
             xi[place] = bad;
             std::vector<double> phi(40);
-            CHECK_FALSE(Features::evaluate(constants, Extent<inputs>{}, Extent<dynamic>{20}, xi.data(), phi.data()));
+            CHECK_FALSE(
+                Features::evaluate(constants, Extent<inputs>{}, Extent<dynamic>{20}, xi.data(), phi.data()));
         }
     }
 }

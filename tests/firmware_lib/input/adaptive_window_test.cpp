@@ -30,7 +30,8 @@ struct Samples {
     }
 
     [[nodiscard]] AdaptiveWindow<Scalar> window(double noise_bound) const {
-        return {ages.data(), values.data(), 1, static_cast<int>(ages.size()), static_cast<Scalar>(noise_bound)};
+        return {ages.data(), values.data(), 1, static_cast<int>(ages.size()),
+                static_cast<Scalar>(noise_bound)};
     }
 };
 
@@ -76,14 +77,15 @@ TEMPLATE_TEST_CASE("a straight line and a parabola are met exactly, at uneven ti
         const auto ages = uneven_ages(engine, 3 + trial);
         const Samples<TestType> line([&](double t) { return 0.1 + slope * t; }, 0, ages);
         CHECK(static_cast<double>(line.window(1e-5).velocity()) == Approx(slope).margin(tolerance));
-        const Samples<TestType> parabola([&](double t) { return slope * t + curvature / 2 * t * t; }, 0, ages);
+        const Samples<TestType> parabola([&](double t) { return slope * t + curvature / 2 * t * t; }, 0,
+                                         ages);
         CHECK(static_cast<double>(parabola.window(1e-5).acceleration()) ==
               Approx(curvature).margin(tolerance * 100).epsilon(tolerance));
     }
 }
 
-// A line over a parabola of acceleration a leaves a h²/3 at the ends of a window of length 2h, and is wrong by a h at the
-// newest sample: when the window is as long as the noise bound δ allows, by sqrt(3 δ a).
+// A line over a parabola of acceleration a leaves a h²/3 at the ends of a window of length 2h, and is wrong
+// by a h at the newest sample: when the window is as long as the noise bound δ allows, by sqrt(3 δ a).
 TEST_CASE("on a smooth motion the error is as small as the noise bound promises") {
     constexpr double omega = 4;
     const Signal sine = [](double t) { return std::sin(omega * t); };
@@ -97,8 +99,8 @@ TEST_CASE("on a smooth motion the error is as small as the noise bound promises"
     }
 }
 
-// A line through L values, each wrong by at most half a count, has a slope wrong by at most 1.5 counts / L per sample; the
-// difference of two values is wrong by up to one count per sample.
+// A line through L values, each wrong by at most half a count, has a slope wrong by at most 1.5 counts / L
+// per sample; the difference of two values is wrong by up to one count per sample.
 TEST_CASE("on a quantised ramp the window grows, and the ripple is far below one count per sample") {
     constexpr double count = 1e-4;
     constexpr int length = 50;
@@ -131,8 +133,10 @@ TEST_CASE("the acceleration of a quantised parabola is found to a few percent") 
     }
 }
 
-// Whatever the bound, two positions give a velocity: rounding must not turn a fast joint into one that stands still.
-TEMPLATE_TEST_CASE("a noise bound below the rounding leaves the difference of the newest samples", "", float, double) {
+// Whatever the bound, two positions give a velocity: rounding must not turn a fast joint into one that stands
+// still.
+TEMPLATE_TEST_CASE("a noise bound below the rounding leaves the difference of the newest samples", "", float,
+                   double) {
     DFDYN_SEEDED_ENGINE(engine);
     for (int trial = 0; trial < 200; ++trial) {
         std::uniform_real_distribution<double> position(-3, 3);
@@ -144,7 +148,8 @@ TEMPLATE_TEST_CASE("a noise bound below the rounding leaves the difference of th
         const double earlier = static_cast<double>((q[1] - q[2]) / (t[1] - t[2]));
         const double half_time = static_cast<double>(t[0] - t[2]) / 2;
         CHECK(static_cast<double>(noise.window(0).acceleration()) ==
-              Approx((velocity - earlier) / half_time).margin(1e-4 * (std::abs(velocity) + std::abs(earlier)) / half_time));
+              Approx((velocity - earlier) / half_time)
+                  .margin(1e-4 * (std::abs(velocity) + std::abs(earlier)) / half_time));
     }
 }
 

@@ -44,12 +44,14 @@ Sum product_with(const Rows& matrix, const Positions& positions, std::size_t i, 
     Sum sum = 0;
     for (std::size_t lag = 0; lag <= lags; ++lag) {
         const auto position = static_cast<Scalar>(positions[positions.size() - 1 - lag][i]);
-        sum += static_cast<Sum>(static_cast<Scalar>(matrix[j * (lags + 1) + lag])) * static_cast<Sum>(position);
+        sum +=
+            static_cast<Sum>(static_cast<Scalar>(matrix[j * (lags + 1) + lag])) * static_cast<Sum>(position);
     }
     return sum;
 }
 
-/// The largest errors of one row's feature along a motion: of the map, and of the plain product in the same precision.
+/// The largest errors of one row's feature along a motion: of the map, and of the plain product in the same
+/// precision.
 struct Errors {
     double map = 0;
     double plain_product = 0;
@@ -71,7 +73,8 @@ Errors float_errors(const Rows& matrix, std::size_t j) {
         Map<float> map(constants, {}, {}, {});
         const auto xi = inputs_after<Map<float>, float, joints>(map, window, joints * rows);
         const double truth = product_with<double, double>(matrix, rounded, 0, j);
-        const double value = static_cast<double>(xi[j]) / static_cast<double>(constants.scale[static_cast<int>(j)]);
+        const double value =
+            static_cast<double>(xi[j]) / static_cast<double>(constants.scale[static_cast<int>(j)]);
         errors.map = std::max(errors.map, std::abs(value - truth));
         const auto plain = static_cast<double>(product_with<float, float>(matrix, window, 0, j));
         errors.plain_product = std::max(errors.plain_product, std::abs(plain - truth));
@@ -85,7 +88,8 @@ TEST_CASE("DFR: the inputs are the scaled product of R with each joint's window"
     DFDYN_SEEDED_ENGINE(engine);
     for (int trial = 0; trial < 50; ++trial) {
         Rows matrix;
-        std::generate(matrix.begin(), matrix.end(), [&] { return std::normal_distribution<double>()(engine); });
+        std::generate(matrix.begin(), matrix.end(),
+                      [&] { return std::normal_distribution<double>()(engine); });
         const Constants<double> constants = constants_of<double>(matrix);
         const Positions positions = random_positions(engine, lags + 1 + trial, joints);
         Map<double> map(constants, {}, {}, {});
@@ -94,7 +98,8 @@ TEST_CASE("DFR: the inputs are the scaled product of R with each joint's window"
             for (std::size_t j = 0; j < rows; ++j) {
                 const std::size_t element = i * rows + j;
                 const double truth = product_with<double, double>(matrix, positions, i, j);
-                CHECK(xi[element] == Approx(constants.scale[static_cast<int>(element)] * truth).margin(1e-12));
+                CHECK(xi[element] ==
+                      Approx(constants.scale[static_cast<int>(element)] * truth).margin(1e-12));
             }
         }
     }

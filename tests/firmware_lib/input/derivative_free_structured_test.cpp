@@ -22,7 +22,8 @@ std::vector<double> fir_rows() {
     return rows;
 }
 
-/// The filters as difference equations, straight from their transfer functions, at rest before the first position.
+/// The filters as difference equations, straight from their transfer functions, at rest before the first
+/// position.
 struct DirectRecursion {
     std::vector<double> velocity, acceleration;
 
@@ -42,9 +43,7 @@ struct DirectRecursion {
 using Recursive = DerivativeFreeStructuredRecursive<lags>;
 using RecursiveMap = Recursive::Map<double, 1>;
 
-Recursive::Constants<double, 1> recursive_constants() {
-    return {filters, {{0.5, 2, 4}}};
-}
+Recursive::Constants<double, 1> recursive_constants() { return {filters, {{0.5, 2, 4}}}; }
 
 /// The positions of joint 1 of a smooth motion.
 std::vector<double> smooth_joint(int count) {
@@ -70,9 +69,10 @@ TEST_CASE("DFSR's rows are the paper's") {
         CHECK(rows[index] == (lag == 0 ? 1 : 0));
         const double velocity = lag == 0 ? alpha1 : alpha1 * std::pow(beta1, lag - 1) * (beta1 - 1);
         CHECK(rows[index + lags + 1] == Approx(velocity).epsilon(1e-12));
-        const double acceleration = lag == 0   ? alpha2
-                                    : lag == 1 ? alpha2 * (beta2 - 2)
-                                               : alpha2 * std::pow(beta2, lag - 2) * (beta2 * beta2 - 2 * beta2 + 1);
+        const double acceleration = lag == 0 ? alpha2
+                                    : lag == 1
+                                        ? alpha2 * (beta2 - 2)
+                                        : alpha2 * std::pow(beta2, lag - 2) * (beta2 * beta2 - 2 * beta2 + 1);
         CHECK(rows[index + 2 * (lags + 1)] == Approx(acceleration).epsilon(1e-12));
     }
 }
@@ -109,13 +109,15 @@ TEST_CASE("the recursive filter is the difference equation, at rest before its f
     }
 }
 
-// What the rows cut off is a geometric tail: α₁β₁^M |q| of the velocity, α₂β₂^(M-1)(1-β₂) |q| of the acceleration.
+// What the rows cut off is a geometric tail: α₁β₁^M |q| of the velocity, α₂β₂^(M-1)(1-β₂) |q| of the
+// acceleration.
 TEST_CASE("the recursive filter differs from the rows by no more than these cut off") {
     const std::vector<double> q = smooth_joint(400);
     const std::vector<double> rows = fir_rows();
     const double largest = *std::max_element(q.begin(), q.end());
     const double velocity_bound = filters.alpha1 * std::pow(filters.beta1, lags) * largest;
-    const double acceleration_bound = filters.alpha2 * std::pow(filters.beta2, lags - 1) * (1 - filters.beta2) * largest;
+    const double acceleration_bound =
+        filters.alpha2 * std::pow(filters.beta2, lags - 1) * (1 - filters.beta2) * largest;
     const auto constants = recursive_constants();
     RecursiveMap map(constants, {}, {}, {});
     for (int t = 0; t < static_cast<int>(q.size()); ++t) {
@@ -146,6 +148,22 @@ TEST_CASE("an arm that never moved has exactly no velocity and no acceleration")
         REQUIRE(xi[1] == 0);
         REQUIRE(xi[2] == 0);
     }
+}
+
+TEST_CASE("after a motion the filters come to rest at exactly zero, not among denormals") {
+    const auto constants = recursive_constants();
+    RecursiveMap map(constants, {}, {}, {});
+    push(map, 0);
+    int subnormal = 0;
+    double xi[3] = {0, 0, 0};
+    for (int t = 0; t < 10'000; ++t) {
+        push(map, 2.9);
+        map.evaluate(xi);
+        subnormal += std::fpclassify(xi[1]) == FP_SUBNORMAL || std::fpclassify(xi[2]) == FP_SUBNORMAL ? 1 : 0;
+    }
+    CHECK(subnormal == 0);
+    CHECK(xi[1] == 0);
+    CHECK(xi[2] == 0);
 }
 
 TEST_CASE("the recursive filter is ready after M+1 samples, as the rows are") {

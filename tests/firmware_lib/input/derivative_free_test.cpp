@@ -40,7 +40,8 @@ TEST_CASE("DF: each input is a scaled position, by joints and then by lags") {
         for (std::size_t i = 0; i < joints; ++i) {
             for (std::size_t lag = 0; lag <= lags; ++lag) {
                 const std::size_t element = i * (lags + 1) + lag;
-                CHECK(xi[element] == constants.scale[static_cast<int>(element)] * positions[positions.size() - 1 - lag][i]);
+                CHECK(xi[element] ==
+                      constants.scale[static_cast<int>(element)] * positions[positions.size() - 1 - lag][i]);
             }
         }
     }

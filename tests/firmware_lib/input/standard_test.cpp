@@ -31,12 +31,16 @@ Constants<Scalar> constants() {
 template <class Scalar>
 Sample<Scalar, joints, 1> parabolas_at(std::int64_t time_ns) {
     const double t = 1e-9 * static_cast<double>(time_ns);
-    return {time_ns, {{static_cast<Scalar>(0.1 + t - 20 * t * t), static_cast<Scalar>(-0.2 + 30 * t * t)}}, {{0}}, false};
+    return {time_ns,
+            {{static_cast<Scalar>(0.1 + t - 20 * t * t), static_cast<Scalar>(-0.2 + 30 * t * t)}},
+            {{0}},
+            false};
 }
 
 } // namespace
 
-TEMPLATE_TEST_CASE("STD: position, velocity and acceleration of each joint, scaled, at uneven times", "", float, double) {
+TEMPLATE_TEST_CASE("STD: position, velocity and acceleration of each joint, scaled, at uneven times", "",
+                   float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto model = constants<TestType>();
     Map<TestType> map(model, {}, {}, {});
@@ -50,7 +54,8 @@ TEMPLATE_TEST_CASE("STD: position, velocity and acceleration of each joint, scal
     const double seconds = 1e-9 * static_cast<double>(time_ns);
     const auto sample = parabolas_at<TestType>(time_ns);
     CHECK(xi[0] == sample.position[0]);
-    CHECK(static_cast<double>(xi[1]) == Approx(2 * (1 - 40 * seconds)).margin(0.2)); // a line fitted to a parabola
+    CHECK(static_cast<double>(xi[1]) ==
+          Approx(2 * (1 - 40 * seconds)).margin(0.2)); // a line fitted to a parabola
     CHECK(static_cast<double>(xi[2]) == Approx(4 * -40).epsilon(0.01));
     CHECK(xi[3] == 8 * sample.position[1]);
     CHECK(static_cast<double>(xi[4]) == Approx(16 * 60 * seconds).margin(2));
@@ -80,7 +85,8 @@ TEST_CASE("STD is ready once it holds M+1 samples, and forgets positions and tim
     CHECK(ready_after<double, joints>(map, lags + 1));
     map.restart();
     for (int t = 0; t <= lags; ++t) {
-        map.push(parabolas_at<double>(1'000'000'000'000 + t * period_ns)); // a jump of all: nothing old may show
+        map.push(
+            parabolas_at<double>(1'000'000'000'000 + t * period_ns)); // a jump of all: nothing old may show
     }
     REQUIRE(map.ready());
     Map<double> fresh(model, {}, {}, {});

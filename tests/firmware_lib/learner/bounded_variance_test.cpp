@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forgetting from the prior itself: a variance that outgrows the prior's is taken back, exactly as documented.
+// Forgetting from the prior itself: a variance that outgrows the prior's is taken back, exactly as
+// documented.
 #include "dfdyn/learner/forgetting.hpp"
 
 #include "tests/firmware_lib/support/learner_under_test.hpp"
@@ -19,7 +20,8 @@ using Eigen::VectorXd;
 class DenseBoundedForgetting {
   public:
     DenseBoundedForgetting(int columns, int outputs, double prior_variance)
-        : prior_variance_(prior_variance), information_(MatrixXd::Identity(columns, columns) / prior_variance),
+        : prior_variance_(prior_variance),
+          information_(MatrixXd::Identity(columns, columns) / prior_variance),
           right_hand_sides_(MatrixXd::Zero(columns, outputs)) {}
 
     void learn(const VectorXd& row, const VectorXd& target, double forgetting_factor) {
@@ -37,7 +39,8 @@ class DenseBoundedForgetting {
     [[nodiscard]] int bounded() const { return bounded_; }
 
   private:
-    /// A measurement of parameter i alone, at its present value, that brings its variance back to the prior's.
+    /// A measurement of parameter i alone, at its present value, that brings its variance back to the
+    /// prior's.
     void bound(int i) {
         const BatchSolution present = solution();
         const double variance = present.parameter_variances()[i];
@@ -76,10 +79,12 @@ TEMPLATE_TEST_CASE("variances that outgrow the prior's are taken back as documen
     DFDYN_SEEDED_ENGINE(engine);
     for (const int columns : {2, 5, 8, 13}) {
         CAPTURE(columns);
-        // 90 rows with 0.99: less than one horizon, so that forgetting is not yet held back for want of excitation
+        // 90 rows with 0.99: less than one horizon, so that forgetting is not yet held back for want of
+        // excitation
         const Regression regression = partly_excited(engine, {90, columns, 2});
         DenseBoundedForgetting dense(columns, 2, regression.prior_variance);
-        LearnerUnderTest<TestType> learned(columns, 2, regression.prior_variance, regression.forgetting_factor);
+        LearnerUnderTest<TestType> learned(columns, 2, regression.prior_variance,
+                                           regression.forgetting_factor);
         for (int t = 0; t < regression.row_count(); ++t) {
             dense.learn(regression.rows.row(t), regression.targets.row(t), regression.forgetting_factor);
             learned.learn(part(regression, t, t + 1));

@@ -63,9 +63,8 @@ void naive_panel_update(std::vector<Scalar>& columns, std::vector<Scalar>& gain,
 
 template <class Scalar>
 bool all_close(const std::vector<Scalar>& values, const std::vector<Scalar>& expected, double tolerance) {
-    return std::equal(values.begin(), values.end(), expected.begin(), expected.end(), [&](Scalar a, Scalar b) {
-        return close(a, static_cast<double>(b), tolerance);
-    });
+    return std::equal(values.begin(), values.end(), expected.begin(), expected.end(),
+                      [&](Scalar a, Scalar b) { return close(a, static_cast<double>(b), tolerance); });
 }
 
 } // namespace

@@ -29,11 +29,11 @@ struct Problem {
     MatrixXd new_rows;
     BatchSolution truth;
 
-    Problem(std::mt19937_64& engine, RegressionSize size, Columns columns, double prior_variance, double lambda) {
+    Problem(std::mt19937_64& engine, RegressionSize size, Columns columns, double prior_variance,
+            double lambda) {
         constexpr int new_count = 20;
         const RegressionSize all{size.rows + new_count, size.columns, size.outputs};
-        const Regression whole =
-            with_prior(random_regression(engine, all, columns), prior_variance, lambda);
+        const Regression whole = with_prior(random_regression(engine, all, columns), prior_variance, lambda);
         regression = part(whole, 0, size.rows);
         new_rows = whole.rows.bottomRows(new_count);
         truth = solve_by_qr(regression);
@@ -45,8 +45,8 @@ struct Problem {
     }
 };
 
-/// The learner after all rows of a regression. It starts from the prior's covariance far below its ceiling, so that
-/// forgetting is never held back by the bound on the variances: that has its own test.
+/// The learner after all rows of a regression. It starts from the prior's covariance far below its ceiling,
+/// so that forgetting is never held back by the bound on the variances: that has its own test.
 template <class Kind, int p = dynamic, int m = dynamic>
 class Learned : public LearnerUnderTest<Kind, p, m> {
   public:
@@ -66,7 +66,8 @@ class Learned : public LearnerUnderTest<Kind, p, m> {
     }
 
     [[nodiscard]] VectorXd variances(const MatrixXd& rows) const {
-        return VectorXd::NullaryExpr(rows.rows(), [&](Eigen::Index t) { return this->variance(rows.row(t)); });
+        return VectorXd::NullaryExpr(rows.rows(),
+                                     [&](Eigen::Index t) { return this->variance(rows.row(t)); });
     }
 };
 
@@ -119,7 +120,8 @@ TEST_CASE("weights and variances are those of the batch solution, for every size
         for (const Columns kind : all_columns) {
             for (const double lambda : {no_forgetting, some_forgetting}) {
                 CAPTURE(columns, static_cast<int>(kind), lambda);
-                with_each_learner(Problem(engine, {200, columns, 1 + columns % 6}, kind, 100, lambda), all_checks);
+                with_each_learner(Problem(engine, {200, columns, 1 + columns % 6}, kind, 100, lambda),
+                                  all_checks);
             }
         }
     }
@@ -137,8 +139,8 @@ TEST_CASE("weights and variances are those of the batch solution, for hundreds o
     }
 }
 
-// Where columns have similar sizes and are not collinear, each weight by itself is determined, and the normal equations
-// have digits enough to be a second truth.
+// Where columns have similar sizes and are not collinear, each weight by itself is determined, and the normal
+// equations have digits enough to be a second truth.
 TEST_CASE("each weight is that of the normal equations, where they can tell") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const int columns : {1, 4, 10, 33, 100}) {
@@ -167,15 +169,18 @@ TEST_CASE("a weak prior costs single precision no more than a thousandth in 1,00
     }
 }
 
-// The prior alone decides between copies of a column, and it says 1e-6 against the data's 1e3: nine digits, which single
-// precision does not have for each weight. The weights as far as they are determined, and what they predict, are right.
-TEST_CASE("copies of a column under a weak prior spoil neither the predictions nor what is known of the weights") {
+// The prior alone decides between copies of a column, and it says 1e-6 against the data's 1e3: nine digits,
+// which single precision does not have for each weight. The weights as far as they are determined, and what
+// they predict, are right.
+TEST_CASE(
+    "copies of a column under a weak prior spoil neither the predictions nor what is known of the weights") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const int columns : {2, 3, 16, 33, 100}) {
         for (const double lambda : {no_forgetting, some_forgetting}) {
             CAPTURE(columns, lambda);
             const Problem problem(engine, {1000, columns, 2}, Columns::collinear, 1e6, lambda);
-            with_each_learner(problem, [](const Problem& same, const auto& learned) { check_weights(same, learned); });
+            with_each_learner(problem,
+                              [](const Problem& same, const auto& learned) { check_weights(same, learned); });
             check_variances(problem, Learned<UdDouble>(problem.regression));
             check_variances(problem, Learned<InformationDouble>(problem.regression));
         }
@@ -189,16 +194,18 @@ TEST_CASE("sizes that are template arguments learn the same as sizes known at ru
         const Problem problem(engine, {100, p, m}, Columns::independent, 100, some_forgetting);
         CHECK(information_error(problem.truth, Learned<UdDouble, p, m>(problem.regression).weights()) < 1e-9);
         CHECK(information_error(problem.truth, Learned<UdFloat, p, m>(problem.regression).weights()) < 1e-3);
-        CHECK(information_error(problem.truth, Learned<InformationDouble, p, m>(problem.regression).weights()) < 1e-9);
-        CHECK(information_error(problem.truth, Learned<InformationFloat, p, m>(problem.regression).weights()) < 1e-3);
+        CHECK(information_error(problem.truth,
+                                Learned<InformationDouble, p, m>(problem.regression).weights()) < 1e-9);
+        CHECK(information_error(problem.truth,
+                                Learned<InformationFloat, p, m>(problem.regression).weights()) < 1e-3);
     };
     check(Extent<1>{}, Extent<1>{});
     check(Extent<4>{}, Extent<3>{});
     check(Extent<13>{}, Extent<6>{});
 }
 
-TEMPLATE_TEST_CASE("a start equals having learned the rows that made it", "", UdFloat, UdDouble, InformationFloat,
-                   InformationDouble) {
+TEMPLATE_TEST_CASE("a start equals having learned the rows that made it", "", UdFloat, UdDouble,
+                   InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     for (const int columns : {1, 3, 8, 33}) {
         CAPTURE(columns);
@@ -220,7 +227,8 @@ TEMPLATE_TEST_CASE("a start equals having learned the rows that made it", "", Ud
     }
 }
 
-TEMPLATE_TEST_CASE("reset forgets all that was learned", "", UdFloat, UdDouble, InformationFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("reset forgets all that was learned", "", UdFloat, UdDouble, InformationFloat,
+                   InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     const Problem problem(engine, {50, 9, 2}, Columns::independent, 100, some_forgetting);
     Learned<TestType> learned(problem.regression);

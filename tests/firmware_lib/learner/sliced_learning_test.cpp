@@ -50,8 +50,8 @@ Regression rows_for_slices(std::mt19937_64& engine, double forgetting_factor) {
 
 } // namespace
 
-TEMPLATE_TEST_CASE("any sequence of budgets learns the same, bit for bit", "", UdFloat, UdDouble, InformationFloat,
-                   InformationDouble) {
+TEMPLATE_TEST_CASE("any sequence of budgets learns the same, bit for bit", "", UdFloat, UdDouble,
+                   InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     for (const double lambda : {1.0, 0.98}) {
         const Regression regression = rows_for_slices(engine, lambda);
@@ -71,8 +71,8 @@ TEMPLATE_TEST_CASE("any sequence of budgets learns the same, bit for bit", "", U
     }
 }
 
-TEMPLATE_TEST_CASE("while a row is being learned, predictions are those of the last whole state", "", UdFloat, UdDouble,
-                   InformationFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("while a row is being learned, predictions are those of the last whole state", "", UdFloat,
+                   UdDouble, InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     const Regression regression = rows_for_slices(engine, 0.98);
     const double tolerance = TestType::tolerance / 10; // rounding alone
@@ -99,8 +99,8 @@ TEMPLATE_TEST_CASE("while a row is being learned, predictions are those of the l
     CHECK(worst_variance < tolerance);
 }
 
-TEMPLATE_TEST_CASE("a budget below the largest step never finishes a row, one of that size always does", "", UdFloat,
-                   UdDouble, InformationFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("a budget below the largest step never finishes a row, one of that size always does", "",
+                   UdFloat, UdDouble, InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr Cost cost = cost_of<TestType>();
     const Regression regression = rows_for_slices(engine, 1);
@@ -120,8 +120,8 @@ TEMPLATE_TEST_CASE("a budget below the largest step never finishes a row, one of
     CHECK_FALSE(learned.weights().isZero(0));
 }
 
-TEMPLATE_TEST_CASE("learning spends what it says it costs, and never more than it was given", "", UdFloat, UdDouble,
-                   InformationFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("learning spends what it says it costs, and never more than it was given", "", UdFloat,
+                   UdDouble, InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr Cost cost = cost_of<TestType>();
     const Regression regression = rows_for_slices(engine, 1);

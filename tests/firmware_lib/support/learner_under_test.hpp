@@ -31,11 +31,12 @@ using UdDouble = LearnerKind<UdCovariance, double>;
 using InformationFloat = LearnerKind<CholeskyInformation, float>;
 using InformationDouble = LearnerKind<CholeskyInformation, double>;
 
-/// Where a learner under test starts: weights, and the covariance P = U D U' (U full, with ones on its diagonal).
+/// Where a learner under test starts: weights, and the covariance P = U D U' (U full, with ones on its
+/// diagonal).
 struct Start {
-    Eigen::MatrixXd weights;  ///< p × m
+    Eigen::MatrixXd weights;    ///< p × m
     Eigen::MatrixXd unit_upper; ///< p × p
-    Eigen::VectorXd diagonal; ///< p
+    Eigen::VectorXd diagonal;   ///< p
 
     /// Zero weights and the covariance `variance` I.
     static Start prior(int columns, int outputs, double variance) {
@@ -53,7 +54,8 @@ class LearnerUnderTest {
 
     /// From the prior.
     LearnerUnderTest(int columns, int outputs, double prior_variance, double forgetting_factor)
-        : LearnerUnderTest(Start::prior(columns, outputs, prior_variance), prior_variance, forgetting_factor) {
+        : LearnerUnderTest(Start::prior(columns, outputs, prior_variance), prior_variance,
+                           forgetting_factor) {
         constants_.start = nullptr;
         learner_.reset();
     }
@@ -61,7 +63,8 @@ class LearnerUnderTest {
     /// From `start`; `ceiling` is the prior's variance, which bounds every parameter's under forgetting.
     LearnerUnderTest(const Start& start, double ceiling, double forgetting_factor)
         : columns_(static_cast<int>(start.weights.rows())), outputs_(static_cast<int>(start.weights.cols())),
-          start_(converted(start)), constants_{static_cast<Scalar>(ceiling), static_cast<Scalar>(forgetting_factor), &start_},
+          start_(converted(start)), constants_{static_cast<Scalar>(ceiling),
+                                               static_cast<Scalar>(forgetting_factor), &start_},
           learner_(constants_, extent<p>(columns_), extent<m>(outputs_)) {}
 
     LearnerUnderTest(const LearnerUnderTest&) = delete;
@@ -97,7 +100,8 @@ class LearnerUnderTest {
     [[nodiscard]] Eigen::VectorXd means(const Eigen::VectorXd& row) const {
         std::vector<Scalar> means(static_cast<std::size_t>(outputs_));
         learner_.predict(scalars(row).data(), means.data());
-        return Eigen::Map<const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>>(means.data(), outputs_).template cast<double>();
+        return Eigen::Map<const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>>(means.data(), outputs_)
+            .template cast<double>();
     }
 
     [[nodiscard]] double variance(const Eigen::VectorXd& row) const {
@@ -114,11 +118,10 @@ class LearnerUnderTest {
     static StartConstants converted(const Start& start) {
         const auto columns = static_cast<int>(start.weights.rows());
         const auto outputs = static_cast<int>(start.weights.cols());
-        StartConstants result{
-            Storage<Scalar, product(m, p)>::zeros(extent<product(m, p)>(outputs * columns)),
-            Storage<Scalar, StartConstants::upper_size(p)>::zeros(
-                extent<StartConstants::upper_size(p)>(StartConstants::upper_size(columns))),
-            Storage<Scalar, p>::zeros(extent<p>(columns))};
+        StartConstants result{Storage<Scalar, product(m, p)>::zeros(extent<product(m, p)>(outputs * columns)),
+                              Storage<Scalar, StartConstants::upper_size(p)>::zeros(
+                                  extent<StartConstants::upper_size(p)>(StartConstants::upper_size(columns))),
+                              Storage<Scalar, p>::zeros(extent<p>(columns))};
         for (int j = 0; j < columns; ++j) {
             result.diagonal[j] = static_cast<Scalar>(start.diagonal[j]);
             for (int i = 0; i < j; ++i) {

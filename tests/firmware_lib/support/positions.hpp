@@ -45,7 +45,8 @@ Sample<Scalar, n, 1> sample_at(const Positions& positions, int index) {
     Sample<Scalar, n, 1> sample{};
     sample.time_ns = index * period_ns;
     for (int i = 0; i < n; ++i) {
-        sample.position[i] = static_cast<Scalar>(positions[static_cast<std::size_t>(index)][static_cast<std::size_t>(i)]);
+        sample.position[i] =
+            static_cast<Scalar>(positions[static_cast<std::size_t>(index)][static_cast<std::size_t>(i)]);
     }
     return sample;
 }

@@ -117,7 +117,8 @@ BatchSolution solve_by_qr(const Regression& regression) {
     const VectorXd roots = row_weights(regression).cwiseSqrt();
     MatrixXd stacked(count + columns, columns);
     stacked << roots.asDiagonal() * regression.rows,
-        MatrixXd::Identity(columns, columns) * std::sqrt(prior_weight(regression) / regression.prior_variance);
+        MatrixXd::Identity(columns, columns) *
+            std::sqrt(prior_weight(regression) / regression.prior_variance);
     MatrixXd targets = MatrixXd::Zero(count + columns, regression.outputs());
     targets.topRows(count) = roots.asDiagonal() * regression.targets;
     const Eigen::HouseholderQR<MatrixXd> qr(stacked);
@@ -131,8 +132,8 @@ NormalEquationsSolution solve_by_ldlt(const Regression& regression) {
     const int columns = regression.columns();
     const MatrixXd identity = MatrixXd::Identity(columns, columns);
     const MatrixXd weighted = row_weights(regression).asDiagonal() * regression.rows;
-    const MatrixXd information =
-        identity * (prior_weight(regression) / regression.prior_variance) + weighted.transpose() * regression.rows;
+    const MatrixXd information = identity * (prior_weight(regression) / regression.prior_variance) +
+                                 weighted.transpose() * regression.rows;
     const Eigen::LDLT<MatrixXd> factor(information);
     return {factor.solve(weighted.transpose() * regression.targets),
             factor.solve(identity) / regression.forgetting_factor};

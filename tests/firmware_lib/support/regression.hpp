@@ -7,8 +7,8 @@
 
 namespace dfdyn::tests {
 
-/// A regression targets = rows·w + e with e ~ N(0, 1) and w ~ N(0, prior_variance I). Every number in it is a float's, so
-/// that learners in either precision see the same problem.
+/// A regression targets = rows·w + e with e ~ N(0, 1) and w ~ N(0, prior_variance I). Every number in it is a
+/// float's, so that learners in either precision see the same problem.
 struct Regression {
     Eigen::MatrixXd rows;    ///< N × p
     Eigen::MatrixXd targets; ///< N × m
@@ -23,8 +23,8 @@ struct Regression {
 /// What the columns of a random regression look like.
 enum class Columns {
     independent,
-    badly_scaled,     ///< column norms between 1e-3 and 1e3
-    collinear,        ///< every second column is its neighbour's copy, half of the copies with a noise of 1e-3
+    badly_scaled, ///< column norms between 1e-3 and 1e3
+    collinear,    ///< every second column is its neighbour's copy, half of the copies with a noise of 1e-3
     fourier_features, ///< cosines and sines along a smooth motion
 };
 
@@ -41,8 +41,8 @@ Regression part(const Regression& whole, int begin, int end);
 
 Regression with_prior(Regression regression, double prior_variance, double forgetting_factor);
 
-/// The batch solution by Householder QR of the stacked rows and prior in double: row t weighs λ^(N-t), the prior λ^(N-1),
-/// and after the last row the covariance is divided by λ once more.
+/// The batch solution by Householder QR of the stacked rows and prior in double: row t weighs λ^(N-t), the
+/// prior λ^(N-1), and after the last row the covariance is divided by λ once more.
 struct BatchSolution {
     Eigen::MatrixXd weights;          ///< p × m
     Eigen::MatrixXd information_root; ///< upper triangular R, R'R = P⁻¹
@@ -61,8 +61,8 @@ struct NormalEquationsSolution {
 
 NormalEquationsSolution solve_by_ldlt(const Regression& regression);
 
-/// Relative error of weights in the norm of the batch solution's information, |R (w - ŵ)| / |R ŵ|: each direction counts as
-/// far as the data and the prior determine it, whatever the columns' scales.
+/// Relative error of weights in the norm of the batch solution's information, |R (w - ŵ)| / |R ŵ|: each
+/// direction counts as far as the data and the prior determine it, whatever the columns' scales.
 double information_error(const BatchSolution& truth, const Eigen::MatrixXd& weights);
 
 /// |value - truth| / |truth| over all elements together.

@@ -24,8 +24,8 @@ struct ArmState {
     std::array<double, 2> position, velocity, acceleration;
 
     [[nodiscard]] double torque(std::size_t joint) const {
-        return 2 * std::sin(position[joint]) + 0.3 * std::cos(position[0] + position[1]) + 0.2 * velocity[joint] +
-               0.05 * acceleration[joint];
+        return 2 * std::sin(position[joint]) + 0.3 * std::cos(position[0] + position[1]) +
+               0.2 * velocity[joint] + 0.05 * acceleration[joint];
     }
 };
 
@@ -44,9 +44,7 @@ inline ArmState moving_arm(double time_s) {
 }
 
 /// An arm that stands where the moving arm would be at `time_s`.
-inline ArmState standing_arm(double time_s) {
-    return {moving_arm(time_s).position, {0, 0}, {0, 0}};
-}
+inline ArmState standing_arm(double time_s) { return {moving_arm(time_s).position, {0, 0}, {0, 0}}; }
 
 inline constexpr double torque_noise = 0.05;
 
@@ -145,7 +143,8 @@ bool same(const Storage<Scalar, m>& a, const Storage<Scalar, m>& b) {
 template <class Scalar, int m>
 bool same(const Estimate<Scalar, m>& a, const Estimate<Scalar, m>& b) {
     return same(a.prediction, b.prediction) && same(a.standard_deviation, b.standard_deviation) &&
-           same(a.innovation, b.innovation) && a.normalised_innovation_squared == b.normalised_innovation_squared &&
+           same(a.innovation, b.innovation) &&
+           a.normalised_innovation_squared == b.normalised_innovation_squared &&
            a.status.prediction == b.status.prediction && a.status.learning == b.status.learning;
 }
 

@@ -71,7 +71,8 @@ TEST_CASE("a recording that does not fit the model is refused") {
     const TrainedModel model = small_model(engine, InputKind::DF);
     Recording other = moving_arm(10);
     other.output.names = output_names(OutputKind::joint_torque, 6);
-    CHECK_THROWS_WITH(replay_of(model, other, 0), "run.csv: its outputs are not those of the model");
+    CHECK_THROWS_WITH(replay_of(model, other, 0), "run.csv: expected the model's outputs fx, fy, fz, mx, my, "
+                                                  "mz, found tau1, tau2, tau3, tau4, tau5, tau6");
     other.position.names = joint_names("q", 3);
     CHECK_THROWS_WITH(replay_of(model, other, 0),
                       "run.csv: expected positions of 2 joints as the model has, found 3");

@@ -5,6 +5,7 @@
 #include "tests/support/seed.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tools/common/error.hpp"
+#include "tools/common/number.hpp"
 #include "tools/training/input_map.hpp"
 #include "tools/training/random_features.hpp"
 
@@ -262,9 +263,16 @@ TEST_CASE("training refuses options out of range") {
         options.threads = 0;
         CHECK(message(data, options) == "training options: expected at least 1 thread, found 0");
     }
-    SECTION("forgetting factor") {
-        options.forgetting_factor = 1.01;
+    SECTION("refinement") {
+        options.refinement_evaluations = -1;
         CHECK(message(data, options) ==
-              "training options: expected a forgetting factor in (0, 1], found 1.01");
+              "training options: expected at least 0 evaluations of the refinement, found -1");
+    }
+    SECTION("forgetting factor") {
+        options.forgetting_factor = GENERATE(1.01, 0.98);
+        CHECK(message(data, options) ==
+              "training options: expected a forgetting factor from 1 - 1/(2 features) "
+              "= 0.983333 to 1, found " +
+                  tools::number_text(options.forgetting_factor));
     }
 }

@@ -10,7 +10,7 @@ namespace dfdyn {
 /// delay, slow motion a long one and little noise.
 ///
 /// `time` and `value` hold `count` samples, newest first; times decrease and are relative to the newest
-/// (time[0] = 0). Fewer than degree + 1 samples give 0. Causal. At most about 8·count² multiply-adds: the
+/// (time[0] = 0). Fewer than degree + 1 samples give 0. Causal. At most 12·count² operations: the
 /// window grows to at most `count`.
 template <class Scalar>
 class AdaptiveWindow {

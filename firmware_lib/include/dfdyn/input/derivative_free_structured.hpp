@@ -3,6 +3,8 @@
 
 #include "dfdyn/input/derivative_free_reduced.hpp"
 
+#include <limits>
+
 namespace dfdyn {
 
 /// Gains and poles of input DFSR: velocity α₁ (1 - z⁻¹)/(1 - β₁ z⁻¹) q, acceleration α₂ (1 - z⁻¹)²/(1 - β₂
@@ -46,9 +48,9 @@ struct DerivativeFreeStructured : DerivativeFreeReduced<M, 3> {
 };
 
 /// Input DFSR as the recursive filter that the FIR rows truncate: its memory does not grow with M and nothing
-/// is cut off, so a position at rest gives exactly zero velocity. After M+1 samples it differs from the FIR
-/// rows by what they truncate, of order β^M. Starts as if the arm had stood still at its first position.
-/// Evaluate costs O(n).
+/// is cut off, so that velocity and acceleration of a position at rest decay to exactly zero. After M+1
+/// samples it differs from the FIR rows by what they truncate, of order β^M. Starts as if the arm had stood
+/// still at its first position. Evaluate costs O(n).
 template <int M>
 struct DerivativeFreeStructuredRecursive {
     static_assert(M == dynamic || M >= 2);
@@ -104,11 +106,19 @@ struct DerivativeFreeStructuredRecursive {
         using Joints = Storage<Scalar, n>;
         static constexpr Joints zeros(Extent<n> joints) noexcept { return Joints::zeros(joints); }
 
+        /// A filter that decays would end in denormals, which cost some machines a hundred times as much.
+        static constexpr Scalar without_denormals(Scalar value) noexcept {
+            constexpr Scalar floor =
+                std::numeric_limits<Scalar>::min() / std::numeric_limits<Scalar>::epsilon();
+            return value < floor && value > -floor ? Scalar(0) : value;
+        }
+
         constexpr void advance(int i, Scalar position) noexcept {
             const StructuredFilters<Scalar>& filters = constants_->filters;
             const Scalar step = position - position_[i];
-            velocity_[i] = filters.beta1 * velocity_[i] + filters.alpha1 * step;
-            acceleration_[i] = filters.beta2 * acceleration_[i] + filters.alpha2 * (step - step_[i]);
+            velocity_[i] = without_denormals(filters.beta1 * velocity_[i] + filters.alpha1 * step);
+            acceleration_[i] =
+                without_denormals(filters.beta2 * acceleration_[i] + filters.alpha2 * (step - step_[i]));
             position_[i] = position;
             step_[i] = step;
         }

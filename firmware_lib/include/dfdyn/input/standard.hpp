@@ -45,7 +45,10 @@ struct Standard {
             window_.push(sample.position.data());
             times_.push(&sample.time_ns);
             for (int lag = 0; lag < times_.filled(); ++lag) {
-                ages_s_[lag] = static_cast<Scalar>(*times_.row(lag) - sample.time_ns) * Scalar(1e-9);
+                const auto age_ns =
+                    static_cast<std::uint64_t>(sample.time_ns) - // the clock may have any origin
+                    static_cast<std::uint64_t>(*times_.row(lag));
+                ages_s_[lag] = static_cast<Scalar>(age_ns) * Scalar(-1e-9);
             }
         }
 
@@ -60,7 +63,7 @@ struct Standard {
         }
 
         [[nodiscard]] static constexpr std::int64_t cost(int joints, int lag_count, int /*rows*/) noexcept {
-            return std::int64_t{joints} * 8 * (lag_count + 1) * (lag_count + 1);
+            return std::int64_t{joints} * 12 * (lag_count + 1) * (lag_count + 1);
         }
 
       private:

@@ -116,7 +116,9 @@ class CholeskyInformation {
 
     [[nodiscard]] static constexpr Cost cost(int columns, int outputs) noexcept {
         const std::int64_t half_square = std::int64_t{columns} * (columns + 1) / 2;
-        const std::int64_t learn = half_square * (1 + 4 + outputs);
+        // Variance, rotations and weights; under forgetting once more for the bound, and the factor's
+        // scaling.
+        const std::int64_t learn = half_square * (2 * (1 + 4 + outputs) + 1);
         return {std::int64_t{columns} * outputs, half_square, learn, learn};
     }
 

@@ -17,7 +17,8 @@ namespace dfdyn {
 template <class Scalar>
 class Forgetting {
   public:
-    /// 0.5 < `factor` ≤ 1; `parameters` ≥ 1.
+    /// 1 - 1/`parameters` ≤ `factor` ≤ 1: a shorter memory than one sample per parameter determines none of
+    /// them. `parameters` ≥ 1.
     constexpr Forgetting(Scalar factor, int parameters) noexcept
         : factor_(factor), parameters_(static_cast<Scalar>(parameters)) {
         restart();

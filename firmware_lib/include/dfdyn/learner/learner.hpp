@@ -23,22 +23,27 @@ struct LearnerStart {
 };
 
 /// The regression y = φ'w + e of m outputs over the same p columns, each output in units of its own noise: e
-/// ~ N(0, 1), w ~ N(0, prior_variance I), so that one factor serves all (estimator.md: outputs share φ).
+/// ~ N(0, 1), w ~ N(0, prior_variance I), so that one factor serves all.
 template <class Scalar, int p, int m>
 struct LearnerConstants {
     Scalar prior_variance;                   ///< ρ²/σ² > 0
-    Scalar forgetting_factor;                ///< λ, 0.5 < λ ≤ 1; 1 reproduces the paper
+    Scalar forgetting_factor;                ///< λ, 1 - 1/p ≤ λ ≤ 1; 1 reproduces the paper
     const LearnerStart<Scalar, p, m>* start; ///< nullptr: zero weights and the prior's covariance
 };
 
-/// Recursive least squares in a square-root form. All are exact: after any number of rows, weights and
-/// covariance are those of the batch solution of eq. ReLS. Rows and targets must be finite.
+/// Recursive least squares in a square-root form.
+///
+/// With λ = 1 the recursion is exact: after any number of rows, weights and covariance are those of the batch
+/// solution of eq. ReLS. With λ < 1 the same holds, each row t weighed by λ^(N-t), as long as the account of
+/// `Forgetting` pays for it and no parameter's variance exceeds the prior's; beyond, forgetting is reduced
+/// and the variance is taken back. Rows and targets must be finite.
 ///  - `predict(row, means)`: the m means φ'w. O(m p).
 ///  - `variance(row)`: φ'Pφ of the last whole state, also while a row is being folded in. O(p²).
-///  - `begin(row, target)`: takes a row in when `idle()`; `advance(budget)` works on it and says whether it
-///  is done, after
-///    which `last_ratio()` is 1 + φ'Pφ of that row before it was learned. `sample_pending()`: the row is not
-///    learned yet; under forgetting a learner may go on with work of its own after that.
+///  - `begin(row, target)`: takes a row in when `idle()`.
+///  - `advance(budget)`: works on it and says whether there is nothing left to do.
+///  - `sample_pending()`: the row is not learned yet; under forgetting a learner goes on with work of its own
+///  after that.
+///  - `last_ratio()`: 1 + φ'Pφ of the last row, before it was learned.
 ///  - `reset()`: back to the start, all of it.
 template <class L, class Scalar>
 concept Learner = requires(L learner, const L& constant, const Scalar* row, Scalar* means, Budget& budget) {
