@@ -57,8 +57,8 @@ struct Demo {
 
     explicit Demo(int seed) {
         const std::string command = std::string(DFDYN_DEMO) + " " + DFDYN_PROGRAM + " " +
-                                    directory.path().string() + " --seed " + std::to_string(seed) + " > " + (directory.path() / "log").string() +
-                                    " 2>&1";
+                                    directory.path().string() + " --seed " + std::to_string(seed) + " > " +
+                                    (directory.path() / "log").string() + " 2>&1";
         if (std::system(command.c_str()) != 0) {
             throw std::runtime_error("the demo failed: " +
                                      dfdyn::tests::file_content(directory.path() / "log"));
