@@ -53,8 +53,10 @@ test_clang() {
 # With the flags of the clang build.
 analyse() {
     cmake --preset clang
-    run-clang-tidy -quiet -p build/clang -j "$jobs" "$PWD/(firmware_lib|hal|tools|tests)/.*"
+    run-clang-tidy -quiet -p build/clang -j "$jobs" "$PWD/($1)/.*"
 }
+analyse_product() { analyse 'firmware_lib|hal|tools'; }
+analyse_tests() { analyse 'tests'; }
 
 steps=(
     "install_packages:Debian packages"
@@ -67,11 +69,11 @@ steps=(
     "test_cortex_m7:bare Cortex-M7 under QEMU"
     "test_sanitized:address and undefined-behaviour sanitizers"
     "test_clang:clang++ build of the firmware"
-    "analyse:static analysis"
+    "analyse_product:static analysis"
 )
 case ${1:-} in
 "") ;;
---long) steps+=("test_long:long tests") ;;
+--long) steps+=("test_long:long tests" "analyse_tests:static analysis of the tests") ;;
 *)
     echo "usage: tools/test.sh [--long]" >&2
     exit 2

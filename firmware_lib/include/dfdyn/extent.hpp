@@ -10,17 +10,15 @@ inline constexpr int dynamic = -1;
 /// A size. Fixed sizes take no memory and fold to constants.
 template <int value>
 struct Extent {
-    constexpr operator int() const noexcept {
-        return value;
-    } // NOLINT(google-explicit-constructor): it is a number
+    // It is a number: NOLINTNEXTLINE(google-explicit-constructor)
+    constexpr operator int() const noexcept { return value; }
 };
 
 template <>
 struct Extent<dynamic> {
     int value = 0;
-    constexpr operator int() const noexcept {
-        return value;
-    } // NOLINT(google-explicit-constructor): it is a number
+    // It is a number: NOLINTNEXTLINE(google-explicit-constructor)
+    constexpr operator int() const noexcept { return value; }
 };
 
 /// Makes an extent from a number; for a fixed extent the number must be that value and is ignored.

@@ -25,8 +25,8 @@ inline constexpr int wide = std::max(1, vector_bytes / static_cast<int>(sizeof(S
 /// depends on the machine's options.
 template <class Scalar, int lanes>
 struct Vector {
-    typedef Scalar Type
-        __attribute__((vector_size(lanes * sizeof(Scalar)))); // NOLINT: an attribute that `using` lacks
+    // The attribute needs a typedef: NOLINTNEXTLINE(modernize-use-using)
+    typedef Scalar Type __attribute__((vector_size(lanes * sizeof(Scalar))));
 
     static void load(const Scalar* address, Type& vector) noexcept {
         std::memcpy(&vector, address, sizeof vector);

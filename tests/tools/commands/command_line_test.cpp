@@ -82,18 +82,21 @@ TEST_CASE("bad usage and bad input end with status 2 and one line") {
 TEST_CASE("train and replay work together for every input, twice with the same bytes") {
     const TemporaryDirectory directory;
     const std::string in = directory.path().string();
+    const std::string model_and_header = "/a.json --header " + in + "/a.hpp";
     for (const std::string input : {"STD", "DF", "DFW", "DFR", "DFSR"}) {
         CAPTURE(input);
-        const std::string train = "train --log " + log_file + quick + "--input " + input + " -o " + in;
-        const Outcome trained = run(directory, train + "/a.json --header " + in + "/a.hpp");
+        std::string train = "train --log ";
+        train.append(log_file).append(quick).append("--input ").append(input).append(" -o ").append(in);
+        const Outcome trained = run(directory, train + model_and_header);
         CAPTURE(trained.error);
         REQUIRE(trained.status == 0);
         REQUIRE(run(directory, train + "/b.json").status == 0);
         CHECK(file_content(directory.path() / "a.json") == file_content(directory.path() / "b.json"));
         CHECK_FALSE(file_content(directory.path() / "a.hpp").empty());
-        const Outcome replayed =
-            run(directory, "replay --model " + in + "/a.json --log " + log_file + " --rows 1200: -o " + in +
-                               "/r.csv --report " + in + "/r.html");
+        std::string replay = "replay --model ";
+        replay.append(in).append("/a.json --log ").append(log_file).append(" --rows 1200: -o ").append(in);
+        replay.append("/r.csv --report ").append(in).append("/r.html");
+        const Outcome replayed = run(directory, replay);
         CAPTURE(replayed.error);
         REQUIRE(replayed.status == 0);
         CHECK_THAT(replayed.out, Catch::Matchers::ContainsSubstring("nRMSE, second half"));

@@ -39,9 +39,9 @@ inline constexpr int taylor_terms = std::is_same_v<Scalar, float> ? 5 : 8;
 template <class Scalar, int parity>
 struct Taylor {
     static constexpr int count = taylor_terms<Scalar> + 1 - parity;
-    Scalar coefficients[count];
+    Scalar coefficients[count] = {};
 
-    constexpr Taylor() noexcept : coefficients{} {
+    constexpr Taylor() noexcept {
         for (int power = 0; power < count; ++power) {
             long double value = power % 2 == 0 ? 1 : -1;
             for (int factor = 2; factor <= 2 * power + parity; ++factor) {
