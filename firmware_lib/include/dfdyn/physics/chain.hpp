@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/storage.hpp"
+
+#include <cstdint>
+
+namespace dfdyn {
+
+/// Where a frame sits in another one: x_outer = rotation x_inner + translation.
+template <class Scalar>
+struct Placement {
+    Scalar rotation[9];    ///< row-major, orthonormal
+    Scalar translation[3]; ///< m
+};
+
+/// A joint of a serial chain. Its frame is also that of the link it moves: the link turns about `axis`
+/// (revolute) or slides along it (prismatic) from where `placement` puts it.
+template <class Scalar>
+struct ChainJoint {
+    Placement<Scalar> placement; ///< of the link's frame in the previous link's, at joint position 0
+    Scalar axis[3];              ///< unit vector in the link's frame
+    bool prismatic;
+};
+
+/// Numbers per body: mass, first moment m·c (3) and the inertia about the link frame's origin, in the link's
+/// frame: m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz.
+inline constexpr int inertial_parameters = 10;
+
+/// The outputs of a chain are the generalised forces of its joints (N·m, N); every link counts.
+struct JointTorques {
+    static constexpr int outputs(int joints) noexcept { return joints; }
+    static constexpr int bodies(int joints) noexcept { return joints; }
+
+    template <class Scalar>
+    struct Constants {};
+};
+
+/// The outputs are force (N) and torque (N·m, about the sensor frame's origin) at a sensor within the chain,
+/// in the sensor's frame. Only what moves beyond the sensor counts: the last `body_count` links, the first of
+/// them without its part on the base's side of the sensor.
+template <int body_count>
+struct WrenchAtSensor {
+    static constexpr int outputs(int /*joints*/) noexcept { return 6; }
+    static constexpr int bodies(int /*joints*/) noexcept { return body_count; }
+
+    template <class Scalar>
+    struct Constants {
+        std::int32_t link;        ///< that carries the sensor: 0 the base, i the link that joint i moves
+        Placement<Scalar> sensor; ///< of the sensor's frame in that link's frame
+        Scalar sign; ///< +1: what the base's side exerts on the tip's side, -1: the reverse (child to parent)
+    };
+};
+
+/// A serial chain of n joints of known geometry, compiled in; what is learned is the inertial parameters of
+/// its bodies.
+template <int n, class OutputType = JointTorques>
+struct Chain {
+    using Output = OutputType;
+    static constexpr int joints = n;
+    static constexpr int outputs = OutputType::outputs(n);
+    static constexpr int bodies = OutputType::bodies(n);
+    static constexpr int parameters = product(inertial_parameters, bodies);
+
+    template <class Scalar>
+    struct Constants {
+        Storage<ChainJoint<Scalar>, n> joint; ///< base to tip
+        Scalar gravity[3];                    ///< m/s², in the base link's frame
+        [[no_unique_address]] typename OutputType::template Constants<Scalar> output;
+    };
+};
+
+} // namespace dfdyn
