@@ -38,9 +38,9 @@ std::vector<typename Model::Sample> samples_of_every_kind(std::mt19937_64& engin
 template <class Model>
 void use(const Estimator<Model>& estimator) {
     typename Model::Scalar means[Model::outputs];
-    const auto& learner = estimator.learner();
-    learner.predict(estimator.columns(), means);
-    static_cast<void>(learner.variance(estimator.columns()));
+    const auto& learner = estimator.regression().learner();
+    learner.predict(estimator.regression().columns(), means);
+    static_cast<void>(learner.variance(estimator.regression().columns()));
     static_cast<void>(learner.parameter_variance(1));
     static_cast<void>(learner.weights(0));
     static_cast<void>(learner.last_ratio());

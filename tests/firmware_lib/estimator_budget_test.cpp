@@ -34,10 +34,12 @@ bool taken(const Status& status) {
 
 template <class Model>
 bool same_weights(const Estimator<Model>& a, const Estimator<Model>& b) {
-    return std::equal(a.learner().weights(0), a.learner().weights(0) + Model::columns,
-                      b.learner().weights(0)) &&
-           std::equal(a.learner().weights(1), a.learner().weights(1) + Model::columns,
-                      b.learner().weights(1));
+    return std::equal(a.regression().learner().weights(0),
+                      a.regression().learner().weights(0) + Model::columns,
+                      b.regression().learner().weights(0)) &&
+           std::equal(a.regression().learner().weights(1),
+                      a.regression().learner().weights(1) + Model::columns,
+                      b.regression().learner().weights(1));
 }
 
 template <class Scalar, int m>
@@ -68,7 +70,7 @@ TEMPLATE_TEST_CASE("random budgets learn the same as unlimited ones, bit for bit
             sliced.tick(sample, to_the_end ? Budget::unlimited() : Budget{operations(engine)});
         sample.output_valid = taken(estimate.status);
         whole.tick(sample, Budget::unlimited());
-        if (sliced.learner().idle()) {
+        if (sliced.regression().learner().idle()) {
             ++compared;
             different += same_weights(sliced, whole) ? 0 : 1;
         }
@@ -92,7 +94,7 @@ TEMPLATE_TEST_CASE("while a sample is being learned the estimates are those of b
     int busy = 0;
     for (int t = 51; t < 500; ++t) {
         auto sample = moving_sample<TestType>(t, engine);
-        const bool idle = estimator.learner().idle();
+        const bool idle = estimator.regression().learner().idle();
         const auto estimate = estimator.tick(sample, Budget{cost_of<TestType>().largest_step / 3});
         sample.output_valid = false;
         const auto expected = before.tick(sample, Budget::unlimited());
@@ -121,7 +123,7 @@ TEMPLATE_TEST_CASE("samples that arrive meanwhile are skipped, and counted", "",
         const Counters& counters = estimator.counters();
         const auto count_of = [&](Reason reason) { return counters.reasons[static_cast<int>(reason)]; };
         REQUIRE(counters.ticks == static_cast<std::uint32_t>(t + 1));
-        REQUIRE(counters.learned + (estimator.learner().sample_pending() ? 1 : 0) == begun);
+        REQUIRE(counters.learned + (estimator.regression().learner().sample_pending() ? 1 : 0) == begun);
         REQUIRE(begun == count_of(Reason::ok) + count_of(Reason::learning_in_progress));
         REQUIRE(counters.predicted == begun + count_of(Reason::learner_busy) + count_of(Reason::no_budget));
     }
@@ -144,7 +146,8 @@ TEMPLATE_TEST_CASE("a budget of the largest step always gets on, a smaller one n
     const auto steps = static_cast<std::uint32_t>(2 * cost.learn / cost.largest_step + 1);
     CHECK(enough.counters().learned >= 494 / steps);
     CHECK(too_little.counters().learned == 0);
-    CHECK(std::all_of(too_little.learner().weights(0), too_little.learner().weights(0) + TestType::columns,
+    CHECK(std::all_of(too_little.regression().learner().weights(0),
+                      too_little.regression().learner().weights(0) + TestType::columns,
                       [](auto weight) { return weight == 0; }));
 }
 
@@ -171,11 +174,11 @@ TEST_CASE("a sample in hand is learned on in ticks that are refused or blind") {
     for (int t = 0; t <= 6; ++t) {
         estimator.tick(moving_sample<UdFloat>(t, engine), Budget{cost.largest_step - 1});
     }
-    REQUIRE(estimator.learner().sample_pending());
+    REQUIRE(estimator.regression().learner().sample_pending());
     auto refused = moving_sample<UdFloat>(7, engine);
     refused.position[0] = 1e9F;
     estimator.tick(refused, Budget::unlimited());
-    CHECK(estimator.learner().idle());
+    CHECK(estimator.regression().learner().idle());
     CHECK(estimator.counters().learned == 1);
 }
 

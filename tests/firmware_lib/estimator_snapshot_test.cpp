@@ -75,7 +75,7 @@ TEMPLATE_TEST_CASE("a restored estimator goes on as the original does, once its 
     for (const bool half_learned : {false, true}) {
         CAPTURE(half_learned);
         Pair<TestType> pair(engine, half_learned);
-        REQUIRE(pair.original.learner().sample_pending() == half_learned);
+        REQUIRE(pair.original.regression().learner().sample_pending() == half_learned);
         REQUIRE(restored(pair.other, snapshot_of(pair.original)) == SnapshotResult::ok);
         CHECK((snapshot_of(pair.other) == snapshot_of(pair.original)));
         int compared = 0;

@@ -33,7 +33,7 @@ struct Record {
     void add(const Estimator<DoubleModel>& estimator, const DoubleModel::Constants& constants,
              const DoubleModel::Sample& sample) {
         for (int j = 0; j < DoubleModel::columns; ++j) {
-            regression.rows(count, j) = estimator.columns()[j];
+            regression.rows(count, j) = estimator.regression().columns()[j];
         }
         for (int k = 0; k < DoubleModel::outputs; ++k) {
             regression.targets(count, k) =
@@ -106,8 +106,8 @@ TEST_CASE("every estimate is what the batch solution of all samples before it sa
     CHECK(information_error(record.solution(1000), [&] {
               Eigen::MatrixXd weights(DoubleModel::columns, 2);
               for (int k = 0; k < 2; ++k) {
-                  weights.col(k) =
-                      Eigen::Map<const Eigen::VectorXd>(estimator.learner().weights(k), DoubleModel::columns);
+                  weights.col(k) = Eigen::Map<const Eigen::VectorXd>(
+                      estimator.regression().learner().weights(k), DoubleModel::columns);
               }
               return weights;
           }()) < 1e-9);
@@ -135,7 +135,7 @@ TEMPLATE_TEST_CASE("on data from the model the normalised innovations squared ar
         for (int k = 0; k < 2; ++k) {
             double value = normal(engine);
             for (int j = 0; j < Model::columns; ++j) {
-                value += static_cast<double>(probe.columns()[j]) * weights(j, k);
+                value += static_cast<double>(probe.regression().columns()[j]) * weights(j, k);
             }
             sample.output[k] =
                 constants.output_offset[k] + constants.output_noise_std[k] * static_cast<TestType>(value);

@@ -100,7 +100,8 @@ template <class Model>
 double largest_parameter_variance(const Estimator<Model>& estimator) {
     double largest = 0;
     for (int i = 0; i < Model::columns; ++i) {
-        largest = std::max(largest, static_cast<double>(estimator.learner().parameter_variance(i)));
+        largest =
+            std::max(largest, static_cast<double>(estimator.regression().learner().parameter_variance(i)));
     }
     return largest;
 }
@@ -200,10 +201,9 @@ double variance_bound(double forgetting_factor) {
 }
 
 template <class Model>
-constexpr int standing_ticks =
-    std::is_same_v<typename Model::Learner, UdCovariance<typename Model::Scalar, Model::columns, 2>>
-        ? 1'000'000
-        : 200'000; // the information form is three times slower
+constexpr int standing_ticks = std::is_same_v<typename Model::Structure, Nonparametric<UdCovariance>>
+                                   ? 1'000'000
+                                   : 200'000; // the information form is three times slower
 
 /// Textbook recursive least squares with exponential forgetting, dense and in double.
 class TextbookForgetting {
@@ -274,7 +274,7 @@ TEST_CASE("textbook forgetting does not survive the same standstill, even in dou
         const double target = (sample.output[0] - constants.output_offset[0]) / constants.output_noise_std[0];
         sample.output_valid = false;
         const bool predicted = columns.tick(sample, Budget::predict_only()).status.predicted();
-        const Eigen::Map<const Eigen::VectorXd> row(columns.columns(), UdDouble::columns);
+        const Eigen::Map<const Eigen::VectorXd> row(columns.regression().columns(), UdDouble::columns);
         return predicted ? textbook.learn(row, target) * constants.output_noise_std[0] : 0;
     };
     double squares_before = 0;

@@ -45,7 +45,7 @@ ReplayedRecording replay(HostEstimator& estimator, const TrainedModel& model, co
                          std::size_t horizon, const std::function<void(std::size_t)>& on_tick) {
     check_fit(model, recording);
     const std::size_t outputs = model.outputs.names.size();
-    HorizonError errors(std::max<std::size_t>(horizon, 1), outputs, model.start.weights.size());
+    HorizonError errors(std::max<std::size_t>(horizon, 1), outputs, estimator.weight_count());
     ReplayedRecording replayed{
         recording.source, recording.time_s, recording.output.values, {}, {}, {}, {}, {}, {}};
     for (std::size_t row = 0; row < recording.row_count(); ++row) {

@@ -35,20 +35,18 @@ class EstimatorOf final : public HostEstimator {
     }
 
     void predict_with(std::span<const float> weights, std::span<float> prediction) const override {
-        const int columns = column_count();
+        estimator_.regression().predict_with(weights.data(), prediction.data());
         for (int k = 0; k < output_count(); ++k) {
-            prediction[static_cast<std::size_t>(k)] =
-                constants().output_offset[k] +
-                constants().output_noise_std[k] *
-                    detail::dot(weights.data() + k * columns, estimator_.columns(), columns);
+            float& mean = prediction[static_cast<std::size_t>(k)];
+            mean = constants().output_offset[k] + constants().output_noise_std[k] * mean;
         }
     }
 
+    std::size_t weight_count() const override {
+        return static_cast<std::size_t>(estimator_.regression().weight_count());
+    }
     void copy_weights(std::span<float> weights) const override {
-        for (int k = 0; k < output_count(); ++k) {
-            std::copy_n(estimator_.learner().weights(k), column_count(),
-                        weights.begin() + k * column_count());
-        }
+        estimator_.regression().copy_weights(weights.data());
     }
 
     void begin_recording() override { estimator_.restart_window(); }
@@ -64,7 +62,6 @@ class EstimatorOf final : public HostEstimator {
     }
     const typename Host::Constants& constants() const { return host_->constants; }
     int output_count() const { return constants().sizes.output_count; }
-    int column_count() const { return constants().sizes.column_count(); }
 
     std::unique_ptr<HostConstants<Host>> host_;
     Embedded estimator_;

@@ -38,7 +38,9 @@ class HostEstimator {
     /// `prediction`.
     virtual void predict_with(std::span<const float> weights, std::span<float> prediction) const = 0;
 
-    /// The present weights of all outputs, m × 2d.
+    /// What has been learned as plain numbers: the weights of all outputs, m × 2d, and the physics'
+    /// parameters where they are learned too.
+    virtual std::size_t weight_count() const = 0;
     virtual void copy_weights(std::span<float> weights) const = 0;
 
     /// Begins a recording: the window restarts, what has been learned stays.

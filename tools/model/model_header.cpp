@@ -124,7 +124,7 @@ std::string model_to_header(const TrainedModel& model, const std::string& name_s
            << ",\n    .input = " << input_constants(model.input) << ",\n    .features = {.frequencies = "
            << braced(firmware_frequencies(model.features, model.joints * model.input.rows_per_joint))
            << ",\n        .amplitude = " << literal(1 / std::sqrt(static_cast<double>(model.features.count)))
-           << "},\n    .output_offset = " << braced(model.outputs.offset)
+           << "},\n    .physics = {},\n    .output_offset = " << braced(model.outputs.offset)
            << ",\n    .output_noise_std = " << braced(model.outputs.noise_std)
            << ",\n    .position_limit = " << braced(model.limits.position_rad)
            << ",\n    .output_limit = " << braced(model.limits.output)

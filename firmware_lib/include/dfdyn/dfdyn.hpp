@@ -11,3 +11,6 @@
 #include "dfdyn/learner/cholesky_information.hpp"
 #include "dfdyn/learner/ud_covariance.hpp"
 #include "dfdyn/model.hpp"
+#include "dfdyn/structure/parametric.hpp"
+#include "dfdyn/structure/semiparametric_kernel.hpp"
+#include "dfdyn/structure/semiparametric_mean.hpp"

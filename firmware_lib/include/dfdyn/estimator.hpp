@@ -44,7 +44,7 @@ class Estimator {
     using Sample = typename Model::Sample;
     using Estimate = dfdyn::Estimate<Scalar, Model::outputs>;
 
-    static_assert(Learner<typename Model::Learner, Scalar>);
+    using Regression = typename Model::Structure::template Regression<Model>;
 
     /// Consecutive samples from the past after which the sender's clock is taken to have been set back.
     static constexpr int clock_restart_samples = 3;
@@ -52,10 +52,7 @@ class Estimator {
     explicit Estimator(const Constants&&) = delete; // it would refer to a temporary
     explicit Estimator(const Constants& constants) noexcept
         : constants_(&constants), sizes_(constants.sizes), learn_cost_(cost(constants.sizes).learn),
-          input_(constants.input, sizes_.joint_count, sizes_.lag_count, sizes_.features_per_joint),
-          learner_(constants.learner, sizes_.column_count(), sizes_.output_count),
-          xi_(Inputs::zeros(sizes_.input_count())), phi_(Columns::zeros(sizes_.column_count())),
-          target_(Outputs::zeros(sizes_.output_count)) {}
+          regression_(constants), target_(Outputs::zeros(sizes_.output_count)), ratio_(target_) {}
 
     /// Predicts the sample's output from its position and the past, then learns it as far as the budget goes.
     /// A refused sample leaves what has been learned as it is. At most
@@ -65,7 +62,7 @@ class Estimator {
         Estimate estimate = unknown();
         Status& status = estimate.status;
         status.prediction = accept(sample);
-        if (status.predicted() && !evaluate_features()) {
+        if (status.predicted() && !regression_.evaluate()) {
             status.prediction = Reason::input_out_of_range;
         }
         if (status.predicted()) {
@@ -80,14 +77,14 @@ class Estimator {
     /// Back to the state after construction: the start that the constants give, an empty window, counters at
     /// zero.
     void reset() noexcept {
-        learner_.reset();
+        regression_.reset();
         restart_window();
         counters_ = {};
     }
 
     /// Begins a new recording or motion: the window and the clock start again, what has been learned stays.
     void restart_window() noexcept {
-        input_.restart();
+        regression_.restart();
         has_time_ = false;
         past_samples_ = 0;
         implausible_samples_ = 0;
@@ -95,20 +92,20 @@ class Estimator {
 
     /// Bytes of a snapshot: what has been learned, including a sample still being learned. Not the window:
     /// positions of the past are of no use to a later start.
-    [[nodiscard]] std::size_t snapshot_bytes() const noexcept { return dfdyn::snapshot_bytes(learner_); }
+    [[nodiscard]] std::size_t snapshot_bytes() const noexcept { return dfdyn::snapshot_bytes(regression_); }
 
     /// A buffer of this many bytes holds any snapshot of a firmware model.
-    static constexpr std::size_t snapshot_capacity = sizeof(SnapshotHeader) + sizeof(typename Model::Learner);
+    static constexpr std::size_t snapshot_capacity = sizeof(SnapshotHeader) + sizeof(Regression);
 
     /// Writes a snapshot to the front of `buffer`, of at least `snapshot_bytes()`.
     [[nodiscard]] SnapshotResult snapshot(std::span<std::byte> buffer) const noexcept {
-        return write_snapshot(learner_, model_identity(), buffer);
+        return write_snapshot(regression_, model_identity(), buffer);
     }
 
     /// Restores a snapshot of an estimator of the same model and restarts the window; rejects it whole if
     /// anything is wrong.
     [[nodiscard]] SnapshotResult restore(std::span<const std::byte> buffer) noexcept {
-        const SnapshotResult result = read_snapshot(learner_, model_identity(), buffer);
+        const SnapshotResult result = read_snapshot(regression_, model_identity(), buffer);
         if (result == SnapshotResult::ok) {
             restart_window();
         }
@@ -116,22 +113,14 @@ class Estimator {
     }
 
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
-    [[nodiscard]] const typename Model::Learner& learner() const noexcept { return learner_; }
-
-    /// The columns φ of the last tick that predicted.
-    [[nodiscard]] const Scalar* columns() const noexcept { return phi_.data(); }
+    [[nodiscard]] const Regression& regression() const noexcept { return regression_; }
 
     /// Cost of a tick's parts in multiply-adds, a constant expression for a firmware model.
     [[nodiscard]] static constexpr Cost cost(const typename Model::Sizes& sizes = {}) noexcept {
-        Cost cost = Model::Learner::cost(sizes.column_count(), sizes.output_count);
-        cost.predict += Model::InputMap::cost(sizes.joint_count, sizes.lag_count, sizes.features_per_joint) +
-                        Model::Features::cost(sizes.input_count(), sizes.feature_count);
-        return cost;
+        return Regression::cost(sizes);
     }
 
   private:
-    using Inputs = Storage<Scalar, Model::inputs>;
-    using Columns = Storage<Scalar, Model::columns>;
     using Outputs = Storage<Scalar, Model::outputs>;
 
     [[nodiscard]] Estimate unknown() const noexcept {
@@ -157,17 +146,17 @@ class Estimator {
             if (!clock_restarted(sample.time_ns)) {
                 return Reason::time_not_increasing;
             }
-            input_.restart();
+            regression_.restart();
             filling = Reason::clock_restarted;
         } else if (has_time_ && time_since_last(sample) > static_cast<std::uint64_t>(constants_->gap_ns)) {
-            input_.restart();
+            regression_.restart();
             filling = Reason::gap;
         }
         past_samples_ = 0;
         has_time_ = true;
         last_time_ns_ = sample.time_ns;
-        input_.push(sample);
-        return input_.ready() ? Reason::ok : filling;
+        regression_.push(sample);
+        return regression_.ready() ? Reason::ok : filling;
     }
 
     /// Of a sample later than the last (ns); the difference of two stamps may need all 64 bits.
@@ -210,7 +199,7 @@ class Estimator {
     }
 
     void predict(const Sample& sample, Budget budget, Estimate& estimate) noexcept {
-        learner_.predict(phi_.data(), estimate.prediction.data());
+        regression_.predict(estimate.prediction.data());
         if (finite(estimate.prediction)) {
             estimate.status.learning = check_output(sample);
             learn(sample, budget, estimate);
@@ -229,15 +218,9 @@ class Estimator {
         return all;
     }
 
-    bool evaluate_features() noexcept {
-        input_.evaluate(xi_.data());
-        return Model::Features::template evaluate<Scalar, Model::inputs>(
-            constants_->features, sizes_.input_count(), sizes_.feature_count, xi_.data(), phi_.data());
-    }
-
     /// Gates the measurement, learns what the budget allows, oldest first, and completes the estimate. The
-    /// variance comes with a sweep that starts and ends in this tick; otherwise, or if it decides whether to
-    /// learn at all, it takes a pass of its own.
+    /// variances come with a sample that is learned from begin to end in this tick; otherwise, or if they
+    /// decide whether to learn at all, they take a pass of their own.
     void learn(const Sample& sample, Budget budget, Estimate& estimate) noexcept {
         Status& status = estimate.status;
         Scalar error_square = status.learning == Reason::ok ? normalise(sample, estimate) : Scalar(0);
@@ -247,17 +230,20 @@ class Estimator {
         }
         const bool measured = status.learning == Reason::ok;
         const bool doubtful = error_square > constants_->innovation_limit;
-        const bool at_once = measured && !doubtful && learner_.idle() && budget.affords(learn_cost_);
-        Scalar ratio = at_once ? Scalar(1) : 1 + learner_.variance(phi_.data());
-        if (measured && !plausible(error_square / ratio)) {
+        const bool at_once = measured && !doubtful && regression_.idle() && budget.affords(learn_cost_);
+        if (!at_once) {
+            regression_.variances(ratio_.data());
+        }
+        if (measured && !plausible(doubtful ? innovation_square(estimate.innovation) : error_square)) {
             status.learning = Reason::innovation_too_large;
         }
         fold(budget, status);
         if (at_once) {
-            ratio = learner_.last_ratio();
+            regression_.last_ratios(ratio_.data());
         }
-        complete(sample, measured, ratio, estimate);
-        estimate.normalised_innovation_squared = error_square / ratio;
+        estimate.normalised_innovation_squared =
+            measured ? innovation_square(estimate.innovation) : Scalar(0);
+        complete(sample, measured, estimate);
     }
 
     /// Goes on with an earlier sample, then with this one unless it was refused.
@@ -271,9 +257,9 @@ class Estimator {
         } else if (budget.operations <= 0) {
             status.learning = Reason::no_budget;
         } else {
-            learner_.begin(phi_.data(), target_.data());
+            regression_.begin(target_.data());
             work(budget);
-            status.learning = learner_.sample_pending() ? Reason::learning_in_progress : Reason::ok;
+            status.learning = regression_.sample_pending() ? Reason::learning_in_progress : Reason::ok;
         }
     }
 
@@ -290,31 +276,41 @@ class Estimator {
 
     /// Goes on with what the learner has in hand; true when it has nothing left.
     bool work(Budget& budget) noexcept {
-        const bool pending = learner_.sample_pending();
-        const bool idle = learner_.advance(budget);
-        counters_.learned += pending && !learner_.sample_pending() ? 1 : 0;
+        const bool pending = regression_.sample_pending();
+        const bool idle = regression_.advance(budget);
+        counters_.learned += pending && !regression_.sample_pending() ? 1 : 0;
         return idle;
     }
 
-    /// The measured outputs in units of their noise about their offset, as the learner sees them; returns the
-    /// square of their difference from the prediction.
-    Scalar normalise(const Sample& sample, const Estimate& estimate) noexcept {
+    /// The measured outputs in units of their noise about their offset, as the regression sees them, and
+    /// their differences from the prediction; returns the sum of the squares.
+    Scalar normalise(const Sample& sample, Estimate& estimate) noexcept {
         Scalar error_square = 0;
         for (int k = 0; k < sizes_.output_count; ++k) {
             target_[k] = (sample.output[k] - constants_->output_offset[k]) / constants_->output_noise_std[k];
             const Scalar error = target_[k] - estimate.prediction[k];
+            estimate.innovation[k] = error;
             error_square += error * error;
         }
         return error_square;
     }
 
-    /// From the learner's units to the output's; `ratio` is 1 + φ'Pφ.
-    void complete(const Sample& sample, bool measured, Scalar ratio, Estimate& estimate) const noexcept {
-        const Scalar root = std::sqrt(ratio);
+    /// Of innovations in units of the noise. Where outputs share parameters, how their errors correlate is
+    /// not looked at.
+    [[nodiscard]] Scalar innovation_square(const Outputs& innovation) const noexcept {
+        Scalar total = 0;
+        for (int k = 0; k < sizes_.output_count; ++k) {
+            total += innovation[k] * innovation[k] / ratio_[k];
+        }
+        return total;
+    }
+
+    /// From the regression's units to the output's.
+    void complete(const Sample& sample, bool measured, Estimate& estimate) const noexcept {
         for (int k = 0; k < sizes_.output_count; ++k) {
             const Scalar noise = constants_->output_noise_std[k];
             estimate.prediction[k] = constants_->output_offset[k] + noise * estimate.prediction[k];
-            estimate.standard_deviation[k] = noise * root;
+            estimate.standard_deviation[k] = noise * std::sqrt(ratio_[k]);
             estimate.innovation[k] = measured ? sample.output[k] - estimate.prediction[k] : Scalar(0);
         }
     }
@@ -327,19 +323,18 @@ class Estimator {
 
     /// Sizes and scalar as well as the constants' identity: two builds may share the latter.
     [[nodiscard]] std::uint32_t model_identity() const noexcept {
-        const std::int32_t parts[] = {sizes_.joint_count,        sizes_.output_count,  sizes_.lag_count,
-                                      sizes_.features_per_joint, sizes_.feature_count, sizeof(Scalar)};
+        const std::int32_t parts[] = {
+            sizes_.joint_count,   sizes_.output_count,         sizes_.lag_count, sizes_.features_per_joint,
+            sizes_.feature_count, sizes_.physics.column_count, sizeof(Scalar)};
         return crc32(std::as_bytes(std::span(parts)), constants_->identity);
     }
 
     const Constants* constants_;
     [[no_unique_address]] typename Model::Sizes sizes_;
     std::int64_t learn_cost_;
-    typename Model::InputMap input_;
-    typename Model::Learner learner_;
-    Inputs xi_;
-    Columns phi_;
+    Regression regression_;
     Outputs target_;
+    Outputs ratio_; ///< 1 + the variance of each predicted mean, in units of the noise's
     Counters counters_;
     std::int64_t last_time_ns_ = 0;
     bool has_time_ = false;

@@ -1,27 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/learner/ud_covariance.hpp"
 #include "dfdyn/sample.hpp"
+#include "dfdyn/structure/nonparametric.hpp"
 
 #include <cstdint>
+#include <type_traits>
 
 namespace dfdyn {
 
-/// An arm of which only the sizes are known: n joints, m outputs.
+/// An arm of which only the sizes are known: n joints, m outputs. `Chain` knows its geometry too.
 template <int n, int m>
 struct Joints {
     static constexpr int joints = n;
     static constexpr int outputs = m;
 };
 
-/// Model NP of the paper (eq. modello_approx without the rigid body): the columns are the features alone, the
-/// same for every output, learned by one learner.
-template <template <class Scalar, int columns, int outputs> class LearnerForm = UdCovariance>
-struct Nonparametric {
-    template <class Scalar, int columns, int outputs>
-    using Learner = LearnerForm<Scalar, columns, outputs>;
-};
+namespace detail {
+
+/// The sample that an input needs, or a physics, whichever needs more.
+template <class Input, class Motion, class Scalar, int n, int m>
+using SampleOf = std::conditional_t<
+    std::is_same_v<typename Motion::template Sample<Scalar, n, m>, dfdyn::Sample<Scalar, n, m>>,
+    typename Input::template Sample<Scalar, n, m>, typename Motion::template Sample<Scalar, n, m>>;
+
+} // namespace detail
 
 /// A model is a composition: scalar, arm, input, features, structure. `Constants` is what `dfdyn train`
 /// writes; it can be a `constexpr` object in flash and must outlive the estimators that refer to it.
@@ -33,17 +36,19 @@ struct Model {
     using Input = InputType;
     using Features = FeatureType;
     using Structure = StructureType;
+    using Physics = typename Structure::Physics;
 
     static constexpr int joints = Arm::joints;
     static constexpr int outputs = Arm::outputs;
     static constexpr int inputs = product(joints, Input::features_per_joint);
-    static constexpr int columns = Features::columns;
+    static constexpr int columns = Features::columns;   ///< 2d
+    static constexpr int parameters = Physics::columns; ///< p
 
-    using InputMap = typename Input::template Map<Scalar, joints>;
     using InputConstants = typename Input::template Constants<Scalar, joints>;
     using FeatureConstants = typename Features::template Constants<Scalar, inputs>;
-    using Learner = typename Structure::template Learner<Scalar, columns, outputs>;
-    using Sample = typename Input::template Sample<Scalar, joints, outputs>;
+    using PhysicsConstants = typename Physics::template Constants<Scalar, Arm>;
+    using StructureConstants = typename Structure::template Constants<Scalar, columns, outputs>;
+    using Sample = detail::SampleOf<Input, typename Physics::Motion, Scalar, joints, outputs>;
 
     /// Empty for a firmware model: every size is a template argument.
     struct Sizes {
@@ -52,6 +57,7 @@ struct Model {
         [[no_unique_address]] Extent<Input::lags> lag_count{};
         [[no_unique_address]] Extent<Input::features_per_joint> features_per_joint{};
         [[no_unique_address]] Extent<Features::count> feature_count{};
+        [[no_unique_address]] typename Physics::template Sizes<Arm> physics{};
 
         [[nodiscard]] constexpr Extent<inputs> input_count() const noexcept {
             return extent<inputs>(joint_count * features_per_joint);
@@ -65,15 +71,16 @@ struct Model {
         [[no_unique_address]] Sizes sizes;
         std::uint32_t identity; ///< differs between models: a snapshot of one is not restored into another
         std::int64_t gap_ns;    ///< a longer time between two samples is a gap; about 1.5 sample periods
-        InputConstants input;
-        FeatureConstants features;
-        Storage<Scalar, outputs> output_offset;    ///< y = offset + noise_std (φ'w + e), e ~ N(0, 1)
+        [[no_unique_address]] InputConstants input;
+        [[no_unique_address]] FeatureConstants features;
+        [[no_unique_address]] PhysicsConstants physics;
+        Storage<Scalar, outputs> output_offset;    ///< y = offset + noise_std (prediction + e), e ~ N(0, 1)
         Storage<Scalar, outputs> output_noise_std; ///< > 0, in the output's unit
         Storage<Scalar, joints> position_limit;    ///< |q_i| beyond it is refused (rad)
         Storage<Scalar, outputs> output_limit;     ///< |y_k| beyond it is not learned
         Scalar innovation_limit; ///< samples with a larger normalised innovation squared are not learned; > 0
         std::int32_t innovation_patience; ///< but after so many of them in a row they are; ≥ 0
-        LearnerConstants<Scalar, columns, outputs> learner;
+        StructureConstants learner;
     };
 };
 

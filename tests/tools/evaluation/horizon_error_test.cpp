@@ -24,6 +24,7 @@ class PrescribedEstimator final : public HostEstimator {
         prediction[0] = other[0] * column;
         prediction[1] = other[1] * column;
     }
+    std::size_t weight_count() const override { return weights.size(); }
     void copy_weights(std::span<float> copy) const override { std::ranges::copy(weights, copy.begin()); }
     void begin_recording() override {}
     std::size_t state_bytes() const override { return 0; }

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/learner/common_parameters.hpp"
+
+namespace dfdyn {
+
+/// The two parts of a block-arrow regression (see `BlockArrow`). The start of `features` holds, output after
+/// output, the weights of that output's y and then of each of its p columns ψ.
+template <class Scalar, int columns, int p, int m>
+struct BlockArrowConstants {
+    LearnerConstants<Scalar, columns, product(m, sum(p, 1))> features;
+    LearnerConstants<Scalar, p, 1> common;
+};
+
+/// Recursive least squares of model SPK: y_k = φ'w_k + ψ_k'π + e_k, the same columns φ with weights of their
+/// own for each of the m outputs, and p parameters π that all outputs share (paper, eq. modello_approx).
+///
+/// Its information matrix is an arrow: m equal blocks for the w_k, coupled through π alone. Eliminating the
+/// blocks leaves two small problems, and nothing is approximated:
+///  - y_k and every column of ψ_k are regressed on φ, by one factor for all m (1+p) of them, as m (1+p)
+///  outputs
+///    of model NP. What φ does not explain is ẽ_k = y_k - φ'a_k and ψ̃_k = ψ_k - G_k'φ, with the variance
+///    α = 1 + φ'Pφ of one noise;
+///  - ẽ_k = ψ̃_k'π + noise of variance α, the problem of `CommonParameters`.
+/// Then E[w_k] = a_k - G_k π. A row costs 1.5 (2d)² + 2·2d·m(1+p) + 1.5 m p² multiply-adds instead of
+/// 1.5 (m·2d + p)²; memory (2d)²/2 + 2d·m(1+p) + p²/2.
+///
+/// Learning can be sliced: the sweep after any panel, the weights after any column. `variances` are those
+/// before the sample as long as the sweep runs; π is new before the last of the weights are.
+template <class Scalar, int columns, int p, int m>
+class BlockArrow {
+  public:
+    using Constants = BlockArrowConstants<Scalar, columns, p, m>;
+
+    BlockArrow(const Constants& constants, Extent<columns> column_count, Extent<p> parameters,
+               Extent<m> outputs) noexcept
+        : constants_(&constants), columns_(column_count), parameters_(parameters), outputs_(outputs),
+          forgetting_(constants.features.forgetting_factor, column_count), factor_(column_count),
+          common_(constants.common, parameters, outputs),
+          weights_(Weights::zeros(
+              extent<product(regressions, padded(columns))>(regression_count() * padded(columns_)))),
+          present_(zero_residual()), in_hand_(zero_residual()) {
+        reset();
+    }
+
+    void reset() noexcept {
+        factor_.reset(constants_->features.prior_variance);
+        for (Scalar& weight : weights_) {
+            weight = 0;
+        }
+        if (constants_->features.start != nullptr) {
+            load(*constants_->features.start);
+        }
+        common_.reset();
+        forgetting_.restart();
+        present_ = zero_residual();
+        in_hand_ = zero_residual();
+        task_ = Task::none;
+        next_ = 0;
+    }
+
+    /// Means of the m outputs for φ and the rows ψ (m × p), which become the present columns of `variances`
+    /// and `begin`. O(2d m (1+p)).
+    void predict(const Scalar* phi, const Scalar* psi, Scalar* means) noexcept {
+        for (int k = 0; k < outputs_; ++k) {
+            present_.output[k] = detail::dot(weights(k, 0), phi, columns_);
+            Scalar* row = present_.rows.data() + k * parameters_;
+            for (int c = 0; c < parameters_; ++c) {
+                row[c] = psi[k * parameters_ + c] - detail::dot(weights(k, 1 + c), phi, columns_);
+            }
+        }
+        common_.predict(present_.rows.data(), means);
+        for (int k = 0; k < outputs_; ++k) {
+            means[k] += present_.output[k];
+        }
+        fresh_ = true;
+    }
+
+    /// Variance of each predicted mean at the present columns, of which `phi` is the φ. O((2d)² + m p²).
+    void variances(const Scalar* phi, Scalar* variances) const noexcept {
+        common_.variances(present_.rows.data(), variances);
+        const Scalar shared = factor_.variance(phi);
+        for (int k = 0; k < outputs_; ++k) {
+            variances[k] += shared;
+        }
+    }
+
+    [[nodiscard]] bool idle() const noexcept { return task_ == Task::none; }
+    [[nodiscard]] bool sample_pending() const noexcept { return !idle() && task_ != Task::bound; }
+
+    /// Takes in the present columns, as given to `predict`, with the m targets. Only when idle. If weights
+    /// were updated since `predict`, what φ leaves of the columns is computed once more, within the budget.
+    void begin(const Scalar* phi, const Scalar* psi, const Scalar* targets) noexcept {
+        for (int k = 0; k < outputs_; ++k) {
+            in_hand_.output[k] = fresh_ ? targets[k] - present_.output[k] : targets[k];
+        }
+        for (int element = 0; element < outputs_ * parameters_; ++element) {
+            in_hand_.rows[element] = fresh_ ? present_.rows[element] : psi[element];
+        }
+        factor_.begin(phi, 1);
+        next_ = 0;
+        task_ = fresh_ ? Task::sweep : Task::residual;
+    }
+
+    /// Works on the sample in hand as far as the budget goes; true when there is nothing left.
+    bool advance(Budget& budget) noexcept {
+        while (!idle()) {
+            if (!work(budget)) {
+                return false;
+            }
+            go_on();
+        }
+        return true;
+    }
+
+    /// 1 + the variance of each output's mean at the last sample learned, before it was.
+    void last_ratios(Scalar* ratios) const noexcept {
+        for (int k = 0; k < outputs_; ++k) {
+            ratios[k] = alpha_ + common_.last_variances()[k];
+        }
+    }
+
+    [[nodiscard]] const CommonParameters<Scalar, p, m>& common() const noexcept { return common_; }
+
+    /// E[w_k] of all outputs, m × 2d. O(2d m p).
+    void copy_weights(Scalar* result) const noexcept {
+        for (int k = 0; k < outputs_; ++k) {
+            Scalar* w = result + k * columns_;
+            for (int j = 0; j < columns_; ++j) {
+                w[j] = weights(k, 0)[j];
+            }
+            for (int c = 0; c < parameters_; ++c) {
+                detail::add_scaled(-common_.parameters()[c], weights(k, 1 + c), w, columns_);
+            }
+        }
+    }
+
+    [[nodiscard]] static constexpr Cost cost(int column_count, int parameters, int outputs) noexcept {
+        const Cost shared = CommonParameters<Scalar, p, m>::cost(parameters, outputs);
+        const std::int64_t weights = std::int64_t{column_count} * outputs * (1 + parameters);
+        const std::int64_t sweep_step = larger(Factor::largest_step(column_count), 2 * column_count);
+        return {weights + shared.predict, Factor::variance_cost(column_count) + shared.variance,
+                Factor::sweep_cost(column_count) + shared.learn + weights + 2 * column_count,
+                larger(sweep_step, shared.largest_step)};
+    }
+
+    template <class Self, class Visitor>
+    static void visit_state(Self& self, Visitor& visitor) noexcept {
+        Factor::visit_state(self.factor_, visitor);
+        CommonParameters<Scalar, p, m>::visit_state(self.common_, visitor);
+        visitor.array(self.weights_.data(), self.weights_.size());
+        visitor.array(self.in_hand_.rows.data(), self.in_hand_.rows.size());
+        visitor.array(self.in_hand_.output.data(), self.in_hand_.output.size());
+        visitor.positive_array(&self.alpha_, 1);
+        visitor.ranged(self.next_, 0, self.regression_count());
+        visitor.ranged(self.task_, Task::none, Task::bound);
+        Forgetting<Scalar>::visit_state(self.forgetting_, visitor);
+    }
+
+  private:
+    enum class Task : int { none, residual, sweep, common, weights, bound };
+
+    static constexpr int regressions = product(m, sum(p, 1));
+
+    using Factor = UdFactor<Scalar, columns>;
+    using Weights = Storage<Scalar, product(regressions, Factor::padded(columns))>;
+
+    /// What φ leaves of an instant's outputs and of their columns.
+    struct Residual {
+        Storage<Scalar, product(m, p)> rows; ///< ψ̃, m × p
+        Storage<Scalar, m> output;           ///< present: φ'a_k; in hand: ẽ_k
+    };
+
+    [[nodiscard]] Residual zero_residual() const noexcept {
+        return {Storage<Scalar, product(m, p)>::zeros(extent<product(m, p)>(outputs_ * parameters_)),
+                Storage<Scalar, m>::zeros(outputs_)};
+    }
+
+    static constexpr int padded(int count) noexcept { return Factor::padded(count); }
+    static constexpr std::int64_t larger(std::int64_t a, std::int64_t b) noexcept { return a > b ? a : b; }
+    [[nodiscard]] int regression_count() const noexcept { return outputs_ * (1 + parameters_); }
+
+    /// Weights of column c of output k: 0 its y, 1 … p its ψ.
+    [[nodiscard]] const Scalar* weights(int k, int c) const noexcept {
+        return weights_.data() + (k * (1 + parameters_) + c) * padded(columns_);
+    }
+
+    void load(const LearnerStart<Scalar, columns, regressions>& start) noexcept {
+        factor_.load(start.unit_upper.data(), start.diagonal.data());
+        for (int i = 0; i < regression_count(); ++i) {
+            for (int j = 0; j < columns_; ++j) {
+                weights_[i * padded(columns_) + j] = start.weights[i * columns_ + j];
+            }
+        }
+    }
+
+    /// Does the task in hand as far as the budget goes; true when it is done.
+    bool work(Budget& budget) noexcept {
+        switch (task_) {
+        case Task::residual:
+            return subtract_features(budget);
+        case Task::common:
+            return common_.advance(budget);
+        case Task::weights:
+            return update_weights(budget) && budget.spend(2 * columns_);
+        default:
+            return factor_.sweep(budget);
+        }
+    }
+
+    /// From a task that is done to the next.
+    void go_on() noexcept {
+        switch (task_) {
+        case Task::residual:
+            task_ = Task::sweep;
+            break;
+        case Task::sweep:
+            alpha_ = factor_.alpha();
+            factor_.close();
+            common_.begin(in_hand_.rows.data(), in_hand_.output.data(), alpha_);
+            task_ = Task::common;
+            break;
+        case Task::common:
+            next_ = 0;
+            task_ = Task::weights;
+            break;
+        case Task::weights:
+            task_ = forget() ? Task::bound : Task::none;
+            break;
+        default:
+            factor_.close();
+            task_ = Task::none;
+        }
+    }
+
+    /// The residual in hand that weights number `i` work on.
+    [[nodiscard]] Scalar& residual(int i) noexcept {
+        const int k = i / (1 + parameters_);
+        const int c = i % (1 + parameters_);
+        return c == 0 ? in_hand_.output[k] : in_hand_.rows[k * parameters_ + c - 1];
+    }
+
+    bool subtract_features(Budget& budget) noexcept {
+        for (; next_ < regression_count(); ++next_) {
+            if (!budget.spend(columns_)) {
+                return false;
+            }
+            residual(next_) -=
+                detail::dot(weights_.data() + next_ * padded(columns_), factor_.row(), columns_);
+        }
+        return true;
+    }
+
+    bool update_weights(Budget& budget) noexcept {
+        for (; next_ < regression_count(); ++next_) {
+            if (!budget.spend(columns_)) {
+                return false;
+            }
+            detail::add_scaled(residual(next_) / alpha_, factor_.gain(),
+                               weights_.data() + next_ * padded(columns_), columns_);
+            fresh_ = false;
+        }
+        return true;
+    }
+
+    /// True if a variance must be taken back.
+    bool forget() noexcept {
+        if (!forgetting_.active()) {
+            return false;
+        }
+        factor_.scale(1 / forgetting_.factor_after(alpha_));
+        return factor_.begin_bound(forgetting_.next_parameter(), constants_->features.prior_variance);
+    }
+
+    const Constants* constants_;
+    [[no_unique_address]] Extent<columns> columns_;
+    [[no_unique_address]] Extent<p> parameters_;
+    [[no_unique_address]] Extent<m> outputs_;
+    Forgetting<Scalar> forgetting_;
+    Factor factor_;
+    CommonParameters<Scalar, p, m> common_;
+    Weights weights_; ///< m (1+p) × padded 2d
+    Residual present_;
+    Residual in_hand_;
+    Scalar alpha_ = 1;   ///< 1 + φ'Pφ of the sample in hand, once its sweep is done
+    int next_ = 0;       ///< column of weights to work on
+    bool fresh_ = false; ///< the present residual is that of the present weights
+    Task task_ = Task::none;
+};
+
+} // namespace dfdyn

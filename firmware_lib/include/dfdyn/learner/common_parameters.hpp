@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/learner/ud_covariance.hpp"
+
+namespace dfdyn {
+
+/// Recursive least squares of p parameters that all outputs share: y_k = h_k'π + e_k, k = 1 … m, a row h_k of
+/// its own for each output, as a rigid body has. The m rows of an instant are folded in one after the other,
+/// each exactly; forgetting happens once per instant. Memory about p²/2 + (m+4) p.
+template <class Scalar, int p, int m>
+class CommonParameters {
+  public:
+    using Constants = LearnerConstants<Scalar, p, 1>;
+
+    CommonParameters(const Constants& constants, Extent<p> parameters, Extent<m> outputs) noexcept
+        : parameters_(parameters), outputs_(outputs), learner_(constants, parameters, {}),
+          rows_(Rows::zeros(extent<product(m, p)>(outputs * parameters))), targets_(Targets::zeros(outputs)),
+          variances_(Targets::zeros(outputs)), next_(outputs) {}
+
+    void reset() noexcept {
+        learner_.reset();
+        for (Scalar& value : rows_) {
+            value = 0;
+        }
+        for (int k = 0; k < outputs_; ++k) {
+            targets_[k] = variances_[k] = 0;
+        }
+        noise_variance_ = 1;
+        next_ = outputs_;
+    }
+
+    /// h_k'π of `rows`, m × p.
+    void predict(const Scalar* rows, Scalar* means) const noexcept {
+        for (int k = 0; k < outputs_; ++k) {
+            learner_.predict(rows + k * parameters_, means + k);
+        }
+    }
+
+    /// h_k'P h_k of each of the `rows`. O(m p²).
+    void variances(const Scalar* rows, Scalar* variances) const noexcept {
+        for (int k = 0; k < outputs_; ++k) {
+            variances[k] = learner_.variance(rows + k * parameters_);
+        }
+    }
+
+    [[nodiscard]] bool idle() const noexcept { return !sample_pending() && learner_.idle(); }
+    [[nodiscard]] bool sample_pending() const noexcept {
+        return next_ < outputs_ || learner_.sample_pending();
+    }
+
+    /// Takes in the rows (m × p) and targets of an instant, all with this variance of noise. Only when idle.
+    void begin(const Scalar* rows, const Scalar* targets, Scalar noise_variance) noexcept {
+        for (int element = 0; element < outputs_ * parameters_; ++element) {
+            rows_[element] = rows[element];
+        }
+        for (int k = 0; k < outputs_; ++k) {
+            targets_[k] = targets[k];
+        }
+        noise_variance_ = noise_variance;
+        next_ = 0;
+    }
+
+    /// Works on the rows in hand as far as the budget goes; true when there is nothing left.
+    bool advance(Budget& budget) noexcept {
+        while (learner_.advance(budget)) {
+            if (next_ == outputs_) {
+                return true;
+            }
+            if (!budget.spend(next_ == 0 ? first_row_cost(parameters_, outputs_) : parameters_)) {
+                return false;
+            }
+            if (next_ == 0) {
+                variances(rows_.data(), variances_.data());
+            }
+            learner_.begin_row(rows_.data() + next_ * parameters_, &targets_[next_], noise_variance_,
+                               next_ + 1 == outputs_);
+            ++next_;
+        }
+        return false;
+    }
+
+    /// h_k'P h_k of the last rows learned, before any of them was; m values.
+    [[nodiscard]] const Scalar* last_variances() const noexcept { return variances_.data(); }
+
+    /// π, in units of the noise per row.
+    [[nodiscard]] const Scalar* parameters() const noexcept { return learner_.weights(0); }
+    [[nodiscard]] const UdCovariance<Scalar, p, 1>& learner() const noexcept { return learner_; }
+
+    [[nodiscard]] static constexpr Cost cost(int parameters, int outputs) noexcept {
+        const Cost row = UdCovariance<Scalar, p, 1>::cost(parameters, 1);
+        const std::int64_t first = first_row_cost(parameters, outputs);
+        return {outputs * row.predict, outputs * row.variance,
+                outputs * row.learn + (outputs - 1) * parameters + first,
+                first > row.largest_step ? first : row.largest_step};
+    }
+
+    template <class Self, class Visitor>
+    static void visit_state(Self& self, Visitor& visitor) noexcept {
+        UdCovariance<Scalar, p, 1>::visit_state(self.learner_, visitor);
+        visitor.array(self.rows_.data(), self.rows_.size());
+        visitor.array(self.targets_.data(), self.targets_.size());
+        visitor.array(self.variances_.data(), self.variances_.size());
+        visitor.positive_array(&self.noise_variance_, 1);
+        visitor.ranged(self.next_, 0, static_cast<int>(self.outputs_));
+    }
+
+  private:
+    using Rows = Storage<Scalar, product(m, p)>;
+    using Targets = Storage<Scalar, m>;
+
+    /// Of beginning the first row of an instant, with the variances.
+    static constexpr std::int64_t first_row_cost(int parameters, int outputs) noexcept {
+        return parameters + outputs * UdFactor<Scalar, p>::variance_cost(parameters);
+    }
+
+    [[no_unique_address]] Extent<p> parameters_;
+    [[no_unique_address]] Extent<m> outputs_;
+    UdCovariance<Scalar, p, 1> learner_;
+    Rows rows_; ///< of the instant in hand
+    Targets targets_;
+    Targets variances_;
+    Scalar noise_variance_ = 1;
+    int next_; ///< row to fold in; m when there is none
+};
+
+} // namespace dfdyn

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/sample.hpp"
+
+namespace dfdyn {
+
+/// The input of a model without features (P: physics alone).
+struct NoInput {
+    static constexpr int lags = 0;
+    static constexpr int features_per_joint = 0;
+    template <class Scalar, int n, int m>
+    using Sample = dfdyn::Sample<Scalar, n, m>;
+    template <class Scalar, int n>
+    struct Constants {};
+};
+
+/// The features of such a model.
+struct NoFeatures {
+    static constexpr int count = 0;
+    static constexpr int columns = 0;
+    template <class Scalar, int inputs>
+    struct Constants {};
+};
+
+/// The physics of a model without (NP: features alone).
+struct NoPhysics {
+    using Motion = NoInput;
+    static constexpr int columns = 0;
+    template <class Arm>
+    struct Sizes {
+        static constexpr int column_count = 0;
+    };
+    template <class Scalar, class Arm>
+    struct Constants {};
+};
+
+} // namespace dfdyn

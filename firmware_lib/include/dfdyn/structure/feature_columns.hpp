@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/storage.hpp"
+
+#include <cstdint>
+
+namespace dfdyn {
+
+/// The columns φ of a model, the same for all outputs: the input map over the last positions and the features
+/// of what it gives.
+template <class Model>
+class FeatureColumns {
+  public:
+    using Scalar = typename Model::Scalar;
+    using Constants = typename Model::Constants;
+
+    explicit FeatureColumns(const Constants& constants) noexcept
+        : constants_(&constants), map_(constants.input, constants.sizes.joint_count,
+                                       constants.sizes.lag_count, constants.sizes.features_per_joint),
+          xi_(Inputs::zeros(constants.sizes.input_count())),
+          phi_(Columns::zeros(constants.sizes.column_count())) {}
+
+    void restart() noexcept { map_.restart(); }
+    [[nodiscard]] bool ready() const noexcept { return map_.ready(); }
+    void push(const typename Model::Sample& sample) noexcept { map_.push(sample); }
+
+    /// False if an input is far outside anything trained; φ is then void.
+    bool evaluate() noexcept {
+        const typename Model::Sizes& sizes = constants_->sizes;
+        map_.evaluate(xi_.data());
+        return Model::Features::template evaluate<Scalar, Model::inputs>(
+            constants_->features, sizes.input_count(), sizes.feature_count, xi_.data(), phi_.data());
+    }
+
+    /// φ of the last `evaluate`, 2d values.
+    [[nodiscard]] const Scalar* data() const noexcept { return phi_.data(); }
+
+    [[nodiscard]] static constexpr std::int64_t cost(const typename Model::Sizes& sizes) noexcept {
+        return Map::cost(sizes.joint_count, sizes.lag_count, sizes.features_per_joint) +
+               Model::Features::cost(sizes.input_count(), sizes.feature_count);
+    }
+
+  private:
+    using Map = typename Model::Input::template Map<Scalar, Model::joints>;
+    using Inputs = Storage<Scalar, Model::inputs>;
+    using Columns = Storage<Scalar, Model::columns>;
+
+    const Constants* constants_;
+    Map map_;
+    Inputs xi_;
+    Columns phi_;
+};
+
+} // namespace dfdyn

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/learner/ud_covariance.hpp"
+#include "dfdyn/structure/absent.hpp"
+#include "dfdyn/structure/feature_columns.hpp"
+
+namespace dfdyn {
+
+/// Model NP of the paper (eq. nonpar_model): the columns are the features alone, the same for every output,
+/// learned by one learner.
+///
+/// A structure is a type that names the physics it uses (`NoPhysics` if none), the constants of its learner,
+/// and a `Regression`: what an estimator predicts with and learns. In a regression all outputs are in units
+/// of their noise and about their offset.
+///  - `push`, `ready`, `restart`: the window of past positions.
+///  - `evaluate`: computes the present columns; false if they mean nothing.
+///  - `predict(means)` at the present columns; `variances(ratios)`: 1 + the variance of each mean there, of
+///  the
+///    last whole state.
+///  - `begin(targets)`: takes the present columns in, after `predict`, when `idle()`; `advance(budget)` works
+///    on them and says whether nothing is left to do; `sample_pending()`; `last_ratios(ratios)`: as
+///    `variances` gave before the last sample learned.
+///  - `weight_count`, `copy_weights`, `predict_with(weights, means)`: what has been learned as plain numbers,
+///  to
+///    predict with later.
+template <template <class Scalar, int columns, int outputs> class LearnerForm = UdCovariance>
+struct Nonparametric {
+    using Physics = NoPhysics;
+
+    template <class Scalar, int columns, int outputs>
+    using Constants = typename LearnerForm<Scalar, columns, outputs>::Constants;
+
+    template <class Model>
+    class Regression {
+      public:
+        using Scalar = typename Model::Scalar;
+        using Learner = LearnerForm<Scalar, Model::columns, Model::outputs>;
+        static_assert(dfdyn::Learner<Learner, Scalar>);
+
+        explicit Regression(const typename Model::Constants& constants) noexcept
+            : Regression(constants, constants.learner) {}
+
+        Regression(const typename Model::Constants& constants,
+                   const typename Learner::Constants& learner) noexcept
+            : outputs_(constants.sizes.output_count), column_count_(constants.sizes.column_count()),
+              columns_(constants),
+              learner_(learner, constants.sizes.column_count(), constants.sizes.output_count) {}
+
+        void reset() noexcept { learner_.reset(); }
+        void restart() noexcept { columns_.restart(); }
+        [[nodiscard]] bool ready() const noexcept { return columns_.ready(); }
+        void push(const typename Model::Sample& sample) noexcept { columns_.push(sample); }
+        bool evaluate() noexcept { return columns_.evaluate(); }
+
+        void predict(Scalar* means) noexcept { learner_.predict(columns_.data(), means); }
+        void variances(Scalar* ratios) const noexcept {
+            fill(1 + learner_.variance(columns_.data()), ratios);
+        }
+        void last_ratios(Scalar* ratios) const noexcept { fill(learner_.last_ratio(), ratios); }
+
+        [[nodiscard]] bool idle() const noexcept { return learner_.idle(); }
+        [[nodiscard]] bool sample_pending() const noexcept { return learner_.sample_pending(); }
+        void begin(const Scalar* targets) noexcept { learner_.begin(columns_.data(), targets); }
+        bool advance(Budget& budget) noexcept { return learner_.advance(budget); }
+
+        [[nodiscard]] const Learner& learner() const noexcept { return learner_; }
+        /// φ of the last tick that predicted.
+        [[nodiscard]] const Scalar* columns() const noexcept { return columns_.data(); }
+
+        [[nodiscard]] int weight_count() const noexcept { return outputs_ * column_count_; }
+        void copy_weights(Scalar* weights) const noexcept {
+            for (int k = 0; k < outputs_; ++k) {
+                for (int j = 0; j < column_count_; ++j) {
+                    weights[k * column_count_ + j] = learner_.weights(k)[j];
+                }
+            }
+        }
+        void predict_with(const Scalar* weights, Scalar* means) const noexcept {
+            for (int k = 0; k < outputs_; ++k) {
+                means[k] = detail::dot(weights + k * column_count_, columns_.data(), column_count_);
+            }
+        }
+
+        [[nodiscard]] static constexpr Cost cost(const typename Model::Sizes& sizes) noexcept {
+            Cost cost = Learner::cost(sizes.column_count(), sizes.output_count);
+            cost.predict += FeatureColumns<Model>::cost(sizes);
+            return cost;
+        }
+
+        template <class Self, class Visitor>
+        static void visit_state(Self& self, Visitor& visitor) noexcept {
+            Learner::visit_state(self.learner_, visitor);
+        }
+
+      private:
+        void fill(Scalar ratio, Scalar* ratios) const noexcept {
+            for (int k = 0; k < outputs_; ++k) {
+                ratios[k] = ratio;
+            }
+        }
+
+        [[no_unique_address]] Extent<Model::outputs> outputs_;
+        [[no_unique_address]] Extent<Model::columns> column_count_;
+        FeatureColumns<Model> columns_;
+        Learner learner_;
+    };
+};
+
+} // namespace dfdyn

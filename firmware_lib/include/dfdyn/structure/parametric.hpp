@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/learner/common_parameters.hpp"
+#include "dfdyn/structure/absent.hpp"
+#include "dfdyn/structure/physics_columns.hpp"
+
+namespace dfdyn {
+
+/// Model P of the paper (eq. par_regr_model): y_k = ψ_k'π + e, the parameters of the rigid body and of named
+/// effects alone, shared by all outputs. The model's input and features are `NoInput` and `NoFeatures`. See
+/// `Nonparametric` for what a structure is.
+template <class PhysicsType>
+struct Parametric {
+    using Physics = PhysicsType;
+
+    template <class Scalar, int columns, int outputs>
+    using Constants = LearnerConstants<Scalar, Physics::columns, 1>;
+
+    template <class Model>
+    class Regression {
+      public:
+        using Scalar = typename Model::Scalar;
+        using Learner = CommonParameters<Scalar, Model::parameters, Model::outputs>;
+
+        explicit Regression(const typename Model::Constants& constants) noexcept
+            : outputs_(constants.sizes.output_count), parameters_(constants.sizes.physics.column_count),
+              physics_(constants), learner_(constants.learner, constants.sizes.physics.column_count,
+                                            constants.sizes.output_count) {}
+
+        void reset() noexcept { learner_.reset(); }
+        void restart() noexcept { physics_.restart(); }
+        [[nodiscard]] bool ready() const noexcept { return physics_.ready(); }
+        void push(const typename Model::Sample& sample) noexcept { physics_.push(sample); }
+        bool evaluate() noexcept { return physics_.evaluate(); }
+
+        void predict(Scalar* means) noexcept { learner_.predict(physics_.data(), means); }
+        void variances(Scalar* ratios) const noexcept {
+            learner_.variances(physics_.data(), ratios);
+            add_noise(ratios);
+        }
+        void last_ratios(Scalar* ratios) const noexcept {
+            for (int k = 0; k < outputs_; ++k) {
+                ratios[k] = learner_.last_variances()[k];
+            }
+            add_noise(ratios);
+        }
+
+        [[nodiscard]] bool idle() const noexcept { return learner_.idle(); }
+        [[nodiscard]] bool sample_pending() const noexcept { return learner_.sample_pending(); }
+        void begin(const Scalar* targets) noexcept { learner_.begin(physics_.data(), targets, 1); }
+        bool advance(Budget& budget) noexcept { return learner_.advance(budget); }
+
+        [[nodiscard]] const Learner& learner() const noexcept { return learner_; }
+        /// ψ of the last tick that predicted, m × p.
+        [[nodiscard]] const Scalar* physics() const noexcept { return physics_.data(); }
+
+        [[nodiscard]] int weight_count() const noexcept { return parameters_; }
+        void copy_weights(Scalar* weights) const noexcept {
+            for (int c = 0; c < parameters_; ++c) {
+                weights[c] = learner_.parameters()[c];
+            }
+        }
+        void predict_with(const Scalar* weights, Scalar* means) const noexcept {
+            for (int k = 0; k < outputs_; ++k) {
+                means[k] = detail::dot(physics_.data() + k * parameters_, weights, parameters_);
+            }
+        }
+
+        [[nodiscard]] static constexpr Cost cost(const typename Model::Sizes& sizes) noexcept {
+            Cost cost = Learner::cost(sizes.physics.column_count, sizes.output_count);
+            cost.predict += PhysicsColumns<Model>::cost(sizes);
+            return cost;
+        }
+
+        template <class Self, class Visitor>
+        static void visit_state(Self& self, Visitor& visitor) noexcept {
+            Learner::visit_state(self.learner_, visitor);
+        }
+
+      private:
+        void add_noise(Scalar* ratios) const noexcept {
+            for (int k = 0; k < outputs_; ++k) {
+                ratios[k] += 1;
+            }
+        }
+
+        [[no_unique_address]] Extent<Model::outputs> outputs_;
+        [[no_unique_address]] Extent<Model::parameters> parameters_;
+        PhysicsColumns<Model> physics_;
+        Learner learner_;
+    };
+};
+
+} // namespace dfdyn

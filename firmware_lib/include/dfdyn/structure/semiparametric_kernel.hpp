@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/learner/block_arrow.hpp"
+#include "dfdyn/structure/feature_columns.hpp"
+#include "dfdyn/structure/physics_columns.hpp"
+
+namespace dfdyn {
+
+/// Model SPK of the paper (eq. modelloSPK): y_k = ψ_k'π + φ'w_k + e, the physics' parameters learned together
+/// with the weights of the features. See `Nonparametric` for what a structure is.
+template <class PhysicsType>
+struct SemiparametricKernel {
+    using Physics = PhysicsType;
+
+    template <class Scalar, int columns, int outputs>
+    using Constants = BlockArrowConstants<Scalar, columns, Physics::columns, outputs>;
+
+    template <class Model>
+    class Regression {
+      public:
+        using Scalar = typename Model::Scalar;
+        using Learner = BlockArrow<Scalar, Model::columns, Model::parameters, Model::outputs>;
+
+        explicit Regression(const typename Model::Constants& constants) noexcept
+            : outputs_(constants.sizes.output_count), column_count_(constants.sizes.column_count()),
+              parameters_(constants.sizes.physics.column_count), columns_(constants), physics_(constants),
+              learner_(constants.learner, constants.sizes.column_count(),
+                       constants.sizes.physics.column_count, constants.sizes.output_count) {}
+
+        void reset() noexcept { learner_.reset(); }
+        void restart() noexcept {
+            columns_.restart();
+            physics_.restart();
+        }
+        [[nodiscard]] bool ready() const noexcept { return columns_.ready() && physics_.ready(); }
+        void push(const typename Model::Sample& sample) noexcept {
+            columns_.push(sample);
+            physics_.push(sample);
+        }
+        bool evaluate() noexcept { return columns_.evaluate() && physics_.evaluate(); }
+
+        void predict(Scalar* means) noexcept { learner_.predict(columns_.data(), physics_.data(), means); }
+        void variances(Scalar* ratios) const noexcept {
+            learner_.variances(columns_.data(), ratios);
+            for (int k = 0; k < outputs_; ++k) {
+                ratios[k] += 1;
+            }
+        }
+        void last_ratios(Scalar* ratios) const noexcept { learner_.last_ratios(ratios); }
+
+        [[nodiscard]] bool idle() const noexcept { return learner_.idle(); }
+        [[nodiscard]] bool sample_pending() const noexcept { return learner_.sample_pending(); }
+        void begin(const Scalar* targets) noexcept {
+            learner_.begin(columns_.data(), physics_.data(), targets);
+        }
+        bool advance(Budget& budget) noexcept { return learner_.advance(budget); }
+
+        [[nodiscard]] const Learner& learner() const noexcept { return learner_; }
+        [[nodiscard]] const Scalar* columns() const noexcept { return columns_.data(); }
+        [[nodiscard]] const Scalar* physics() const noexcept { return physics_.data(); }
+
+        /// E[w] of all outputs, then π.
+        [[nodiscard]] int weight_count() const noexcept { return outputs_ * column_count_ + parameters_; }
+        void copy_weights(Scalar* weights) const noexcept {
+            learner_.copy_weights(weights);
+            for (int c = 0; c < parameters_; ++c) {
+                weights[outputs_ * column_count_ + c] = learner_.common().parameters()[c];
+            }
+        }
+        void predict_with(const Scalar* weights, Scalar* means) const noexcept {
+            const Scalar* parameters = weights + outputs_ * column_count_;
+            for (int k = 0; k < outputs_; ++k) {
+                means[k] = detail::dot(weights + k * column_count_, columns_.data(), column_count_) +
+                           detail::dot(parameters, physics_.data() + k * parameters_, parameters_);
+            }
+        }
+
+        [[nodiscard]] static constexpr Cost cost(const typename Model::Sizes& sizes) noexcept {
+            Cost cost = Learner::cost(sizes.column_count(), sizes.physics.column_count, sizes.output_count);
+            cost.predict += FeatureColumns<Model>::cost(sizes) + PhysicsColumns<Model>::cost(sizes);
+            return cost;
+        }
+
+        template <class Self, class Visitor>
+        static void visit_state(Self& self, Visitor& visitor) noexcept {
+            Learner::visit_state(self.learner_, visitor);
+        }
+
+      private:
+        [[no_unique_address]] Extent<Model::outputs> outputs_;
+        [[no_unique_address]] Extent<Model::columns> column_count_;
+        [[no_unique_address]] Extent<Model::parameters> parameters_;
+        FeatureColumns<Model> columns_;
+        PhysicsColumns<Model> physics_;
+        Learner learner_;
+    };
+};
+
+} // namespace dfdyn

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+// Model SPK by its block-arrow structure equals the dense solution of all its unknowns.
+#include "dfdyn/learner/block_arrow.hpp"
+
+#include "tests/firmware_lib/support/regression.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tools/host/dynamic_storage.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace {
+
+using namespace dfdyn;
+using namespace dfdyn::tests;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+template <class Scalar>
+using RowMajor = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// y_k = φ'w_k + ψ_k'π + e at N instants.
+struct ArrowProblem {
+    int columns, parameters, outputs;
+    double feature_variance = 20; ///< of each w
+    double common_variance = 3;   ///< of each π
+    double forgetting_factor = 1;
+    MatrixXd phi;                           ///< N × columns
+    std::vector<RowMajor<double>> psi = {}; ///< N of outputs × parameters
+    MatrixXd targets = {};                  ///< N × outputs
+
+    ArrowProblem(std::mt19937_64& engine, int instants, int column_count, int parameter_count,
+                 int output_count)
+        : columns(column_count), parameters(parameter_count), outputs(output_count),
+          phi(random_regression(engine, {instants, columns, 1}, Columns::fourier_features).rows) {
+        std::normal_distribution<double> normal;
+        const auto draw = [&] { return static_cast<double>(static_cast<float>(normal(engine))); };
+        const VectorXd common = VectorXd::NullaryExpr(parameters, draw);
+        const MatrixXd weights = MatrixXd::NullaryExpr(columns, outputs, draw);
+        targets.resize(instants, outputs);
+        for (int t = 0; t < instants; ++t) {
+            psi.emplace_back(RowMajor<double>::NullaryExpr(outputs, parameters, draw));
+            psi.back().col(0).array() += phi(t, 0); // not orthogonal to the features
+            targets.row(t) = (psi.back() * common).transpose() + phi.row(t) * weights;
+            targets.row(t) += VectorXd::NullaryExpr(outputs, draw).transpose();
+        }
+        targets = targets.cast<float>().cast<double>();
+        for (RowMajor<double>& rows : psi) {
+            rows = rows.cast<float>().cast<double>();
+        }
+    }
+
+    [[nodiscard]] int instants() const { return static_cast<int>(phi.rows()); }
+    [[nodiscard]] int unknowns() const { return outputs * columns + parameters; }
+
+    /// The row of output k with all unknowns [w_1 … w_m, π].
+    [[nodiscard]] VectorXd dense_row(int t, int k) const {
+        VectorXd row = VectorXd::Zero(unknowns());
+        row.segment(k * columns, columns) = phi.row(t);
+        row.tail(parameters) = psi[static_cast<std::size_t>(t)].row(k);
+        return row;
+    }
+};
+
+/// Mean and covariance of all unknowns after the first `instants`, by the normal equations.
+struct DenseSolution {
+    VectorXd mean;
+    MatrixXd covariance;
+
+    DenseSolution(const ArrowProblem& problem, int instants) {
+        const double lambda = problem.forgetting_factor;
+        VectorXd precision(problem.unknowns());
+        precision << VectorXd::Constant(problem.outputs * problem.columns, 1 / problem.feature_variance),
+            VectorXd::Constant(problem.parameters, 1 / problem.common_variance);
+        MatrixXd information = precision.asDiagonal();
+        VectorXd right = VectorXd::Zero(problem.unknowns());
+        for (int t = 0; t < instants; ++t) {
+            for (int k = 0; k < problem.outputs; ++k) {
+                const VectorXd row = problem.dense_row(t, k);
+                information += row * row.transpose();
+                right += row * problem.targets(t, k);
+            }
+            information *= lambda;
+            right *= lambda;
+        }
+        const Eigen::LDLT<MatrixXd> factor(information);
+        mean = factor.solve(right);
+        covariance = factor.solve(MatrixXd::Identity(problem.unknowns(), problem.unknowns()));
+    }
+};
+
+/// The learner with its constants, spoken to in double.
+template <class Scalar>
+class Arrow {
+  public:
+    using Learner = BlockArrow<Scalar, dynamic, dynamic, dynamic>;
+
+    explicit Arrow(const ArrowProblem& problem)
+        : outputs_(problem.outputs), columns_(problem.columns),
+          // Starts with the prior far below the ceiling of variances: the bound has its own test.
+          constants_{{ceiling, static_cast<Scalar>(problem.forgetting_factor), &feature_start_},
+                     {ceiling, static_cast<Scalar>(problem.forgetting_factor), &common_start_}},
+          feature_start_(prior<decltype(feature_start_)>(
+              problem.columns, problem.outputs * (1 + problem.parameters), problem.feature_variance)),
+          common_start_(prior<decltype(common_start_)>(problem.parameters, 1, problem.common_variance)),
+          learner_(constants_, {problem.columns}, {problem.parameters}, {problem.outputs}) {}
+
+    Arrow(const Arrow&) = delete;
+    Arrow& operator=(const Arrow&) = delete;
+
+    VectorXd predict(const ArrowProblem& problem, int t) {
+        const Instant instant(problem, t);
+        Values means(outputs_);
+        learner_.predict(instant.phi.data(), instant.psi.data(), means.data());
+        return means.template cast<double>();
+    }
+
+    VectorXd variances(const ArrowProblem& problem, int t) const {
+        Values result(outputs_);
+        learner_.variances(Instant(problem, t).phi.data(), result.data());
+        return result.template cast<double>();
+    }
+
+    void begin(const ArrowProblem& problem, int t) {
+        const Instant instant(problem, t);
+        const Values targets = problem.targets.row(t).transpose().cast<Scalar>();
+        learner_.begin(instant.phi.data(), instant.psi.data(), targets.data());
+    }
+
+    void learn(const ArrowProblem& problem, int t) {
+        predict(problem, t);
+        begin(problem, t);
+        Budget budget = Budget::unlimited();
+        learner_.advance(budget);
+    }
+
+    [[nodiscard]] VectorXd all_unknowns() const {
+        Values weights(outputs_ * columns_);
+        learner_.copy_weights(weights.data());
+        const auto parameters = static_cast<Index>(common_start_.diagonal.size());
+        VectorXd result(weights.size() + parameters);
+        result << weights.template cast<double>(),
+            Eigen::Map<const Values>(learner_.common().parameters(), parameters).template cast<double>();
+        return result;
+    }
+
+    Learner& learner() { return learner_; }
+
+  private:
+    using Values = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
+    static constexpr Scalar ceiling = 1000;
+
+    struct Instant {
+        Values phi;
+        RowMajor<Scalar> psi;
+        Instant(const ArrowProblem& problem, int t)
+            : phi(problem.phi.row(t).transpose().cast<Scalar>()),
+              psi(problem.psi[static_cast<std::size_t>(t)].cast<Scalar>()) {}
+    };
+
+    template <class Start>
+    static Start prior(int columns, int outputs, double variance) {
+        using Numbers = Storage<Scalar, dynamic>;
+        Start start{Numbers::zeros({outputs * columns}), Numbers::zeros({columns * (columns - 1) / 2}),
+                    Numbers::zeros({columns})};
+        std::ranges::fill(start.diagonal, static_cast<Scalar>(variance));
+        return start;
+    }
+
+    int outputs_;
+    int columns_;
+    BlockArrowConstants<Scalar, dynamic, dynamic, dynamic> constants_;
+    LearnerStart<Scalar, dynamic, dynamic> feature_start_;
+    LearnerStart<Scalar, dynamic, 1> common_start_;
+    Learner learner_;
+};
+
+template <class Scalar>
+void check_equal_to_dense(const ArrowProblem& problem, double tolerance) {
+    auto arrow = std::make_unique<Arrow<Scalar>>(problem);
+    const int last = problem.instants() - 1;
+    for (int t = 0; t < last; ++t) {
+        arrow->learn(problem, t);
+    }
+    const DenseSolution truth(problem, last);
+    CHECK(relative_error(arrow->all_unknowns(), truth.mean) < tolerance);
+    const VectorXd means = arrow->predict(problem, last);
+    const VectorXd variances = arrow->variances(problem, last);
+    for (int k = 0; k < problem.outputs; ++k) {
+        const VectorXd row = problem.dense_row(last, k);
+        CAPTURE(k);
+        CHECK(means[k] == Approx(row.dot(truth.mean)).margin(tolerance * means.norm()));
+        CHECK(variances[k] == Approx(row.dot(truth.covariance * row)).epsilon(tolerance));
+    }
+}
+
+} // namespace
+
+TEST_CASE("the block arrow is the dense solution of all unknowns, for every size") {
+    DFDYN_SEEDED_ENGINE(engine);
+    struct Size {
+        int columns, parameters, outputs;
+    };
+    for (const auto& [columns, parameters, outputs] :
+         {Size{1, 1, 1}, {2, 1, 3}, {4, 3, 2}, {7, 5, 1}, {16, 10, 6}, {30, 21, 4}}) {
+        for (const double lambda : {1.0, 0.998}) {
+            ArrowProblem problem(engine, 150, columns, parameters, outputs);
+            problem.forgetting_factor = static_cast<double>(
+                static_cast<float>(std::max(lambda, 1 - 1.0 / std::max(columns, parameters))));
+            CAPTURE(columns, parameters, outputs, lambda);
+            check_equal_to_dense<double>(problem, 1e-9);
+            check_equal_to_dense<float>(problem, 2e-3);
+        }
+    }
+}
+
+TEST_CASE("the block arrow learns in slices what it learns at once, bit for bit") {
+    DFDYN_SEEDED_ENGINE(engine);
+    ArrowProblem problem(engine, 60, 12, 5, 3);
+    problem.forgetting_factor = 0.95; // variances outgrow their bound: that is sliced too
+    const Cost cost = Arrow<double>::Learner::cost(12, 5, 3);
+    Arrow<double> whole(problem);
+    Arrow<double> sliced(problem);
+    int steps = 0;
+    for (int t = 0; t < problem.instants(); ++t) {
+        whole.learn(problem, t);
+        sliced.predict(problem, t);
+        sliced.begin(problem, t);
+        bool idle = false;
+        while (!idle) {
+            Budget budget{std::uniform_int_distribution<std::int64_t>(0, 2 * cost.largest_step)(engine)};
+            idle = sliced.learner().advance(budget);
+            REQUIRE(budget.operations >= 0);
+            ++steps;
+        }
+        REQUIRE(whole.all_unknowns() == sliced.all_unknowns());
+        REQUIRE(whole.variances(problem, t) == sliced.variances(problem, t));
+    }
+    CHECK(steps > 3 * problem.instants());
+}
+
+TEST_CASE("a sample predicted before another one was learned is learned as if predicted after it") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const ArrowProblem problem(engine, 40, 9, 4, 2);
+    Arrow<double> usual(problem);
+    Arrow<double> late(problem);
+    for (int t = 0; t + 1 < problem.instants(); t += 2) {
+        usual.learn(problem, t);
+        usual.learn(problem, t + 1);
+        late.predict(problem, t);
+        late.begin(problem, t);
+        late.predict(problem, t + 1); // while t is in hand
+        Budget budget = Budget::unlimited();
+        late.learner().advance(budget);
+        late.begin(problem, t + 1);
+        late.learner().advance(budget);
+    }
+    CHECK(relative_error(late.all_unknowns(), usual.all_unknowns()) < 1e-12);
+}
+
+TEST_CASE("the block arrow spends what it says it costs") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const ArrowProblem problem(engine, 20, 30, 7, 3);
+    const Cost cost = Arrow<float>::Learner::cost(30, 7, 3);
+    Arrow<float> arrow(problem);
+    for (int t = 0; t < problem.instants(); ++t) {
+        arrow.predict(problem, t);
+        arrow.begin(problem, t);
+        Budget budget{cost.learn - 1};
+        CHECK_FALSE(arrow.learner().advance(budget));
+        budget.operations += 1;
+        CHECK(arrow.learner().advance(budget));
+        CHECK(budget.operations == 0);
+    }
+}
+
+TEST_CASE("the cost of the block arrow is that of its parts, far below that of all unknowns at once") {
+    constexpr int columns = 500;
+    constexpr int parameters = 40;
+    constexpr int outputs = 6;
+    constexpr Cost arrow =
+        BlockArrow<float, columns, parameters, outputs>::cost(columns, parameters, outputs);
+    constexpr Cost features = UdCovariance<float, columns, outputs>::cost(columns, outputs);
+    constexpr std::int64_t dense =
+        std::int64_t{3} * (outputs * columns + parameters) * (outputs * columns + parameters) / 2 * outputs;
+    static_assert(arrow.predict + arrow.learn < 2 * (features.predict + features.learn));
+    static_assert(100 * (arrow.predict + arrow.learn) < dense);
+    static_assert(arrow.largest_step < arrow.learn / 40);
+    SUCCEED();
+}
