@@ -11,3 +11,6 @@
 #include "dfdyn/learner/cholesky_information.hpp"
 #include "dfdyn/learner/ud_covariance.hpp"
 #include "dfdyn/model.hpp"
+#include "dfdyn/physics/effects.hpp"
+#include "dfdyn/physics/physics.hpp"
+#include "dfdyn/physics/rigid_body.hpp"

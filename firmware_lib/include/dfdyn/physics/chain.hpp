@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/physics/spatial.hpp"
 #include "dfdyn/storage.hpp"
 
 #include <cstdint>
@@ -28,17 +29,39 @@ struct ChainJoint {
 inline constexpr int inertial_parameters = 10;
 
 /// The outputs of a chain are the generalised forces of its joints (N·m, N); every link counts.
+///
+/// A kind of outputs says how many there are, which bodies count (the last `bodies` links), and where along
+/// the chain each output's screw begins: the motion whose virtual power is that output.
 struct JointTorques {
     static constexpr int outputs(int joints) noexcept { return joints; }
     static constexpr int bodies(int joints) noexcept { return joints; }
 
     template <class Scalar>
     struct Constants {};
+
+    /// Writes the screws of the outputs that begin at `link` (0: the base), in its frame; returns how many.
+    template <class Real, class Scalar>
+    static constexpr int begin(const Constants<Real>& /*output*/, const ChainJoint<Real>* joints, int link,
+                               Screw<Scalar>* screws) noexcept {
+        if (link == 0) {
+            return 0;
+        }
+        const auto axis = Vector3<Scalar>::from(joints[link - 1].axis);
+        const auto none = Vector3<Scalar>::zero();
+        screws[0] = joints[link - 1].prismatic ? Screw<Scalar>{none, axis} : Screw<Scalar>{axis, none};
+        return 1;
+    }
+
+    /// Pairs of an output and a body that acts on it.
+    static constexpr std::int64_t pairs(int outputs, int /*bodies*/) noexcept {
+        return std::int64_t{outputs} * (outputs + 1) / 2;
+    }
 };
 
 /// The outputs are force (N) and torque (N·m, about the sensor frame's origin) at a sensor within the chain,
 /// in the sensor's frame. Only what moves beyond the sensor counts: the last `body_count` links, the first of
-/// them without its part on the base's side of the sensor.
+/// them without its part on the base's side of the sensor. That makes n - link + 1 bodies, or all n if the
+/// sensor sits on the base.
 template <int body_count>
 struct WrenchAtSensor {
     static constexpr int outputs(int /*joints*/) noexcept { return 6; }
@@ -50,6 +73,29 @@ struct WrenchAtSensor {
         Placement<Scalar> sensor; ///< of the sensor's frame in that link's frame
         Scalar sign; ///< +1: what the base's side exerts on the tip's side, -1: the reverse (child to parent)
     };
+
+    /// Unit motions along and about the sensor's axes.
+    template <class Real, class Scalar>
+    static constexpr int begin(const Constants<Real>& output, const ChainJoint<Real>* /*joints*/, int link,
+                               Screw<Scalar>* screws) noexcept {
+        if (link != output.link) {
+            return 0;
+        }
+        const Real* rotation = output.sensor.rotation;
+        const auto origin = Vector3<Real>::from(output.sensor.translation);
+        for (int i = 0; i < 3; ++i) {
+            const Real column[] = {rotation[i], rotation[3 + i], rotation[6 + i]};
+            const auto axis = Vector3<Real>::from(column) * output.sign;
+            const auto lever = cross(origin, axis);
+            screws[i] = {Vector3<Scalar>::zero(), Vector3<Scalar>::from(axis)};
+            screws[3 + i] = {Vector3<Scalar>::from(axis), Vector3<Scalar>::from(lever)};
+        }
+        return 6;
+    }
+
+    static constexpr std::int64_t pairs(int outputs, int bodies) noexcept {
+        return std::int64_t{outputs} * bodies;
+    }
 };
 
 /// A serial chain of n joints of known geometry, compiled in; what is learned is the inertial parameters of
@@ -61,6 +107,14 @@ struct Chain {
     static constexpr int outputs = OutputType::outputs(n);
     static constexpr int bodies = OutputType::bodies(n);
     static constexpr int parameters = product(inertial_parameters, bodies);
+    static_assert(n == dynamic || bodies <= n, "more bodies than links");
+
+    /// Empty for a firmware model: every size is a template argument.
+    struct Sizes {
+        [[no_unique_address]] Extent<joints> joint_count{};
+        [[no_unique_address]] Extent<outputs> output_count{};
+        [[no_unique_address]] Extent<bodies> body_count{};
+    };
 
     template <class Scalar>
     struct Constants {

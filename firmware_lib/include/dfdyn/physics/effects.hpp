@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/storage.hpp"
+
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+
+namespace dfdyn {
+
+/// A named effect adds columns to the physics: each column acts on one output and is known but for its
+/// factor, which is learned. An effect says
+///  - `at_joint`: its columns act on joints, so that the outputs must be the joints' torques;
+///  - `Constants`: `row` gives the output (0: the first) that each column acts on, the rest is the effect's
+///    own;
+///  - `value(constants, column, xi)`: the column's entry in that row, from (q, q̇, q̈) of each joint at 3i + j.
+///    In N·m (N) per unit of the parameter, of what the actuator has to give.
+/// The motion's scalar may carry derivatives.
+template <class E>
+concept PhysicsEffect = requires(const typename E::template Constants<float>& constants, int column,
+                                 const float* xi) {
+    { E::at_joint } -> std::convertible_to<bool>;
+    { constants.row[column] } -> std::convertible_to<std::int32_t>;
+    { constants.row.size() } -> std::convertible_to<int>;
+    { E::value(constants, column, xi) }
+    noexcept->std::same_as<float>;
+};
+
+/// `viscous_friction`: q̇; the parameter is N·m·s/rad.
+template <int count>
+struct ViscousFriction {
+    static constexpr bool at_joint = true;
+
+    template <class Scalar>
+    struct Constants {
+        Storage<std::int32_t, count> row;
+    };
+
+    template <class Real, class Scalar>
+    static Scalar value(const Constants<Real>& constants, int column, const Scalar* xi) noexcept {
+        return xi[3 * constants.row[column] + 1];
+    }
+};
+
+/// `coulomb_friction`: tanh(q̇ / v), a sign without a step; the parameter is N·m.
+template <int count>
+struct CoulombFriction {
+    static constexpr bool at_joint = true;
+
+    template <class Scalar>
+    struct Constants {
+        Storage<std::int32_t, count> row;
+        Storage<Scalar, count> sign_velocity; ///< v > 0 (rad/s): 3 v gives 99.5 % of the sign
+    };
+
+    template <class Real, class Scalar>
+    static Scalar value(const Constants<Real>& constants, int column, const Scalar* xi) noexcept {
+        using std::tanh;
+        return tanh(Scalar(xi[3 * constants.row[column] + 1] / constants.sign_velocity[column]));
+    }
+};
+
+/// `stribeck_friction` beyond Coulomb's: tanh(q̇ / v) exp(-(q̇ / v_s)²); the parameter is static less Coulomb
+/// friction (N·m).
+template <int count>
+struct StribeckFriction {
+    static constexpr bool at_joint = true;
+
+    template <class Scalar>
+    struct Constants {
+        Storage<std::int32_t, count> row;
+        Storage<Scalar, count> sign_velocity;     ///< v > 0 (rad/s), as of Coulomb friction
+        Storage<Scalar, count> stribeck_velocity; ///< v_s > 0 (rad/s), above v
+    };
+
+    template <class Real, class Scalar>
+    static Scalar value(const Constants<Real>& constants, int column, const Scalar* xi) noexcept {
+        using std::exp;
+        using std::tanh;
+        const Scalar& velocity = xi[3 * constants.row[column] + 1];
+        const Scalar ratio = velocity / constants.stribeck_velocity[column];
+        const Scalar sign = tanh(Scalar(velocity / constants.sign_velocity[column]));
+        const Scalar fading = exp(Scalar(-ratio * ratio));
+        return sign * fading;
+    }
+};
+
+/// `rotor_inertia`: q̈; the parameter is the inertia seen at the joint (kg·m²).
+template <int count>
+struct RotorInertia {
+    static constexpr bool at_joint = true;
+
+    template <class Scalar>
+    struct Constants {
+        Storage<std::int32_t, count> row;
+    };
+
+    template <class Real, class Scalar>
+    static Scalar value(const Constants<Real>& constants, int column, const Scalar* xi) noexcept {
+        return xi[3 * constants.row[column] + 2];
+    }
+};
+
+/// `joint_spring`: q; the parameter is its stiffness (N·m/rad). Where it rests is part of the row's offset.
+template <int count>
+struct JointSpring {
+    static constexpr bool at_joint = true;
+
+    template <class Scalar>
+    struct Constants {
+        Storage<std::int32_t, count> row;
+    };
+
+    template <class Real, class Scalar>
+    static Scalar value(const Constants<Real>& constants, int column, const Scalar* xi) noexcept {
+        return xi[3 * constants.row[column]];
+    }
+};
+
+/// `torque_offset` or `ft_bias`: 1; the parameter is what is added to the output (N·m, N).
+template <int count>
+struct OutputOffset {
+    static constexpr bool at_joint = false;
+
+    template <class Scalar>
+    struct Constants {
+        Storage<std::int32_t, count> row;
+    };
+
+    template <class Real, class Scalar>
+    static Scalar value(const Constants<Real>& /*constants*/, int /*column*/, const Scalar* /*xi*/) noexcept {
+        return Scalar(1);
+    }
+};
+
+/// The most expensive effect's multiply-adds per column, tanh and exp counted as 30 each.
+inline constexpr int effect_cost = 65;
+
+} // namespace dfdyn

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/physics/effects.hpp"
+#include "dfdyn/physics/rigid_body.hpp"
+
+#include <type_traits>
+
+namespace dfdyn {
+
+/// The parametric part of a model: columns ψ of the rigid body's inertial parameters and of named effects, so
+/// that output = ψ π. MotionType is an input map whose `scale` makes (q, q̇, q̈) of each joint in rad, m and
+/// s. Of all columns - ten per body, base to tip, then those of each effect in the order of the template
+/// arguments - p are selected, since of the inertial parameters only combinations can be identified.
+template <class MotionType, int p, PhysicsEffect... EffectTypes>
+struct Physics {
+    static_assert(MotionType::features_per_joint == 3, "the motion is position, velocity and acceleration");
+    using Motion = MotionType;
+    static constexpr int columns = p;
+
+    /// Of each effect, in the order of the template arguments.
+    template <class Scalar>
+    struct EffectConstants : EffectTypes::template Constants<Scalar>... {};
+
+    template <class Scalar, class Arm>
+    struct Constants {
+        typename Arm::template Constants<Scalar> chain;
+        typename MotionType::template Constants<Scalar, Arm::joints> motion;
+        [[no_unique_address]] EffectConstants<Scalar> effects;
+        Storage<std::int32_t, p> selected; ///< indices of the selected columns among all, ascending
+        Storage<Scalar, p> column_scale;   ///< the parameter that is learned is the physical one / scale
+        Storage<Scalar, Arm::outputs> output_gain; ///< output per N·m (N): 1, or 1 / torque constant (A/N·m)
+    };
+
+    /// Empty for a firmware model: every size is a template argument.
+    template <class Arm>
+    struct Sizes {
+        [[no_unique_address]] Extent<Arm::joints> joint_count{};
+        [[no_unique_address]] Extent<Arm::outputs> output_count{};
+        [[no_unique_address]] Extent<Arm::bodies> body_count{};
+        [[no_unique_address]] Extent<MotionType::lags> lag_count{};
+        [[no_unique_address]] Extent<p> column_count{};
+
+        [[nodiscard]] constexpr typename Arm::Sizes chain() const noexcept {
+            return {joint_count, output_count, body_count};
+        }
+    };
+
+    /// Writes ψ (outputs × p, row-major, in the outputs' units) of a motion: (q, q̇, q̈) of each joint, element
+    /// j of joint i at 3i + j; rad, m, s. Its scalar may carry derivatives. Nothing is checked. An effect
+    /// `at_joint` may be selected for an arm with joint torques only, and its rows are joints of the arm.
+    template <class Arm, class Real, class Scalar>
+    static void evaluate_rows(const Constants<Real, Arm>& constants, const Sizes<Arm>& sizes,
+                              const Scalar* xi, Scalar* psi) noexcept {
+        constexpr bool torques = std::is_same_v<typename Arm::Output, JointTorques>;
+        static_assert(torques || p == dynamic || !(false || ... || EffectTypes::at_joint),
+                      "effects at joints need joint torques as outputs");
+        int column = write_bodies(constants, sizes, xi, psi);
+        int first = inertial_parameters * sizes.body_count;
+        (..., write_effect<EffectTypes>(constants, sizes, xi, first, column, psi));
+    }
+
+    template <class Scalar, class Arm>
+    class Map {
+      public:
+        using Constants = Physics::Constants<Scalar, Arm>;
+        using Sizes = Physics::Sizes<Arm>;
+
+        Map(const Constants& constants, const Sizes& sizes) noexcept
+            : constants_(&constants), sizes_(sizes),
+              motion_(constants.motion, sizes.joint_count, sizes.lag_count, {}),
+              xi_(Inputs::zeros(extent<inputs>(3 * sizes.joint_count))) {}
+
+        void restart() noexcept { motion_.restart(); }
+        [[nodiscard]] bool ready() const noexcept { return motion_.ready(); }
+
+        template <class AnySample>
+        void push(const AnySample& sample) noexcept {
+            motion_.push(sample);
+        }
+
+        /// Writes ψ (outputs × p, row-major, in the outputs' units) of the newest sample. False if anything
+        /// of it is not finite; ψ is then void.
+        bool evaluate(Scalar* psi) noexcept {
+            motion_.evaluate(xi_.data());
+            evaluate_rows(*constants_, sizes_, xi_.data(), psi);
+            bool finite = true;
+            for (int i = 0; i < sizes_.output_count * sizes_.column_count; ++i) {
+                finite = finite && std::isfinite(psi[i]);
+            }
+            return finite;
+        }
+
+        /// Multiply-adds of `evaluate`, at most.
+        [[nodiscard]] static constexpr std::int64_t cost(const Sizes& sizes) noexcept {
+            const std::int64_t written = std::int64_t{2} * sizes.output_count * sizes.column_count;
+            const int effects = sizeof...(EffectTypes) == 0 ? 0 : effect_cost * sizes.column_count;
+            return MotionMap::cost(sizes.joint_count, sizes.lag_count, 3) +
+                   rigid_body_cost<Arm>(sizes.chain()) + written + effects;
+        }
+
+      private:
+        static constexpr int inputs = product(3, Arm::joints);
+        using MotionMap = typename MotionType::template Map<Scalar, Arm::joints>;
+        using Inputs = Storage<Scalar, inputs>;
+
+        const Constants* constants_;
+        [[no_unique_address]] Sizes sizes_;
+        MotionMap motion_;
+        Inputs xi_;
+    };
+
+  private:
+    /// Writes the selected columns of all bodies; returns how many they are.
+    template <class Arm, class Real, class Scalar>
+    static int write_bodies(const Constants<Real, Arm>& constants, const Sizes<Arm>& sizes, const Scalar* xi,
+                            Scalar* psi) noexcept {
+        int column = 0;
+        const auto write = [&](int body, const LinkMotion<Scalar>& motion, const Screw<Scalar>* screws,
+                               int count) {
+            const int first = column;
+            column = end_of(constants, sizes, column, inertial_parameters * (body + 1));
+            for (int k = 0; k < sizes.output_count && column > first; ++k) {
+                Scalar row[inertial_parameters];
+                if (k < count) {
+                    inertial_row(screws[k], motion, row);
+                }
+                for (int c = first; c < column; ++c) {
+                    const int parameter = constants.selected[c] - inertial_parameters * body;
+                    put(constants, sizes, k, c, k < count ? row[parameter] : Scalar(0), psi);
+                }
+            }
+        };
+        for_each_body<Arm, Real>(constants.chain, sizes.chain(), xi, write);
+        return column;
+    }
+
+    /// Writes the selected columns of one effect, whose first column among all is `first`; moves both on.
+    template <class Effect, class Arm, class Real, class Scalar>
+    static void write_effect(const Constants<Real, Arm>& constants, const Sizes<Arm>& sizes, const Scalar* xi,
+                             int& first, int& column, Scalar* psi) noexcept {
+        const typename Effect::template Constants<Real>& effect = constants.effects;
+        const int last = end_of(constants, sizes, column, first + effect.row.size());
+        for (; column < last; ++column) {
+            const int own = constants.selected[column] - first;
+            for (int k = 0; k < sizes.output_count; ++k) {
+                put(constants, sizes, k, column,
+                    k == effect.row[own] ? Effect::value(effect, own, xi) : Scalar(0), psi);
+            }
+        }
+        first += effect.row.size();
+    }
+
+    /// The first selected column, from `column` on, whose index among all is not below `index`.
+    template <class Arm, class Real>
+    static int end_of(const Constants<Real, Arm>& constants, const Sizes<Arm>& sizes, int column,
+                      int index) noexcept {
+        while (column < sizes.column_count && constants.selected[column] < index) {
+            ++column;
+        }
+        return column;
+    }
+
+    template <class Arm, class Real, class Scalar>
+    static void put(const Constants<Real, Arm>& constants, const Sizes<Arm>& sizes, int output, int column,
+                    const Scalar& value, Scalar* psi) noexcept {
+        psi[output * sizes.column_count + column] =
+            value * (constants.output_gain[output] * constants.column_scale[column]);
+    }
+};
+
+} // namespace dfdyn
