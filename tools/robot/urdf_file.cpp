@@ -81,8 +81,8 @@ void check_tree(const urdf::ModelInterface& model, const std::string& file) {
     for (const auto& [name, joint] : model.joints_) {
         if (!children.insert(joint->child_link_name).second) {
             throw InputError(file + ": expected a tree, found that link " +
-                             in_quotes(joint->child_link_name) + " is the child of joint " +
-                             in_quotes(name) + " and of another");
+                             in_quotes(joint->child_link_name) + " is the child of joint " + in_quotes(name) +
+                             " and of another");
         }
     }
     std::set<std::string> reached;

@@ -12,7 +12,7 @@ namespace {
 
 using Catch::Matchers::ContainsSubstring;
 
-std::string link(const std::string& name, const std::string& mass = "1", const std::string& izz = "0.02") {
+std::string body(const std::string& name, const std::string& mass = "1", const std::string& izz = "0.02") {
     return "<link name='" + name + "'><inertial><origin xyz='0.1 0 0'/><mass value='" + mass +
            "'/><inertia ixx='0.02' iyy='0.02' izz='" + izz + "' ixy='0' ixz='0' iyz='0'/></inertial></link>";
 }
@@ -28,8 +28,8 @@ std::string joint(const std::string& name, const std::string& type, const std::s
 
 /// root -a- one -flange(fixed)- two -b(prismatic)- three -end(fixed)- tip, and a gripper on `two` and `tip`.
 std::string arm(const std::string& more = "") {
-    return "<robot name='arm'>" + link("root") + link("one") + link("two") + link("three") + link("finger") +
-           link("thumb") + "<link name='tip'/>" + joint("a", "revolute", "root", "one") +
+    return "<robot name='arm'>" + body("root") + body("one") + body("two") + body("three") + body("finger") +
+           body("thumb") + "<link name='tip'/>" + joint("a", "revolute", "root", "one") +
            joint("flange", "fixed", "one", "two") + joint("b", "prismatic", "two", "three") +
            joint("end", "fixed", "three", "tip") + joint("grip", "revolute", "two", "finger") +
            joint("pinch", "continuous", "tip", "thumb") + more + "</robot>";
@@ -67,7 +67,7 @@ TEST_CASE("fixed joints are merged, and branches count into the link they hang o
 }
 
 TEST_CASE("gravity is turned from the root's frame into the base's") {
-    const std::string turned = "<robot name='r'><link name='world'/>" + link("root") + link("one") +
+    const std::string turned = "<robot name='r'><link name='world'/>" + body("root") + body("one") +
                                "<joint name='w' type='revolute'><parent link='world'/><child link='root'/>"
                                "<origin rpy='1.5707963267948966 0 0'/><axis xyz='1 0 0'/>"
                                "<limit lower='0' upper='1' effort='1' velocity='1'/></joint>" +
@@ -125,7 +125,7 @@ TEST_CASE("the F/T sensor is found by its joint's name, or named by an option") 
 TEST_CASE("what is odd but usable is noted, with its link or joint") {
     std::string text = arm("<joint name='m' type='revolute'><parent link='tip'/><child link='x'/>"
                            "<limit effort='1' velocity='1'/><axis xyz='1 0 0'/><mimic joint='a'/></joint>" +
-                           link("x", "-1") + link("y", "1", "0.1") + joint("f", "fixed", "x", "y"));
+                           body("x", "-1") + body("y", "1", "0.1") + joint("f", "fixed", "x", "y"));
     const std::string limit = "<limit lower='-1' upper='2'";
     text.replace(text.find(limit), limit.size(), "<limit lower='2' upper='2'");
     const tools::Robot robot = read(text);
