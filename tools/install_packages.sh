@@ -13,6 +13,8 @@ demo_packages=(
     "libcli11-dev:the program dfdyn cannot be built"
     "nlohmann-json3-dev:the program dfdyn cannot be built"
     "libnlopt-cxx-dev:dfdyn train cannot be built"
+    "liburdfdom-dev:no robot can be read"
+    "libtinyxml2-dev:no robot can be read"
 )
 test_packages=(
     "catch2:the unit tests cannot be built"

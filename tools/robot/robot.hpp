@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/robot/inertia.hpp"
+
 #include <Eigen/Geometry>
 
 #include <optional>
@@ -8,9 +10,6 @@
 #include <vector>
 
 namespace dfdyn::tools {
-
-/// Mass, first moment m·c (3) and inertia about the frame's origin (xx xy xz yy yz zz), in kg, kg·m, kg·m².
-using InertialParameters = Eigen::Matrix<double, 10, 1>;
 
 /// A moving joint of a chain and the link it moves, with everything that is fixed to that link. The link's
 /// frame is the joint's.
@@ -22,16 +21,17 @@ struct RobotJoint {
         Eigen::Isometry3d::Identity();                       ///< in the previous link's frame, at position 0
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();         ///< unit, in the link's frame
     InertialParameters inertia = InertialParameters::Zero(); ///< of the merged link, in its frame
-    std::optional<double> lower, upper;                      ///< rad, m; continuous joints have none
-    std::optional<double> effort, velocity;                  ///< largest magnitudes, where the URDF has them
+    std::optional<double> lower, upper;     ///< rad, m; both or none: continuous joints have none
+    std::optional<double> effort, velocity; ///< largest magnitudes, where the URDF has them
 };
 
 /// A force/torque sensor at a fixed joint within the chain.
 struct ForceTorqueSensor {
     std::string joint;    ///< the fixed joint's name
     std::size_t link = 0; ///< that carries it: 0 the base, i the link of joint i
-    Eigen::Isometry3d placement = Eigen::Isometry3d::Identity(); ///< of its frame in that link's frame
-    bool parent_to_child = false;                                ///< direction of the measured wrench
+    /// Of its frame, that of the fixed joint's child, in that link's frame.
+    Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();
+    bool parent_to_child = false; ///< direction of the measured wrench
     InertialParameters inertia_beyond =
         InertialParameters::Zero(); ///< of the part of that link beyond it, in the link's frame
 };
@@ -44,6 +44,7 @@ struct Robot {
         Eigen::Isometry3d::Identity();    ///< of the tip's frame in the last link's
     Eigen::Vector3d gravity{0, 0, -9.81}; ///< m/s², in the base's frame
     std::optional<ForceTorqueSensor> sensor;
+    std::vector<std::string> notes; ///< what the file has that is odd but usable; a line each
 };
 
 } // namespace dfdyn::tools
