@@ -15,6 +15,15 @@ namespace {
 
 constexpr float not_predicted = std::numeric_limits<float>::quiet_NaN();
 
+/// Whether a part of the model needs the recording's own derivatives.
+bool needs_derivatives(const TrainedModel& model) {
+    const auto measured = [](const InputModel& input) {
+        return input.kind == InputKind::STD && input.derivatives == Derivatives::measured;
+    };
+    return (model.features.count > 0 && measured(model.input)) ||
+           (model.physics && measured(model.physics->motion));
+}
+
 void check_fit(const TrainedModel& model, const Recording& recording) {
     const auto joints = static_cast<std::size_t>(model.joints);
     if (recording.joint_count() != joints) {
@@ -25,6 +34,18 @@ void check_fit(const TrainedModel& model, const Recording& recording) {
         throw InputError(recording.source + ": expected the model's outputs " + listed(model.outputs.names) +
                          ", found " + listed(recording.output.names));
     }
+    if (needs_derivatives(model) && !(recording.velocity.present() && recording.acceleration.present())) {
+        throw InputError(recording.source + ": expected columns qd1… and qdd1…, whose derivatives the model "
+                                            "was trained with, found none");
+    }
+}
+
+MeasuredSample sample_at(const Recording& recording, std::size_t row) {
+    const auto derivative = [&](const Columns& columns) {
+        return columns.present() ? columns.row(row) : std::span<const double>();
+    };
+    return {recording.time_ns[row], recording.position.row(row), derivative(recording.velocity),
+            derivative(recording.acceleration), recording.output.row(row)};
 }
 
 void append(const Tick& tick, ReplayedRecording& replayed) {
@@ -52,8 +73,7 @@ ReplayedRecording replay(HostEstimator& estimator, const TrainedModel& model, co
         if (recording.gap_before[row] != 0) {
             estimator.begin_recording();
         }
-        const Tick tick =
-            estimator.tick(recording.time_ns[row], recording.position.row(row), recording.output.row(row));
+        const Tick tick = estimator.tick(sample_at(recording, row));
         append(tick, replayed);
         if (!tick.status.predicted()) {
             errors.skip();

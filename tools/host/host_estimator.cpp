@@ -4,7 +4,6 @@
 #include "tools/host/host_model.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace dfdyn::tools {
 
@@ -12,26 +11,52 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-template <class Input>
+template <int count>
+void copy(std::span<const double> values, Storage<float, count>& storage) {
+    std::ranges::transform(values, storage.begin(), [](double x) { return static_cast<float>(x); });
+}
+
+template <int count>
+Storage<float, count> zeros(int size) {
+    return Storage<float, count>::zeros(extent<count>(size));
+}
+
+/// The sample of a model with no need of derivatives, or with.
+template <class Host>
+typename Host::Sample empty_sample(int joints, int outputs) {
+    typename Host::Sample sample{};
+    sample.position = zeros<Host::joints>(joints);
+    sample.output = zeros<Host::outputs>(outputs);
+    sample.output_valid = true;
+    if constexpr (requires { sample.velocity; }) {
+        sample.velocity = zeros<Host::joints>(joints);
+        sample.acceleration = zeros<Host::joints>(joints);
+    }
+    return sample;
+}
+
+template <class Host>
 class EstimatorOf final : public HostEstimator {
   public:
     EstimatorOf(const TrainedModel& model, bool from_prior)
-        : host_(make_host_constants<Input>(model, from_prior)),
-          estimator_(host_->constants), sample_{0, zeros(model.joints), zeros(output_count()), true},
-          estimate_{zeros(output_count()), zeros(output_count()), zeros(output_count()), 0, {}} {}
+        : host_(make_host_constants<Host>(model, from_prior)), estimator_(host_->constants),
+          sample_(empty_sample<Host>(model.joints, output_count())),
+          estimate_{outputs(), outputs(), outputs(), 0, {}}, input_cost_(cost_of_inputs(model)) {}
 
-    Tick tick(std::int64_t time_ns, std::span<const double> position,
-              std::span<const double> output) override {
-        sample_.time_ns = time_ns;
-        std::ranges::transform(position, sample_.position.begin(),
-                               [](double q) { return static_cast<float>(q); });
-        std::ranges::transform(output, sample_.output.begin(),
-                               [](double y) { return static_cast<float>(y); });
+    Tick tick(const MeasuredSample& sample) override {
+        sample_.time_ns = sample.time_ns;
+        copy(sample.position, sample_.position);
+        copy(sample.output, sample_.output);
+        if constexpr (requires { sample_.velocity; }) {
+            copy(sample.velocity, sample_.velocity);
+            copy(sample.acceleration, sample_.acceleration);
+        }
         const auto begin = Clock::now();
         estimate_ = estimator_.tick(sample_, Budget::unlimited());
         const auto duration = Clock::now() - begin;
-        return {estimate_.prediction, estimate_.standard_deviation, estimate_.normalised_innovation_squared,
-                estimate_.status, duration};
+        return {std::span(estimate_.prediction.data(), size()),
+                std::span(estimate_.standard_deviation.data(), size()),
+                estimate_.normalised_innovation_squared, estimate_.status, duration};
     }
 
     void predict_with(std::span<const float> weights, std::span<float> prediction) const override {
@@ -51,40 +76,51 @@ class EstimatorOf final : public HostEstimator {
 
     void begin_recording() override { estimator_.restart_window(); }
     std::size_t state_bytes() const override { return estimator_.snapshot_bytes(); }
-    Cost cost() const override { return Embedded::cost(constants().sizes); }
+    Cost cost() const override {
+        Cost cost = Embedded::cost(constants().sizes);
+        cost.predict += input_cost_;
+        return cost;
+    }
 
   private:
-    using Host = HostModel<Input>;
     using Embedded = Estimator<Host>;
 
-    static Storage<float, dynamic> zeros(int count) {
-        return Storage<float, dynamic>::zeros(Extent<dynamic>{count});
+    /// Of the maps whose kind is chosen at run time: the embedded estimator does not know them.
+    static std::int64_t cost_of_inputs(const TrainedModel& model) {
+        return (model.features.count > 0 ? cost_of_input(model.input, model.joints) : 0) +
+               (model.physics ? cost_of_input(model.physics->motion, model.joints) : 0);
     }
     const typename Host::Constants& constants() const { return host_->constants; }
     int output_count() const { return constants().sizes.output_count; }
+    std::size_t size() const { return static_cast<std::size_t>(output_count()); }
+    Storage<float, Host::outputs> outputs() const { return zeros<Host::outputs>(output_count()); }
 
     std::unique_ptr<HostConstants<Host>> host_;
     Embedded estimator_;
     typename Embedded::Sample sample_;
     typename Embedded::Estimate estimate_;
+    std::int64_t input_cost_;
 };
+
+template <class Arm>
+std::unique_ptr<HostEstimator> make_with_physics(const TrainedModel& model, bool from_prior) {
+    if (model.structure == "P") {
+        return std::make_unique<EstimatorOf<HostParametric<Arm>>>(model, from_prior);
+    }
+    if (model.structure == "SPK") {
+        return std::make_unique<EstimatorOf<HostKernel<Arm>>>(model, from_prior);
+    }
+    return std::make_unique<EstimatorOf<HostMean<Arm>>>(model, from_prior);
+}
 
 } // namespace
 
 std::unique_ptr<HostEstimator> make_estimator(const TrainedModel& model, bool from_prior) {
-    switch (model.input.kind) {
-    case InputKind::STD:
-        return std::make_unique<EstimatorOf<Standard<dynamic>>>(model, from_prior);
-    case InputKind::DF:
-        return std::make_unique<EstimatorOf<DerivativeFree<dynamic>>>(model, from_prior);
-    case InputKind::DFW:
-        return std::make_unique<EstimatorOf<DerivativeFreeWeighted<dynamic>>>(model, from_prior);
-    case InputKind::DFR:
-        return std::make_unique<EstimatorOf<DerivativeFreeReduced<dynamic, dynamic>>>(model, from_prior);
-    case InputKind::DFSR:
-        return std::make_unique<EstimatorOf<DerivativeFreeStructured<dynamic>>>(model, from_prior);
+    if (!model.physics) {
+        return std::make_unique<EstimatorOf<HostNonparametric>>(model, from_prior);
     }
-    throw std::logic_error("an input kind without an estimator");
+    return model.physics->chain.sensor ? make_with_physics<WrenchArm>(model, from_prior)
+                                       : make_with_physics<TorqueArm>(model, from_prior);
 }
 
 } // namespace dfdyn::tools

@@ -23,16 +23,23 @@ struct Tick {
     std::chrono::nanoseconds duration{}; ///< of `Estimator::tick` alone
 };
 
+/// What one row of a recording has for a tick.
+struct MeasuredSample {
+    std::int64_t time_ns = 0;
+    std::span<const double> position;     ///< n values
+    std::span<const double> velocity;     ///< n values; read by models of measured derivatives only
+    std::span<const double> acceleration; ///< likewise
+    std::span<const double> output;       ///< m values
+};
+
 /// The embedded estimator of any model, whatever its sizes and input: what the firmware runs, behind one
 /// interface.
 class HostEstimator {
   public:
     virtual ~HostEstimator() = default;
 
-    /// One tick with an unlimited budget. `position`: n values, `output`: m values. The spans in the result
-    /// live until the next tick.
-    virtual Tick tick(std::int64_t time_ns, std::span<const double> position,
-                      std::span<const double> output) = 0;
+    /// One tick with an unlimited budget. The spans in the result live until the next tick.
+    virtual Tick tick(const MeasuredSample& sample) = 0;
 
     /// What the columns of the last tick predict with other weights (as `weights` gave them); m values into
     /// `prediction`.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/host/host_model.hpp"
 
+#include "tools/model/effects.hpp"
 #include "tools/model/model_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
@@ -10,33 +12,184 @@ namespace dfdyn::tools {
 
 namespace {
 
-template <class Scalar>
-Storage<Scalar, dynamic> converted(const std::vector<double>& values) {
-    auto storage = Storage<Scalar, dynamic>::zeros(Extent<dynamic>{static_cast<int>(values.size())});
+/// `count` must be dynamic or the number of values.
+template <class Scalar, int count = dynamic, class Number>
+Storage<Scalar, count> converted(const std::vector<Number>& values) {
+    auto storage = Storage<Scalar, count>::zeros(extent<count>(static_cast<int>(values.size())));
     for (int i = 0; i < storage.size(); ++i) {
         storage[i] = static_cast<Scalar>(values[static_cast<std::size_t>(i)]);
     }
     return storage;
 }
 
-template <class Constants>
-void set_input(Constants& constants, const InputModel& input) {
-    constants.scale = converted<float>(firmware_scale(input));
-    if constexpr (requires { constants.rows; }) {
-        constants.rows = converted<float>(firmware_rows(input));
+int output_count(const TrainedModel& model) { return static_cast<int>(model.outputs.names.size()); }
+
+template <class Scalar>
+Placement<Scalar> placement(const ChainModel::Frame& frame) {
+    Placement<Scalar> result{};
+    std::ranges::transform(frame.rotation, result.rotation, [](double x) { return static_cast<Scalar>(x); });
+    std::ranges::transform(frame.translation, result.translation,
+                           [](double x) { return static_cast<Scalar>(x); });
+    return result;
+}
+
+template <class Scalar, class Arm>
+typename Arm::template Constants<Scalar> host_chain(const ChainModel& chain) {
+    typename Arm::template Constants<Scalar> result{};
+    result.joint = Storage<ChainJoint<Scalar>, dynamic>::zeros({static_cast<int>(chain.joints.size())});
+    for (int i = 0; i < result.joint.size(); ++i) {
+        const ChainModel::Joint& joint = chain.joints[static_cast<std::size_t>(i)];
+        result.joint[i] = {placement<Scalar>(joint.placement), {}, joint.prismatic};
+        std::ranges::transform(joint.axis, result.joint[i].axis,
+                               [](double x) { return static_cast<Scalar>(x); });
     }
-    if constexpr (requires { constants.position_noise_bound; }) {
-        constants.position_noise_bound = static_cast<float>(input.position_noise_bound);
+    std::ranges::transform(chain.gravity, result.gravity, [](double x) { return static_cast<Scalar>(x); });
+    if constexpr (std::is_same_v<Arm, WrenchArm>) {
+        const ChainModel::Sensor& sensor = *chain.sensor;
+        result.output = {sensor.link, placement<Scalar>(sensor.placement),
+                         static_cast<Scalar>(sensor.parent_to_child ? 1 : -1)};
+    }
+    return result;
+}
+
+template <class Scalar, int k>
+typename AnyInput<k>::template Constants<Scalar, dynamic> host_input(const InputModel& input) {
+    auto scale = converted<Scalar>(firmware_scale(input));
+    switch (input.kind) {
+    case InputKind::STD:
+        if (input.derivatives == Derivatives::measured) {
+            return typename StandardMeasured::template Constants<Scalar, dynamic>{std::move(scale)};
+        }
+        return typename Standard<dynamic>::template Constants<Scalar, dynamic>{
+            static_cast<Scalar>(input.position_noise_bound), std::move(scale)};
+    case InputKind::DF:
+    case InputKind::DFW:
+        return typename DerivativeFree<dynamic>::template Constants<Scalar, dynamic>{std::move(scale)};
+    default:
+        return typename DerivativeFreeReduced<dynamic, k>::template Constants<Scalar, dynamic>{
+            converted<Scalar>(firmware_rows(input)), std::move(scale)};
+    }
+}
+
+/// The columns of one effect.
+std::vector<EffectModel> columns_of(const PhysicsModel& physics, const char* name) {
+    std::vector<EffectModel> columns;
+    for (const EffectModel& effect : physics.effects) {
+        if (effect.name == name) {
+            columns.push_back(effect);
+        }
+    }
+    return columns;
+}
+
+template <class Scalar>
+Storage<Scalar, dynamic> gathered(const std::vector<EffectModel>& columns, double EffectModel::*member) {
+    std::vector<double> values;
+    for (const EffectModel& column : columns) {
+        values.push_back(column.*member);
+    }
+    return converted<Scalar>(values);
+}
+
+template <class Constants>
+void set_effect(Constants& constants, const std::vector<EffectModel>& columns) {
+    std::vector<int> rows;
+    for (const EffectModel& column : columns) {
+        rows.push_back(column.row);
+    }
+    constants.row = converted<std::int32_t>(rows);
+    if constexpr (requires { constants.sign_velocity; }) {
+        using Scalar = std::remove_cvref_t<decltype(constants.sign_velocity[0])>;
+        constants.sign_velocity = gathered<Scalar>(columns, &EffectModel::sign_velocity);
+    }
+    if constexpr (requires { constants.stribeck_velocity; }) {
+        using Scalar = std::remove_cvref_t<decltype(constants.stribeck_velocity[0])>;
+        constants.stribeck_velocity = gathered<Scalar>(columns, &EffectModel::stribeck_velocity);
+    }
+}
+
+template <class Scalar>
+typename HostPhysics::template EffectConstants<Scalar> host_effects(const PhysicsModel& physics) {
+    typename HostPhysics::template EffectConstants<Scalar> result{};
+    set_effect<typename ViscousFriction<dynamic>::template Constants<Scalar>>(
+        result, columns_of(physics, "viscous_friction"));
+    set_effect<typename CoulombFriction<dynamic>::template Constants<Scalar>>(
+        result, columns_of(physics, "coulomb_friction"));
+    set_effect<typename StribeckFriction<dynamic>::template Constants<Scalar>>(
+        result, columns_of(physics, "stribeck_friction"));
+    set_effect<typename RotorInertia<dynamic>::template Constants<Scalar>>(
+        result, columns_of(physics, "rotor_inertia"));
+    set_effect<typename JointSpring<dynamic>::template Constants<Scalar>>(
+        result, columns_of(physics, "joint_spring"));
+    set_effect<typename OutputOffset<dynamic>::template Constants<Scalar>>(
+        result, columns_of(physics, offset_effect(physics.chain)));
+    return result;
+}
+
+template <class Start>
+Start feature_start(const TrainedModel& model) {
+    return {converted<float>(firmware_weights(model)), converted<float>(model.start.unit_upper),
+            converted<float>(model.start.diagonal)};
+}
+
+LearnerStart<float, dynamic, 1> parameter_start(const PhysicsModel& physics) {
+    return {converted<float>(physics.start.weights), converted<float>(physics.start.unit_upper),
+            converted<float>(physics.start.diagonal)};
+}
+
+/// Prior and start of one of a model's learners.
+template <class Constants>
+void set_learner(Constants& learner, double prior_variance, double forgetting_factor,
+                 decltype(Constants::start) start) {
+    learner.prior_variance = static_cast<float>(prior_variance);
+    learner.forgetting_factor = static_cast<float>(forgetting_factor);
+    learner.start = start;
+}
+
+template <class Model>
+void set_learners(HostConstants<Model>& host, const TrainedModel& model, bool from_prior) {
+    const auto* features = from_prior ? nullptr : &host.features;
+    const auto* parameters = from_prior ? nullptr : &host.parameters;
+    auto& learner = host.constants.learner;
+    const double lambda = model.forgetting_factor;
+    if constexpr (requires { learner.common; }) {
+        set_learner(learner.features, model.outputs.prior_variance, lambda, features);
+        set_learner(learner.common, model.physics->prior_variance, lambda, parameters);
+    } else if constexpr (requires { learner.residual; }) {
+        learner.parameters_of_mean = converted<float>(model.physics->start.weights);
+        set_learner(learner.residual, model.outputs.prior_variance, lambda, features);
+    } else if constexpr (Model::columns == 0) {
+        set_learner(learner, model.physics->prior_variance, lambda, parameters);
+    } else {
+        set_learner(learner, model.outputs.prior_variance, lambda, features);
     }
 }
 
 template <class Model>
 typename Model::Sizes host_sizes(const TrainedModel& model) {
-    return {extent<Model::joints>(model.joints),
-            extent<Model::outputs>(static_cast<int>(model.outputs.names.size())),
-            extent<Model::Input::lags>(model.input.lags),
-            extent<Model::Input::features_per_joint>(model.input.rows_per_joint),
-            extent<Model::Features::count>(model.features.count)};
+    typename Model::Sizes sizes{extent<Model::joints>(model.joints),
+                                extent<Model::outputs>(output_count(model)),
+                                extent<Model::Input::lags>(model.input.lags),
+                                extent<Model::Input::features_per_joint>(model.input.rows_per_joint),
+                                extent<Model::Features::count>(model.features.count),
+                                {}};
+    if constexpr (!std::is_same_v<typename Model::Physics, NoPhysics>) {
+        sizes.physics = host_physics_sizes<typename Model::Arm>(*model.physics);
+    }
+    return sizes;
+}
+
+template <class Model>
+void set_columns(typename Model::Constants& constants, const TrainedModel& model) {
+    if constexpr (Model::columns != 0) {
+        constants.input = host_input<float, dynamic>(model.input);
+        constants.features.frequencies =
+            converted<float>(firmware_frequencies(model.features, model.joints * model.input.rows_per_joint));
+        constants.features.amplitude = 1 / std::sqrt(static_cast<float>(model.features.count));
+    }
+    if constexpr (!std::is_same_v<typename Model::Physics, NoPhysics>) {
+        constants.physics = host_physics<float, typename Model::Arm>(*model.physics);
+    }
 }
 
 } // namespace
@@ -75,42 +228,93 @@ std::vector<double> firmware_frequencies(const FeatureModel& features, int input
     return frequencies;
 }
 
-template <class Input>
-std::unique_ptr<HostConstants<HostModel<Input>>> make_host_constants(const TrainedModel& model,
-                                                                     bool from_prior) {
-    using Host = HostModel<Input>;
-    auto host = std::make_unique<HostConstants<Host>>();
-    host->start = {converted<float>(model.start.weights), converted<float>(model.start.unit_upper),
-                   converted<float>(model.start.diagonal)};
-    typename Host::Constants& constants = host->constants;
-    constants.sizes = host_sizes<Host>(model);
+std::vector<double> firmware_weights(const TrainedModel& model) {
+    if (model.structure != "SPK") {
+        return model.start.weights;
+    }
+    const auto columns = static_cast<std::ptrdiff_t>(2 * model.features.count);
+    const auto coupled = columns * static_cast<std::ptrdiff_t>(model.physics->selected.size());
+    std::vector<double> weights;
+    for (std::ptrdiff_t k = 0; k < output_count(model); ++k) {
+        const auto own = model.start.weights.begin() + k * columns;
+        const auto coupling = model.physics->coupling.begin() + k * coupled;
+        weights.insert(weights.end(), own, own + columns);
+        weights.insert(weights.end(), coupling, coupling + coupled);
+    }
+    return weights;
+}
+
+int body_count(const ChainModel& chain) {
+    const auto joints = static_cast<int>(chain.joints.size());
+    return chain.sensor ? joints - std::max(chain.sensor->link, 1) + 1 : joints;
+}
+
+std::int64_t cost_of_input(const InputModel& input, int joints) {
+    switch (input.kind) {
+    case InputKind::STD:
+        return input.derivatives == Derivatives::measured
+                   ? StandardMeasured::Map<float, dynamic>::cost(joints, 0, 3)
+                   : Standard<dynamic>::Map<float, dynamic>::cost(joints, input.lags, 3);
+    case InputKind::DF:
+    case InputKind::DFW:
+        return DerivativeFree<dynamic>::Map<float, dynamic>::cost(joints, input.lags, input.rows_per_joint);
+    default:
+        return DerivativeFreeReduced<dynamic, dynamic>::Map<float, dynamic>::cost(joints, input.lags,
+                                                                                  input.rows_per_joint);
+    }
+}
+
+template <class Scalar, class Arm>
+typename HostPhysics::template Constants<Scalar, Arm> host_physics(const PhysicsModel& physics) {
+    return {host_chain<Scalar, Arm>(physics.chain),  host_input<Scalar, 3>(physics.motion),
+            host_effects<Scalar>(physics),           converted<std::int32_t>(physics.selected),
+            converted<Scalar>(physics.column_scale), converted<Scalar, Arm::outputs>(physics.output_gain)};
+}
+
+template <class Arm>
+typename HostPhysics::template Sizes<Arm> host_physics_sizes(const PhysicsModel& physics) {
+    return {extent<Arm::joints>(static_cast<int>(physics.chain.joints.size())),
+            extent<Arm::outputs>(static_cast<int>(physics.output_gain.size())),
+            extent<Arm::bodies>(body_count(physics.chain)),
+            {physics.motion.lags},
+            {static_cast<int>(physics.selected.size())}};
+}
+
+template <class Model>
+std::unique_ptr<HostConstants<Model>> make_host_constants(const TrainedModel& model, bool from_prior) {
+    auto host = std::make_unique<HostConstants<Model>>();
+    host->features = feature_start<decltype(host->features)>(model);
+    if (model.physics) {
+        host->parameters = parameter_start(*model.physics);
+    }
+    typename Model::Constants& constants = host->constants;
+    constants.sizes = host_sizes<Model>(model);
     constants.identity = model_identity(model);
     constants.gap_ns = gap_ns(model);
-    set_input(constants.input, model.input);
-    constants.features.frequencies =
-        converted<float>(firmware_frequencies(model.features, model.joints * model.input.rows_per_joint));
-    constants.features.amplitude = 1 / std::sqrt(static_cast<float>(model.features.count));
-    constants.output_offset = converted<float>(model.outputs.offset);
-    constants.output_noise_std = converted<float>(model.outputs.noise_std);
+    set_columns<Model>(constants, model);
+    constants.output_offset = converted<float, Model::outputs>(model.outputs.offset);
+    constants.output_noise_std = converted<float, Model::outputs>(model.outputs.noise_std);
     constants.position_limit = converted<float>(model.limits.position_rad);
-    constants.output_limit = converted<float>(model.limits.output);
+    constants.output_limit = converted<float, Model::outputs>(model.limits.output);
     constants.innovation_limit = static_cast<float>(model.limits.innovation);
     constants.innovation_patience = model.limits.innovation_patience;
-    constants.learner.prior_variance = static_cast<float>(model.outputs.prior_variance);
-    constants.learner.forgetting_factor = static_cast<float>(model.forgetting_factor);
-    constants.learner.start = from_prior ? nullptr : &host->start;
+    set_learners(*host, model, from_prior);
     return host;
 }
 
-template std::unique_ptr<HostConstants<HostModel<Standard<dynamic>>>>
-make_host_constants<Standard<dynamic>>(const TrainedModel&, bool);
-template std::unique_ptr<HostConstants<HostModel<DerivativeFree<dynamic>>>>
-make_host_constants<DerivativeFree<dynamic>>(const TrainedModel&, bool);
-template std::unique_ptr<HostConstants<HostModel<DerivativeFreeWeighted<dynamic>>>>
-make_host_constants<DerivativeFreeWeighted<dynamic>>(const TrainedModel&, bool);
-template std::unique_ptr<HostConstants<HostModel<DerivativeFreeReduced<dynamic, dynamic>>>>
-make_host_constants<DerivativeFreeReduced<dynamic, dynamic>>(const TrainedModel&, bool);
-template std::unique_ptr<HostConstants<HostModel<DerivativeFreeStructured<dynamic>>>>
-make_host_constants<DerivativeFreeStructured<dynamic>>(const TrainedModel&, bool);
+template std::unique_ptr<HostConstants<HostNonparametric>> make_host_constants(const TrainedModel&, bool);
+template std::unique_ptr<HostConstants<HostParametric<TorqueArm>>> make_host_constants(const TrainedModel&,
+                                                                                       bool);
+template std::unique_ptr<HostConstants<HostParametric<WrenchArm>>> make_host_constants(const TrainedModel&,
+                                                                                       bool);
+template std::unique_ptr<HostConstants<HostMean<TorqueArm>>> make_host_constants(const TrainedModel&, bool);
+template std::unique_ptr<HostConstants<HostMean<WrenchArm>>> make_host_constants(const TrainedModel&, bool);
+template std::unique_ptr<HostConstants<HostKernel<TorqueArm>>> make_host_constants(const TrainedModel&, bool);
+template std::unique_ptr<HostConstants<HostKernel<WrenchArm>>> make_host_constants(const TrainedModel&, bool);
+
+template HostPhysics::Constants<double, TorqueArm> host_physics<double, TorqueArm>(const PhysicsModel&);
+template HostPhysics::Constants<double, WrenchArm> host_physics<double, WrenchArm>(const PhysicsModel&);
+template HostPhysics::Sizes<TorqueArm> host_physics_sizes<TorqueArm>(const PhysicsModel&);
+template HostPhysics::Sizes<WrenchArm> host_physics_sizes<WrenchArm>(const PhysicsModel&);
 
 } // namespace dfdyn::tools

@@ -58,6 +58,23 @@ const nlohmann::json& JsonReader::field(const std::string& name) const {
     return *found;
 }
 
+bool JsonReader::has(const std::string& name) const { return json_->contains(name); }
+
+std::vector<JsonReader> JsonReader::objects(const std::string& name, int at_most) const {
+    const nlohmann::json& values = array(name);
+    if (values.size() > static_cast<std::size_t>(at_most)) {
+        throw error(name, "at most " + std::to_string(at_most) + " objects", std::to_string(values.size()));
+    }
+    std::vector<JsonReader> result;
+    for (const nlohmann::json& value : values) {
+        if (!value.is_object()) {
+            throw error(name, "objects", shown_value(value));
+        }
+        result.push_back({value, source_, path_ + name + "[" + std::to_string(result.size()) + "]."});
+    }
+    return result;
+}
+
 JsonReader JsonReader::object(const std::string& name) const {
     const nlohmann::json& value = field(name);
     if (!value.is_object()) {

@@ -21,7 +21,9 @@ class JsonReader {
   public:
     JsonReader(const nlohmann::json& json, std::string source);
 
+    bool has(const std::string& name) const;
     JsonReader object(const std::string& name) const;
+    std::vector<JsonReader> objects(const std::string& name, int at_most) const;
     std::string text(const std::string& name) const;
     std::vector<std::string> texts(const std::string& name, int at_most) const;
     bool flag(const std::string& name) const;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,12 @@ namespace dfdyn::tools {
 
 /// The five inputs of the paper (section "Derivative-free Learning"), by their names on the command line.
 enum class InputKind { STD, DF, DFW, DFR, DFSR };
+
+/// Where velocities and accelerations of input STD come from.
+enum class Derivatives {
+    estimated, ///< from the positions, by the adaptive window
+    measured,  ///< columns qd, qdd of the recording
+};
 
 /// How each joint's last positions become k features: xi_(i,j) = relevance-scaled row j of R applied to joint
 /// i. Element (i, j) of xi has index i * rows_per_joint + j.
@@ -21,9 +28,10 @@ struct InputModel {
     /// (row 0 = position), DFSR: rows that follow from `alpha` and `beta`.
     std::vector<double> rows;
     std::vector<double> scale; ///< n*k factors applied to R q (relevance / standard deviation over training)
-    std::array<double, 2> alpha{};   ///< DFSR only: gains of the velocity and acceleration rows
-    std::array<double, 2> beta{};    ///< DFSR only: poles of their low-pass filters, in (0, 1)
-    double position_noise_bound = 0; ///< STD only: bound of the position error (rad) for the adaptive window
+    std::array<double, 2> alpha{}; ///< DFSR only: gains of the velocity and acceleration rows
+    std::array<double, 2> beta{};  ///< DFSR only: poles of their low-pass filters, in (0, 1)
+    Derivatives derivatives = Derivatives::estimated; ///< STD only
+    double position_noise_bound = 0; ///< STD, estimated: bound of the position error (rad) for the window
 };
 
 /// Random features: phi = [cos(omega xi / l); sin(omega xi / l)] / sqrt(d).
@@ -60,6 +68,52 @@ struct StartModel {
     std::vector<double> diagonal; ///< 2d values of D
 };
 
+/// A serial chain's geometry: what the firmware compiles in of a robot.
+struct ChainModel {
+    struct Frame {
+        std::array<double, 9> rotation{}; ///< row-major
+        std::array<double, 3> translation{};
+    };
+    struct Joint {
+        std::string name;
+        Frame placement; ///< of the link's frame in the previous link's, at position 0
+        std::array<double, 3> axis{};
+        bool prismatic = false;
+    };
+    struct Sensor {
+        std::string joint;
+        int link = 0;    ///< that carries it: 0 the base, i the link of joint i
+        Frame placement; ///< in that link's frame
+        bool parent_to_child = false;
+    };
+    std::vector<Joint> joints;
+    std::array<double, 3> gravity{}; ///< m/s^2, in the base's frame
+    std::optional<Sensor> sensor;    ///< the outputs are its wrench; otherwise the joints' torques
+};
+
+/// One column of a named effect, as interfaces name it.
+struct EffectModel {
+    std::string name;
+    int row = 0;                  ///< output that it acts on, from 0
+    double sign_velocity = 0;     ///< coulomb_friction, stribeck_friction (rad/s)
+    double stribeck_velocity = 0; ///< stribeck_friction (rad/s)
+};
+
+/// The physics of P, SP, SP2 and SPK: y = psi pi + …, psi of all columns - ten per body, base to tip, then
+/// the effects - of which some are selected.
+struct PhysicsModel {
+    ChainModel chain;
+    InputModel motion; ///< STD, or DFR with three rows in 1, 1/s, 1/s^2; scale 1
+    std::vector<EffectModel> effects;
+    std::vector<int> selected;                ///< p, ascending, among all columns
+    std::vector<std::string> parameter_names; ///< p, with unit: "link2 mcx (kg m)"
+    std::vector<double> column_scale;         ///< p: the physical parameter is scale * pi
+    std::vector<double> output_gain;          ///< m: output per N m
+    double prior_variance = 0;                ///< of each pi in units of the noise; 0: pi is fixed (SP, SP2)
+    StartModel start;                         ///< pi and the factor of its covariance; fixed: no factor
+    std::vector<double> coupling;             ///< SPK: of each output, of each column of psi, its 2d weights
+};
+
 /// Where the constants came from.
 struct TrainingRecord {
     std::vector<std::string> recordings; ///< file names without folders
@@ -73,12 +127,13 @@ struct TrainingRecord {
 
 /// Everything that `dfdyn train` fixes: the content of model.json.
 struct TrainedModel {
-    std::string structure = "NP";
+    std::string structure = "NP"; ///< NP, P, SP, SP2 or SPK
     int joints = 0;
     double sample_period_s = 0;
     double forgetting_factor = 1;
-    InputModel input;
-    FeatureModel features;
+    InputModel input;      ///< P: none of the next two
+    FeatureModel features; ///< P: count 0
+    std::optional<PhysicsModel> physics;
     OutputModel outputs;
     LimitModel limits;
     StartModel start;

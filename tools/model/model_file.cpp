@@ -5,6 +5,7 @@
 #include "tools/common/error.hpp"
 #include "tools/common/text.hpp"
 #include "tools/model/json_reader.hpp"
+#include "tools/model/model_json.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -24,115 +25,57 @@ using nlohmann::ordered_json;
 
 constexpr const char* schema = "dfdyn.model/1";
 
-constexpr std::array<std::pair<InputKind, const char*>, 5> input_names{{{InputKind::STD, "STD"},
-                                                                        {InputKind::DF, "DF"},
-                                                                        {InputKind::DFW, "DFW"},
-                                                                        {InputKind::DFR, "DFR"},
-                                                                        {InputKind::DFSR, "DFSR"}}};
-
 /// Sizes that no arm exceeds: a hostile file must not make the program ask for terabytes.
 constexpr int largest_joint_count = 64;
-constexpr int largest_lag_count = 1000;
 constexpr int largest_feature_count = 5000;
 constexpr int largest_output_count = 64;
 
-/// The double whose shortest decimal text is that of `value` in single precision.
-double single(double value) {
-    std::array<char, 32> text{};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), static_cast<float>(value)).ptr;
-    double result = 0;
-    std::from_chars(text.data(), end, result);
-    return result;
+constexpr std::array<std::string_view, 5> structures{"NP", "P", "SP", "SP2", "SPK"};
+
+ordered_json features_to_json(const FeatureModel& features) {
+    return {{"orthogonal", features.orthogonal},
+            {"count", features.count},
+            {"seed", features.seed},
+            {"length_scale", features.length_scale},
+            {"omega", singles(features.omega)}};
 }
 
-ordered_json singles(std::span<const double> values) {
-    ordered_json array = ordered_json::array();
-    for (const double value : values) {
-        array.push_back(single(value));
-    }
-    return array;
-}
-
-ordered_json input_to_json(const InputModel& input) {
-    ordered_json json{
-        {"kind", to_string(input.kind)}, {"lags", input.lags}, {"rows_per_joint", input.rows_per_joint}};
-    if (input.kind == InputKind::STD) {
-        json["position_noise_bound"] = single(input.position_noise_bound);
-    } else {
-        json["rows"] = input.rows;
-    }
-    if (input.kind == InputKind::DFSR) {
-        json["alpha"] = input.alpha;
-        json["beta"] = input.beta;
-    }
-    json["scale"] = singles(input.scale);
-    return json;
+ordered_json training_to_json(const TrainingRecord& record) {
+    return {{"recordings", record.recordings},
+            {"rows", record.rows},
+            {"method", record.method},
+            {"seed", record.seed},
+            {"likelihood_rows", record.likelihood_rows},
+            {"log_likelihood", record.log_likelihood},
+            {"all_starts", record.all_starts}};
 }
 
 ordered_json model_json(const TrainedModel& model) {
-    return {{"schema", schema},
-            {"structure", model.structure},
-            {"joints", model.joints},
-            {"sample_period_s", model.sample_period_s},
-            {"forgetting_factor", single(model.forgetting_factor)},
-            {"input", input_to_json(model.input)},
-            {"features",
-             {{"orthogonal", model.features.orthogonal},
-              {"count", model.features.count},
-              {"seed", model.features.seed},
-              {"length_scale", model.features.length_scale},
-              {"omega", singles(model.features.omega)}}},
-            {"outputs",
-             {{"names", model.outputs.names},
-              {"offset", singles(model.outputs.offset)},
-              {"noise_std", singles(model.outputs.noise_std)},
-              {"prior_variance", single(model.outputs.prior_variance)}}},
-            {"limits",
-             {{"position_rad", singles(model.limits.position_rad)},
-              {"output", singles(model.limits.output)},
-              {"innovation", single(model.limits.innovation)},
-              {"innovation_patience", model.limits.innovation_patience}}},
-            {"start",
-             {{"weights", singles(model.start.weights)},
-              {"unit_upper", singles(model.start.unit_upper)},
-              {"diagonal", singles(model.start.diagonal)}}},
-            {"training",
-             {{"recordings", model.training.recordings},
-              {"rows", model.training.rows},
-              {"method", model.training.method},
-              {"seed", model.training.seed},
-              {"likelihood_rows", model.training.likelihood_rows},
-              {"log_likelihood", model.training.log_likelihood},
-              {"all_starts", model.training.all_starts}}}};
-}
-
-InputModel read_input(const JsonReader& reader, int joints) {
-    InputModel input;
-    input.kind = parse_input_kind(reader.text("kind"));
-    input.lags = reader.whole_number("lags", 0, largest_lag_count);
-    input.rows_per_joint = reader.whole_number("rows_per_joint", 1, largest_lag_count + 1);
-    const bool full = input.kind == InputKind::DF || input.kind == InputKind::DFW;
-    const bool three = input.kind == InputKind::STD || input.kind == InputKind::DFSR;
-    if ((full && input.rows_per_joint != input.lags + 1) ||
-        (three && (input.rows_per_joint != 3 || input.lags < 2)) || input.rows_per_joint > input.lags + 1) {
-        throw reader.error("rows_per_joint",
-                           "a number that fits input " + to_string(input.kind) + " with " +
-                               std::to_string(input.lags) + " lags",
-                           std::to_string(input.rows_per_joint));
+    ordered_json json{{"schema", schema},
+                      {"structure", model.structure},
+                      {"joints", model.joints},
+                      {"sample_period_s", model.sample_period_s},
+                      {"forgetting_factor", single(model.forgetting_factor)}};
+    if (has_features(model.structure)) {
+        json["input"] = input_to_json(model.input);
+        json["features"] = features_to_json(model.features);
     }
-    if (input.kind == InputKind::STD) {
-        input.position_noise_bound = reader.positive_number("position_noise_bound");
-    } else {
-        input.rows = reader.numbers("rows", input.rows_per_joint * (input.lags + 1));
+    if (model.physics) {
+        json["physics"] = physics_to_json(*model.physics);
     }
-    if (input.kind == InputKind::DFSR) {
-        const auto alpha = reader.numbers("alpha", 2);
-        const auto beta = reader.numbers("beta", 2);
-        input.alpha = {alpha[0], alpha[1]};
-        input.beta = {beta[0], beta[1]};
+    json["outputs"] = {{"names", model.outputs.names},
+                       {"offset", singles(model.outputs.offset)},
+                       {"noise_std", singles(model.outputs.noise_std)},
+                       {"prior_variance", single(model.outputs.prior_variance)}};
+    json["limits"] = {{"position_rad", singles(model.limits.position_rad)},
+                      {"output", singles(model.limits.output)},
+                      {"innovation", single(model.limits.innovation)},
+                      {"innovation_patience", model.limits.innovation_patience}};
+    if (has_features(model.structure)) {
+        json["start"] = start_to_json(model.start);
     }
-    input.scale = reader.numbers("scale", joints * input.rows_per_joint);
-    return input;
+    json["training"] = training_to_json(model.training);
+    return json;
 }
 
 FeatureModel read_features(const JsonReader& reader, int inputs) {
@@ -155,12 +98,6 @@ OutputModel read_outputs(const JsonReader& reader) {
     return outputs;
 }
 
-StartModel read_start(const JsonReader& reader, int columns, int outputs) {
-    return {reader.numbers("weights", outputs * columns),
-            reader.numbers("unit_upper", columns * (columns - 1) / 2),
-            reader.positive_numbers("diagonal", columns)};
-}
-
 TrainingRecord read_training(const JsonReader& reader) {
     TrainingRecord record;
     record.recordings = reader.texts("recordings", 10000);
@@ -180,22 +117,31 @@ TrainedModel read_fields(const JsonReader& reader) {
     }
     TrainedModel model;
     model.structure = reader.text("structure");
-    if (model.structure != "NP") {
-        throw reader.error("structure", "\"NP\"", in_quotes(model.structure));
+    if (!std::ranges::count(structures, model.structure)) {
+        throw reader.error("structure", "NP, P, SP, SP2 or SPK", in_quotes(model.structure));
     }
     model.joints = reader.whole_number("joints", 1, largest_joint_count);
     model.sample_period_s = reader.number_within("sample_period_s", 1e-6, 10);
-    model.input = read_input(reader.object("input"), model.joints);
-    model.features = read_features(reader.object("features"), model.joints * model.input.rows_per_joint);
-    model.forgetting_factor =
-        reader.number_within("forgetting_factor", least_forgetting_factor(model.features.count), 1);
+    if (has_features(model.structure)) {
+        model.input = read_input(reader.object("input"), model.joints);
+        model.features = read_features(reader.object("features"), model.joints * model.input.rows_per_joint);
+    }
     model.outputs = read_outputs(reader.object("outputs"));
     const int outputs = static_cast<int>(model.outputs.names.size());
     const JsonReader limits = reader.object("limits");
     model.limits = {limits.positive_numbers("position_rad", model.joints),
                     limits.positive_numbers("output", outputs), limits.positive_number("innovation"),
                     limits.whole_number("innovation_patience", 0, 1000000)};
-    model.start = read_start(reader.object("start"), 2 * model.features.count, outputs);
+    double least = 0;
+    if (has_features(model.structure)) {
+        model.start = read_start(reader.object("start"), 2 * model.features.count, outputs);
+        least = least_forgetting_factor(model.features.count);
+    }
+    if (has_physics(model.structure)) {
+        model.physics = read_physics(reader.object("physics"), model);
+        least = std::max(least, 1 - 1 / static_cast<double>(model.physics->selected.size()));
+    }
+    model.forgetting_factor = reader.number_within("forgetting_factor", least, 1);
     model.training = read_training(reader.object("training"));
     return model;
 }
@@ -204,23 +150,8 @@ TrainedModel read_fields(const JsonReader& reader) {
 
 double least_forgetting_factor(int feature_count) { return 1 - 1 / (2.0 * feature_count); }
 
-std::string to_string(InputKind kind) {
-    for (const auto& [known, name] : input_names) {
-        if (known == kind) {
-            return name;
-        }
-    }
-    throw std::logic_error("an input kind without a name");
-}
-
-InputKind parse_input_kind(const std::string& name) {
-    for (const auto& [kind, known] : input_names) {
-        if (known == name) {
-            return kind;
-        }
-    }
-    throw InputError("input: expected STD, DF, DFW, DFR or DFSR, found " + in_quotes(name));
-}
+bool has_features(const std::string& structure) { return structure != "P"; }
+bool has_physics(const std::string& structure) { return structure != "NP"; }
 
 std::string model_to_json(const TrainedModel& model) { return model_json(model).dump() + "\n"; }
 

@@ -2,7 +2,9 @@
 #include "tools/model/model_header.hpp"
 
 #include "tools/host/host_model.hpp"
+#include "tools/model/header_text.hpp"
 #include "tools/model/model_file.hpp"
+#include "tools/model/physics_header.hpp"
 
 #include <array>
 #include <cctype>
@@ -16,72 +18,6 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// A float literal that compiles to exactly `value` in single precision.
-std::string literal(double value) {
-    std::array<char, 32> text{};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), static_cast<float>(value)).ptr;
-    std::string result(text.data(), end);
-    if (result.find_first_of(".e") == std::string::npos) {
-        result += ".0";
-    }
-    return result + "F";
-}
-
-/// `{{1.0F, 2.0F}}`, wrapped.
-std::string braced(std::span<const double> values) {
-    constexpr std::size_t width = 100;
-    std::string result = "{{";
-    std::size_t line = 0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const std::string item = literal(values[i]) + (i + 1 < values.size() ? "," : "");
-        if (line + item.size() > width) {
-            result += "\n    ";
-            line = 0;
-        } else if (line > 0) {
-            result += ' ';
-        }
-        result += item;
-        line += item.size() + 1;
-    }
-    return result + "}}";
-}
-
-std::string input_type(const InputModel& input) {
-    const std::string lags = std::to_string(input.lags);
-    switch (input.kind) {
-    case InputKind::STD:
-        return "Standard<" + lags + ">";
-    case InputKind::DF:
-        return "DerivativeFree<" + lags + ">";
-    case InputKind::DFW:
-        return "DerivativeFreeWeighted<" + lags + ">";
-    case InputKind::DFR:
-        return "DerivativeFreeReduced<" + lags + ", " + std::to_string(input.rows_per_joint) + ">";
-    case InputKind::DFSR:
-        return "DerivativeFreeStructured<" + lags + ">";
-    }
-    throw std::logic_error("an input kind without a type");
-}
-
-std::string input_constants(const InputModel& input) {
-    std::string fields;
-    if (input.kind == InputKind::STD) {
-        fields += ".position_noise_bound = " + literal(input.position_noise_bound) + ",\n        ";
-    }
-    if (input.kind == InputKind::DFR || input.kind == InputKind::DFSR) {
-        fields += ".rows = " + braced(firmware_rows(input)) + ",\n        ";
-    }
-    return "{" + fields + ".scale = " + braced(firmware_scale(input)) + "}";
-}
-
-std::string joined(std::span<const std::string> texts) {
-    std::string result;
-    for (const std::string& text : texts) {
-        result += (result.empty() ? "" : " ") + text;
-    }
-    return result;
-}
-
 /// Text for a comment: whatever a file may be called, it stays one line of printable characters.
 std::string comment(std::string_view text) {
     std::string result;
@@ -89,6 +25,84 @@ std::string comment(std::string_view text) {
         result += std::isprint(static_cast<unsigned char>(c)) != 0 && c != '\\' ? c : '?';
     }
     return result;
+}
+
+std::string arm_type(const TrainedModel& model) {
+    const std::string joints = std::to_string(model.joints);
+    if (!model.physics) {
+        return type("Joints", {joints, std::to_string(model.outputs.names.size())});
+    }
+    return type("Chain",
+                {joints, model.physics->chain.sensor
+                             ? type("WrenchAtSensor", {std::to_string(body_count(model.physics->chain))})
+                             : "dfdyn::JointTorques"});
+}
+
+std::string model_type(const TrainedModel& model) {
+    const std::string arm = arm_type(model);
+    if (model.structure == "P") {
+        return type("Model",
+                    {"float", arm, "dfdyn::NoInput", "dfdyn::NoFeatures", "dfdyn::Parametric<Physics>"});
+    }
+    std::vector<std::string> parts{"float", arm, input_type(model.input),
+                                   type("RandomFourier", {std::to_string(model.features.count)})};
+    if (model.physics) {
+        parts.push_back(model.structure == "SPK" ? "dfdyn::SemiparametricKernel<Physics>"
+                                                 : "dfdyn::SemiparametricMean<Physics>");
+    }
+    return type("Model", parts);
+}
+
+std::string feature_constants(const TrainedModel& model) {
+    return "{.frequencies = " +
+           braced(firmware_frequencies(model.features, model.joints * model.input.rows_per_joint)) +
+           ",\n        .amplitude = " + literal(1 / std::sqrt(static_cast<double>(model.features.count))) +
+           "}";
+}
+
+/// A constant with the start of a learner of so many outputs.
+std::string start_constant(const char* name, const StartModel& start, const std::vector<double>& weights,
+                           std::size_t outputs) {
+    return "inline constexpr " +
+           type("LearnerStart", {"float", std::to_string(start.diagonal.size()), std::to_string(outputs)}) +
+           " " + name + "{\n    .weights = " + braced(weights) +
+           ",\n    .unit_upper = " + braced(start.unit_upper) +
+           ",\n    .diagonal = " + braced(start.diagonal) + "};\n\n";
+}
+
+std::string starts(const TrainedModel& model) {
+    std::string result;
+    if (has_features(model.structure)) {
+        const std::vector<double> weights = firmware_weights(model);
+        result += start_constant("start", model.start, weights, weights.size() / model.start.diagonal.size());
+    }
+    if (model.structure == "P" || model.structure == "SPK") {
+        const StartModel& start = model.physics->start;
+        result += start_constant("parameter_start", start, start.weights, 1);
+    }
+    return result;
+}
+
+std::string learner(double prior_variance, double forgetting_factor, const char* start) {
+    return "{.prior_variance = " + literal(prior_variance) +
+           ", .forgetting_factor = " + literal(forgetting_factor) + ", .start = &" + start + "}";
+}
+
+std::string learner_constants(const TrainedModel& model) {
+    const auto features = [&] {
+        return learner(model.outputs.prior_variance, model.forgetting_factor, "start");
+    };
+    if (!model.physics) {
+        return features();
+    }
+    if (model.physics->prior_variance <= 0) {
+        return "{.parameters_of_mean = " + braced(model.physics->start.weights) +
+               ",\n        .residual = " + features() + "}";
+    }
+    const std::string parameters =
+        learner(model.physics->prior_variance, model.forgetting_factor, "parameter_start");
+    return model.structure == "P" ? parameters
+                                  : "{.features = " + features() + ", .common = " + parameters + "}";
 }
 
 } // namespace
@@ -103,36 +117,32 @@ std::string to_identifier(const std::string& stem) {
 }
 
 std::string model_to_header(const TrainedModel& model, const std::string& name_space) {
-    const std::string outputs = std::to_string(model.outputs.names.size());
-    const std::string columns = std::to_string(2 * model.features.count);
+    const bool features = has_features(model.structure);
     std::ostringstream header;
-    header << "// Written by `dfdyn train`; do not edit. Outputs: " << comment(joined(model.outputs.names))
-           << ".\n"
-           << "// Trained on " << comment(joined(model.training.recordings)) << ", rows "
+    header << "// Written by `dfdyn train`; do not edit. Outputs: "
+           << comment(joined(model.outputs.names, " ")) << ".\n"
+           << "// Trained on " << comment(joined(model.training.recordings, " ")) << ", rows "
            << comment(model.training.rows) << ", sampled every " << model.sample_period_s << " s.\n"
            << "// clang-format off\n#pragma once\n\n#include \"dfdyn/dfdyn.hpp\"\n\nnamespace " << name_space
-           << " {\n\n"
-           << "using Model = dfdyn::Model<float, dfdyn::Joints<" << model.joints << ", " << outputs
-           << ">, dfdyn::" << input_type(model.input) << ", dfdyn::RandomFourier<" << model.features.count
-           << ">>;\n\n"
-           << "inline constexpr dfdyn::LearnerStart<float, " << columns << ", " << outputs
-           << "> start{\n    .weights = " << braced(model.start.weights)
-           << ",\n    .unit_upper = " << braced(model.start.unit_upper)
-           << ",\n    .diagonal = " << braced(model.start.diagonal) << "};\n\n"
+           << " {\n\n";
+    if (model.physics) {
+        header << "using Physics = " << physics_type(*model.physics) << ";\n\n";
+    }
+    header << "using Model = " << model_type(model) << ";\n\n"
+           << starts(model)
            << "inline constexpr Model::Constants constants{\n    .sizes = {},\n    .identity = "
            << model_identity(model) << "U,\n    .gap_ns = " << gap_ns(model)
-           << ",\n    .input = " << input_constants(model.input) << ",\n    .features = {.frequencies = "
-           << braced(firmware_frequencies(model.features, model.joints * model.input.rows_per_joint))
-           << ",\n        .amplitude = " << literal(1 / std::sqrt(static_cast<double>(model.features.count)))
-           << "},\n    .physics = {},\n    .output_offset = " << braced(model.outputs.offset)
+           << ",\n    .input = " << (features ? input_constants(model.input) : "{}")
+           << ",\n    .features = " << (features ? feature_constants(model) : "{}")
+           << ",\n    .physics = " << (model.physics ? physics_constants(*model.physics) : "{}")
+           << ",\n    .output_offset = " << braced(model.outputs.offset)
            << ",\n    .output_noise_std = " << braced(model.outputs.noise_std)
            << ",\n    .position_limit = " << braced(model.limits.position_rad)
            << ",\n    .output_limit = " << braced(model.limits.output)
            << ",\n    .innovation_limit = " << literal(model.limits.innovation)
            << ",\n    .innovation_patience = " << model.limits.innovation_patience
-           << ",\n    .learner = {.prior_variance = " << literal(model.outputs.prior_variance)
-           << ", .forgetting_factor = " << literal(model.forgetting_factor)
-           << ", .start = &start}};\n\n} // namespace " << name_space << "\n";
+           << ",\n    .learner = " << learner_constants(model) << "};\n\n} // namespace " << name_space
+           << "\n";
     return header.str();
 }
 

@@ -16,10 +16,7 @@ class PrescribedEstimator final : public HostEstimator {
     std::vector<float> weights{0, 0};
     float column = 0;
 
-    Tick tick(std::int64_t /*time_ns*/, std::span<const double> /*position*/,
-              std::span<const double> /*output*/) override {
-        return {};
-    }
+    Tick tick(const MeasuredSample& /*sample*/) override { return {}; }
     void predict_with(std::span<const float> other, std::span<float> prediction) const override {
         prediction[0] = other[0] * column;
         prediction[1] = other[1] * column;

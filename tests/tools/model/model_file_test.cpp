@@ -15,6 +15,7 @@ namespace {
 
 using namespace dfdyn::tools;
 using dfdyn::tests::small_model;
+using dfdyn::tests::small_physics_model;
 
 constexpr InputKind all_inputs[] = {InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR,
                                     InputKind::DFSR};
@@ -38,6 +39,48 @@ std::optional<std::string> refusal_with(const std::string& pointer, const nlohma
 }
 
 } // namespace
+
+TEST_CASE("a model with physics reads back, whatever its structure") {
+    DFDYN_SEEDED_ENGINE(engine);
+    for (const char* structure : {"P", "SP", "SP2", "SPK"}) {
+        for (const bool wrench : {false, true}) {
+            for (const InputKind kind : all_inputs) {
+                CAPTURE(structure, wrench, to_string(kind));
+                const std::string text = model_to_json(small_physics_model(engine, structure, kind, wrench));
+                CHECK(model_to_json(model_from_json(text, "m.json")) == text);
+            }
+        }
+    }
+}
+
+TEST_CASE("a model with physics that cannot be is refused") {
+    std::mt19937_64 engine(1);
+    const nlohmann::json good =
+        nlohmann::json::parse(model_to_json(small_physics_model(engine, "SPK", InputKind::DFR, false)));
+    const auto refusal_of = [&](const char* pointer, const nlohmann::json& value) {
+        nlohmann::json json = good;
+        json[nlohmann::json::json_pointer(pointer)] = value;
+        return refusal(json.dump()).value_or("accepted");
+    };
+    using Catch::Matchers::StartsWith;
+    CHECK_THAT(refusal_of("/physics/selected/1", 1),
+               StartsWith("m.json: physics.selected: expected ascending"));
+    CHECK_THAT(refusal_of("/physics/selected/7", 25), StartsWith("m.json: physics.selected: expected"));
+    CHECK_THAT(refusal_of("/physics/column_scale/0", 0), StartsWith("m.json: physics.column_scale"));
+    CHECK_THAT(refusal_of("/physics/effects/0/effect", "magic"), StartsWith("effect: expected one of"));
+    CHECK_THAT(refusal_of("/physics/effects/0/effect", "ft_bias"),
+               StartsWith("m.json: physics.effects[0].effect: expected an effect on joint torques"));
+    CHECK_THAT(refusal_of("/physics/effects/2/sign_velocity", 0),
+               StartsWith("m.json: physics.effects[2].sign_velocity: expected a positive"));
+    CHECK_THAT(refusal_of("/physics/chain/joints/1/axis", {1, 1, 0}),
+               StartsWith("m.json: physics.chain.joints[1].axis: expected a vector of length 1"));
+    CHECK_THAT(refusal_of("/physics/chain/joints/0/placement/rotation/0", 2),
+               StartsWith("m.json: physics.chain.joints[0].placement.rotation: expected a rotation"));
+    CHECK_THAT(refusal_of("/physics/coupling", {1, 2}), StartsWith("m.json: physics.coupling"));
+    CHECK_THAT(refusal_of("/physics/prior_variance", -1), StartsWith("m.json: physics.prior_variance"));
+    CHECK_THAT(refusal_of("/forgetting_factor", 0.8), StartsWith("m.json: forgetting_factor"));
+    CHECK_THAT(refusal_of("/structure", "SPQ"), StartsWith("m.json: structure: expected NP, P, SP"));
+}
 
 TEST_CASE("a model reads back bit for bit in single precision") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -80,7 +123,7 @@ TEST_CASE("every truncation of a model file is refused in one line") {
 TEST_CASE("what is wrong with a model is said with the field, the expected and the found") {
     const std::pair<std::pair<std::string, nlohmann::json>, std::string> cases[] = {
         {{"/schema", "dfdyn.model/2"}, "m.json: schema: expected \"dfdyn.model/1\", found \"dfdyn.model/2\""},
-        {{"/structure", "XP"}, "m.json: structure: expected \"NP\", found \"XP\""},
+        {{"/structure", "XP"}, "m.json: structure: expected NP, P, SP, SP2 or SPK, found \"XP\""},
         {{"/joints", 0}, "m.json: joints: expected a whole number from 1 to 64, found \"0\""},
         {{"/joints", 3}, "m.json: input.scale: expected 9 numbers, found 6"},
         {{"/joints", 2.5}, "m.json: joints: expected a whole number from 1 to 64, found \"2.5\""},

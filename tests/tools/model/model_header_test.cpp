@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <span>
 #include <sstream>
 
 namespace {
@@ -17,6 +18,7 @@ namespace {
 using namespace dfdyn::tools;
 using dfdyn::tests::file_content;
 using dfdyn::tests::small_model;
+using dfdyn::tests::small_physics_model;
 using dfdyn::tests::TemporaryDirectory;
 
 /// A program that ticks the estimator of the header over a fixed motion and prints every prediction and
@@ -25,13 +27,22 @@ constexpr const char* program = R"(
 #include "m.hpp"
 #include <cstdio>
 static dfdyn::Estimator<m::Model> estimator(m::constants);
+void set_derivatives([[maybe_unused]] auto& sample, [[maybe_unused]] int t) {
+    if constexpr (requires { sample.velocity; }) {
+        for (int i = 0; i < 2; ++i) sample.velocity[i] = static_cast<float>(((t * (3 + i)) % 11) / 8.0);
+        for (int i = 0; i < 2; ++i) sample.acceleration[i] = static_cast<float>(((t * (5 + i)) % 13) / 4.0);
+    }
+}
 int main() {
     for (int t = 0; t < 40; ++t) {
-        decltype(estimator)::Sample sample{.time_ns = 4000000LL * t, .position = {}, .output = {}, .output_valid = true};
+        decltype(estimator)::Sample sample{};
+        sample.time_ns = 4000000LL * t;
+        sample.output_valid = true;
         for (int i = 0; i < 2; ++i) sample.position[i] = static_cast<float>(((t * (7 + 5 * i)) % 23) / 16.0);
-        for (int k = 0; k < 6; ++k) sample.output[k] = static_cast<float>(((t * (3 + k)) % 17) / 8.0 - 1);
+        set_derivatives(sample, t);
+        for (int k = 0; k < m::Model::outputs; ++k) sample.output[k] = static_cast<float>(((t * (3 + k)) % 17) / 8.0 - 1);
         const auto estimate = estimator.tick(sample, dfdyn::Budget::unlimited());
-        for (int k = 0; k < 6; ++k)
+        for (int k = 0; k < m::Model::outputs; ++k)
             std::printf("%a %a\n", static_cast<double>(estimate.prediction[k]),
                         static_cast<double>(estimate.standard_deviation[k]));
     }
@@ -58,23 +69,44 @@ std::vector<double> run_header(const TemporaryDirectory& directory, const Traine
 
 std::vector<double> run_host(const TrainedModel& model) {
     const auto estimator = make_estimator(model, false);
+    const std::size_t outputs = model.outputs.names.size();
     std::vector<double> values;
     for (int t = 0; t < 40; ++t) {
         std::array<double, 2> position{};
+        std::array<double, 2> velocity{};
+        std::array<double, 2> acceleration{};
         std::array<double, 6> output{};
         for (int i = 0; i < 2; ++i) {
-            position[static_cast<std::size_t>(i)] = ((t * (7 + 5 * i)) % 23) / 16.0;
+            const auto joint = static_cast<std::size_t>(i);
+            position[joint] = ((t * (7 + 5 * i)) % 23) / 16.0;
+            velocity[joint] = ((t * (3 + i)) % 11) / 8.0;
+            acceleration[joint] = ((t * (5 + i)) % 13) / 4.0;
         }
         for (int k = 0; k < 6; ++k) {
             output[static_cast<std::size_t>(k)] = ((t * (3 + k)) % 17) / 8.0 - 1;
         }
-        const Tick tick = estimator->tick(4000000LL * t, position, output);
-        for (std::size_t k = 0; k < 6; ++k) {
+        const Tick tick = estimator->tick(
+            {4000000LL * t, position, velocity, acceleration, std::span(output).first(outputs)});
+        for (std::size_t k = 0; k < outputs; ++k) {
             values.push_back(static_cast<double>(tick.prediction[k]));
             values.push_back(static_cast<double>(tick.standard_deviation[k]));
         }
     }
     return values;
+}
+
+/// The header's predictions and deviations against the model file's. Two builds with other flags may round
+/// differently, at most a few units in the last place per operation.
+void check_header(const TrainedModel& written) {
+    const TrainedModel model = model_from_json(model_to_json(written), "m.json");
+    const TemporaryDirectory directory;
+    const std::vector<double> embedded = run_header(directory, model);
+    const std::vector<double> host = run_host(model);
+    REQUIRE(embedded.size() == host.size());
+    for (std::size_t i = 0; i < host.size(); ++i) {
+        CAPTURE(i);
+        CHECK((embedded[i] == host[i] || std::abs(embedded[i] - host[i]) < 1e-3 * (1 + std::abs(host[i]))));
+    }
 }
 
 } // namespace
@@ -84,19 +116,19 @@ TEST_CASE("the header compiles without exceptions, and predicts as the model fil
     for (const InputKind kind :
          {InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR}) {
         CAPTURE(to_string(kind));
-        const TrainedModel model = model_from_json(model_to_json(small_model(engine, kind)), "m.json");
-        const TemporaryDirectory directory;
-        const std::vector<double> embedded = run_header(directory, model);
-        const std::vector<double> host = run_host(model);
-        REQUIRE(embedded.size() == host.size());
-        for (std::size_t i = 0; i < host.size(); ++i) {
-            CAPTURE(i);
-            // Two builds with other flags may round differently, at most a few units in the last place per
-            // operation.
-            CHECK(
-                (embedded[i] == host[i] || std::abs(embedded[i] - host[i]) < 1e-3 * (1 + std::abs(host[i]))));
+        check_header(small_model(engine, kind));
+    }
+}
+
+TEST_CASE("so does the header of a model with physics") {
+    DFDYN_SEEDED_ENGINE(engine);
+    for (const bool wrench : {false, true}) {
+        for (const char* structure : {"P", "SP", "SPK"}) {
+            CAPTURE(structure, wrench);
+            check_header(small_physics_model(engine, structure, InputKind::DFR, wrench));
         }
     }
+    check_header(small_physics_model(engine, "SPK", InputKind::STD, true));
 }
 
 TEST_CASE("hostile names do not leave their comment") {

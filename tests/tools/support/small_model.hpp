@@ -4,6 +4,9 @@
 #include "tools/model/model.hpp"
 
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace dfdyn::tests {
 
@@ -23,7 +26,9 @@ inline tools::TrainedModel small_model(std::mt19937_64& engine, tools::InputKind
     model.joints = 2;
     model.sample_period_s = 0.004;
     model.forgetting_factor = 0.999;
-    model.input = {kind, 4, full ? 5 : 3, {}, {}, {}, {}, 0};
+    model.input.kind = kind;
+    model.input.lags = 4;
+    model.input.rows_per_joint = full ? 5 : 3;
     const auto rows = static_cast<std::size_t>(model.input.rows_per_joint);
     model.input.scale = numbers(2 * rows, positive);
     if (kind == tools::InputKind::STD) {
@@ -40,6 +45,82 @@ inline tools::TrainedModel small_model(std::mt19937_64& engine, tools::InputKind
     model.limits = {{10, 10}, {100, 100, 100, 100, 100, 100}, 1e6, 250};
     model.start = {numbers(36, normal), numbers(15, normal), numbers(6, positive)};
     model.training = {{"run.csv"}, "0:100", "ML", 7, 100, -12.5, {-12.5, -13}};
+    return model;
+}
+
+/// The same model with physics: `structure` is P, SP, SP2 or SPK; the outputs are a wrench at a sensor on
+/// link 1, or the two joints' torques. The motion is DFR, or with input STD the measured derivatives.
+inline tools::TrainedModel small_physics_model(std::mt19937_64& engine, const std::string& structure,
+                                               tools::InputKind kind, bool wrench) {
+    tools::TrainedModel model = small_model(engine, kind);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> positive(0.5, 2);
+    const auto numbers = [&](std::size_t count, auto& distribution) {
+        std::vector<double> values(count);
+        for (double& value : values) {
+            value = distribution(engine);
+        }
+        return values;
+    };
+    if (kind == tools::InputKind::STD) {
+        model.input.derivatives = tools::Derivatives::measured;
+        model.input.lags = 0;
+        model.input.position_noise_bound = 0;
+    }
+    const std::size_t outputs = wrench ? 6 : 2;
+    constexpr tools::ChainModel::Frame turned{{0.6, -0.8, 0, 0, 0, -1, 0.8, 0.6, 0}, {0.1, 0.2, -0.3}};
+    constexpr tools::ChainModel::Frame straight{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.4, 0, 0.1}};
+    tools::PhysicsModel physics;
+    physics.chain.joints = {{"shoulder", turned, {0, 0.6, 0.8}, false}, {"elbow", straight, {1, 0, 0}, true}};
+    physics.chain.gravity = {0.5, -2, -9};
+    if (wrench) {
+        physics.chain.sensor = {"ft", 1, turned, false};
+        physics.effects = {{"ft_bias", 0, 0, 0}, {"ft_bias", 4, 0, 0}};
+        physics.selected = {0, 3, 7, 10, 11, 20, 21};
+    } else {
+        physics.effects = {{"viscous_friction", 0, 0, 0},
+                           {"viscous_friction", 1, 0, 0},
+                           {"coulomb_friction", 1, 0.3, 0},
+                           {"stribeck_friction", 0, 0.3, 0.7},
+                           {"torque_offset", 1, 0, 0}};
+        physics.selected = {1, 9, 10, 20, 21, 22, 23, 24};
+    }
+    physics.motion = model.input;
+    if (kind != tools::InputKind::STD) {
+        physics.motion = {};
+        physics.motion.kind = tools::InputKind::DFR;
+        physics.motion.lags = 4;
+        physics.motion.rows_per_joint = 3;
+        physics.motion.rows = numbers(15, normal);
+    }
+    physics.motion.scale = {1, 1, 1, 1, 1, 1};
+    const std::size_t columns = physics.selected.size();
+    physics.parameter_names.assign(columns, "parameter");
+    physics.column_scale = numbers(columns, positive);
+    physics.output_gain = numbers(outputs, positive);
+    physics.start.weights = numbers(columns, normal);
+    if (structure == "P" || structure == "SPK") {
+        physics.prior_variance = 3;
+        physics.start.unit_upper = numbers(columns * (columns - 1) / 2, normal);
+        physics.start.diagonal = numbers(columns, positive);
+    }
+    if (structure == "SPK") {
+        physics.coupling = numbers(outputs * columns * 6, normal);
+    }
+    model.structure = structure;
+    if (!wrench) {
+        model.outputs.names = {"tau1", "tau2"};
+        model.outputs.offset.resize(2);
+        model.outputs.noise_std.resize(2);
+        model.limits.output.resize(2);
+        model.start.weights.resize(12);
+    }
+    if (structure == "P") {
+        model.input = {};
+        model.features = {};
+        model.start = {};
+    }
+    model.physics = std::move(physics);
     return model;
 }
 
