@@ -13,11 +13,17 @@ demo_packages=(
     "libcli11-dev:the program dfdyn cannot be built"
     "nlohmann-json3-dev:the program dfdyn cannot be built"
     "libnlopt-cxx-dev:dfdyn train cannot be built"
+    "liburdfdom-dev:no robot can be read from its description"
+    "libtinyxml2-dev:no robot can be read from its description"
 )
 test_packages=(
     "catch2:the unit tests cannot be built"
     "libbenchmark-dev:the benchmarks cannot be built"
+    "liborocos-kdl-dev:no comparison with other programs' dynamics"
+    "libkdl-parser-dev:no comparison with other programs' dynamics"
+    "libdart-dev:no comparison with other programs' dynamics"
     "clang:no build with a second compiler"
+    "libclang-rt-dev:no build with the sanitizers"
     "clang-format:no check of the formatting"
     "clang-tidy:no static analysis"
     "shellcheck:no check of the scripts"
