@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -51,8 +52,9 @@ template <class Scalar>
 void naive_panel_update(std::vector<Scalar>& columns, std::vector<Scalar>& gain, int count,
                         const Scalar (&v)[panel_width], const Scalar (&mu)[panel_width]) {
     for (int c = 0; c < panel_width; ++c) {
+        Scalar* const column = columns.data() + static_cast<std::ptrdiff_t>(c) * count;
         for (int i = 0; i < count; ++i) {
-            Scalar& u = columns[static_cast<std::size_t>(c * count + i)];
+            Scalar& u = column[i];
             Scalar& k = gain[static_cast<std::size_t>(i)];
             const Scalar old = u;
             u += mu[c] * k;
