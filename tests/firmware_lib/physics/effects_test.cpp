@@ -5,6 +5,10 @@
 #include "dfdyn/physics/physics.hpp"
 #include "tests/support/catch.hpp"
 
+#include <Eigen/Core>
+#include <unsupported/Eigen/AutoDiff>
+
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -71,6 +75,41 @@ TEST_CASE("effects fill their columns after the bodies', each in the row that it
         for (int c = 0; c < 6; ++c) {
             CAPTURE(k, c);
             CHECK(psi[k][c] == Approx(expected[k][c]));
+        }
+    }
+}
+
+TEST_CASE("a scalar that carries derivatives gives those of the effects") {
+    using Arm = Chain<2>;
+    using Effects = Physics<StandardMeasured, 12, ViscousFriction<2>, CoulombFriction<2>, StribeckFriction<2>,
+                            RotorInertia<2>, JointSpring<2>, OutputOffset<2>>;
+    Effects::Constants<double, Arm> constants{};
+    constants.effects = {
+        {{{0, 1}}}, {{{0, 1}}, {{0.5, 0.8}}}, {{{0, 1}}, {{0.5, 0.8}}, {{0.6, 0.9}}}, {{{0, 1}}}, {{{0, 1}}},
+        {{{0, 1}}}};
+    std::iota(constants.selected.begin(), constants.selected.end(), 20);
+    std::iota(constants.column_scale.begin(), constants.column_scale.end(), 1);
+    constants.output_gain = {{2, 3}};
+    using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 6, 1>>;
+    Dual dual[6];
+    for (int i = 0; i < 6; ++i) {
+        dual[i] = Dual(xi[i], 6, i);
+    }
+    Dual psi[24];
+    Effects::evaluate_rows(constants, {}, dual, psi);
+    for (int i = 0; i < 6; ++i) {
+        double motion[6];
+        double ahead[24];
+        double behind[24];
+        std::copy_n(xi, 6, motion);
+        motion[i] = xi[i] + 1e-5;
+        Effects::evaluate_rows(constants, {}, motion, ahead);
+        motion[i] = xi[i] - 1e-5;
+        Effects::evaluate_rows(constants, {}, motion, behind);
+        for (int entry = 0; entry < 24; ++entry) {
+            CAPTURE(i, entry);
+            CHECK(psi[entry].derivatives()[i] ==
+                  Approx((ahead[entry] - behind[entry]) / 2e-5).epsilon(1e-7).margin(1e-7));
         }
     }
 }

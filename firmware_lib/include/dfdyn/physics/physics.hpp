@@ -18,7 +18,7 @@ struct Physics {
     using Motion = MotionType;
     static constexpr int columns = p;
 
-    /// Of each effect, in the order of the template arguments.
+    /// Of each effect, in the order of the template arguments; a reference to one binds to the whole.
     template <class Scalar>
     struct EffectConstants : EffectTypes::template Constants<Scalar>... {};
 

@@ -19,14 +19,14 @@ namespace detail {
 /// Where a joint at `position` puts the link's frame in the previous link's. Rodrigues' rotation about the
 /// axis, row by row: only the last line depends on the position.
 template <class Scalar, class Real>
-Frame<Scalar> link_frame(const ChainJoint<Real>& joint, const Scalar& position) noexcept {
+LinkFrame<Scalar> link_frame(const ChainJoint<Real>& joint, const Scalar& position) noexcept {
     using std::cos;
     using std::sin;
     const Scalar c = joint.prismatic ? Scalar(1) : Scalar(cos(position));
     const Scalar s = joint.prismatic ? Scalar(0) : Scalar(sin(position));
     const Scalar slide = joint.prismatic ? position : Scalar(0);
     const auto axis = Vector3<Real>::from(joint.axis);
-    Frame<Scalar> frame{{}, Vector3<Scalar>::from(joint.placement.translation)};
+    LinkFrame<Scalar> frame{{}, Vector3<Scalar>::from(joint.placement.translation)};
     Scalar* const origin[] = {&frame.origin.x, &frame.origin.y, &frame.origin.z};
     for (int i = 0; i < 3; ++i) {
         const auto row = Vector3<Real>::from(joint.placement.rotation + 3 * i);
@@ -41,7 +41,7 @@ Frame<Scalar> link_frame(const ChainJoint<Real>& joint, const Scalar& position) 
 
 /// The motion of a link from that of the previous one and its joint's rate and acceleration.
 template <class Scalar, class Real>
-LinkMotion<Scalar> link_motion(const LinkMotion<Scalar>& previous, const Frame<Scalar>& frame,
+LinkMotion<Scalar> link_motion(const LinkMotion<Scalar>& previous, const LinkFrame<Scalar>& frame,
                                const ChainJoint<Real>& joint, const Scalar& velocity,
                                const Scalar& acceleration) noexcept {
     const auto& [angular_velocity, angular_acceleration, base_acceleration] = previous;
@@ -76,7 +76,7 @@ void for_each_body(const typename Arm::template Constants<Real>& chain, const ty
     const ChainJoint<Real>* joints = chain.joint.data();
     int count = Arm::Output::begin(chain.output, joints, 0, screws.data());
     for (int i = 0; i < sizes.joint_count; ++i) {
-        const Frame<Scalar> frame = detail::link_frame(joints[i], xi[3 * i]);
+        const LinkFrame<Scalar> frame = detail::link_frame(joints[i], xi[3 * i]);
         motion = detail::link_motion(motion, frame, joints[i], xi[3 * i + 1], xi[3 * i + 2]);
         for (int k = 0; k < count; ++k) {
             screws[k] = frame.inward(screws[k]);
@@ -126,8 +126,8 @@ constexpr std::int64_t rigid_body_cost(const typename Arm::Sizes& sizes) noexcep
 /// with the wrench of each body, so that no wrench has to be carried back.
 ///
 /// `xi` is (q, q̇, q̈) of each joint: element j of joint i at 3i + j; rad, m, s. The scalar of the motion may
-/// carry derivatives; the constants are then of a plain scalar or of the same. Nothing is checked: what is
-/// not finite comes out as not finite.
+/// carry derivatives; the constants are then of a plain scalar or of the same, and entries that are 0 in
+/// every motion carry none. Nothing is checked: what is not finite comes out as not finite.
 template <class Arm, class Real, class Scalar>
 void rigid_body_regressor(const typename Arm::template Constants<Real>& chain,
                           const typename Arm::Sizes& sizes, const Scalar* xi, Scalar* psi,

@@ -45,9 +45,9 @@ struct Screw {
     Vector3<Scalar> angular, linear;
 };
 
-/// A frame within an outer one; x_outer = (row_i · x_inner)_i + origin.
+/// A link's frame within an outer one; x_outer = (row_i · x_inner)_i + origin.
 template <class Scalar>
-struct Frame {
+struct LinkFrame {
     Vector3<Scalar> row[3];
     Vector3<Scalar> origin;
 
