@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/physics/torque_constants.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/random_robot.hpp"
+#include "tests/support/seed.hpp"
+#include "tools/physics/chain_model.hpp"
+#include "tools/physics/physics_regressor.hpp"
+#include "tools/robot/firmware_chain.hpp"
+
+#include <cmath>
+
+namespace {
+
+using namespace dfdyn::tools;
+using dfdyn::tests::random_robot;
+using dfdyn::tests::uniform;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double sign_velocity = 0.05;
+
+/// Currents of an arm in random states: the gains times the nominal torques and friction.
+TrainingData currents(std::mt19937_64& engine, const Robot& robot, const std::vector<double>& gains) {
+    const auto joints = static_cast<Index>(robot.joints.size());
+    const auto draw = [&] { return uniform(engine, -2, 2); };
+    TrainingData data;
+    data.positions = MatrixXd::NullaryExpr(400, joints, draw);
+    data.velocities = MatrixXd::NullaryExpr(400, joints, draw);
+    data.accelerations = MatrixXd::NullaryExpr(400, joints, draw);
+    data.outputs = MatrixXd::Zero(400, joints);
+    const auto regressor = physics_regressor(chain_model(robot, OutputKind::joint_torque), {},
+                                             std::vector<double>(gains.size(), 1));
+    MatrixXd rows;
+    for (Index t = 0; t < 400; ++t) {
+        regressor->evaluate({data.positions.row(t).transpose(), data.velocities.row(t).transpose(),
+                             data.accelerations.row(t).transpose()},
+                            rows);
+        const VectorXd torque = rows * nominal_parameters(robot, OutputKind::joint_torque);
+        for (Index i = 0; i < joints; ++i) {
+            const double velocity = data.velocities(t, i);
+            const double friction = 0.3 * velocity + 0.8 * std::tanh(velocity / sign_velocity);
+            data.outputs(t, i) = gains[static_cast<std::size_t>(i)] * (torque[i] + friction) + 0.2;
+        }
+    }
+    return data;
+}
+
+} // namespace
+
+TEST_CASE("gains come back from currents with friction and offsets") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Robot robot = random_robot(engine, 3);
+    const std::vector<double> gains{0.11, 0.09, 0.13};
+    const auto found = estimate_torque_gains(robot, currents(engine, robot, gains), sign_velocity);
+    REQUIRE(found.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(found[i] == Approx(gains[i]).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("a joint that its nominal torque does not explain gets the median gain") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Robot robot = random_robot(engine, 3);
+    const auto found =
+        estimate_torque_gains(robot, currents(engine, robot, {0.1, 0.1, -0.001}), sign_velocity);
+    CHECK(found[2] == Approx(0.1).epsilon(1e-6));
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/physics/torque_constants.hpp"
+
+#include "tools/physics/chain_model.hpp"
+#include "tools/physics/physics_regressor.hpp"
+#include "tools/robot/firmware_chain.hpp"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+
+namespace dfdyn::tools {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double share_of_median_least = 1.0 / 3;
+constexpr double share_of_median_most = 3;
+
+/// Torques of the nominal rigid body, T x n.
+MatrixXd nominal_torques(const Robot& robot, const TrainingData& data) {
+    const std::vector<double> gains(robot.joints.size(), 1);
+    const auto regressor = physics_regressor(chain_model(robot, OutputKind::joint_torque), {}, gains);
+    const VectorXd parameters = nominal_parameters(robot, OutputKind::joint_torque);
+    MatrixXd torques(data.positions.rows(), data.positions.cols());
+    MatrixXd rows;
+    for (Index t = 0; t < torques.rows(); ++t) {
+        regressor->evaluate({data.positions.row(t).transpose(), data.velocities.row(t).transpose(),
+                             data.accelerations.row(t).transpose()},
+                            rows);
+        torques.row(t) = (rows * parameters).transpose();
+    }
+    return torques;
+}
+
+double gain_of(const VectorXd& current, const VectorXd& torque, const VectorXd& velocity,
+               double sign_velocity) {
+    MatrixXd columns(current.size(), 4);
+    columns << torque, velocity, (velocity / sign_velocity).array().tanh(), VectorXd::Ones(current.size());
+    return columns.colPivHouseholderQr().solve(current)[0];
+}
+
+} // namespace
+
+std::vector<double> estimate_torque_gains(const Robot& robot, const TrainingData& data,
+                                          double sign_velocity) {
+    const MatrixXd torques = nominal_torques(robot, data);
+    std::vector<double> gains;
+    for (Index i = 0; i < torques.cols(); ++i) {
+        gains.push_back(gain_of(data.outputs.col(i), torques.col(i), data.velocities.col(i), sign_velocity));
+    }
+    std::vector<double> sorted;
+    std::ranges::copy_if(gains, std::back_inserter(sorted), [](double gain) { return gain > 0; });
+    if (sorted.empty()) {
+        return std::vector<double>(gains.size(), 1);
+    }
+    std::ranges::sort(sorted);
+    const double median = sorted[sorted.size() / 2];
+    for (double& gain : gains) {
+        const bool plausible = gain > share_of_median_least * median && gain < share_of_median_most * median;
+        gain = plausible ? gain : median;
+    }
+    return gains;
+}
+
+} // namespace dfdyn::tools
