@@ -76,7 +76,7 @@ TrainedModel train_with_progress(const TrainingData& data, const TrainingOptions
                                               static_cast<std::size_t>(progress.evaluations_most));
         }
         line->update(static_cast<std::size_t>(progress.evaluations));
-    });
+    }).model;
 }
 
 void print_outcome(const TrainedModel& model, const std::string& trained_on) {

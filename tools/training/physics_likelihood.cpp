@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/training/physics_likelihood.hpp"
+
+#include <cmath>
+
+namespace dfdyn::tools {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// C^-1 (y_k - Psi_k pi) in column k.
+MatrixXd solved_residuals(const MatrixXd& solved_outputs, const MatrixXd& solved_columns,
+                          const VectorXd& parameters) {
+    MatrixXd residuals = solved_outputs;
+    for (Index k = 0; k < residuals.cols(); ++k) {
+        residuals.col(k) -=
+            solved_columns.middleCols(k * parameters.size(), parameters.size()) * parameters;
+    }
+    return residuals;
+}
+
+} // namespace
+
+LinearStatistics linear_statistics(const MatrixXd& outputs, const MatrixXd& columns,
+                                   const MatrixXd& solved_outputs, const MatrixXd& solved_columns) {
+    const Index count = outputs.cols();
+    const Index p = columns.cols() / count;
+    LinearStatistics statistics{outputs.rows(), {}, MatrixXd(p, count), VectorXd(count)};
+    for (Index k = 0; k < count; ++k) {
+        const auto psi = columns.middleCols(k * p, p);
+        const MatrixXd square = psi.transpose() * solved_columns.middleCols(k * p, p);
+        statistics.squares.emplace_back(0.5 * (square + square.transpose()));
+        statistics.products.col(k) = psi.transpose() * solved_outputs.col(k);
+        statistics.output_squares[k] = outputs.col(k).dot(solved_outputs.col(k));
+    }
+    return statistics;
+}
+
+std::optional<Evidence> PhysicsLikelihood::evaluate(const Covariance& covariance,
+                                                    const VectorXd& parameters) const {
+    const Index count = outputs_.cols();
+    const MatrixXd columns = physics_.evaluate(parameters);
+    const Index p = columns.cols() / count;
+    const MatrixXd solved_outputs = covariance.solve(outputs_);
+    const MatrixXd solved_columns = covariance.solve(columns);
+    const auto best =
+        best_variances(linear_statistics(outputs_, columns, solved_outputs, solved_columns), prior_);
+    if (!best) {
+        return std::nullopt;
+    }
+    const MatrixXd residuals = solved_residuals(solved_outputs, solved_columns, best->at.parameters);
+    const MatrixXd& root = best->at.covariance_root;
+    const bool integrated = prior_ != PhysicsPrior::none;
+    Evidence evidence;
+    evidence.count = static_cast<double>(count);
+    evidence.minus_two_log_likelihood = best->at.value + evidence.count * covariance.log_determinant();
+    evidence.output_variance = best->output_variance;
+    evidence.physics = {best->at.parameters, best->prior_variance};
+    evidence.directions.resize(outputs_.rows(), count * (integrated ? p + 1 : 1));
+    evidence.weights.resize(evidence.directions.cols());
+    evidence.directions.leftCols(count) = residuals;
+    evidence.weights.head(count) = best->output_variance.cwiseInverse();
+    MatrixXd slope(columns.rows(), columns.cols()); // with respect to the columns
+    for (Index k = 0; k < count; ++k) {
+        const double precision = 1 / best->output_variance[k];
+        auto part = slope.middleCols(k * p, p);
+        part.noalias() = -2 * precision * residuals.col(k) * best->at.parameters.transpose();
+        if (integrated) {
+            auto uncertain = evidence.directions.middleCols(count + k * p, p);
+            uncertain.noalias() = solved_columns.middleCols(k * p, p) * root;
+            part.noalias() += 2 * precision * uncertain * root.transpose();
+            evidence.weights.segment(count + k * p, p).setConstant(precision);
+        }
+    }
+    evidence.parameter_gradient = physics_.pull_back(parameters, slope);
+    return evidence;
+}
+
+} // namespace dfdyn::tools
