@@ -110,27 +110,6 @@ Fit fit_kernel(const TrainingSetup& setup) {
             record_of(setup, value->minus_two_log_likelihood), std::move(points)};
 }
 
-/// The outputs' variances at a given prior, by fixed-point steps of expectation-maximisation.
-VarianceCriterion noise_at(const LinearStatistics& statistics, double prior_variance, VectorXd& log_noise) {
-    constexpr int steps = 100;
-    const auto samples = static_cast<double>(statistics.samples);
-    VectorXd x(log_noise.size() + 1);
-    x << log_noise, std::log(prior_variance);
-    for (int i = 0; i < steps; ++i) {
-        const auto at = variance_criterion(statistics, PhysicsPrior::shared, x);
-        if (!at) {
-            break;
-        }
-        x.head(log_noise.size()).array() += (1 - at->gradient.head(log_noise.size()).array() / samples).log();
-    }
-    const auto at = variance_criterion(statistics, PhysicsPrior::shared, x);
-    if (!at) {
-        throw InputError("training: expected a finite likelihood at the best point of the grid, found none");
-    }
-    log_noise = x.head(log_noise.size());
-    return *at;
-}
-
 Fit fit_parametric(const TrainingSetup& setup) {
     const RowList& rows = setup.rows.likelihood;
     PhysicsPart part = physics_over(setup, rows);
@@ -143,16 +122,18 @@ Fit fit_parametric(const TrainingSetup& setup) {
                          "columns");
     }
     const double prior_variance = finite_best(*points).prior_variance;
-    VectorXd log_noise = output_deviations(setup).array().square().log();
-    const VarianceCriterion at =
-        noise_at(linear_statistics(outputs, columns, outputs, columns), prior_variance, log_noise);
-    part.fit = {at.parameters, VectorXd::Constant(at.parameters.size(), prior_variance)};
+    const auto best = best_variances(linear_statistics(outputs, columns, outputs, columns),
+                                     PhysicsPrior::shared, VectorXd::Constant(1, std::log(prior_variance)));
+    if (!best) {
+        throw InputError("training: expected a finite likelihood at the best point of the grid, found none");
+    }
+    part.fit = {best->at.parameters, best->prior_variance};
     Fit fit;
     fit.hyper.input = part.motion.head(
         setup.input(setup.options.input, rows)->bounds().lower.size());
-    fit.output_variance = log_noise.array().exp();
+    fit.output_variance = best->output_variance;
     fit.offset = VectorXd::Zero(outputs.cols());
-    fit.record = record_of(setup, at.value);
+    fit.record = record_of(setup, best->at.value);
     fit.physics = std::move(part);
     fit.hold_out = *points;
     return fit;

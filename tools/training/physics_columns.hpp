@@ -20,7 +20,8 @@ class PhysicsColumns {
     PhysicsColumns& operator=(const PhysicsColumns&) = delete;
     virtual ~PhysicsColumns() = default;
 
-    virtual Bounds bounds() const = 0; ///< of its own parameters, possibly none
+    virtual Eigen::Index columns() const = 0; ///< p
+    virtual Bounds bounds() const = 0;        ///< of its own parameters, possibly none
 
     /// Its own parameters to start with, where the input's start at `input`.
     virtual Eigen::VectorXd start(const Eigen::VectorXd& input) const = 0;
@@ -41,6 +42,7 @@ class RegressorColumns final : public PhysicsColumns {
     RegressorColumns(const Regressor& regressor, std::unique_ptr<Motion> motion, ColumnChoice choice)
         : regressor_(regressor), motion_(std::move(motion)), choice_(std::move(choice)) {}
 
+    Eigen::Index columns() const override { return choice_.scale.size(); }
     Bounds bounds() const override { return motion_->bounds(); }
     Eigen::VectorXd start(const Eigen::VectorXd& input) const override { return motion_->start(input); }
     Eigen::MatrixXd evaluate(const Eigen::VectorXd& parameters) const override;

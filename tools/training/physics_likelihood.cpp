@@ -21,6 +21,14 @@ MatrixXd solved_residuals(const MatrixXd& solved_outputs, const MatrixXd& solved
     return residuals;
 }
 
+VectorXd stacked(const VectorXd& first, const VectorXd& second) {
+    VectorXd result(first.size() + second.size());
+    result << first, second;
+    return result;
+}
+
+constexpr double log_prior_range = 15; // of columns of the outputs' size
+
 } // namespace
 
 LinearStatistics linear_statistics(const MatrixXd& outputs, const MatrixXd& columns,
@@ -38,15 +46,27 @@ LinearStatistics linear_statistics(const MatrixXd& outputs, const MatrixXd& colu
     return statistics;
 }
 
+Bounds PhysicsLikelihood::bounds() const {
+    const Bounds own = physics_.bounds();
+    const VectorXd range = VectorXd::Constant(prior_parameters(), log_prior_range);
+    return {stacked(own.lower, -range), stacked(own.upper, range)};
+}
+
+VectorXd PhysicsLikelihood::start(const VectorXd& input) const {
+    return stacked(physics_.start(input), VectorXd::Zero(prior_parameters()));
+}
+
 std::optional<Evidence> PhysicsLikelihood::evaluate(const Covariance& covariance,
                                                     const VectorXd& parameters) const {
     const Index count = outputs_.cols();
-    const MatrixXd columns = physics_.evaluate(parameters);
+    const VectorXd of_physics = parameters.head(parameters.size() - prior_parameters());
+    const MatrixXd columns = physics_.evaluate(of_physics);
     const Index p = columns.cols() / count;
     const MatrixXd solved_outputs = covariance.solve(outputs_);
     const MatrixXd solved_columns = covariance.solve(columns);
-    const auto best =
-        best_variances(linear_statistics(outputs_, columns, solved_outputs, solved_columns), prior_);
+    const auto best = best_variances(
+        linear_statistics(outputs_, columns, solved_outputs, solved_columns), prior_,
+        prior_ == PhysicsPrior::diagonal ? std::optional(VectorXd(parameters.tail(p))) : std::nullopt);
     if (!best) {
         return std::nullopt;
     }
@@ -74,7 +94,8 @@ std::optional<Evidence> PhysicsLikelihood::evaluate(const Covariance& covariance
             evidence.weights.segment(count + k * p, p).setConstant(precision);
         }
     }
-    evidence.parameter_gradient = physics_.pull_back(parameters, slope);
+    evidence.parameter_gradient = stacked(physics_.pull_back(of_physics, slope),
+                                          best->at.gradient.tail(prior_parameters()));
     return evidence;
 }
 

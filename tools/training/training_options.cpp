@@ -21,7 +21,8 @@ void expect(bool condition, const std::string& what, double found) {
 }
 
 void check_lags(const TrainingOptions& options) {
-    const bool physics = options.model != ModelClass::NP && options.input != InputKind::STD;
+    const bool physics = options.model != ModelClass::NP &&
+                         (options.input != InputKind::STD || options.physics.own_motion);
     const int least = options.input == InputKind::DFSR || physics ? 2 : 1;
     expect(options.lags >= least, "at least " + std::to_string(least) + " lags", options.lags);
     if (options.input == InputKind::DFR) {

@@ -192,11 +192,7 @@ VectorXd first_guess(const LinearStatistics& statistics, PhysicsPrior prior) {
         sizes += statistics.squares[static_cast<std::size_t>(k)].diagonal() / std::exp(x[k]);
     }
     const double energy = samples * static_cast<double>(outputs);
-    if (prior == PhysicsPrior::shared) {
-        x[outputs] = std::log(energy / sizes.sum());
-    } else if (prior == PhysicsPrior::diagonal) {
-        x.tail(sizes.size()) = (energy / static_cast<double>(sizes.size()) / sizes.array()).log();
-    }
+    x.tail(prior_groups(statistics, prior)).setConstant(std::log(energy / sizes.sum()));
     return x;
 }
 
@@ -299,10 +295,14 @@ std::optional<VarianceCriterion> variance_criterion(const LinearStatistics& stat
     return criterion;
 }
 
-std::optional<VarianceComponents> best_variances(const LinearStatistics& statistics, PhysicsPrior prior) {
+std::optional<VarianceComponents> best_variances(const LinearStatistics& statistics, PhysicsPrior prior,
+                                                 const std::optional<VectorXd>& log_prior) {
     VectorXd x = first_guess(statistics, prior);
-    VectorXd range = VectorXd::Constant(x.size(), log_prior_range);
+    VectorXd range = VectorXd::Constant(x.size(), log_prior ? 0 : log_prior_range);
     range.head(outputs_of(statistics)).setConstant(log_noise_range);
+    if (log_prior) {
+        x.tail(log_prior->size()) = *log_prior;
+    }
     const VectorXd lower = x - range;
     const VectorXd upper = x + range;
     for (int i = 0; i < expectation_steps; ++i) {
