@@ -73,7 +73,8 @@ std::optional<LikelihoodValue> FeatureLikelihood::evaluate(const VectorXd& theta
     }
     const RidgeGradient gradient = contract(*evidence, *covariance, features.phi, noise_ratio);
     const MatrixXd phase_gradient = pull_back_to_phase(features, gradient.phi);
-    LikelihoodValue value{evidence->minus_two_log_likelihood, {}, evidence->output_variance, evidence->physics};
+    LikelihoodValue value{
+        evidence->minus_two_log_likelihood, {}, evidence->output_variance, evidence->physics};
     value.gradient = joined(gradient.log_noise_ratio, -phase_gradient.cwiseProduct(features.phase).sum(),
                             evidence->parameter_gradient);
     value.gradient.segment(kernel_parameters, input.size()) +=

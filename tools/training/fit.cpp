@@ -5,6 +5,7 @@
 #include "tools/training/fit_problem.hpp"
 #include "tools/training/minimise.hpp"
 #include "tools/training/multi_start.hpp"
+#include "tools/training/stacked.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -41,12 +42,6 @@ PhysicsPrior prior_of(const TrainingOptions& options) {
         return PhysicsPrior::none;
     }
     return options.physics.prior == PriorForm::diagonal ? PhysicsPrior::diagonal : PhysicsPrior::shared;
-}
-
-VectorXd stacked(const VectorXd& first, const VectorXd& second) {
-    VectorXd result(first.size() + second.size());
-    result << first, second;
-    return result;
 }
 
 /// The point of a search with everything that has its best value there.
@@ -126,18 +121,6 @@ FitModel physics_alone(const TrainingSetup& setup, PhysicsPrior prior) {
     return model;
 }
 
-/// All columns with the parameters that the caller gave, and the motion that training begins with.
-PhysicsPart given_physics(const TrainingSetup& setup) {
-    FitModel model = physics_alone(setup, PhysicsPrior::none);
-    const VectorXd& given = *setup.options.physics.given;
-    model.columns = ColumnChoice{{}, VectorXd::Ones(given.size())};
-    for (Index c = 0; c < given.size(); ++c) {
-        model.columns->columns.push_back(c);
-    }
-    const FitProblem problem(setup, setup.options.input, setup.rows.likelihood, model);
-    return {*model.columns, problem.start(0), {given, {}}};
-}
-
 PhysicsPart least_squares_physics(const TrainingSetup& setup, MultiStart& starts) {
     const FitModel model = physics_alone(setup, PhysicsPrior::none);
     Search search(setup, model, starts);
@@ -189,8 +172,12 @@ TrainingRecord record_of(const std::vector<Minimum>& minima, const TrainingSetup
 }
 
 Fit fit_of(const FitProblem& problem, const FitModel& model, const Found& found, TrainingRecord record) {
-    Fit fit{problem.split(found.theta), found.value.output_variance, model.offset, model.mean,
-            std::move(record), {}};
+    Fit fit{problem.split(found.theta),
+            found.value.output_variance,
+            model.offset,
+            model.mean,
+            std::move(record),
+            {}};
     if (model.columns) {
         fit.physics = part_of(problem, model, found);
     }

@@ -24,34 +24,18 @@ RowList training_part(const TrainingSetup& setup) {
     return {rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
-VectorXd motion_start(const TrainingSetup& setup, const ColumnChoice& choice) {
-    NormalSource random(setup.options.seed);
-    const VectorXd input = setup.input(setup.options.input, setup.rows.likelihood)->start(0, random);
-    const VectorXd own =
-        setup.physics(setup.options.input, setup.rows.likelihood, choice)->start(input);
-    VectorXd parameters(input.size() + own.size());
-    parameters << input, own;
-    return parameters;
-}
-
 /// Least squares over `at`, or the parameters that the caller gave.
 PhysicsPart physics_over(const TrainingSetup& setup, const RowList& at) {
-    const PhysicsOptions& options = setup.options.physics;
-    PhysicsPart part;
-    if (options.given) {
-        part.choice.scale = VectorXd::Ones(options.given->size());
-        for (Index c = 0; c < options.given->size(); ++c) {
-            part.choice.columns.push_back(c);
-        }
-        part.motion = motion_start(setup, part.choice);
-        part.fit.parameters = *options.given;
-        return part;
+    if (setup.options.physics.given) {
+        return given_physics(setup);
     }
+    PhysicsPart part;
     part.choice = choose_columns(setup);
-    part.motion = motion_start(setup, part.choice);
+    part.motion = setup.motion_start(setup.options.input);
     const MatrixXd columns = setup.physics(setup.options.input, at, part.choice)->evaluate(part.motion);
     const MatrixXd outputs = setup.outputs(at);
-    const auto best = best_variances(linear_statistics(outputs, columns, outputs, columns), PhysicsPrior::none);
+    const auto best =
+        best_variances(linear_statistics(outputs, columns, outputs, columns), PhysicsPrior::none);
     if (!best) {
         throw InputError("training: expected physics that least squares can solve for, found dependent "
                          "columns");
@@ -96,18 +80,21 @@ Fit fit_kernel(const TrainingSetup& setup) {
     const FitModel model = kernel_model(setup, rows);
     const FitProblem problem(setup, setup.options.input, rows, model);
     VectorXd theta = problem.start(0);
-    std::vector<HoldOutPoint> points =
-        hold_out_kernel(problem.input().inputs(problem.split(theta).input),
-                        remaining_outputs(setup, kernel_model(setup, first), rows),
-                        static_cast<Index>(first.size()));
+    std::vector<HoldOutPoint> points = hold_out_kernel(
+        problem.input().inputs(problem.split(theta).input),
+        remaining_outputs(setup, kernel_model(setup, first), rows), static_cast<Index>(first.size()));
     const HoldOutPoint best = finite_best(points);
     theta.head(kernel_parameters) << std::log(best.noise_ratio), std::log(best.length_scale);
     const auto value = problem.exact().evaluate(theta);
     if (!value) {
         throw InputError("training: expected a finite likelihood at the best point of the grid, found none");
     }
-    return {problem.split(theta), value->output_variance, model.offset, model.mean,
-            record_of(setup, value->minus_two_log_likelihood), std::move(points)};
+    return {problem.split(theta),
+            value->output_variance,
+            model.offset,
+            model.mean,
+            record_of(setup, value->minus_two_log_likelihood),
+            std::move(points)};
 }
 
 Fit fit_parametric(const TrainingSetup& setup) {
@@ -115,8 +102,7 @@ Fit fit_parametric(const TrainingSetup& setup) {
     PhysicsPart part = physics_over(setup, rows);
     const MatrixXd columns = setup.physics(setup.options.input, rows, part.choice)->evaluate(part.motion);
     const MatrixXd outputs = setup.outputs(rows);
-    const auto points =
-        hold_out_physics(columns, outputs, static_cast<Index>(training_part(setup).size()));
+    const auto points = hold_out_physics(columns, outputs, static_cast<Index>(training_part(setup).size()));
     if (!points) {
         throw InputError("training: expected physics that least squares can solve for, found dependent "
                          "columns");
@@ -129,8 +115,7 @@ Fit fit_parametric(const TrainingSetup& setup) {
     }
     part.fit = {best->at.parameters, best->prior_variance};
     Fit fit;
-    fit.hyper.input = part.motion.head(
-        setup.input(setup.options.input, rows)->bounds().lower.size());
+    fit.hyper.input = part.motion.head(setup.input(setup.options.input, rows)->bounds().lower.size());
     fit.output_variance = best->output_variance;
     fit.offset = VectorXd::Zero(outputs.cols());
     fit.record = record_of(setup, best->at.value);

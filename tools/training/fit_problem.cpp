@@ -5,7 +5,9 @@
 #include "tools/training/parametric_likelihood.hpp"
 #include "tools/training/physics_likelihood.hpp"
 #include "tools/training/random_features.hpp"
+#include "tools/training/stacked.hpp"
 
+#include <numeric>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -16,12 +18,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-VectorXd stacked(const VectorXd& first, const VectorXd& second) {
-    VectorXd result(first.size() + second.size());
-    result << first, second;
-    return result;
-}
-
 std::unique_ptr<OutputLikelihood> output_likelihood(MatrixXd outputs, const PhysicsColumns* physics,
                                                     PhysicsPrior prior) {
     if (physics == nullptr) {
@@ -31,6 +27,15 @@ std::unique_ptr<OutputLikelihood> output_likelihood(MatrixXd outputs, const Phys
 }
 
 } // namespace
+
+PhysicsPart given_physics(const TrainingSetup& setup) {
+    const VectorXd& given = *setup.options.physics.given;
+    PhysicsPart part{
+        {{}, VectorXd::Ones(given.size())}, setup.motion_start(setup.options.input), {given, {}}};
+    part.choice.columns.resize(static_cast<std::size_t>(given.size()));
+    std::iota(part.choice.columns.begin(), part.choice.columns.end(), 0);
+    return part;
+}
 
 MatrixXd remaining_outputs(const TrainingSetup& setup, const FitModel& model, const RowList& at) {
     MatrixXd outputs = setup.outputs(at).rowwise() - model.offset.transpose();
@@ -84,8 +89,7 @@ std::unique_ptr<Likelihood> FitProblem::running() const {
     const FeatureModel features =
         draw_features(options.feature_count, inputs, options.orthogonal, 1, options.seed);
     return std::make_unique<FeatureLikelihood>(
-        *input_, *outputs_,
-        Eigen::Map<const RowMajor>(features.omega.data(), options.feature_count, inputs));
+        *input_, *outputs_, Eigen::Map<const RowMajor>(features.omega.data(), options.feature_count, inputs));
 }
 
 VectorXd FitProblem::start_from(const FitProblem& structured, const VectorXd& theta) const {

@@ -19,6 +19,9 @@ struct FitModel {
     PhysicsPrior prior = PhysicsPrior::none;
 };
 
+/// All columns with the parameters that the caller gave, and the motion that training begins with.
+PhysicsPart given_physics(const TrainingSetup& setup);
+
 /// Outputs less what is fixed.
 Eigen::MatrixXd remaining_outputs(const TrainingSetup& setup, const FitModel& model, const RowList& at);
 

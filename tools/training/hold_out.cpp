@@ -72,8 +72,8 @@ std::vector<HoldOutPoint> hold_out_kernel(const MatrixXd& inputs, const MatrixXd
     return points;
 }
 
-std::optional<std::vector<HoldOutPoint>>
-hold_out_physics(const MatrixXd& columns, const MatrixXd& outputs, Index training) {
+std::optional<std::vector<HoldOutPoint>> hold_out_physics(const MatrixXd& columns, const MatrixXd& outputs,
+                                                          Index training) {
     const MatrixXd psi = columns.topRows(training);
     const MatrixXd y = outputs.topRows(training);
     const LinearStatistics statistics = linear_statistics(y, psi, y, psi);
@@ -94,18 +94,18 @@ hold_out_physics(const MatrixXd& columns, const MatrixXd& outputs, Index trainin
         x[y.cols()] = std::log(prior_variance);
         const auto at = variance_criterion(statistics, PhysicsPrior::shared, x);
         const Index held_out = outputs.rows() - training;
-        points.push_back({0, 0, prior_variance,
-                          at ? relative_error(products(columns.bottomRows(held_out), at->parameters, y.cols()),
-                                              outputs.bottomRows(held_out))
-                             : no_error});
+        points.push_back(
+            {0, 0, prior_variance,
+             at ? relative_error(products(columns.bottomRows(held_out), at->parameters, y.cols()),
+                                 outputs.bottomRows(held_out))
+                : no_error});
     }
     return points;
 }
 
 const HoldOutPoint& best_point(const std::vector<HoldOutPoint>& points) {
-    return *std::min_element(points.begin(), points.end(), [](const HoldOutPoint& a, const HoldOutPoint& b) {
-        return a.error < b.error;
-    });
+    return *std::min_element(points.begin(), points.end(),
+                             [](const HoldOutPoint& a, const HoldOutPoint& b) { return a.error < b.error; });
 }
 
 } // namespace dfdyn::tools

@@ -3,6 +3,7 @@
 
 #include "tools/training/covariance_factor.hpp"
 #include "tools/training/gaussian_kernel.hpp"
+#include "tools/training/stacked.hpp"
 
 #include <array>
 #include <cmath>
@@ -13,12 +14,6 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-VectorXd stacked(const VectorXd& first, const VectorXd& second) {
-    VectorXd result(first.size() + second.size());
-    result << first, second;
-    return result;
-}
 
 /// dL/dC, every entry.
 MatrixXd covariance_gradient(const Evidence& evidence, const CovarianceFactor& factor) {
@@ -57,9 +52,9 @@ std::optional<LikelihoodValue> MarginalLikelihood::evaluate(const VectorXd& thet
         return std::nullopt;
     }
     const MatrixXd slope = covariance_gradient(*evidence, *factor);
-    const KernelGradient gradient =
-        gaussian_kernel_pull_back(inputs, parameters.length_scale, kernel, slope);
-    LikelihoodValue value{evidence->minus_two_log_likelihood, {}, evidence->output_variance, evidence->physics};
+    const KernelGradient gradient = gaussian_kernel_pull_back(inputs, parameters.length_scale, kernel, slope);
+    LikelihoodValue value{
+        evidence->minus_two_log_likelihood, {}, evidence->output_variance, evidence->physics};
     value.gradient = joined(parameters.noise_ratio * slope.trace(), gradient.log_length_scale,
                             evidence->parameter_gradient);
     value.gradient.segment(kernel_parameters, parameters.input.size()) +=

@@ -84,7 +84,8 @@ Minimum minimise(const Differentiable& function, const Bounds& bounds, const Eig
                  double tolerance, int evaluations_most) {
     if (start.size() == 0) {
         const auto value = function(start);
-        return value ? Minimum{start, value->value, 1} : Minimum{{}, std::numeric_limits<double>::infinity(), 1};
+        return value ? Minimum{start, value->value, 1}
+                     : Minimum{{}, std::numeric_limits<double>::infinity(), 1};
     }
     Search search{function, evaluations_most, {}, 0, nullptr};
     descend(search, bounds, start, tolerance);

@@ -13,10 +13,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double logit_most = 6;          // beta between 0.0025 and 0.9975
-constexpr double beta_start = 0.4;        // the filters of DFR's starts
-constexpr double log_factor_range = 4.6;  // a hundred times either way
-constexpr double alike_least = 0.05;      // correlation of a row with the derivative it starts as
+constexpr double logit_most = 6;         // beta between 0.0025 and 0.9975
+constexpr double beta_start = 0.4;       // the filters of DFR's starts
+constexpr double log_factor_range = 4.6; // a hundred times either way
+constexpr double alike_least = 0.05;     // correlation of a row with the derivative it starts as
 
 Bounds no_bounds() { return {VectorXd(0), VectorXd(0)}; }
 
@@ -40,7 +40,8 @@ class GivenMotion final : public Motion {
 
 class LagMotion final : public Motion {
   public:
-    LagMotion(const MatrixXd& positions, const RowList& rows, int lags, std::unique_ptr<MotionRows> motion_rows)
+    LagMotion(const MatrixXd& positions, const RowList& rows, int lags,
+              std::unique_ptr<MotionRows> motion_rows)
         : positions_(positions(rows, Eigen::all)), windows_(lag_windows(positions, rows, lags)),
           width_(lags + 1), rows_(std::move(motion_rows)) {}
 
@@ -131,8 +132,9 @@ class DifferenceMotion final : public MotionRows {
     }
 
     VectorXd pull_back(const VectorXd& parameters, const MatrixXd& gradient) const override {
-        const MatrixXd slopes = physical_rows(mean_difference_row_slope(1, beta(parameters, 0), lags_),
-                                              mean_difference_row_slope(2, beta(parameters, 1), lags_), period_);
+        const MatrixXd slopes =
+            physical_rows(mean_difference_row_slope(1, beta(parameters, 0), lags_),
+                          mean_difference_row_slope(2, beta(parameters, 1), lags_), period_);
         VectorXd result = VectorXd::Zero(parameters.size());
         for (Index order = 0; order < 2; ++order) {
             const double at = beta(parameters, order);
@@ -172,8 +174,8 @@ class ScaledMotion final : public MotionRows {
             const VectorXd found = factor_ * rows.row(order + 1).transpose();
             const VectorXd wanted = factor_ * polynomial_.row(order).transpose();
             const bool alike = found.dot(wanted) > alike_least * found.norm() * wanted.norm();
-            logarithms[order] = std::log(alike ? found.dot(wanted) / found.squaredNorm()
-                                               : polynomial_.row(order).norm());
+            logarithms[order] =
+                std::log(alike ? found.dot(wanted) / found.squaredNorm() : polynomial_.row(order).norm());
         }
         return logarithms;
     }

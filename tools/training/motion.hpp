@@ -74,13 +74,14 @@ std::unique_ptr<Motion> given_motion(const TrainingData& data, const RowList& ro
 std::unique_ptr<Motion> lag_motion(const Eigen::MatrixXd& positions, const RowList& rows, int lags,
                                    std::unique_ptr<MotionRows> motion_rows);
 
-/// The polynomial of degree 2 through the window, in the least-squares sense, at its newest sample. 2 <= lags.
+/// The polynomial of degree 2 through the window, in the least-squares sense, at its newest sample. 2 <=
+/// lags.
 std::unique_ptr<MotionRows> polynomial_motion(int lags, double sample_period);
 
-/// The first and second differences in the window, averaged with weights beta_1^t and beta_2^t: the filters of
-/// DFSR in physical units, cut so that a ramp gives its slope and a parabola its second derivative exactly.
-/// logit beta_1 and logit beta_2 are parameters number `first` and `first` + 1: the input's own (DFSR), or
-/// with `own` the physics' own, the only ones behind `first` of the input's. 2 <= lags.
+/// The first and second differences in the window, averaged with weights beta_1^t and beta_2^t: the filters
+/// of DFSR in physical units, cut so that a ramp gives its slope and a parabola its second derivative
+/// exactly. logit beta_1 and logit beta_2 are parameters number `first` and `first` + 1: the input's own
+/// (DFSR), or with `own` the physics' own, the only ones behind `first` of the input's. 2 <= lags.
 std::unique_ptr<MotionRows> difference_motion(int lags, double sample_period, Eigen::Index first, bool own);
 
 /// Rows 2 and 3 of `family` (DFR: of length 1) times a factor each, learned as its logarithm. It starts where

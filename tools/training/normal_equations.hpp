@@ -18,8 +18,8 @@ struct NormalEquations {
     Eigen::MatrixXd right_hand_side; ///< b, one column per target
 };
 
-/// Sums over `rows` of lambda^(N-t) phi phi' and lambda^(N-t) phi target', phi the random features of `model`;
-/// `targets` has a row for each of `rows`. O(N (2d)^2), in blocks: memory does not grow with N.
+/// Sums over `rows` of lambda^(N-t) phi phi' and lambda^(N-t) phi target', phi the random features of
+/// `model`; `targets` has a row for each of `rows`. O(N (2d)^2), in blocks: memory does not grow with N.
 NormalEquations normal_equations(const TrainedModel& model, const TrainingData& data, const RowList& rows,
                                  const Eigen::MatrixXd& targets);
 

@@ -22,8 +22,8 @@ struct Evidence {
     /// Derivative with respect to each entry of C as if the entries were independent:
     /// count C^-1 - directions diag(weights) directions'.
     double count = 0;
-    Eigen::MatrixXd directions; ///< N x q
-    Eigen::VectorXd weights;    ///< q
+    Eigen::MatrixXd directions;         ///< N x q
+    Eigen::VectorXd weights;            ///< q
     Eigen::VectorXd parameter_gradient; ///< with respect to the parameters handed in
     Eigen::VectorXd output_variance;    ///< m: rho_k^2 (sigma_k^2 where C = I)
     PhysicsFit physics;                 ///< empty for NP

@@ -5,8 +5,8 @@
 
 namespace dfdyn::tools {
 
-/// -2 log marginal likelihood of physics and white noise alone (model P): theta = [input's own, physics' own],
-/// possibly none. Refers to `outputs`.
+/// -2 log marginal likelihood of physics and white noise alone (model P): theta = [input's own, physics'
+/// own], possibly none. Refers to `outputs`.
 class ParametricLikelihood final : public Likelihood {
   public:
     explicit ParametricLikelihood(const OutputLikelihood& outputs) : outputs_(outputs) {}

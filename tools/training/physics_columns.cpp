@@ -2,13 +2,10 @@
 #include "tools/training/physics_columns.hpp"
 
 namespace dfdyn::tools {
-namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-} // namespace
 
 MatrixXd all_columns(const Regressor& regressor, const MotionSamples& motion) {
     const Index outputs = regressor.outputs();

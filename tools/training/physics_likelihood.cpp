@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/physics_likelihood.hpp"
 
+#include "tools/training/stacked.hpp"
+
 #include <cmath>
 
 namespace dfdyn::tools {
@@ -15,16 +17,35 @@ MatrixXd solved_residuals(const MatrixXd& solved_outputs, const MatrixXd& solved
                           const VectorXd& parameters) {
     MatrixXd residuals = solved_outputs;
     for (Index k = 0; k < residuals.cols(); ++k) {
-        residuals.col(k) -=
-            solved_columns.middleCols(k * parameters.size(), parameters.size()) * parameters;
+        residuals.col(k) -= solved_columns.middleCols(k * parameters.size(), parameters.size()) * parameters;
     }
     return residuals;
 }
 
-VectorXd stacked(const VectorXd& first, const VectorXd& second) {
-    VectorXd result(first.size() + second.size());
-    result << first, second;
-    return result;
+/// Fills directions and weights; returns the gradient with respect to the columns. `integrated`: pi has a
+/// prior, and the uncertainty of pi counts.
+MatrixXd add_gradients(const VarianceComponents& best, const MatrixXd& residuals,
+                       const MatrixXd& solved_columns, bool integrated, Evidence& evidence) {
+    const Index count = residuals.cols();
+    const MatrixXd& root = best.at.covariance_root;
+    const Index p = root.rows();
+    const VectorXd precision = best.output_variance.cwiseInverse();
+    evidence.directions.resize(residuals.rows(), count * (integrated ? p + 1 : 1));
+    evidence.weights.resize(evidence.directions.cols());
+    evidence.directions.leftCols(count) = residuals;
+    evidence.weights.head(count) = precision;
+    MatrixXd slope(solved_columns.rows(), solved_columns.cols());
+    for (Index k = 0; k < count; ++k) {
+        auto part = slope.middleCols(k * p, p);
+        part.noalias() = -2 * precision[k] * residuals.col(k) * best.at.parameters.transpose();
+        if (integrated) {
+            auto uncertain = evidence.directions.middleCols(count + k * p, p);
+            uncertain.noalias() = solved_columns.middleCols(k * p, p) * root;
+            part.noalias() += 2 * precision[k] * uncertain * root.transpose();
+            evidence.weights.segment(count + k * p, p).setConstant(precision[k]);
+        }
+    }
+    return slope;
 }
 
 constexpr double log_prior_range = 15; // of columns of the outputs' size
@@ -70,32 +91,16 @@ std::optional<Evidence> PhysicsLikelihood::evaluate(const Covariance& covariance
     if (!best) {
         return std::nullopt;
     }
-    const MatrixXd residuals = solved_residuals(solved_outputs, solved_columns, best->at.parameters);
-    const MatrixXd& root = best->at.covariance_root;
-    const bool integrated = prior_ != PhysicsPrior::none;
     Evidence evidence;
     evidence.count = static_cast<double>(count);
     evidence.minus_two_log_likelihood = best->at.value + evidence.count * covariance.log_determinant();
     evidence.output_variance = best->output_variance;
     evidence.physics = {best->at.parameters, best->prior_variance};
-    evidence.directions.resize(outputs_.rows(), count * (integrated ? p + 1 : 1));
-    evidence.weights.resize(evidence.directions.cols());
-    evidence.directions.leftCols(count) = residuals;
-    evidence.weights.head(count) = best->output_variance.cwiseInverse();
-    MatrixXd slope(columns.rows(), columns.cols()); // with respect to the columns
-    for (Index k = 0; k < count; ++k) {
-        const double precision = 1 / best->output_variance[k];
-        auto part = slope.middleCols(k * p, p);
-        part.noalias() = -2 * precision * residuals.col(k) * best->at.parameters.transpose();
-        if (integrated) {
-            auto uncertain = evidence.directions.middleCols(count + k * p, p);
-            uncertain.noalias() = solved_columns.middleCols(k * p, p) * root;
-            part.noalias() += 2 * precision * uncertain * root.transpose();
-            evidence.weights.segment(count + k * p, p).setConstant(precision);
-        }
-    }
-    evidence.parameter_gradient = stacked(physics_.pull_back(of_physics, slope),
-                                          best->at.gradient.tail(prior_parameters()));
+    const MatrixXd slope =
+        add_gradients(*best, solved_residuals(solved_outputs, solved_columns, best->at.parameters),
+                      solved_columns, prior_ != PhysicsPrior::none, evidence);
+    evidence.parameter_gradient =
+        stacked(physics_.pull_back(of_physics, slope), best->at.gradient.tail(prior_parameters()));
     return evidence;
 }
 

@@ -28,7 +28,9 @@ class PhysicsLikelihood final : public OutputLikelihood {
 
   private:
     /// How many of the parameters are logarithms of the prior's variances.
-    Eigen::Index prior_parameters() const { return prior_ == PhysicsPrior::diagonal ? physics_.columns() : 0; }
+    Eigen::Index prior_parameters() const {
+        return prior_ == PhysicsPrior::diagonal ? physics_.columns() : 0;
+    }
 
     Eigen::MatrixXd outputs_;
     const PhysicsColumns& physics_;

@@ -127,8 +127,8 @@ TrainingResult train(const TrainingData& data, const TrainingOptions& options,
     check_training_data(data, options.input);
     const TrainingSetup setup(data, options);
     check_outputs_vary(setup);
-    const Fit fit = options.hyper == HyperMethod::ML ? fit_by_likelihood(setup, progress)
-                                                     : fit_by_hold_out(setup);
+    const Fit fit =
+        options.hyper == HyperMethod::ML ? fit_by_likelihood(setup, progress) : fit_by_hold_out(setup);
     TrainingResult result{model_of(setup, fit), std::nullopt, fit.hold_out};
     if (fit.physics) {
         result.physics = start_physics(setup, *fit.physics, result.model);

@@ -35,8 +35,8 @@ enum class PriorForm {
 /// The physics of P, SP, SP2 and SPK.
 struct PhysicsOptions {
     const Regressor* regressor = nullptr; ///< of the recording's joints and outputs; must outlive training
-    /// Which motion the regressor sees. False, the paper's: that of the input. STD: the recording's; DFSR: its
-    /// two filters in physical units (see difference_motion()); DFR: its rows 2 and 3, of length 1, times
+    /// Which motion the regressor sees. False, the paper's: that of the input. STD: the recording's; DFSR:
+    /// its two filters in physical units (see difference_motion()); DFR: its rows 2 and 3, of length 1, times
     /// factors of their own; DF, DFW: a polynomial of degree 2 through the window. True: filters like
     /// DFSR's, with poles of their own.
     bool own_motion = false;
@@ -49,9 +49,9 @@ struct PhysicsOptions {
 struct TrainingOptions {
     ModelClass model = ModelClass::NP;
     HyperMethod hyper = HyperMethod::ML;
-    PhysicsOptions physics;          ///< read unless the model is NP
+    PhysicsOptions physics; ///< read unless the model is NP
     InputKind input = InputKind::DFR;
-    int lags = 10;                   ///< M >= 1 (DFSR and filters of the physics: >= 2); STD: the longest window minus one
+    int lags = 10; ///< M >= 1 (DFSR and filters of the physics: >= 2); STD: the longest window minus one
     int rows_per_joint = 3;          ///< k of DFR, 1 … M+1; the other inputs have their own
     int feature_count = 250;         ///< d >= 1; P has none
     bool orthogonal = true;          ///< orthogonal random features
@@ -82,15 +82,16 @@ struct TrainingProgress {
 using ProgressCallback = std::function<void(const TrainingProgress&)>;
 
 /// The physical part of a trained model: y_k = offset_k + noise_std_k (phi' w_k + psi~_k' pi + e), psi~_k =
-/// psi_k column_scale / noise_std_k, pi ~ N(0, prior_variance I); the physical parameters are column_scale pi.
+/// psi_k column_scale / noise_std_k, pi ~ N(0, prior_variance I); the physical parameters are column_scale
+/// pi.
 struct TrainedPhysics {
     /// 3 x (M+1): position, velocity and acceleration from a joint's last positions, newest first; in 1, 1/s,
     /// 1/s^2. Empty: the recording's derivatives (STD).
     Eigen::MatrixXd motion_rows;
     std::vector<Eigen::Index> columns; ///< p chosen columns of the regressor, ascending
-    /// p: prior "scaled": 1 / (root mean square of the column over the likelihood rows, each output's rows over
-    /// the output's deviation), times the geometric mean of noise_std over that of the outputs' deviations, so
-    /// that psi~ is of order 1; "unit": 1; "diagonal": the square roots of D.
+    /// p: prior "scaled": 1 / (root mean square of the column over the likelihood rows, each output's rows
+    /// over the output's deviation), times the geometric mean of noise_std over that of the outputs'
+    /// deviations, so that psi~ is of order 1; "unit": 1; "diagonal": the square roots of D.
     Eigen::VectorXd column_scale;
     double prior_variance = 0; ///< gamma^2 in these units; 0 for SP and SP2, whose pi is fixed
     PhysicsStart start;
@@ -105,14 +106,14 @@ struct TrainingResult {
 };
 
 /// Trains a model. ML: hyperparameters by marginal likelihood of the exact kernel on strided rows in motion,
-/// refined by that of the random features on all usable rows (see FeatureLikelihood); DFR begins with the best
-/// fit of DFSR, then with polynomial differentiators and filters. CV: over a grid, training on the first of
-/// these rows and measured on the last. Then the batch solution over all usable rows as the start.
+/// refined by that of the random features on all usable rows (see FeatureLikelihood); DFR begins with the
+/// best fit of DFSR, then with polynomial differentiators and filters. CV: over a grid, training on the first
+/// of these rows and measured on the last. Then the batch solution over all usable rows as the start.
 ///
-/// NP's outputs are centred at their mean over the rows in motion; with physics the offset is 0, since gravity
-/// and an offset among the effects explain the mean. SP: pi by generalised least squares under the best
-/// kernel; SP2: least squares of the physics alone, its motion rows included, each output weighted by what
-/// remains of it, then NP on the residual.
+/// NP's outputs are centred at their mean over the rows in motion; with physics the offset is 0, since
+/// gravity and an offset among the effects explain the mean. SP: pi by generalised least squares under the
+/// best kernel; SP2: least squares of the physics alone, its motion rows included, each output weighted by
+/// what remains of it, then NP on the residual.
 ///
 /// A plausible position is at most ten times the largest magnitude seen (at least 2 pi), an output ten times
 /// its largest. The same data, options and program give the same model bit for bit, whatever the number of

@@ -21,8 +21,8 @@ void expect(bool condition, const std::string& what, double found) {
 }
 
 void check_lags(const TrainingOptions& options) {
-    const bool physics = options.model != ModelClass::NP &&
-                         (options.input != InputKind::STD || options.physics.own_motion);
+    const bool physics =
+        options.model != ModelClass::NP && (options.input != InputKind::STD || options.physics.own_motion);
     const int least = options.input == InputKind::DFSR || physics ? 2 : 1;
     expect(options.lags >= least, "at least " + std::to_string(least) + " lags", options.lags);
     if (options.input == InputKind::DFR) {
@@ -48,11 +48,11 @@ void check_search(const TrainingOptions& options) {
 }
 
 void check_hold_out(const TrainingOptions& options) {
-    const bool model = options.model == ModelClass::NP || options.model == ModelClass::P ||
-                       options.model == ModelClass::SP2;
+    const bool model =
+        options.model == ModelClass::NP || options.model == ModelClass::P || options.model == ModelClass::SP2;
     expect(model, "model NP, P or SP2 for cross validation", to_string(options.model));
-    const bool input = options.input == InputKind::STD || options.input == InputKind::DF ||
-                       options.input == InputKind::DFSR;
+    const bool input =
+        options.input == InputKind::STD || options.input == InputKind::DF || options.input == InputKind::DFSR;
     expect(input, "input STD, DF or DFSR for cross validation", std::string(to_string(options.input)));
     expect(options.training_share > 0 && options.training_share < 1, "a training share between 0 and 1",
            options.training_share);

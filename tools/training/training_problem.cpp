@@ -3,6 +3,7 @@
 
 #include "tools/common/error.hpp"
 #include "tools/common/number.hpp"
+#include "tools/training/stacked.hpp"
 
 #include <cmath>
 #include <string>
@@ -83,6 +84,13 @@ std::unique_ptr<Motion> TrainingSetup::motion(InputKind kind, const RowList& at)
                           : lag_motion(data.positions, at, options.lags, std::move(own));
 }
 
+VectorXd TrainingSetup::motion_start(InputKind kind) const {
+    const RowList any{rows.moving.front()};
+    NormalSource random(options.seed);
+    const VectorXd start = input(kind, any)->start(0, random);
+    return stacked(start, motion(kind, any)->start(start));
+}
+
 std::unique_ptr<PhysicsColumns> TrainingSetup::physics(InputKind kind, const RowList& at,
                                                        const ColumnChoice& choice) const {
     return std::make_unique<RegressorColumns>(*options.physics.regressor, motion(kind, at), choice);
@@ -108,24 +116,21 @@ void check_outputs_vary(const TrainingSetup& setup) {
 ColumnChoice choose_columns(const TrainingSetup& setup) {
     const Regressor& regressor = *setup.options.physics.regressor;
     const InputKind kind = setup.options.input;
-    NormalSource random(setup.options.seed);
-    const VectorXd input = setup.input(kind, setup.rows.likelihood)->start(0, random);
-    const std::unique_ptr<Motion> motion = setup.motion(kind, setup.rows.likelihood);
-    VectorXd parameters(input.size() + motion->bounds().lower.size());
-    parameters << input, motion->start(input);
-    const MatrixXd columns = all_columns(regressor, motion->evaluate(parameters));
+    const MatrixXd columns =
+        all_columns(regressor, setup.motion(kind, setup.rows.likelihood)->evaluate(setup.motion_start(kind)));
     const VectorXd deviations = output_deviations(setup);
     const Index samples = columns.rows();
-    MatrixXd stacked(samples * regressor.outputs(), regressor.columns());
+    MatrixXd relative(samples * regressor.outputs(), regressor.columns());
     for (Index k = 0; k < regressor.outputs(); ++k) {
-        stacked.middleRows(k * samples, samples) =
-            columns.middleCols(k * regressor.columns(), regressor.columns()) / deviations[k];
+        const double unit = std::isfinite(deviations[k]) ? deviations[k] : 1; // the search will say so
+        relative.middleRows(k * samples, samples) =
+            columns.middleCols(k * regressor.columns(), regressor.columns()) / unit;
     }
-    if (!stacked.allFinite()) {
+    if (!relative.allFinite()) {
         throw InputError("training: expected finite columns of the physics over the recording, found some "
                          "that are not");
     }
-    ColumnChoice choice = select_columns(stacked, setup.options.physics.column_threshold);
+    ColumnChoice choice = select_columns(relative, setup.options.physics.column_threshold);
     if (choice.columns.empty()) {
         throw InputError("training: expected physics that the recording excites, found " +
                          std::to_string(regressor.columns()) + " columns of zeros");

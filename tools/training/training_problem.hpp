@@ -37,6 +37,9 @@ struct TrainingSetup {
     /// What the regressor sees over the rows `at` beside an input of that kind.
     std::unique_ptr<Motion> motion(InputKind kind, const RowList& at) const;
 
+    /// The parameters of that motion that training begins with: the input's, then its own.
+    Eigen::VectorXd motion_start(InputKind kind) const;
+
     /// The rows of that motion; nothing for the recording's derivatives.
     std::unique_ptr<MotionRows> motion_rows(InputKind kind) const;
 

@@ -106,8 +106,8 @@ VectorXd prior_use(const Point& point) {
 }
 
 double value_of(const LinearStatistics& statistics, PhysicsPrior prior, const Point& point) {
-    const double noise = static_cast<double>(statistics.samples) *
-                         (2 * std::numbers::pi * point.noise).array().log().sum();
+    const double noise =
+        static_cast<double>(statistics.samples) * (2 * std::numbers::pi * point.noise).array().log().sum();
     const double fit = (statistics.output_squares - statistics.products.transpose() * point.parameters)
                            .cwiseQuotient(point.noise)
                            .sum();
@@ -201,7 +201,9 @@ VectorXd expectation_step(const LinearStatistics& statistics, PhysicsPrior prior
     const Index groups = prior_groups(statistics, prior);
     VectorXd next = x;
     next.head(point.noise.size()) =
-        ((point.residuals + uncertainty(point, prior)) / static_cast<double>(statistics.samples)).array().log();
+        ((point.residuals + uncertainty(point, prior)) / static_cast<double>(statistics.samples))
+            .array()
+            .log();
     if (groups > 0) {
         const double shared = static_cast<double>(columns_of(statistics)) / static_cast<double>(groups);
         next.tail(groups).array() += (gathered(prior_use(point), prior).array() / shared).log().col(0);

@@ -24,8 +24,8 @@ struct LinearStatistics {
 };
 
 /// -2 log likelihood without m log det C, as a function of x = [log v_1 … log v_m, log gamma^2 …] (one
-/// gamma^2 if shared, p if diagonal, none if pi has no prior), with pi integrated out (or at its best value if
-/// it has no prior).
+/// gamma^2 if shared, p if diagonal, none if pi has no prior), with pi integrated out (or at its best value
+/// if it has no prior).
 struct VarianceCriterion {
     double value = 0;
     Eigen::VectorXd gradient;

@@ -58,7 +58,9 @@ TEST_CASE("the gradient of FeatureLikelihood is its derivative") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     const Problem problem;
     const tools::FeatureLikelihood likelihood(*problem.input, problem.output_likelihood, problem.omega);
-    const auto value_at = [&](const VectorXd& at) { return likelihood.evaluate(at)->minus_two_log_likelihood; };
+    const auto value_at = [&](const VectorXd& at) {
+        return likelihood.evaluate(at)->minus_two_log_likelihood;
+    };
     CHECK(dfdyn::tests::relative_error(likelihood.evaluate(problem.theta)->gradient,
                                        dfdyn::tests::differences(value_at, problem.theta)) < 1e-6);
 }

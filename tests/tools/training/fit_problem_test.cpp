@@ -62,7 +62,9 @@ tools::FitModel model_of(const tools::TrainingSetup& setup, const std::string& n
 void check_gradient(const tools::Likelihood& likelihood, const VectorXd& theta) {
     const auto value = likelihood.evaluate(theta);
     REQUIRE(value);
-    const auto value_at = [&](const VectorXd& at) { return likelihood.evaluate(at)->minus_two_log_likelihood; };
+    const auto value_at = [&](const VectorXd& at) {
+        return likelihood.evaluate(at)->minus_two_log_likelihood;
+    };
     const VectorXd truth = dfdyn::tests::differences(value_at, theta, 1e-3);
     if (truth.isZero(0)) { // physics alone does not depend on the input's gains
         CHECK(value->gradient.isZero(0));
@@ -73,7 +75,8 @@ void check_gradient(const tools::Likelihood& likelihood, const VectorXd& theta) 
 
 } // namespace
 
-TEST_CASE("the gradients of all models with all inputs are derivatives, of the exact kernel and of features") {
+TEST_CASE(
+    "the gradients of all models with all inputs are derivatives, of the exact kernel and of features") {
     const std::string name = GENERATE("NP", "P", "PD", "SP", "SPK", "SPKD");
     const auto input =
         GENERATE(InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR);

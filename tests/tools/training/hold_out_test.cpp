@@ -48,8 +48,8 @@ TEST_CASE("the hold-out error is that of the kernel's prediction of what it has 
                 kernel(s, t) = std::exp(-distance * distance / 2);
             }
         }
-        const MatrixXd seen =
-            kernel.topLeftCorner(training, training) + point.noise_ratio * MatrixXd::Identity(training, training);
+        const MatrixXd seen = kernel.topLeftCorner(training, training) +
+                              point.noise_ratio * MatrixXd::Identity(training, training);
         const MatrixXd predicted =
             kernel.bottomLeftCorner(20, training) * seen.inverse() * outputs.topRows(training);
         CHECK(point.error == Approx(relative_error(predicted, outputs.bottomRows(20))).epsilon(1e-6));
@@ -79,9 +79,8 @@ TEST_CASE("the hold-out error of physics is that of ridge regression") {
     VectorXd parameters;
     const VectorXd y = outputs.topRows(training).reshaped();
     for (int i = 0; i < 50; ++i) {
-        parameters =
-            (design.transpose() * weights.asDiagonal() * design).inverse() * design.transpose() *
-            weights.asDiagonal() * y;
+        parameters = (design.transpose() * weights.asDiagonal() * design).inverse() * design.transpose() *
+                     weights.asDiagonal() * y;
         const VectorXd residual = y - design * parameters;
         weights.head(training).setConstant(training / residual.head(training).squaredNorm());
         weights.tail(training).setConstant(training / residual.tail(training).squaredNorm());

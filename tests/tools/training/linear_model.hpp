@@ -61,7 +61,8 @@ struct LinearModel {
         const Eigen::Index samples = psi.rows();
         Eigen::MatrixXd stacked = Eigen::MatrixXd::Zero(samples * outputs, samples * outputs);
         for (Eigen::Index k = 0; k < outputs; ++k) {
-            stacked.block(k * samples, k * samples, samples, samples) = std::exp(log_variances[k]) * covariance;
+            stacked.block(k * samples, k * samples, samples, samples) =
+                std::exp(log_variances[k]) * covariance;
         }
         return stacked;
     }
@@ -73,7 +74,8 @@ struct LinearModel {
         const Eigen::MatrixXd stacked = stacked_columns();
         if (prior == tools::PhysicsPrior::none) {
             const Eigen::MatrixXd solved = total.fullPivLu().solve(stacked);
-            residual -= stacked * (stacked.transpose() * solved).fullPivLu().solve(solved.transpose() * residual);
+            residual -=
+                stacked * (stacked.transpose() * solved).fullPivLu().solve(solved.transpose() * residual);
         } else {
             Eigen::VectorXd variances = x.tail(groups(prior)).array().exp();
             variances = variances.replicate(columns / groups(prior), 1).eval();

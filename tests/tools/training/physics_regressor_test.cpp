@@ -31,7 +31,8 @@ RigidBody regressor_of(std::mt19937_64& engine, int joints) {
         constants.column_scale[c] = 1;
     }
     std::fill(constants.output_gain.begin(), constants.output_gain.end(), 1.0);
-    auto& friction = static_cast<dfdyn::CoulombFriction<dfdyn::dynamic>::Constants<double>&>(constants.effects);
+    auto& friction =
+        static_cast<dfdyn::CoulombFriction<dfdyn::dynamic>::Constants<double>&>(constants.effects);
     friction.row = decltype(friction.row)::zeros({1});
     friction.row[0] = 1;
     friction.sign_velocity = decltype(friction.sign_velocity)::zeros({1});
@@ -65,8 +66,8 @@ TEST_CASE("the regressor's pull back is its derivative") {
     DFDYN_SEEDED_ENGINE(engine);
     const RigidBody regressor = regressor_of(engine, joints);
     const VectorXd xi = dfdyn::tests::random_motion(engine, joints);
-    const MatrixXd weights = MatrixXd::NullaryExpr(
-        regressor.outputs(), regressor.columns(), [&] { return dfdyn::tests::uniform(engine, -1, 1); });
+    const MatrixXd weights = MatrixXd::NullaryExpr(regressor.outputs(), regressor.columns(),
+                                                   [&] { return dfdyn::tests::uniform(engine, -1, 1); });
     const auto sum = [&](const VectorXd& moving) {
         VectorXd at = xi;
         at.tail(2 * joints) = moving;

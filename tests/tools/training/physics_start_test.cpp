@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr int lags = 3;
-constexpr Index features = 12;  // columns: 6 frequencies
+constexpr Index features = 12; // columns: 6 frequencies
 constexpr Index outputs = 3;
 constexpr Index parameters = 5;
 constexpr double prior_variance = 2.5; // of pi
@@ -32,7 +32,7 @@ struct Problem {
     tools::TrainingData data = dfdyn::tests::arm_data(400, 2, outputs, random);
     tools::RowList rows = dfdyn::tests::rows_between(lags, 400);
     tools::TrainedModel model;
-    MatrixXd columns = random.matrix(397, outputs * parameters);
+    MatrixXd columns = random.matrix(397, outputs* parameters);
 
     explicit Problem(double forgetting_factor) {
         const tools::LagSpread spread(data.positions, rows, lags);
@@ -109,7 +109,9 @@ MatrixXd covariance(const std::vector<double>& unit_upper, const std::vector<dou
     return upper * Eigen::Map<const VectorXd>(diagonal.data(), size).asDiagonal() * upper.transpose();
 }
 
-double error_of(const MatrixXd& found, const MatrixXd& truth) { return (found - truth).norm() / truth.norm(); }
+double error_of(const MatrixXd& found, const MatrixXd& truth) {
+    return (found - truth).norm() / truth.norm();
+}
 
 } // namespace
 
@@ -157,16 +159,15 @@ TEST_CASE("the start of SP and SP2 is NP's on the residual") {
     Problem problem(1);
     const VectorXd pi = problem.random.matrix(parameters, 1);
     const tools::JointStart start = tools::residual_start(problem.physics(), pi);
-    const VectorXd target = problem.right_hand_side(true, false) -
-                            [&] { // the design's cross products with what is known
-                                VectorXd sum = VectorXd::Zero(outputs * features + parameters);
-                                for (Index k = 0; k < outputs; ++k) {
-                                    const VectorXd known =
-                                        problem.design(k, false, true).rightCols(parameters) * pi;
-                                    sum += problem.design(k, true, false).transpose() * known;
-                                }
-                                return sum;
-                            }();
+    const VectorXd target =
+        problem.right_hand_side(true, false) - [&] { // the design's cross products with what is known
+            VectorXd sum = VectorXd::Zero(outputs * features + parameters);
+            for (Index k = 0; k < outputs; ++k) {
+                const VectorXd known = problem.design(k, false, true).rightCols(parameters) * pi;
+                sum += problem.design(k, true, false).transpose() * known;
+            }
+            return sum;
+        }();
     const VectorXd truth = problem.information(true, false).fullPivLu().solve(target);
     const auto found = Eigen::Map<const VectorXd>(start.kernel.weights.data(), outputs * features);
     CHECK(error_of(found, truth.head(outputs * features)) < 1e-9);

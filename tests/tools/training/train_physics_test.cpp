@@ -94,9 +94,9 @@ MatrixXd predictions(const Arm& arm, const tools::TrainingResult& result, const 
             if (!physics.start.coupling.empty()) {
                 weights -= physics.start.coupling[static_cast<std::size_t>(k)] * pi;
             }
-            scaled += tools::random_features(model.features,
-                                             tools::stored_inputs(model.input, arm.data, rows)) *
-                      weights;
+            scaled +=
+                tools::random_features(model.features, tools::stored_inputs(model.input, arm.data, rows)) *
+                weights;
         }
         result_matrix.col(k) = model.outputs.offset[static_cast<std::size_t>(k)] + (noise * scaled).array();
     }
@@ -109,7 +109,8 @@ double relative_error(const MatrixXd& predicted, const MatrixXd& measured) {
 }
 
 bool same(const tools::TrainingResult& a, const tools::TrainingResult& b) {
-    return a.model.start.weights == b.model.start.weights && a.model.outputs.noise_std == b.model.outputs.noise_std &&
+    return a.model.start.weights == b.model.start.weights &&
+           a.model.outputs.noise_std == b.model.outputs.noise_std &&
            a.physics->start.parameters == b.physics->start.parameters &&
            a.physics->start.diagonal == b.physics->start.diagonal &&
            a.physics->motion_rows == b.physics->motion_rows;
@@ -140,8 +141,7 @@ TEST_CASE("every model with every input predicts what it was trained on, from it
     CHECK(result.model.start.weights.size() == (model == ModelClass::P ? 0 : 2 * 120));
     CHECK(result.model.outputs.offset == std::vector<double>{0, 0});
     const tools::RowList rows = dfdyn::tests::rows_between(lags, 500);
-    const double error =
-        relative_error(predictions(arm, result, rows), arm.data.outputs(rows, Eigen::all));
+    const double error = relative_error(predictions(arm, result, rows), arm.data.outputs(rows, Eigen::all));
     CHECK(error < (model == ModelClass::P ? 0.5 : 0.1));
     if (model == ModelClass::P) {
         CHECK(error > 0.02); // it does not know friction
@@ -173,8 +173,8 @@ TEST_CASE("columns of the physics are of order one in units of the noise") {
     arm.options.model = ModelClass::SPK;
     arm.options.input = InputKind::STD;
     const tools::TrainingResult result = tools::train(arm.data, arm.options);
-    const MatrixXd columns = tools::all_columns(
-        arm.regressor, {arm.data.positions, arm.data.velocities, arm.data.accelerations});
+    const MatrixXd columns =
+        tools::all_columns(arm.regressor, {arm.data.positions, arm.data.velocities, arm.data.accelerations});
     for (Index c = 0; c < 6; ++c) {
         const double first = columns.col(c).norm() / result.model.outputs.noise_std[0];
         const double second = columns.col(6 + c).norm() / result.model.outputs.noise_std[1];
@@ -309,5 +309,6 @@ TEST_CASE("outputs beyond what doubles can square leave no start with a finite l
     Arm arm;
     arm.options.model = GENERATE(ModelClass::P, ModelClass::SP, ModelClass::SPK);
     arm.data.outputs *= 1e200;
-    CHECK(arm.message() == "training: expected a finite likelihood from at least one of 2 starts, found none");
+    CHECK(arm.message() ==
+          "training: expected a finite likelihood from at least one of 2 starts, found none");
 }

@@ -118,8 +118,8 @@ TEST_CASE("as gamma grows the estimators of SPK and SP coincide, their likelihoo
         x << log_variances, log_gamma_square;
         const auto kernel = tools::variance_criterion(model.statistics(), PhysicsPrior::shared, x);
         const double estimate = (kernel->parameters - mean->parameters).norm();
-        const double likelihood = std::abs(kernel->value - mean->value -
-                                           LinearModel::columns * log_gamma_square - determinant);
+        const double likelihood =
+            std::abs(kernel->value - mean->value - LinearModel::columns * log_gamma_square - determinant);
         CHECK(estimate < last_estimate / 50); // in proportion to gamma^-2: e^-5 = 1/148
         CHECK(likelihood < last_likelihood / 50);
         last_estimate = estimate;
