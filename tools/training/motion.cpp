@@ -156,10 +156,9 @@ class DifferenceMotion final : public MotionRows {
 
 class ScaledMotion final : public MotionRows {
   public:
-    ScaledMotion(std::unique_ptr<RowFamily> family, int lags, double sample_period,
-                 const MatrixXd& pooled_factor)
+    ScaledMotion(std::unique_ptr<RowFamily> family, int lags, double sample_period, MatrixXd pooled_factor)
         : family_(std::move(family)), inputs_(family_->bounds().lower.size()),
-          polynomial_(polynomial_rows(lags, sample_period)), factor_(pooled_factor) {}
+          polynomial_(polynomial_rows(lags, sample_period)), factor_(std::move(pooled_factor)) {}
 
     Bounds bounds() const override {
         const VectorXd typical = polynomial_.rowwise().norm().array().log();

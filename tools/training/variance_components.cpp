@@ -82,7 +82,7 @@ std::optional<Point> point_at(const LinearStatistics& statistics, PhysicsPrior p
     point.residuals.resize(outputs);
     for (Index k = 0; k < outputs; ++k) {
         const MatrixXd& square = statistics.squares[static_cast<std::size_t>(k)];
-        point.products.push_back(point.covariance * square);
+        point.products.emplace_back(point.covariance * square);
         point.slopes.col(k) -= square * point.parameters;
         point.residuals[k] = statistics.output_squares[k] -
                              point.parameters.dot(statistics.products.col(k) + point.slopes.col(k));
