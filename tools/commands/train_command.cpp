@@ -70,13 +70,16 @@ std::string file_names(const std::vector<Recording>& recordings, TrainingRecord&
 
 TrainedModel train_with_progress(const TrainingData& data, const TrainingOptions& options) {
     std::unique_ptr<Progress> line;
-    return train(data, options, [&line](const TrainingProgress& progress) {
-        if (line == nullptr) {
-            line = std::make_unique<Progress>("maximising the marginal likelihood",
-                                              static_cast<std::size_t>(progress.evaluations_most));
-        }
-        line->update(static_cast<std::size_t>(progress.evaluations));
-    });
+    return train(data, options,
+                 [&line](const TrainingProgress& progress) {
+                     if (line == nullptr) {
+                         line =
+                             std::make_unique<Progress>("maximising the marginal likelihood",
+                                                        static_cast<std::size_t>(progress.evaluations_most));
+                     }
+                     line->update(static_cast<std::size_t>(progress.evaluations));
+                 })
+        .model;
 }
 
 void print_outcome(const TrainedModel& model, const std::string& trained_on) {

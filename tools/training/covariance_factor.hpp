@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/training/covariance.hpp"
+
 #include <Eigen/Core>
 
 #include <optional>
@@ -8,15 +10,15 @@
 namespace dfdyn::tools {
 
 /// Cholesky factor C = L L' of a covariance matrix.
-class CovarianceFactor {
+class CovarianceFactor final : public Covariance {
   public:
     /// Nothing when C is not positive definite in double precision or not finite. N^3/3 operations.
     static std::optional<CovarianceFactor> of(Eigen::MatrixXd covariance);
 
-    double log_determinant() const;
+    double log_determinant() const override;
 
     /// C^-1 B.
-    Eigen::MatrixXd solve(const Eigen::MatrixXd& right_hand_sides) const;
+    Eigen::MatrixXd solve(const Eigen::MatrixXd& right_hand_sides) const override;
 
     /// C^-1, both triangles. 2 N^3/3 operations: the zeros of L are not multiplied.
     Eigen::MatrixXd inverse() const;

@@ -6,6 +6,22 @@
 #include <cmath>
 
 namespace dfdyn::tools {
+namespace {
+
+/// Sum over t of weights_t times the difference that begins t samples ago.
+Eigen::VectorXd sum_of_differences(const Eigen::VectorXd& weights, int order, int lags) {
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(lags + 1);
+    for (Eigen::Index t = 0; t < weights.size(); ++t) {
+        row[t] += weights[t];
+        row[t + 1] -= order * weights[t];
+        if (order == 2) {
+            row[t + 2] += weights[t];
+        }
+    }
+    return row;
+}
+
+} // namespace
 
 Eigen::VectorXd filtered_velocity_row(double beta, int lags) {
     Eigen::VectorXd row(lags + 1);
@@ -53,6 +69,30 @@ Eigen::VectorXd polynomial_derivative_row(int order, int degree, int lags) {
     }
     const Eigen::MatrixXd fit = powers.completeOrthogonalDecomposition().pseudoInverse();
     return fit.row(order).transpose();
+}
+
+Eigen::VectorXd unit_polynomial_derivative_row(int order, int degree, int lags) {
+    const double factorial = std::tgamma(order + 1);
+    return factorial / std::pow(lags, order) * polynomial_derivative_row(order, degree, lags);
+}
+
+Eigen::VectorXd mean_difference_row(int order, double beta, int lags) {
+    Eigen::VectorXd weights(lags + 1 - order);
+    for (Eigen::Index t = 0; t < weights.size(); ++t) {
+        weights[t] = std::pow(beta, t);
+    }
+    return sum_of_differences(weights / weights.sum(), order, lags);
+}
+
+Eigen::VectorXd mean_difference_row_slope(int order, double beta, int lags) {
+    Eigen::VectorXd weights(lags + 1 - order);
+    Eigen::VectorXd slopes(weights.size());
+    for (Eigen::Index t = 0; t < weights.size(); ++t) {
+        weights[t] = std::pow(beta, t);
+        slopes[t] = t == 0 ? 0 : static_cast<double>(t) * std::pow(beta, t - 1);
+    }
+    const double sum = weights.sum();
+    return sum_of_differences(slopes / sum - weights * (slopes.sum() / (sum * sum)), order, lags);
 }
 
 } // namespace dfdyn::tools

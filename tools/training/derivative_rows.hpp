@@ -21,4 +21,16 @@ Eigen::VectorXd filtered_acceleration_row_slope(double beta, int lags);
 /// degree <= lags.
 Eigen::VectorXd polynomial_derivative_row(int order, int degree, int lags);
 
+/// The same derivative per sample period to that order: exact for polynomials up to `degree`.
+Eigen::VectorXd unit_polynomial_derivative_row(int order, int degree, int lags);
+
+/// Weighted mean of the window's differences of the given order (1 or 2), weight beta^t for the difference
+/// that begins t samples ago: the filters of eq:input_locations_features_vel_acc, cut where the differences
+/// run out of the window and divided by the sum of their weights. Exact for polynomials of degree `order`,
+/// per sample period to that order. order <= lags.
+Eigen::VectorXd mean_difference_row(int order, double beta, int lags);
+
+/// Its derivative with respect to beta.
+Eigen::VectorXd mean_difference_row_slope(int order, double beta, int lags);
+
 } // namespace dfdyn::tools

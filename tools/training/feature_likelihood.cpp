@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/feature_likelihood.hpp"
 
-#include <Eigen/Cholesky>
+#include "tools/training/marginal_likelihood.hpp"
+#include "tools/training/ridge_covariance.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -37,69 +37,49 @@ MatrixXd pull_back_to_phase(const Features& features, const MatrixXd& phi_gradie
            features.phi.rightCols(d).cwiseProduct(phi_gradient.leftCols(d));
 }
 
-/// Likelihood of the outputs under C = phi phi' + r I by the matrix inversion lemma, and its derivatives.
-struct RidgeEvidence {
-    double minus_two_log_likelihood = 0;
-    double noise_ratio_gradient = 0; ///< with respect to log r
-    MatrixXd phi_gradient;
-    VectorXd output_variance;
+/// dL/dC contracted with what C = phi phi' + r I is made of.
+struct RidgeGradient {
+    double log_noise_ratio = 0;
+    MatrixXd phi;
 };
 
-std::optional<RidgeEvidence> ridge_evidence(const MatrixXd& phi, const MatrixXd& outputs,
-                                            double noise_ratio) {
-    const Eigen::Index columns = phi.cols();
-    MatrixXd information = MatrixXd::Zero(columns, columns);
-    information.selfadjointView<Eigen::Lower>().rankUpdate(phi.transpose());
-    information.diagonal().array() += noise_ratio;
-    const Eigen::LLT<MatrixXd> factor(information);
-    if (factor.info() != Eigen::Success) {
-        return std::nullopt;
-    }
-    const auto samples = static_cast<double>(phi.rows());
-    const auto count = static_cast<double>(outputs.cols());
-    const MatrixXd weights = factor.solve(phi.transpose() * outputs);
-    const MatrixXd solved = (outputs - phi * weights) / noise_ratio; // C^-1 Y
-    const MatrixXd covariance = factor.solve(MatrixXd::Identity(columns, columns));
-    const double log_determinant = (samples - static_cast<double>(columns)) * std::log(noise_ratio) +
-                                   2 * factor.matrixLLT().diagonal().array().log().sum();
-    RidgeEvidence evidence;
-    evidence.output_variance = outputs.cwiseProduct(solved).colwise().sum().transpose() / samples;
-    evidence.minus_two_log_likelihood =
-        samples * ((2 * std::numbers::pi * evidence.output_variance).array().log().sum() + count) +
-        count * log_determinant;
-    const VectorXd precision = evidence.output_variance.cwiseInverse();
-    const double trace =
-        samples - static_cast<double>(columns) + noise_ratio * covariance.trace(); // r tr C^-1
-    evidence.noise_ratio_gradient =
-        count * trace - noise_ratio * solved.colwise().squaredNorm().dot(precision.transpose());
-    evidence.phi_gradient.noalias() = 2 * count * phi * covariance;
-    evidence.phi_gradient.noalias() -= 2 * solved * precision.asDiagonal() * weights.transpose();
-    return evidence;
+RidgeGradient contract(const Evidence& evidence, const RidgeCovariance& covariance, const MatrixXd& phi,
+                       double noise_ratio) {
+    const MatrixXd inverse = covariance.inverse_information();
+    RidgeGradient gradient;
+    gradient.log_noise_ratio =
+        evidence.count * covariance.scaled_trace(inverse) -
+        noise_ratio * evidence.directions.colwise().squaredNorm().dot(evidence.weights.transpose());
+    gradient.phi.noalias() = 2 * evidence.count * phi * inverse;
+    gradient.phi.noalias() -=
+        2 * evidence.directions * (evidence.weights.asDiagonal() * (evidence.directions.transpose() * phi));
+    return gradient;
 }
 
 } // namespace
 
-FeatureLikelihood::FeatureLikelihood(const InputMap& input, MatrixXd outputs, MatrixXd omega)
-    : input_(input), outputs_(std::move(outputs)), omega_(std::move(omega)) {}
-
-std::optional<FeatureLikelihood::Value> FeatureLikelihood::evaluate(const VectorXd& theta) const {
+std::optional<LikelihoodValue> FeatureLikelihood::evaluate(const VectorXd& theta) const {
     const double noise_ratio = std::exp(theta[0]);
     const double length_scale = std::exp(theta[1]);
-    const VectorXd own = theta.tail(theta.size() - 2);
-    const Features features = features_of(input_.inputs(own), omega_, length_scale);
-    const std::optional<RidgeEvidence> evidence = ridge_evidence(features.phi, outputs_, noise_ratio);
+    const VectorXd input = theta.segment(kernel_parameters, input_.bounds().lower.size());
+    const Features features = features_of(input_.inputs(input), omega_, length_scale);
+    const auto covariance = RidgeCovariance::of(features.phi, noise_ratio);
+    if (!covariance) {
+        return std::nullopt;
+    }
+    const auto evidence = outputs_.evaluate(*covariance, theta.tail(theta.size() - kernel_parameters));
     if (!evidence) {
         return std::nullopt;
     }
-    const MatrixXd phase_gradient = pull_back_to_phase(features, evidence->phi_gradient);
-    Value value{{evidence->minus_two_log_likelihood, VectorXd(theta.size())}, evidence->output_variance};
-    value.point.gradient << evidence->noise_ratio_gradient,
-        -phase_gradient.cwiseProduct(features.phase).sum(),
-        input_.pull_back(own, phase_gradient * omega_ / length_scale);
-    if (!std::isfinite(value.point.value) || !value.point.gradient.allFinite()) {
-        return std::nullopt;
-    }
-    return value;
+    const RidgeGradient gradient = contract(*evidence, *covariance, features.phi, noise_ratio);
+    const MatrixXd phase_gradient = pull_back_to_phase(features, gradient.phi);
+    LikelihoodValue value{
+        evidence->minus_two_log_likelihood, {}, evidence->output_variance, evidence->physics};
+    value.gradient = joined(gradient.log_noise_ratio, -phase_gradient.cwiseProduct(features.phase).sum(),
+                            evidence->parameter_gradient);
+    value.gradient.segment(kernel_parameters, input.size()) +=
+        input_.pull_back(input, phase_gradient * omega_ / length_scale);
+    return finite_or_nothing(std::move(value));
 }
 
 } // namespace dfdyn::tools

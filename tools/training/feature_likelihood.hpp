@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tools/training/input_map.hpp"
-#include "tools/training/minimise.hpp"
+#include "tools/training/likelihood.hpp"
 
 #include <Eigen/Core>
 
@@ -12,24 +12,20 @@ namespace dfdyn::tools {
 
 /// -2 log marginal likelihood of the model that will run: the random features of one draw of omega in place
 /// of the exact kernel, C = Phi Phi' + r I. Its cost is linear in the samples, so that it can take all of
-/// them, and it knows how far so few features can follow the kernel. Parameters: [log r, log l, input's own],
-/// as of MarginalLikelihood. Refers to `input`.
-class FeatureLikelihood {
+/// them, and it knows how far so few features can follow the kernel. Parameters as of MarginalLikelihood.
+/// Refers to `input` and `outputs`.
+class FeatureLikelihood final : public Likelihood {
   public:
-    /// `outputs` N x m, means removed; `omega` d x (n k), before division by the length scale.
-    FeatureLikelihood(const InputMap& input, Eigen::MatrixXd outputs, Eigen::MatrixXd omega);
+    /// `omega` d x (n k), before division by the length scale.
+    FeatureLikelihood(const InputMap& input, const OutputLikelihood& outputs, Eigen::MatrixXd omega)
+        : input_(input), outputs_(outputs), omega_(std::move(omega)) {}
 
-    struct Value {
-        PointValue point;                ///< -2 log L and its analytic gradient
-        Eigen::VectorXd output_variance; ///< m: rho_k^2, profiled as in ProfiledVarianceLikelihood
-    };
-
-    /// Nothing where a number is not finite. O(N (2d)^2 + (2d)^3).
-    std::optional<Value> evaluate(const Eigen::VectorXd& theta) const;
+    /// O(N (2d)^2 + (2d)^3), and O(N 2d m p) with p columns of physics.
+    std::optional<LikelihoodValue> evaluate(const Eigen::VectorXd& theta) const override;
 
   private:
     const InputMap& input_;
-    Eigen::MatrixXd outputs_;
+    const OutputLikelihood& outputs_;
     Eigen::MatrixXd omega_;
 };
 

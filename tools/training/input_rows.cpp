@@ -203,6 +203,16 @@ std::unique_ptr<RowFamily> free_rows(int lags, int count, const MatrixXd& pooled
     return std::make_unique<FreeRows>(lags, count, pooled_factor);
 }
 
+VectorXd free_parameters(const InputRows& rows, const MatrixXd& pooled_factor, VectorXd others) {
+    const Index width = pooled_factor.cols();
+    const Index count = std::min(rows.gain.size() - 1, others.size() / width);
+    for (Index j = 0; j < count; ++j) {
+        const VectorXd theta = pooled_factor * rows.rows.row(j + 1).transpose();
+        others.segment(j * width, width) = rows.gain[j + 1] * theta.normalized();
+    }
+    return others;
+}
+
 std::unique_ptr<RowFamily> structured_rows(int lags) { return std::make_unique<StructuredRows>(lags); }
 
 } // namespace dfdyn::tools

@@ -75,6 +75,11 @@ std::unique_ptr<RowFamily> diagonal_rows(int lags);
 /// T r_j of `pooled_factor` (see LagSpread); the length of theta_j is the gain. 1 <= k <= lags + 1.
 std::unique_ptr<RowFamily> free_rows(int lags, int count, const Eigen::MatrixXd& pooled_factor);
 
+/// Parameters of free_rows() with the same `pooled_factor` for which it gives `rows` and their gains (up to
+/// the rows' lengths, which do not matter), as far as either has rows; `others` for the rows beyond.
+Eigen::VectorXd free_parameters(const InputRows& rows, const Eigen::MatrixXd& pooled_factor,
+                                Eigen::VectorXd others);
+
 /// DFSR: position, velocity and acceleration row of eq:input_locations_features_vel_acc cut after lag M.
 /// Learned: log alpha_1, log alpha_2, logit beta_1, logit beta_2. The stored R is the paper's with these
 /// alphas, its scale is 1 / standard deviation of the row with alpha = 1: alpha is the relevance of the input

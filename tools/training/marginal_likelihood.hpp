@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tools/training/input_map.hpp"
-#include "tools/training/output_likelihood.hpp"
+#include "tools/training/likelihood.hpp"
 
 #include <Eigen/Core>
 
@@ -10,31 +10,31 @@
 
 namespace dfdyn::tools {
 
-/// The hyperparameters as the optimiser's vector: [log r, log l, input's own, likelihood's own],
-/// r = sigma^2 / rho^2 the noise ratio, l the length scale.
+/// The hyperparameters as the optimiser's vector: [log r, log l, input's own, physics' own], r = sigma^2 /
+/// rho^2 the noise ratio, l the length scale. Variances of outputs and of pi are not among them: they have
+/// their best values at every theta.
 struct Hyperparameters {
     double noise_ratio = 0;
     double length_scale = 0;
     Eigen::VectorXd input;
-    Eigen::VectorXd likelihood;
+    Eigen::VectorXd physics;
 };
+
+/// The logarithms of r and l come first.
+constexpr Eigen::Index kernel_parameters = 2;
+
+Eigen::VectorXd joined(double log_noise_ratio, double log_length_scale, const Eigen::VectorXd& rest);
 
 /// -2 log marginal likelihood of the training samples under the exact Gaussian kernel (section
 /// "Hyperparameter vector estimation"), with its analytic gradient. Refers to both parts, which must outlive
 /// it.
-class MarginalLikelihood {
+class MarginalLikelihood final : public Likelihood {
   public:
     MarginalLikelihood(const InputMap& input, const OutputLikelihood& outputs)
         : input_(input), outputs_(outputs) {}
 
-    struct Value {
-        double minus_two_log_likelihood = 0;
-        Eigen::VectorXd gradient;        ///< one entry per element of theta
-        Eigen::VectorXd output_variance; ///< m: rho_k^2
-    };
-
-    /// Nothing where the covariance cannot be factored or a number is not finite. O(N^3 + N^2 n k).
-    std::optional<Value> evaluate(const Eigen::VectorXd& theta) const;
+    /// O(N^3 + N^2 n k), and O(N^2 m p) with p columns of physics.
+    std::optional<LikelihoodValue> evaluate(const Eigen::VectorXd& theta) const override;
 
     Hyperparameters split(const Eigen::VectorXd& theta) const;
 

@@ -82,6 +82,11 @@ void descend(Search& search, const Bounds& bounds, const Eigen::VectorXd& start,
 
 Minimum minimise(const Differentiable& function, const Bounds& bounds, const Eigen::VectorXd& start,
                  double tolerance, int evaluations_most) {
+    if (start.size() == 0) {
+        const auto value = function(start);
+        return value ? Minimum{start, value->value, 1}
+                     : Minimum{{}, std::numeric_limits<double>::infinity(), 1};
+    }
     Search search{function, evaluations_most, {}, 0, nullptr};
     descend(search, bounds, start, tolerance);
     double before = std::numeric_limits<double>::infinity();

@@ -27,7 +27,7 @@ struct Minimum {
 
 /// Local minimum in the box from `start` (moved into the box if outside), by NLopt with gradients. Stops when
 /// the value changes by less than `tolerance`, absolutely, or after `evaluations_most`; never by time, so the
-/// result is reproducible.
+/// result is reproducible. With nothing to choose, the value at the empty point.
 Minimum minimise(const Differentiable& function, const Bounds& bounds, const Eigen::VectorXd& start,
                  double tolerance, int evaluations_most);
 

@@ -1,18 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/training/marginal_likelihood.hpp"
+#include "tools/training/likelihood.hpp"
 #include "tools/training/minimise.hpp"
 #include "tools/training/train.hpp"
 
+#include <mutex>
 #include <vector>
 
 namespace dfdyn::tools {
 
-/// Runs `options.starts` local searches of the likelihood on `options.threads` threads. One Minimum per
-/// start, in their order, its value -2 log L; each search depends on the seed and its own number only. An
-/// exception of a search is passed on.
-std::vector<Minimum> search_all_starts(const MarginalLikelihood& likelihood, const TrainingOptions& options,
-                                       const ProgressCallback& progress);
+/// Local searches of likelihoods on `options.threads` threads, with one count of evaluations over all runs.
+/// Refers to both arguments.
+class MultiStart {
+  public:
+    /// `searches`: of all runs to come, for the progress.
+    MultiStart(const TrainingOptions& options, const ProgressCallback& callback, int searches)
+        : options_(options), callback_(callback) {
+        progress_.evaluations_most = searches * options.evaluations_per_start;
+    }
+
+    /// One Minimum per start, in their order, its value -2 log L; each search depends on its own start only.
+    /// `announced`: the callback hears of every end. An exception of a search is passed on.
+    std::vector<Minimum> run(const Likelihood& likelihood, const Bounds& bounds,
+                             const std::vector<Eigen::VectorXd>& starts, bool announced);
+
+  private:
+    Minimum search(const Likelihood& likelihood, const Bounds& bounds, const Eigen::VectorXd& start);
+    void report(int evaluations, const std::optional<TrainingProgress::End>& end);
+
+    const TrainingOptions& options_;
+    const ProgressCallback& callback_;
+    std::mutex mutex_;
+    TrainingProgress progress_;
+};
 
 } // namespace dfdyn::tools

@@ -6,19 +6,19 @@
 
 namespace dfdyn::tools {
 
-Evidence ProfiledVarianceLikelihood::evaluate(const CovarianceFactor& factor,
-                                              const Eigen::VectorXd& /*parameters*/) const {
+std::optional<Evidence> ProfiledVarianceLikelihood::evaluate(const Covariance& covariance,
+                                                             const Eigen::VectorXd& parameters) const {
     const auto samples = static_cast<double>(outputs_.rows());
-    const auto count = static_cast<double>(outputs_.cols());
-    const Eigen::MatrixXd solved = factor.solve(outputs_);
     Evidence evidence;
-    evidence.output_variance = outputs_.cwiseProduct(solved).colwise().sum().transpose() / samples;
+    evidence.count = static_cast<double>(outputs_.cols());
+    evidence.directions = covariance.solve(outputs_);
+    evidence.output_variance =
+        outputs_.cwiseProduct(evidence.directions).colwise().sum().transpose() / samples;
     const double log_variances = (2 * std::numbers::pi * evidence.output_variance).array().log().sum();
-    evidence.minus_two_log_likelihood = samples * (log_variances + count) + count * factor.log_determinant();
-    evidence.covariance_gradient = count * factor.inverse();
-    const Eigen::VectorXd weights = evidence.output_variance.cwiseInverse();
-    evidence.covariance_gradient.noalias() -= solved * weights.asDiagonal() * solved.transpose();
-    evidence.parameter_gradient = Eigen::VectorXd(0);
+    evidence.minus_two_log_likelihood =
+        samples * (log_variances + evidence.count) + evidence.count * covariance.log_determinant();
+    evidence.weights = evidence.output_variance.cwiseInverse();
+    evidence.parameter_gradient = Eigen::VectorXd::Zero(parameters.size());
     return evidence;
 }
 

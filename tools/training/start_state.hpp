@@ -5,6 +5,8 @@
 #include "tools/training/row_selection.hpp"
 #include "tools/training/training_data.hpp"
 
+#include <Eigen/Core>
+
 namespace dfdyn::tools {
 
 /// The regularised least-squares solution over `rows` (eq:ReLS) in double: with y~ = (y - offset) /
@@ -13,5 +15,9 @@ namespace dfdyn::tools {
 /// `model`. Under forgetting the prior keeps at least 1e-6 of its weight, so that Lambda stays regular where
 /// the rows excite nothing. O(N (2d)^2 + (2d)^3). Throws InputError when Lambda cannot be factored.
 StartModel batch_start(const TrainedModel& model, const TrainingData& data, const RowList& rows);
+
+/// The same with `targets` (N x m) in place of y~.
+StartModel batch_start(const TrainedModel& model, const TrainingData& data, const RowList& rows,
+                       const Eigen::MatrixXd& targets);
 
 } // namespace dfdyn::tools

@@ -24,6 +24,7 @@ struct Problem {
     std::unique_ptr<tools::InputMap> input = tools::lag_input(
         data.positions, rows, tools::LagSpread(data.positions, rows, lags), tools::structured_rows(lags));
     MatrixXd outputs = data.outputs(rows, Eigen::all).rowwise() - data.outputs.colwise().mean();
+    tools::ProfiledVarianceLikelihood output_likelihood{outputs};
     MatrixXd omega = random.matrix(features, 6);
     VectorXd theta{{-3.0, 0.7, 0.1, -0.2, 0.3, -0.4}};
 };
@@ -42,7 +43,7 @@ TEST_CASE("FeatureLikelihood is the normal density of the outputs under the feat
                                (s == t ? std::exp(problem.theta[0]) : 0);
         }
     }
-    const tools::FeatureLikelihood likelihood(*problem.input, problem.outputs, problem.omega);
+    const tools::FeatureLikelihood likelihood(*problem.input, problem.output_likelihood, problem.omega);
     const auto value = likelihood.evaluate(problem.theta);
     REQUIRE(value);
     double expected = 0;
@@ -50,14 +51,16 @@ TEST_CASE("FeatureLikelihood is the normal density of the outputs under the feat
         expected +=
             dfdyn::tests::log_normal_density(problem.outputs.col(k), value->output_variance[k] * covariance);
     }
-    CHECK(-0.5 * value->point.value == Approx(expected).epsilon(1e-9));
+    CHECK(-0.5 * value->minus_two_log_likelihood == Approx(expected).epsilon(1e-9));
 }
 
 TEST_CASE("the gradient of FeatureLikelihood is its derivative") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     const Problem problem;
-    const tools::FeatureLikelihood likelihood(*problem.input, problem.outputs, problem.omega);
-    const auto value_at = [&](const VectorXd& at) { return likelihood.evaluate(at)->point.value; };
-    CHECK(dfdyn::tests::relative_error(likelihood.evaluate(problem.theta)->point.gradient,
+    const tools::FeatureLikelihood likelihood(*problem.input, problem.output_likelihood, problem.omega);
+    const auto value_at = [&](const VectorXd& at) {
+        return likelihood.evaluate(at)->minus_two_log_likelihood;
+    };
+    CHECK(dfdyn::tests::relative_error(likelihood.evaluate(problem.theta)->gradient,
                                        dfdyn::tests::differences(value_at, problem.theta)) < 1e-6);
 }

@@ -4,6 +4,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/training/numerics.hpp"
+#include "tools/training/covariance_factor.hpp"
 #include "tools/training/random_source.hpp"
 
 namespace tools = dfdyn::tools;
@@ -25,7 +26,7 @@ struct Problem {
 
     tools::Evidence evidence(const MatrixXd& of) const {
         const tools::ProfiledVarianceLikelihood likelihood(outputs);
-        return likelihood.evaluate(*tools::CovarianceFactor::of(of), VectorXd(0));
+        return *likelihood.evaluate(*tools::CovarianceFactor::of(of), VectorXd(0));
     }
 
     double log_density(const VectorXd& variances) const {
@@ -67,7 +68,10 @@ TEST_CASE("ProfiledVarianceLikelihood has the derivative with respect to the cov
             },
             VectorXd::Zero(1))[0];
     };
-    const MatrixXd gradient = problem.evidence(problem.covariance).covariance_gradient;
+    const tools::Evidence evidence = problem.evidence(problem.covariance);
+    const MatrixXd gradient =
+        evidence.count * problem.covariance.inverse() -
+        evidence.directions * evidence.weights.asDiagonal() * evidence.directions.transpose();
     MatrixXd expected(8, 8);
     for (Eigen::Index row = 0; row < 8; ++row) {
         for (Eigen::Index column = 0; column < 8; ++column) {

@@ -39,6 +39,11 @@ tools::TrainingOptions quick_options(InputKind kind) {
     return options;
 }
 
+tools::TrainedModel trained(const tools::TrainingData& data, const tools::TrainingOptions& options,
+                            const tools::ProgressCallback& progress = {}) {
+    return tools::train(data, options, progress).model;
+}
+
 std::string message(const tools::TrainingData& data, const tools::TrainingOptions& options) {
     try {
         tools::train(data, options);
@@ -77,7 +82,7 @@ TEST_CASE("training fills the whole model, for every input") {
         GENERATE(InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR);
     CAPTURE(static_cast<int>(kind));
     const tools::TrainingData data = three_joints();
-    const tools::TrainedModel model = tools::train(data, quick_options(kind));
+    const tools::TrainedModel model = trained(data, quick_options(kind));
     const std::size_t k = kind == InputKind::DF || kind == InputKind::DFW ? 6 : 3;
     CHECK(model.joints == 3);
     CHECK(model.sample_period_s == data.sample_period_s);
@@ -111,7 +116,7 @@ TEST_CASE("a trained model predicts what it was trained on") {
     options.feature_count = 100;
     options.likelihood_rows = 200;
     options.evaluations_per_start = 60;
-    const tools::TrainedModel model = tools::train(data, options);
+    const tools::TrainedModel model = trained(data, options);
     const tools::RowList rows = dfdyn::tests::rows_between(5, 600);
     const MatrixXd features =
         tools::random_features(model.features, tools::stored_inputs(model.input, data, rows));
@@ -131,14 +136,14 @@ TEST_CASE("training gives the same model again, whatever the number of threads")
     CAPTURE(static_cast<int>(kind));
     const tools::TrainingData data = three_joints();
     tools::TrainingOptions options = quick_options(kind);
-    const tools::TrainedModel first = tools::train(data, options);
-    CHECK(same(first, tools::train(data, options)));
+    const tools::TrainedModel first = trained(data, options);
+    CHECK(same(first, trained(data, options)));
     options.threads = 1;
-    CHECK(same(first, tools::train(data, options)));
+    CHECK(same(first, trained(data, options)));
     options.threads = 5;
-    CHECK(same(first, tools::train(data, options)));
+    CHECK(same(first, trained(data, options)));
     options.seed = 2;
-    const tools::TrainedModel other = tools::train(data, options);
+    const tools::TrainedModel other = trained(data, options);
     CHECK(other.features.omega != first.features.omega);
 }
 
@@ -146,8 +151,8 @@ TEST_CASE("rows at rest set neither scales nor offsets") {
     const tools::TrainingData moving = three_joints();
     const tools::TrainingData resting = with_standstill(moving, 3000);
     const tools::TrainingOptions options = quick_options(InputKind::DF); // scales without parameters
-    const tools::TrainedModel a = tools::train(moving, options);
-    const tools::TrainedModel b = tools::train(resting, options);
+    const tools::TrainedModel a = trained(moving, options);
+    const tools::TrainedModel b = trained(resting, options);
     for (std::size_t i = 0; i < a.input.scale.size(); ++i) {
         CHECK(b.input.scale[i] == Approx(a.input.scale[i]).epsilon(0.03));
     }
@@ -162,7 +167,7 @@ TEST_CASE("rows at rest set neither scales nor offsets") {
 TEST_CASE("limits are ten times what training saw, at least two pi for positions") {
     tools::TrainingData data = three_joints();
     data.positions.col(1) *= 0.01;
-    const tools::TrainedModel model = tools::train(data, quick_options(InputKind::DFSR));
+    const tools::TrainedModel model = trained(data, quick_options(InputKind::DFSR));
     CHECK(model.limits.position_rad[0] == 10 * data.positions.col(0).cwiseAbs().maxCoeff());
     CHECK(model.limits.position_rad[1] == 2 * std::numbers::pi);
     CHECK(model.limits.output[1] == 10 * data.outputs.col(1).cwiseAbs().maxCoeff());
@@ -173,7 +178,7 @@ TEST_CASE("training reports every evaluation and every start") {
     int calls = 0;
     std::vector<double> ends(3);
     tools::TrainingProgress last;
-    const auto model = tools::train(three_joints(), options, [&](const tools::TrainingProgress& progress) {
+    const auto model = trained(three_joints(), options, [&](const tools::TrainingProgress& progress) {
         ++calls;
         last = progress;
         if (progress.end) {

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/training/train.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/training/arm_data.hpp"
+#include "tests/tools/training/synthetic_physics.hpp"
+#include "tools/common/error.hpp"
+#include "tools/training/input_map.hpp"
+#include "tools/training/lag_window.hpp"
+#include "tools/training/physics_columns.hpp"
+#include "tools/training/random_features.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tools = dfdyn::tools;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using tools::HyperMethod;
+using tools::InputKind;
+using tools::ModelClass;
+
+namespace {
+
+constexpr int lags = 5;
+
+/// An arm of three joints whose two outputs are physics of six columns, friction that these do not have, and
+/// noise.
+struct Arm {
+    tools::NormalSource random{dfdyn::tests::seed()};
+    tools::TrainingData data = dfdyn::tests::arm_data(500, 3, 2, random);
+    dfdyn::tests::SyntheticRegressor regressor{3, 2, 6, random};
+    VectorXd truth{{2, -1, 3, 1.5, -2, 1}};
+    tools::TrainingOptions options;
+
+    Arm() {
+        const MatrixXd columns =
+            tools::all_columns(regressor, {data.positions, data.velocities, data.accelerations});
+        for (Index k = 0; k < 2; ++k) {
+            data.outputs.col(k) = columns.middleCols(6 * k, 6) * truth +
+                                  (3 * data.velocities.col(k)).array().tanh().matrix() +
+                                  0.05 * random.matrix(500, 1);
+        }
+        options.lags = lags;
+        options.feature_count = 60;
+        options.likelihood_rows = 150;
+        options.starts = 2;
+        options.evaluations_per_start = 40;
+        options.refinement_evaluations = 5;
+        options.physics.regressor = &regressor;
+    }
+
+    std::string message() const {
+        try {
+            tools::train(data, options);
+        } catch (const tools::InputError& error) {
+            return error.what();
+        }
+        return "";
+    }
+};
+
+/// The model's predictions at `rows` as the firmware makes them, from the result's numbers alone.
+MatrixXd predictions(const Arm& arm, const tools::TrainingResult& result, const tools::RowList& rows) {
+    const tools::TrainedModel& model = result.model;
+    const tools::TrainedPhysics& physics = *result.physics;
+    tools::MotionSamples motion{arm.data.positions(rows, Eigen::all), arm.data.velocities(rows, Eigen::all),
+                                arm.data.accelerations(rows, Eigen::all)};
+    if (physics.motion_rows.size() > 0) {
+        const MatrixXd windows = tools::lag_windows(arm.data.positions, rows, lags);
+        for (Index joint = 0; joint < 3; ++joint) {
+            const auto window = windows.middleCols(joint * (lags + 1), lags + 1);
+            motion.positions.col(joint) = window * physics.motion_rows.row(0).transpose();
+            motion.velocities.col(joint) = window * physics.motion_rows.row(1).transpose();
+            motion.accelerations.col(joint) = window * physics.motion_rows.row(2).transpose();
+        }
+    }
+    const MatrixXd columns = tools::all_columns(arm.regressor, motion);
+    const VectorXd& pi = physics.start.parameters;
+    MatrixXd result_matrix(columns.rows(), 2);
+    for (Index k = 0; k < 2; ++k) {
+        const double noise = model.outputs.noise_std[static_cast<std::size_t>(k)];
+        VectorXd scaled = VectorXd::Zero(columns.rows());
+        for (Index c = 0; c < pi.size(); ++c) {
+            const Index column = 6 * k + physics.columns[static_cast<std::size_t>(c)];
+            scaled += columns.col(column) * (physics.column_scale[c] / noise * pi[c]);
+        }
+        if (model.features.count > 0) {
+            const Index size = 2 * model.features.count;
+            VectorXd weights = Eigen::Map<const VectorXd>(model.start.weights.data() + k * size, size);
+            if (!physics.start.coupling.empty()) {
+                weights -= physics.start.coupling[static_cast<std::size_t>(k)] * pi;
+            }
+            scaled +=
+                tools::random_features(model.features, tools::stored_inputs(model.input, arm.data, rows)) *
+                weights;
+        }
+        result_matrix.col(k) = model.outputs.offset[static_cast<std::size_t>(k)] + (noise * scaled).array();
+    }
+    return result_matrix;
+}
+
+double relative_error(const MatrixXd& predicted, const MatrixXd& measured) {
+    const MatrixXd centred = measured.rowwise() - measured.colwise().mean();
+    return (predicted - measured).norm() / centred.norm();
+}
+
+bool same(const tools::TrainingResult& a, const tools::TrainingResult& b) {
+    return a.model.start.weights == b.model.start.weights &&
+           a.model.outputs.noise_std == b.model.outputs.noise_std &&
+           a.physics->start.parameters == b.physics->start.parameters &&
+           a.physics->start.diagonal == b.physics->start.diagonal &&
+           a.physics->motion_rows == b.physics->motion_rows;
+}
+
+} // namespace
+
+TEST_CASE("every model with every input predicts what it was trained on, from its numbers alone") {
+    const auto model = GENERATE(ModelClass::P, ModelClass::SP, ModelClass::SP2, ModelClass::SPK);
+    const auto input =
+        GENERATE(InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR);
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    CAPTURE(static_cast<int>(model), static_cast<int>(input));
+    Arm arm;
+    arm.options.model = model;
+    arm.options.input = input;
+    const tools::TrainingResult result = tools::train(arm.data, arm.options);
+    REQUIRE(result.physics);
+    const tools::TrainedPhysics& physics = *result.physics;
+    const std::size_t p = physics.columns.size();
+    CHECK(p == 6);
+    CHECK(physics.column_scale.minCoeff() > 0);
+    CHECK(physics.motion_rows.rows() == (input == InputKind::STD ? 0 : 3));
+    const bool learned = model == ModelClass::P || model == ModelClass::SPK;
+    CHECK(physics.start.diagonal.size() == (learned ? p : 0));
+    CHECK(physics.start.coupling.size() == (model == ModelClass::SPK ? 2 : 0));
+    CHECK((physics.prior_variance > 0) == learned);
+    CHECK(result.model.start.weights.size() == (model == ModelClass::P ? 0 : 2 * 120));
+    CHECK(result.model.outputs.offset == std::vector<double>{0, 0});
+    const tools::RowList rows = dfdyn::tests::rows_between(lags, 500);
+    const double error = relative_error(predictions(arm, result, rows), arm.data.outputs(rows, Eigen::all));
+    CHECK(error < (model == ModelClass::P ? 0.5 : 0.1));
+    if (model == ModelClass::P) {
+        CHECK(error > 0.02); // it does not know friction
+    }
+}
+
+TEST_CASE("physical parameters come out where the physics is right") {
+    const auto model = GENERATE(ModelClass::SP, ModelClass::SPK);
+    const auto prior = GENERATE(tools::PriorForm::scaled, tools::PriorForm::unit, tools::PriorForm::diagonal);
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    CAPTURE(static_cast<int>(model), static_cast<int>(prior));
+    Arm arm;
+    arm.options.model = model;
+    arm.options.input = InputKind::STD;
+    arm.options.physics.prior = prior;
+    const tools::TrainingResult result = tools::train(arm.data, arm.options);
+    const VectorXd physical = result.physics->column_scale.cwiseProduct(result.physics->start.parameters);
+    CHECK((physical - arm.truth).norm() < 0.35 * arm.truth.norm());
+    if (prior == tools::PriorForm::unit) {
+        CHECK(result.physics->column_scale == VectorXd::Ones(6));
+    }
+    if (prior == tools::PriorForm::diagonal && model == ModelClass::SPK) {
+        CHECK(result.physics->prior_variance == 1);
+    }
+}
+
+TEST_CASE("columns of the physics are of order one in units of the noise") {
+    Arm arm;
+    arm.options.model = ModelClass::SPK;
+    arm.options.input = InputKind::STD;
+    const tools::TrainingResult result = tools::train(arm.data, arm.options);
+    const MatrixXd columns =
+        tools::all_columns(arm.regressor, {arm.data.positions, arm.data.velocities, arm.data.accelerations});
+    for (Index c = 0; c < 6; ++c) {
+        const double first = columns.col(c).norm() / result.model.outputs.noise_std[0];
+        const double second = columns.col(6 + c).norm() / result.model.outputs.noise_std[1];
+        const double size = result.physics->column_scale[c] * std::hypot(first, second) / std::sqrt(1000);
+        CHECK(size > 0.3);
+        CHECK(size < 3);
+    }
+}
+
+TEST_CASE("the physics of DFR can have filters of its own") {
+    const auto model = GENERATE(ModelClass::SP2, ModelClass::SPK);
+    Arm arm;
+    arm.options.model = model;
+    arm.options.physics.own_motion = true;
+    arm.options.rows_per_joint = 2; // none of them an acceleration
+    const tools::TrainingResult result = tools::train(arm.data, arm.options);
+    const MatrixXd& rows = result.physics->motion_rows;
+    CHECK(rows.bottomRows(2).rowwise().sum().norm() < 1e-8 * rows.norm()); // constants are at rest
+    const VectorXd time = -arm.data.sample_period_s * VectorXd::LinSpaced(lags + 1, 0, lags);
+    CHECK(rows.row(1).dot(time) == Approx(1));
+    CHECK(rows.row(2).dot(time.cwiseAbs2() / 2) == Approx(1));
+    CHECK(result.model.input.rows_per_joint == 2);
+}
+
+TEST_CASE("SP2 takes parameters that are given") {
+    Arm arm;
+    arm.options.model = ModelClass::SP2;
+    arm.options.hyper = GENERATE(HyperMethod::ML, HyperMethod::CV);
+    arm.options.input = InputKind::STD;
+    arm.options.physics.given = arm.truth;
+    const tools::TrainingResult result = tools::train(arm.data, arm.options);
+    const VectorXd physical = result.physics->column_scale.cwiseProduct(result.physics->start.parameters);
+    CHECK((physical - arm.truth).norm() < 1e-9);
+    CHECK(result.physics->columns.size() == 6);
+}
+
+TEST_CASE("DFR is at least as likely as DFSR") {
+    const auto model = GENERATE(ModelClass::NP, ModelClass::SPK);
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    CAPTURE(static_cast<int>(model));
+    Arm arm;
+    arm.options.model = model;
+    arm.options.physics.own_motion = true;
+    arm.options.input = InputKind::DFSR;
+    const double structured = tools::train(arm.data, arm.options).model.training.log_likelihood;
+    arm.options.input = InputKind::DFR;
+    arm.options.starts = 1;
+    CHECK(tools::train(arm.data, arm.options).model.training.log_likelihood >= structured - 1e-6);
+}
+
+TEST_CASE("cross validation fills the model and gives the grid") {
+    const auto model = GENERATE(ModelClass::NP, ModelClass::P, ModelClass::SP2);
+    const auto input = GENERATE(InputKind::STD, InputKind::DF, InputKind::DFSR);
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    CAPTURE(static_cast<int>(model), static_cast<int>(input));
+    Arm arm;
+    arm.options.model = model;
+    arm.options.hyper = HyperMethod::CV;
+    arm.options.input = input;
+    const tools::TrainingResult result = tools::train(arm.data, arm.options);
+    CHECK(result.model.training.method == "CV");
+    const auto best = std::min_element(result.hold_out.begin(), result.hold_out.end(),
+                                       [](const auto& a, const auto& b) { return a.error < b.error; });
+    REQUIRE(best != result.hold_out.end());
+    if (model == ModelClass::P) {
+        CHECK(result.physics->prior_variance > 0);
+    } else {
+        CHECK(result.model.features.length_scale == Approx(best->length_scale));
+        CHECK(result.model.outputs.prior_variance == Approx(1 / best->noise_ratio));
+    }
+    if (model != ModelClass::NP) {
+        const tools::RowList rows = dfdyn::tests::rows_between(lags, 500);
+        CHECK(relative_error(predictions(arm, result, rows), arm.data.outputs(rows, Eigen::all)) < 0.5);
+    }
+}
+
+TEST_CASE("training with physics gives the same model again, whatever the number of threads") {
+    const auto model = GENERATE(ModelClass::P, ModelClass::SP, ModelClass::SP2, ModelClass::SPK);
+    CAPTURE(static_cast<int>(model));
+    Arm arm;
+    arm.options.model = model;
+    const tools::TrainingResult first = tools::train(arm.data, arm.options);
+    arm.options.threads = 1;
+    CHECK(same(first, tools::train(arm.data, arm.options)));
+}
+
+TEST_CASE("options that do not go together are refused") {
+    Arm arm;
+    arm.options.model = ModelClass::SPK;
+    SECTION("no robot") {
+        arm.options.physics.regressor = nullptr;
+        CHECK(arm.message() == "training options: expected a robot's physics for model SPK, found none");
+    }
+    SECTION("a robot with other outputs") {
+        const dfdyn::tests::SyntheticRegressor other(3, 6, 4, arm.random);
+        arm.options.physics.regressor = &other;
+        CHECK(arm.message() == "training options: expected physics of 2 outputs, found 6");
+    }
+    SECTION("rows that the physics cannot share") {
+        arm.options.rows_per_joint = 2;
+        CHECK(arm.message() ==
+              "training options: expected at least 3 rows per joint for the physics to share, found 2");
+    }
+    SECTION("cross validation") {
+        arm.options.hyper = HyperMethod::CV;
+        CHECK(arm.message() ==
+              "training options: expected model NP, P or SP2 for cross validation, found SPK");
+        arm.options.model = ModelClass::P;
+        CHECK(arm.message() ==
+              "training options: expected input STD, DF or DFSR for cross validation, found DFR");
+    }
+    SECTION("given parameters") {
+        arm.options.physics.given = VectorXd::Zero(6);
+        CHECK(arm.message() == "training options: expected model SP2 for given parameters, found SPK");
+        arm.options.model = ModelClass::SP2;
+        arm.options.physics.given = VectorXd::Zero(5);
+        CHECK(arm.message() == "training options: expected 6 finite physical parameters, found 5");
+    }
+    SECTION("threshold") {
+        arm.options.physics.column_threshold = 1;
+        CHECK(arm.message() ==
+              "training options: expected a threshold of the columns between 0 and 1, found 1");
+    }
+    SECTION("lags") {
+        arm.options.input = InputKind::DF;
+        arm.options.lags = 1;
+        CHECK(arm.message() == "training options: expected at least 2 lags, found 1");
+    }
+}
+
+TEST_CASE("outputs beyond what doubles can square leave no start with a finite likelihood") {
+    Arm arm;
+    arm.options.model = GENERATE(ModelClass::P, ModelClass::SP, ModelClass::SPK);
+    arm.data.outputs *= 1e200;
+    CHECK(arm.message() ==
+          "training: expected a finite likelihood from at least one of 2 starts, found none");
+}

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/training/column_selection.hpp"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+
+namespace dfdyn::tools {
+
+using Eigen::Index;
+
+ColumnChoice select_columns(const Eigen::MatrixXd& psi, double threshold) {
+    const Eigen::VectorXd norms = psi.colwise().norm().transpose();
+    Eigen::MatrixXd unit = psi;
+    for (Index c = 0; c < psi.cols(); ++c) {
+        unit.col(c) /= norms[c] > 0 ? norms[c] : 1;
+    }
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(unit);
+    ColumnChoice choice;
+    for (Index j = 0; j < std::min(psi.rows(), psi.cols()); ++j) {
+        if (std::abs(qr.matrixQR()(j, j)) > threshold) {
+            choice.columns.push_back(qr.colsPermutation().indices()[j]);
+        }
+    }
+    std::sort(choice.columns.begin(), choice.columns.end());
+    choice.scale.resize(static_cast<Index>(choice.columns.size()));
+    for (std::size_t c = 0; c < choice.columns.size(); ++c) {
+        choice.scale[static_cast<Index>(c)] =
+            std::sqrt(static_cast<double>(psi.rows())) / norms[choice.columns[c]];
+    }
+    return choice;
+}
+
+} // namespace dfdyn::tools

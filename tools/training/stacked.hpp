@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+namespace dfdyn::tools {
+
+/// One vector below the other; either may be empty.
+inline Eigen::VectorXd stacked(const Eigen::VectorXd& first, const Eigen::VectorXd& second) {
+    Eigen::VectorXd result(first.size() + second.size());
+    result << first, second;
+    return result;
+}
+
+} // namespace dfdyn::tools

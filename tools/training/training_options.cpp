@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/training/training_options.hpp"
+
+#include "tools/common/error.hpp"
+#include "tools/common/number.hpp"
+#include "tools/model/model_file.hpp"
+
+namespace dfdyn::tools {
+namespace {
+
+constexpr int likelihood_rows_least = 20;
+
+void expect(bool condition, const std::string& what, const std::string& found) {
+    if (!condition) {
+        throw InputError("training options: expected " + what + ", found " + found);
+    }
+}
+
+void expect(bool condition, const std::string& what, double found) {
+    expect(condition, what, number_text(found));
+}
+
+void check_lags(const TrainingOptions& options) {
+    const bool physics =
+        options.model != ModelClass::NP && (options.input != InputKind::STD || options.physics.own_motion);
+    const int least = options.input == InputKind::DFSR || physics ? 2 : 1;
+    expect(options.lags >= least, "at least " + std::to_string(least) + " lags", options.lags);
+    if (options.input == InputKind::DFR) {
+        expect(options.rows_per_joint >= 1 && options.rows_per_joint <= options.lags + 1,
+               "1 to lags + 1 rows per joint", options.rows_per_joint);
+    }
+}
+
+void check_search(const TrainingOptions& options) {
+    expect(options.feature_count >= 1, "at least 1 random feature", options.feature_count);
+    expect(options.likelihood_rows >= likelihood_rows_least, "at least 20 likelihood rows",
+           options.likelihood_rows);
+    expect(options.starts >= 1, "at least 1 start", options.starts);
+    expect(options.evaluations_per_start >= 1, "at least 1 evaluation per start",
+           options.evaluations_per_start);
+    expect(options.refinement_evaluations >= 0, "at least 0 evaluations of the refinement",
+           options.refinement_evaluations);
+    expect(options.threads >= 1, "at least 1 thread", options.threads);
+    const double least = least_forgetting_factor(options.feature_count);
+    expect(options.forgetting_factor >= least && options.forgetting_factor <= 1,
+           "a forgetting factor from 1 - 1/(2 features) = " + std::to_string(least) + " to 1",
+           options.forgetting_factor);
+}
+
+void check_hold_out(const TrainingOptions& options) {
+    const bool model =
+        options.model == ModelClass::NP || options.model == ModelClass::P || options.model == ModelClass::SP2;
+    expect(model, "model NP, P or SP2 for cross validation", to_string(options.model));
+    const bool input =
+        options.input == InputKind::STD || options.input == InputKind::DF || options.input == InputKind::DFSR;
+    expect(input, "input STD, DF or DFSR for cross validation", std::string(to_string(options.input)));
+    expect(options.training_share > 0 && options.training_share < 1, "a training share between 0 and 1",
+           options.training_share);
+}
+
+void check_physics(const TrainingOptions& options, const TrainingData& data) {
+    const PhysicsOptions& physics = options.physics;
+    expect(physics.regressor != nullptr, "a robot's physics for model " + to_string(options.model), "none");
+    const auto outputs = static_cast<double>(physics.regressor->outputs());
+    expect(physics.regressor->outputs() == data.outputs.cols(),
+           "physics of " + std::to_string(data.outputs.cols()) + " outputs", outputs);
+    expect(physics.column_threshold > 0 && physics.column_threshold < 1,
+           "a threshold of the columns between 0 and 1", physics.column_threshold);
+    if (options.input == InputKind::DFR && !physics.own_motion) {
+        expect(options.rows_per_joint >= 3, "at least 3 rows per joint for the physics to share",
+               options.rows_per_joint);
+    }
+    if (physics.given) {
+        expect(options.model == ModelClass::SP2, "model SP2 for given parameters", to_string(options.model));
+        expect(physics.given->size() == physics.regressor->columns() && physics.given->allFinite(),
+               std::to_string(physics.regressor->columns()) + " finite physical parameters",
+               static_cast<double>(physics.given->size()));
+    }
+}
+
+} // namespace
+
+std::string to_string(ModelClass model) {
+    switch (model) {
+    case ModelClass::NP:
+        return "NP";
+    case ModelClass::P:
+        return "P";
+    case ModelClass::SP:
+        return "SP";
+    case ModelClass::SP2:
+        return "SP2";
+    default:
+        return "SPK";
+    }
+}
+
+void check_options(const TrainingOptions& options, const TrainingData& data) {
+    check_lags(options);
+    check_search(options);
+    if (options.hyper == HyperMethod::CV) {
+        check_hold_out(options);
+    }
+    if (options.model != ModelClass::NP) {
+        check_physics(options, data);
+    }
+}
+
+} // namespace dfdyn::tools
