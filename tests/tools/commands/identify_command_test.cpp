@@ -30,13 +30,14 @@ struct Outcome {
     std::string error;
 };
 
-const std::string arm = " --robot " DFDYN_TEST_DATA_DIR
-                        "/robots/icub_right_arm/icub_right_arm.urdf --base chest --tip r_hand ";
+const std::string arm =
+    " --robot " DFDYN_TEST_DATA_DIR "/robots/icub_right_arm/icub_right_arm.urdf --base chest --tip r_hand ";
 
 Outcome identify(const TemporaryDirectory& directory, const std::string& arguments) {
     const std::string out = directory.path() / "out";
     const std::string error = directory.path() / "error";
-    const std::string command = std::string(DFDYN_PROGRAM) + " identify " + arguments + " >" + out + " 2>" + error;
+    const std::string command =
+        std::string(DFDYN_PROGRAM) + " identify " + arguments + " >" + out + " 2>" + error;
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_content(out), file_content(error)};
 }
@@ -44,12 +45,14 @@ Outcome identify(const TemporaryDirectory& directory, const std::string& argumen
 /// 100 Hz, 20 s: each joint of the arm swings at two frequencies about the middle of its range.
 tools::Motion swinging(const tools::Robot& robot) {
     const Eigen::Index rows = 2000;
-    tools::Motion motion{Eigen::MatrixXd(rows, 4), Eigen::MatrixXd::Zero(rows, 4), Eigen::MatrixXd::Zero(rows, 4)};
+    tools::Motion motion{Eigen::MatrixXd(rows, 4), Eigen::MatrixXd::Zero(rows, 4),
+                         Eigen::MatrixXd::Zero(rows, 4)};
     for (Eigen::Index i = 0; i < 4; ++i) {
         const tools::RobotJoint& joint = robot.joints[static_cast<std::size_t>(i)];
         const double reach = 0.45 * (*joint.upper - *joint.lower);
         motion.position.col(i).setConstant(0.5 * (*joint.upper + *joint.lower));
-        for (const auto& [part, rate] : {std::pair{0.6, 1.0 + 0.3 * double(i)}, std::pair{0.4, 3.1 - 0.4 * double(i)}}) {
+        for (const auto& [part, rate] :
+             {std::pair{0.6, 1.0 + 0.3 * double(i)}, std::pair{0.4, 3.1 - 0.4 * double(i)}}) {
             for (Eigen::Index t = 0; t < rows; ++t) {
                 const double phase = rate * 0.01 * double(t) + double(i);
                 motion.position(t, i) += part * reach * std::sin(phase);
@@ -97,12 +100,13 @@ TEST_CASE("identify finds an arm's true parameters, with recorded derivatives an
     directory.write("positions.csv", recording(1.1, false));
     for (const std::string log : {"full", "positions"}) {
         CAPTURE(log);
-        const Outcome outcome = identify(directory, arm + "--log " + in + "/" + log +
-                                                        ".csv --outputs wrench --consistent --half-width 3 -o " + in +
-                                                        "/p.json");
+        const Outcome outcome =
+            identify(directory, arm + "--log " + in + "/" + log +
+                                    ".csv --outputs wrench --consistent --half-width 3 -o " + in + "/p.json");
         CAPTURE(outcome.error);
         REQUIRE(outcome.status == 0);
-        CHECK_THAT(outcome.out, ContainsSubstring("r_arm_ft_sensor") && ContainsSubstring("1.93226 kg beyond") &&
+        CHECK_THAT(outcome.out, ContainsSubstring("r_arm_ft_sensor") &&
+                                    ContainsSubstring("1.93226 kg beyond") &&
                                     ContainsSubstring("17 base parameters of 20"));
         const auto json = nlohmann::json::parse(file_content(directory.path() / "p.json"));
         CHECK(json["schema"] == "dfdyn.parameters/1");
@@ -120,16 +124,19 @@ TEST_CASE("identify finds an arm's true parameters, with recorded derivatives an
         CHECK(json["rms_fitted"][0] < 0.01 * double(json["rms_nominal"][0]));
         REQUIRE(json["bodies"].size() == 2);
         CHECK(json["bodies"][1]["link"] == "r_elbow_1");
-        CHECK(double(json["bodies"][0]["mass"]) + double(json["bodies"][1]["mass"]) == Approx(1.1 * 1.9322575).epsilon(1e-2));
+        CHECK(double(json["bodies"][0]["mass"]) + double(json["bodies"][1]["mass"]) ==
+              Approx(1.1 * 1.9322575).epsilon(1e-2));
     }
 }
 
 TEST_CASE("identify refuses what it cannot use, in one line") {
     const TemporaryDirectory directory;
     const std::string in = directory.path().string();
-    const std::string log = "--log " + directory.write("short.csv", "t,q1,q2,q3,q4,fx,fy,fz,mx,my,mz\n"
-                                                                    "0,0,0,0,0,0,0,0,0,0,0\n1,0,0,0,0,0,0,0,0,0,0\n")
-                                           .string();
+    const std::string log =
+        "--log " + directory
+                       .write("short.csv", "t,q1,q2,q3,q4,fx,fy,fz,mx,my,mz\n"
+                                           "0,0,0,0,0,0,0,0,0,0,0\n1,0,0,0,0,0,0,0,0,0,0\n")
+                       .string();
     const std::string no_sensor = " --robot " DFDYN_TEST_DATA_DIR "/robots/ur5/ur5_robot.urdf --tip ee_link ";
     const std::string cases[] = {
         "",

@@ -23,12 +23,12 @@ tools::BaseParameters base_of(const tools::Robot& robot, OutputKind outputs) {
 } // namespace
 
 TEST_CASE("arms have as many base parameters as theory says") {
-    // Planar arm: first moments (2 each) where gravity acts, and the inertias about the joints; without gravity the first
-    // link's moments do nothing.
+    // Planar arm: first moments (2 each) where gravity acts, and the inertias about the joints; without
+    // gravity the first link's moments do nothing.
     CHECK(base_of(dfdyn::tests::planar_arm(9.81), OutputKind::joint_torque).count() == 6);
     CHECK(base_of(dfdyn::tests::planar_arm(0), OutputKind::joint_torque).count() == 4);
-    // Six turning joints, the first one upright, the second and third parallel: 1 + 7 + ... with one first moment less for
-    // each joint that is parallel to its predecessor.
+    // Six turning joints, the first one upright, the second and third parallel: 1 + 7 + ... with one first
+    // moment less for each joint that is parallel to its predecessor.
     const tools::BaseParameters ur5 = base_of(dfdyn::tests::ur5(), OutputKind::joint_torque);
     CHECK(ur5.count() == 36);
     CHECK(ur5.gap > 1e6);
@@ -60,8 +60,8 @@ TEST_CASE("any columns will do: dependent, zero, and independent ones") {
     const tools::BaseParameters base = tools::find_base_parameters(columns);
     REQUIRE(base.count() == 3);
     const VectorXd parameters = VectorXd::LinSpaced(5, 1, 5);
-    CHECK((columns * parameters - columns(Eigen::all, base.independent) * base.combination * parameters).norm() <
-          1e-8);
+    CHECK((columns * parameters - columns(Eigen::all, base.independent) * base.combination * parameters)
+              .norm() < 1e-8);
     CHECK(tools::find_base_parameters(MatrixXd::Zero(9, 3)).count() == 0);
 }
 
