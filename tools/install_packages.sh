@@ -18,6 +18,7 @@ demo_packages=(
 )
 test_packages=(
     "catch2:the unit tests cannot be built"
+    "libkdl-parser-dev:the robots that are read cannot be compared with KDL's reading of them"
     "libbenchmark-dev:the benchmarks cannot be built"
     "clang:no build with a second compiler"
     "clang-format:no check of the formatting"
