@@ -26,6 +26,10 @@ std::vector<Recording> RecordingOptions::read(std::size_t joint_count, OutputKin
     ReadOptions options;
     options.joint_count = joint_count;
     options.outputs = outputs;
+    return read(options);
+}
+
+std::vector<Recording> RecordingOptions::read(ReadOptions options) const {
     options.rows = parse_row_range(rows);
     options.skip_bad_rows = skip_bad_rows;
     std::vector<Recording> recordings = read_recordings(logs, options);

@@ -22,6 +22,9 @@ struct RecordingOptions {
 
     /// Reads them all, and says once on stderr which columns were ignored and which rows skipped.
     std::vector<Recording> read(std::size_t joint_count, OutputKind outputs) const;
+
+    /// Likewise, the columns that `options` says.
+    std::vector<Recording> read(ReadOptions options) const;
 };
 
 /// Throws InputError when two outputs, or an output and an input, are the same file. Empty paths are none.

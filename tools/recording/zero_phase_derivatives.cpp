@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/recording/zero_phase_derivatives.hpp"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+
+namespace dfdyn::tools {
+
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+double step_s(const Recording& recording, std::size_t row) {
+    return 1e-9 * static_cast<double>(recording.time_ns[row] - recording.time_ns[row - 1]);
+}
+
+/// Per row the first row of the stretch without gaps that it belongs to.
+std::vector<std::size_t> stretches(const Recording& recording) {
+    std::vector<double> steps;
+    for (std::size_t row = 1; row < recording.row_count(); ++row) {
+        steps.push_back(step_s(recording, row));
+    }
+    double median = 0;
+    if (!steps.empty()) {
+        const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+        std::ranges::nth_element(steps, middle);
+        median = *middle;
+    }
+    std::vector<std::size_t> first(recording.row_count(), 0);
+    for (std::size_t row = 1; row < recording.row_count(); ++row) {
+        const bool gap = recording.gap_before[row] != 0 || step_s(recording, row) > 3 * median;
+        first[row] = gap ? row : first[row - 1];
+    }
+    return first;
+}
+
+/// Rows: coefficients of the polynomial about `centre`; columns: weights of the samples from `begin` on.
+Eigen::MatrixXd polynomial_weights(const Recording& recording, std::size_t begin, std::size_t centre,
+                                   const ZeroPhaseWindow& window) {
+    const int count = 2 * window.half_width + 1;
+    const double span =
+        recording.time_s[begin + static_cast<std::size_t>(count) - 1] - recording.time_s[begin];
+    Eigen::MatrixXd powers(count, window.degree + 1);
+    for (int i = 0; i < count; ++i) {
+        const double t =
+            (recording.time_s[begin + static_cast<std::size_t>(i)] - recording.time_s[centre]) / span;
+        double power = 1;
+        for (int k = 0; k <= window.degree; ++k) {
+            powers(i, k) = power;
+            power *= t;
+        }
+    }
+    Eigen::MatrixXd weights =
+        powers.householderQr().solve(Eigen::MatrixXd::Identity(count, count)).topRows(3);
+    weights.row(1) /= span;
+    weights.row(2) *= 2 / (span * span);
+    return weights;
+}
+
+} // namespace
+
+Derivatives zero_phase_derivatives(const Recording& recording, const Columns& columns,
+                                   const ZeroPhaseWindow& window) {
+    const auto rows = static_cast<Eigen::Index>(recording.row_count());
+    const auto signals = static_cast<Eigen::Index>(columns.names.size());
+    const Eigen::Map<const RowMajor> values(columns.values.data(), rows, signals);
+    const std::vector<std::size_t> stretch = stretches(recording);
+    const auto half = static_cast<std::size_t>(window.half_width);
+    Derivatives result{Eigen::MatrixXd::Zero(rows, signals), Eigen::MatrixXd::Zero(rows, signals),
+                       std::vector<std::uint8_t>(recording.row_count(), 0)};
+    for (std::size_t row = half; row + half < recording.row_count(); ++row) {
+        if (stretch[row - half] != stretch[row + half]) {
+            continue;
+        }
+        const Eigen::MatrixXd weights = polynomial_weights(recording, row - half, row, window);
+        const auto at = static_cast<Eigen::Index>(row);
+        const auto around = values.middleRows(at - window.half_width, 2 * window.half_width + 1);
+        result.first.row(at) = weights.row(1) * around;
+        result.second.row(at) = weights.row(2) * around;
+        result.valid[row] = 1;
+    }
+    return result;
+}
+
+} // namespace dfdyn::tools
