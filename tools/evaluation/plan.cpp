@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/evaluation/plan.hpp"
+
+#include "tools/common/text.hpp"
+#include "tools/evaluation/plan_cases.hpp"
+#include "tools/model/json_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+namespace dfdyn::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* schema = "dfdyn.plan/1";
+constexpr int most_rows = 100'000'000;
+constexpr int most_in_list = 1000;
+
+constexpr std::array<std::string_view, 16> plan_names{
+    "schema",  "name",           "title",       "robot", "outputs", "training", "tests",  "horizon",
+    "seeds",   "steady_after_s", "error_scale", "draws", "groups",  "defaults", "cases",  "figures"};
+constexpr std::array<std::string_view, 2> later_names{"comparisons", "findings"};
+constexpr std::array<std::string_view, 4> robot_names{"urdf", "base", "tip", "ft_joint"};
+constexpr std::array<std::string_view, 2> training_names{"log", "start_rows"};
+constexpr std::array<std::string_view, 4> test_names{"log", "first", "rows", "count"};
+constexpr std::array<std::string_view, 2> group_names{"name", "outputs"};
+constexpr std::array<std::string_view, 2> figure_names{"title", "cases"};
+constexpr std::array<std::string_view, 5> comparison_names{"better", "worse", "group", "phase", "gain"};
+constexpr std::array<std::string_view, 4> finding_names{"name", "statement", "if_not", "comparisons"};
+
+std::string content_of(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) {
+        throw system_error(path, "cannot read", errno);
+    }
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string text_or(const JsonReader& reader, const std::string& name, const std::string& fallback) {
+    return reader.has(name) ? reader.text(name) : fallback;
+}
+
+std::size_t count_of(const JsonReader& reader, const std::string& name, int low) {
+    return static_cast<std::size_t>(reader.whole_number(name, low, most_rows));
+}
+
+/// Reads the parts of a plan that name each other.
+class PlanReader {
+  public:
+    PlanReader(const JsonReader& json, fs::path folder) : json_(json), folder_(std::move(folder)) {}
+
+    Plan read() {
+        check_fields();
+        read_protocol();
+        read_groups();
+        read_cases();
+        read_figures();
+        if (json_.has("comparisons")) {
+            plan_.comparisons = comparisons(json_);
+        }
+        if (json_.has("findings")) {
+            read_findings();
+        }
+        return std::move(plan_);
+    }
+
+  private:
+    void check_fields() const {
+        if (json_.text("schema") != schema) {
+            throw json_.error("schema", in_quotes(schema), in_quotes(json_.text("schema")));
+        }
+        std::vector<std::string_view> names(plan_names.begin(), plan_names.end());
+        names.insert(names.end(), later_names.begin(), later_names.end());
+        json_.allow_only(names);
+    }
+
+    fs::path path_in(const JsonReader& reader, const std::string& name) const {
+        return folder_ / reader.text(name);
+    }
+
+    void read_protocol() {
+        plan_.name = plain_name(json_, "name");
+        plan_.title = json_.text("title");
+        plan_.outputs = output_kind();
+        read_robot();
+        const JsonReader training = json_.object("training");
+        training.allow_only(training_names);
+        plan_.training_log = path_in(training, "log");
+        plan_.start_rows = count_of(training, "start_rows", 20);
+        for (const JsonReader& test : json_.objects("tests")) {
+            plan_.tests.push_back(test_log(test));
+        }
+        plan_.horizon = json_.has("horizon") ? count_of(json_, "horizon", 1) : plan_.horizon;
+        if (json_.has("steady_after_s")) {
+            plan_.steady_after_s = json_.positive_number("steady_after_s");
+        }
+        plan_.error_scale = error_scale();
+        read_seeds();
+    }
+
+    OutputKind output_kind() const {
+        try {
+            return parse_output_kind(json_.text("outputs"));
+        } catch (const InputError&) {
+            throw json_.error("outputs", "tau, i or wrench", in_quotes(json_.text("outputs")));
+        }
+    }
+
+    void read_robot() {
+        if (!json_.has("robot")) {
+            return;
+        }
+        const JsonReader robot = json_.object("robot");
+        robot.allow_only(robot_names);
+        plan_.robot = {path_in(robot, "urdf"), text_or(robot, "base", ""), text_or(robot, "tip", ""),
+                       text_or(robot, "ft_joint", "")};
+    }
+
+    TestLog test_log(const JsonReader& test) const {
+        test.allow_only(test_names);
+        return {path_in(test, "log"), test.has("first") ? count_of(test, "first", 0) : 0,
+                count_of(test, "rows", 2), test.has("count") ? count_of(test, "count", 1) : 1};
+    }
+
+    ErrorScale error_scale() const {
+        const std::string text = text_or(json_, "error_scale", "horizon");
+        for (const ErrorScale scale : {ErrorScale::horizon, ErrorScale::variance}) {
+            if (text == to_string(scale)) {
+                return scale;
+            }
+        }
+        throw json_.error("error_scale", "horizon or variance", in_quotes(text));
+    }
+
+    /// Either "draws": N, which are the seeds 1 … N, or "seeds": [...].
+    void read_seeds() {
+        if (json_.has("seeds")) {
+            for (const int seed : json_.whole_numbers("seeds", 0, most_rows)) {
+                plan_.seeds.push_back(static_cast<std::uint64_t>(seed));
+            }
+        } else {
+            const int draws = json_.has("draws") ? json_.whole_number("draws", 1, most_in_list) : 1;
+            for (int seed = 1; seed <= draws; ++seed) {
+                plan_.seeds.push_back(static_cast<std::uint64_t>(seed));
+            }
+        }
+        const std::set<std::uint64_t> distinct(plan_.seeds.begin(), plan_.seeds.end());
+        if (plan_.seeds.empty() || distinct.size() != plan_.seeds.size()) {
+            throw json_.error("seeds", "at least one, each once", std::to_string(plan_.seeds.size()));
+        }
+    }
+
+    void read_groups() {
+        for (const JsonReader& group : json_.objects("groups")) {
+            group.allow_only(group_names);
+            plan_.groups.push_back({plain_name(group, "name"), group.texts("outputs", most_in_list)});
+            refuse_twice(json_, "groups", plan_.groups);
+        }
+    }
+
+    void read_cases() {
+        const Case defaults = json_.has("defaults") ? read_defaults(json_.object("defaults")) : Case{};
+        for (const JsonReader& entry : json_.objects("cases")) {
+            for (const Case& one : expand_cases(entry, defaults)) {
+                plan_.cases.push_back(one);
+                refuse_twice(json_, "cases", plan_.cases);
+            }
+        }
+    }
+
+    template <class Named>
+    static void refuse_twice(const JsonReader& reader, const std::string& field,
+                             const std::vector<Named>& list) {
+        const std::string& name = list.back().name;
+        if (std::ranges::count(list, name, &Named::name) > 1) {
+            throw reader.error(field, "names that are there once", in_quotes(name) + " twice");
+        }
+    }
+
+    template <class Named>
+    static const std::string& known(const JsonReader& reader, const std::string& field,
+                                    const std::vector<Named>& list, const std::string& name) {
+        if (std::ranges::count(list, name, &Named::name) == 0) {
+            std::vector<std::string> names;
+            std::ranges::transform(list, std::back_inserter(names), &Named::name);
+            throw reader.error(field, "one of " + listed(names), in_quotes(name));
+        }
+        return name;
+    }
+
+    void read_figures() {
+        if (!json_.has("figures")) {
+            plan_.figures.push_back({plan_.title, {}});
+            std::ranges::transform(plan_.cases, std::back_inserter(plan_.figures.front().cases), &Case::name);
+            return;
+        }
+        for (const JsonReader& figure : json_.objects("figures")) {
+            figure.allow_only(figure_names);
+            plan_.figures.push_back({figure.text("title"), figure.texts("cases", most_in_list)});
+            for (const std::string& name : plan_.figures.back().cases) {
+                known(figure, "cases", plan_.cases, name);
+            }
+        }
+    }
+
+    static std::vector<std::string> names_in(const JsonReader& reader, const std::string& name) {
+        return reader.is_array(name) ? reader.texts(name, most_in_list) : std::vector{reader.text(name)};
+    }
+
+    std::vector<std::string> groups_of(const JsonReader& entry) const {
+        if (entry.has("group")) {
+            return names_in(entry, "group");
+        }
+        std::vector<std::string> all;
+        std::ranges::transform(plan_.groups, std::back_inserter(all), &OutputGroup::name);
+        return all;
+    }
+
+    static Phase phase_of(const JsonReader& entry) {
+        const std::string text = entry.text("phase");
+        for (const Phase phase : {Phase::transient, Phase::steady}) {
+            if (text == to_string(phase)) {
+                return phase;
+            }
+        }
+        throw entry.error("phase", "transient or steady", in_quotes(text));
+    }
+
+    /// Every combination of what each entry lists.
+    std::vector<Comparison> comparisons(const JsonReader& reader) const {
+        std::vector<Comparison> all;
+        for (const JsonReader& entry : reader.objects("comparisons")) {
+            entry.allow_only(comparison_names);
+            const Phase phase = phase_of(entry);
+            const double gain = entry.has("gain") ? entry.number_within("gain", -10, 0.99) : 0;
+            for (const std::string& better : names_in(entry, "better")) {
+                for (const std::string& worse : names_in(entry, "worse")) {
+                    for (const std::string& group : groups_of(entry)) {
+                        all.push_back({known(entry, "better", plan_.cases, better),
+                                       known(entry, "worse", plan_.cases, worse),
+                                       known(entry, "group", plan_.groups, group), phase, gain});
+                    }
+                }
+            }
+        }
+        return all;
+    }
+
+    void read_findings() {
+        for (const JsonReader& finding : json_.objects("findings")) {
+            finding.allow_only(finding_names);
+            plan_.findings.push_back({finding.text("name"), finding.text("statement"),
+                                      text_or(finding, "if_not", ""), comparisons(finding)});
+            refuse_twice(json_, "findings", plan_.findings);
+        }
+    }
+
+    const JsonReader& json_;
+    fs::path folder_;
+    Plan plan_;
+};
+
+} // namespace
+
+std::string to_string(Phase phase) { return phase == Phase::transient ? "transient" : "steady"; }
+
+std::string to_string(ErrorScale scale) { return scale == ErrorScale::horizon ? "horizon" : "variance"; }
+
+Plan read_plan(const fs::path& path) {
+    const nlohmann::json json = parse_json(content_of(path), shown(path));
+    const JsonReader reader(json, shown(path));
+    return PlanReader(reader, path.parent_path()).read();
+}
+
+} // namespace dfdyn::tools
