@@ -27,8 +27,8 @@ struct ComparisonOutcome {
 
 /// Draws and subsets agree when their ratio is below 1 - gain. The statement holds when the paired
 /// signed-rank test over the draws' ln(ratio / (1 - gain)) says so with p < 0.05 and more than half of the
-/// subsets agree; it is contradicted when the test says the opposite with p < 0.05; else it is undecided. With
-/// fewer than five draws the test can decide nothing.
+/// subsets agree; it is contradicted when the test says the opposite with p < 0.05; else it is undecided.
+/// With fewer than five draws the test can decide nothing.
 ComparisonOutcome compare(const Comparison& comparison, const Plan& plan, std::span<const UnitResult> units);
 
 enum class FindingVerdict { reproduced, partly, not_reproduced, undecided };

@@ -60,7 +60,8 @@ ErrorCurve thinned(const ErrorCurve& curve, int per_decade) {
     for (const auto& [stretch, ticks] : stretches) {
         const auto mean = [&ticks = ticks](const std::vector<double>& values) {
             std::vector<double> chosen;
-            std::ranges::transform(ticks, std::back_inserter(chosen), [&](std::size_t i) { return values[i]; });
+            std::ranges::transform(ticks, std::back_inserter(chosen),
+                                   [&](std::size_t i) { return values[i]; });
             return mean_of(chosen);
         };
         thin.time_s.push_back(mean(curve.time_s));

@@ -15,7 +15,8 @@ struct ErrorCurve {
     std::vector<double> low, high; ///< of the draws, each averaged over its subsets
 };
 
-/// The paper's curve, tick by tick: the mean over the subsets that have a finite value there, then over draws.
+/// The paper's curve, tick by tick: the mean over the subsets that have a finite value there, then over
+/// draws.
 ErrorCurve error_curve(std::span<const UnitResult* const> draws, std::size_t group);
 
 /// The curve with at most `per_decade` points in a decade of time, each the mean over its stretch of times,

@@ -6,8 +6,8 @@
 
 namespace dfdyn::tools {
 
-std::vector<double> errors_of_phase(const UnitResult& unit, std::size_t group, std::size_t subset, Phase phase,
-                                    double steady_after_s) {
+std::vector<double> errors_of_phase(const UnitResult& unit, std::size_t group, std::size_t subset,
+                                    Phase phase, double steady_after_s) {
     const std::vector<double>& error = unit.error[group][subset];
     std::vector<double> values;
     for (std::size_t tick = 0; tick < error.size(); ++tick) {

@@ -23,8 +23,8 @@ constexpr int most_rows = 100'000'000;
 constexpr int most_in_list = 1000;
 
 constexpr std::array<std::string_view, 16> plan_names{
-    "schema",  "name",           "title",       "robot", "outputs", "training", "tests",  "horizon",
-    "seeds",   "steady_after_s", "error_scale", "draws", "groups",  "defaults", "cases",  "figures"};
+    "schema", "name",           "title",       "robot", "outputs", "training", "tests", "horizon",
+    "seeds",  "steady_after_s", "error_scale", "draws", "groups",  "defaults", "cases", "figures"};
 constexpr std::array<std::string_view, 2> later_names{"comparisons", "findings"};
 constexpr std::array<std::string_view, 4> robot_names{"urdf", "base", "tip", "ft_joint"};
 constexpr std::array<std::string_view, 2> training_names{"log", "start_rows"};

@@ -16,15 +16,15 @@ struct Case {
     std::string name;         ///< unique in its plan, e.g. NP-ML-DFR
     std::string model = "NP"; ///< P, NP, SP, SP2, SPK
     InputKind input = InputKind::DFR;
-    std::string hyper = "ML";             ///< ML, CV
-    std::string physics_input = "same";   ///< what the physics sees: the features' input, or STD, DFSR, …
-    int lags = 10;                        ///< M
-    int rows_per_joint = 3;               ///< k of DFR
-    int feature_count = 250;              ///< d
-    bool orthogonal = true;               ///< orthogonal random features
+    std::string hyper = "ML";           ///< ML, CV
+    std::string physics_input = "same"; ///< what the physics sees: the features' input, or STD, DFSR, …
+    int lags = 10;                      ///< M
+    int rows_per_joint = 3;             ///< k of DFR
+    int feature_count = 250;            ///< d
+    bool orthogonal = true;             ///< orthogonal random features
     double forgetting_factor = 1;
-    int likelihood_rows = 1000;           ///< samples in the exact kernel, at most
-    int starts = 6;                       ///< local searches
+    int likelihood_rows = 1000; ///< samples in the exact kernel, at most
+    int starts = 6;             ///< local searches
 };
 
 /// Outputs whose errors are averaged, as the three forces of a wrench are.
@@ -74,7 +74,7 @@ struct Figure {
 
 /// What `dfdyn evaluate` does; see docs/evaluation.md for its file.
 struct Plan {
-    std::string name;  ///< begins the names of the pictures: letters, digits, '-' and '_'
+    std::string name; ///< begins the names of the pictures: letters, digits, '-' and '_'
     std::string title;
     RobotChoice robot;
     OutputKind outputs = OutputKind::wrench;

@@ -18,12 +18,12 @@ constexpr std::array<std::string_view, 5> models{"P", "NP", "SP", "SP2", "SPK"};
 constexpr std::array<std::string_view, 2> hypers{"ML", "CV"};
 constexpr std::array<std::string_view, 4> physics_inputs{"same", "STD", "DFSR", "filtered"};
 
-constexpr std::array<std::string_view, 8> setting_names{
-    "physics_input", "lags", "features", "orthogonal", "forgetting", "likelihood_rows", "starts",
-    "rows_per_joint"};
+constexpr std::array<std::string_view, 8> setting_names{"physics_input", "lags",          "features",
+                                                        "orthogonal",    "forgetting",    "likelihood_rows",
+                                                        "starts",        "rows_per_joint"};
 constexpr std::array<std::string_view, 12> entry_names{
-    "model", "input", "hyper", "suffix", "physics_input", "lags", "features", "orthogonal",
-    "forgetting", "likelihood_rows", "starts", "rows_per_joint"};
+    "model",    "input",      "hyper",      "suffix",          "physics_input", "lags",
+    "features", "orthogonal", "forgetting", "likelihood_rows", "starts",        "rows_per_joint"};
 
 std::string one_of(const JsonReader& entry, const std::string& name, const std::string& text,
                    std::span<const std::string_view> known) {
@@ -71,8 +71,7 @@ void read_settings(const JsonReader& entry, Case& one) {
         one.forgetting_factor = entry.number_within("forgetting", 0.5, 1);
     }
     if (entry.has("physics_input")) {
-        one.physics_input =
-            one_of(entry, "physics_input", entry.text("physics_input"), physics_inputs);
+        one.physics_input = one_of(entry, "physics_input", entry.text("physics_input"), physics_inputs);
     }
 }
 

@@ -9,8 +9,8 @@
 namespace dfdyn::tools {
 
 /// The cases of one entry of "cases": every combination of what it lists under model, input, hyper and
-/// rows_per_joint. What the entry does not say is as in `defaults`. A case is named MODEL-HYPER-INPUT, then -kN
-/// where rows_per_joint is a list, then the entry's "suffix".
+/// rows_per_joint. What the entry does not say is as in `defaults`. A case is named MODEL-HYPER-INPUT, then
+/// -kN where rows_per_joint is a list, then the entry's "suffix".
 std::vector<Case> expand_cases(const JsonReader& entry, const Case& defaults);
 
 /// A text that can be part of a file's name: letters, digits, '-' and '_'.

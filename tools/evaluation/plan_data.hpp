@@ -15,7 +15,7 @@ struct PlanData {
     Recording start;  ///< the first rows of the training log: hyperparameters and start
     Recording online; ///< the rest of it
     std::vector<Recording> subsets;
-    std::vector<double> output_variance;              ///< of each output over all subsets
+    std::vector<double> output_variance;                 ///< of each output over all subsets
     std::vector<std::vector<std::size_t>> group_outputs; ///< the outputs of each group, by their number
     std::vector<std::pair<std::string, std::string>> checksums; ///< of each file: name, checksum
 };

@@ -32,9 +32,9 @@ struct RunOptions {
 
 /// Does what is left to do of a plan. A unit whose file is there is read instead, if the file says that the
 /// plan's part that concerns it, the recordings' checksums and the program are the same. The files appear
-/// whole or not at all, so a run that was ended goes on where it was. `progress`: told how many units are done
-/// (reused and failed included, and the share of those in work), from the calling thread. An InputError in
-/// one unit does not end the others; any other exception does.
+/// whole or not at all, so a run that was ended goes on where it was. `progress`: told how many units are
+/// done (reused and failed included, and the share of those in work), from the calling thread. An InputError
+/// in one unit does not end the others; any other exception does.
 EvaluationResults run_plan(const Plan& plan, const PlanData& data, const RunOptions& options,
                            const std::function<void(double)>& progress);
 

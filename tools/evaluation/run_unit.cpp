@@ -88,8 +88,7 @@ void run_subsets(const Plan& plan, const PlanData& data, const TrainedModel& mod
         if (!estimator.restore(trained)) {
             throw std::logic_error("an estimator that does not take its own snapshot back");
         }
-        const ReplayedRecording replayed =
-            replay(estimator, model, subset, plan.horizon, ticks.of_next());
+        const ReplayedRecording replayed = replay(estimator, model, subset, plan.horizon, ticks.of_next());
         for (std::size_t group = 0; group < plan.groups.size(); ++group) {
             result.error[group].push_back(group_error(replayed, data.group_outputs[group], plan, data));
         }

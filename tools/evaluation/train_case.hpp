@@ -25,9 +25,9 @@ struct CaseContext {
 
 /// Trains `one` for the draw of random features `seed`: hyperparameters from `context.start`, unless `memory`
 /// has them already, then the batch solution over it as the start. No sample is refused for its innovation:
-/// the paper's protocol learns from all. `progress`: told the share that is done, 0 … 1. The same for the same
-/// case, seed and data, whatever was trained before. Throws InputError as `train` does, and for a case that is
-/// not available.
+/// the paper's protocol learns from all. `progress`: told the share that is done, 0 … 1. The same for the
+/// same case, seed and data, whatever was trained before. Throws InputError as `train` does, and for a case
+/// that is not available.
 TrainedModel train_case(const Case& one, const CaseContext& context, std::uint64_t seed, CaseMemory& memory,
                         const std::function<void(double)>& progress);
 

@@ -135,8 +135,7 @@ bool JsonReader::flag(const std::string& name) const {
     return value.get<bool>();
 }
 
-int JsonReader::checked_whole(const nlohmann::json& value, const std::string& name, int low,
-                              int high) const {
+int JsonReader::checked_whole(const nlohmann::json& value, const std::string& name, int low, int high) const {
     const bool small = value.is_number_integer() &&
                        (!value.is_number_unsigned() || value.get<std::uint64_t>() < (1ULL << 62U));
     if (!small || value.get<std::int64_t>() < low || value.get<std::int64_t>() > high) {
