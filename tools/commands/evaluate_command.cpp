@@ -17,13 +17,14 @@ namespace {
 struct EvaluateOptions {
     std::filesystem::path plan;
     RunOptions run;
+    bool quick = false;
 };
 
 /// Thousandths of a unit, so that a long one is seen to move.
 std::size_t progress_steps(double units) { return static_cast<std::size_t>(std::lround(1000 * units)); }
 
 int run(const EvaluateOptions& options) {
-    const Plan plan = read_plan(options.plan);
+    const Plan plan = options.quick ? quick_plan(read_plan(options.plan)) : read_plan(options.plan);
     const PlanData data = load_plan_data(plan);
     const std::size_t units = plan.cases.size() * plan.seeds.size();
     Progress progress("evaluating " + std::to_string(units) + " cases x draws, thousandths of one",
@@ -57,6 +58,8 @@ void add_evaluate_command(CLI::App& app, Command& chosen) {
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
     command->add_flag("--fresh", options->run.fresh, "Do again what an earlier run has left in DIR");
+    command->add_flag("--quick", options->quick,
+                      "One draw, few features and rows: shows that every case runs, not how good it is");
     command->footer(
         "Example:\n  dfdyn evaluate --plan plan.json -o evaluation --jobs 2\n"
         "A run that was ended goes on where it was: cases x draws whose inputs did not change are not done "

@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, 16> plan_names{
     "seeds",  "steady_after_s", "error_scale", "draws", "groups",  "defaults", "cases", "figures"};
 constexpr std::array<std::string_view, 2> later_names{"comparisons", "findings"};
 constexpr std::array<std::string_view, 4> robot_names{"urdf", "base", "tip", "ft_joint"};
-constexpr std::array<std::string_view, 2> training_names{"log", "start_rows"};
+constexpr std::array<std::string_view, 3> training_names{"log", "start_rows", "rows"};
 constexpr std::array<std::string_view, 4> test_names{"log", "first", "rows", "count"};
 constexpr std::array<std::string_view, 2> group_names{"name", "outputs"};
 constexpr std::array<std::string_view, 2> figure_names{"title", "cases"};
@@ -93,6 +93,9 @@ class PlanReader {
         training.allow_only(training_names);
         plan_.training_log = path_in(training, "log");
         plan_.start_rows = count_of(training, "start_rows", 20);
+        if (training.has("rows")) {
+            plan_.training_rows = count_of(training, "rows", static_cast<int>(plan_.start_rows) + 1);
+        }
         for (const JsonReader& test : json_.objects("tests")) {
             plan_.tests.push_back(test_log(test));
         }
@@ -276,6 +279,24 @@ Plan read_plan(const fs::path& path) {
     const nlohmann::json json = parse_json(content_of(path), shown(path));
     const JsonReader reader(json, shown(path));
     return PlanReader(reader, path.parent_path()).read();
+}
+
+Plan quick_plan(Plan plan) {
+    constexpr std::size_t most_rows_used = 400;
+    plan.seeds.resize(1);
+    plan.start_rows = std::min(plan.start_rows, most_rows_used);
+    plan.training_rows = std::min(plan.training_rows.value_or(most_rows), plan.start_rows + most_rows_used);
+    plan.tests.resize(1);
+    plan.tests.front().rows = std::min(plan.tests.front().rows, most_rows_used);
+    plan.tests.front().count = 1;
+    plan.horizon = std::min<std::size_t>(plan.horizon, 25);
+    plan.steady_after_s /= 10;
+    for (Case& one : plan.cases) {
+        one.feature_count = std::min(one.feature_count, 30);
+        one.likelihood_rows = std::min(one.likelihood_rows, 60);
+        one.starts = 1;
+    }
+    return plan;
 }
 
 } // namespace dfdyn::tools

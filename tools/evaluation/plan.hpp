@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -79,7 +80,8 @@ struct Plan {
     RobotChoice robot;
     OutputKind outputs = OutputKind::wrench;
     std::filesystem::path training_log;
-    std::size_t start_rows = 1000; ///< first rows of training_log: hyperparameters and start
+    std::size_t start_rows = 1000;            ///< first rows of training_log: hyperparameters and start
+    std::optional<std::size_t> training_rows; ///< of training_log, those used; none: all
     std::vector<TestLog> tests;
     std::size_t horizon = 25;   ///< T
     double steady_after_s = 30; ///< since the subset's start
@@ -99,5 +101,9 @@ std::string to_string(ErrorScale scale);
 /// field for anything missing, unknown or out of its range, for a name that is not there, and for one that is
 /// there twice.
 Plan read_plan(const std::filesystem::path& path);
+
+/// The same cases with one draw, few features, rows and starts: shows in seconds that all of them run, not
+/// how good they are.
+Plan quick_plan(Plan plan);
 
 } // namespace dfdyn::tools

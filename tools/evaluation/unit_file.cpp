@@ -32,6 +32,7 @@ ordered_json case_json(const Case& one) {
 
 ordered_json protocol_json(const Plan& plan) {
     ordered_json json{{"start_rows", plan.start_rows},
+                      {"training_rows", plan.training_rows.value_or(0)},
                       {"horizon", plan.horizon},
                       {"error_scale", to_string(plan.error_scale)},
                       {"robot", {plan.robot.base, plan.robot.tip, plan.robot.ft_joint}}};
