@@ -40,11 +40,11 @@ ErrorCurve error_curve(std::span<const UnitResult* const> draws, std::size_t gro
         for (const UnitResult* draw : draws) {
             means.push_back(subset_mean(*draw, group, tick));
         }
-        const auto [low, high] = std::ranges::minmax(means);
+        std::ranges::sort(means);
         curve.time_s.push_back(static_cast<double>(tick) * draws.front()->sample_period_s);
         curve.mean.push_back(mean_of(means));
-        curve.low.push_back(low);
-        curve.high.push_back(high);
+        curve.low.push_back(interpolated_quantile(means, 0.25));
+        curve.high.push_back(interpolated_quantile(means, 0.75));
     }
     return curve;
 }

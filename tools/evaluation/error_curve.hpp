@@ -12,7 +12,7 @@ namespace dfdyn::tools {
 struct ErrorCurve {
     std::vector<double> time_s;
     std::vector<double> mean;      ///< over subsets and draws
-    std::vector<double> low, high; ///< of the draws, each averaged over its subsets
+    std::vector<double> low, high; ///< quartiles of the draws, each averaged over its subsets
 };
 
 /// The paper's curve, tick by tick: the mean over the subsets that have a finite value there, then over

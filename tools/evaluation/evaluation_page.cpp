@@ -130,10 +130,9 @@ class EvaluationPage {
     }
 
     static std::string picture_sentence() {
-        return "Curves: mean over subsets and draws, and over a fortieth of a decade of time; the band "
-               "reaches "
-               "from the lowest to the highest draw. Boxes: median and quartiles over all times, subsets and "
-               "draws of the steady state, whiskers at 5 and 95 %, a dot at the mean.";
+        return "Curves: mean over subsets and draws, and over a fortieth of a decade of time; the band holds "
+               "the middle half of the draws. Boxes: median and quartiles over all times, subsets and draws "
+               "of the steady state, whiskers at 5 and 95 %, a dot at the mean.";
     }
 
     static std::string rule_sentence() {

@@ -3,6 +3,8 @@
 
 #include "tools/common/text.hpp"
 #include "tools/evaluation/plan_cases.hpp"
+#include "tools/evaluation/plan_claims.hpp"
+#include "tools/evaluation/plan_names.hpp"
 #include "tools/model/json_reader.hpp"
 
 #include <algorithm>
@@ -25,14 +27,11 @@ constexpr int most_in_list = 1000;
 constexpr std::array<std::string_view, 16> plan_names{
     "schema", "name",           "title",       "robot", "outputs", "training", "tests", "horizon",
     "seeds",  "steady_after_s", "error_scale", "draws", "groups",  "defaults", "cases", "figures"};
-constexpr std::array<std::string_view, 2> later_names{"comparisons", "findings"};
+constexpr std::array<std::string_view, 3> later_names{"comparisons", "findings", "like"};
 constexpr std::array<std::string_view, 4> robot_names{"urdf", "base", "tip", "ft_joint"};
 constexpr std::array<std::string_view, 3> training_names{"log", "start_rows", "rows"};
 constexpr std::array<std::string_view, 4> test_names{"log", "first", "rows", "count"};
 constexpr std::array<std::string_view, 2> group_names{"name", "outputs"};
-constexpr std::array<std::string_view, 2> figure_names{"title", "cases"};
-constexpr std::array<std::string_view, 5> comparison_names{"better", "worse", "group", "phase", "gain"};
-constexpr std::array<std::string_view, 4> finding_names{"name", "statement", "if_not", "comparisons"};
 
 std::string content_of(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
@@ -60,13 +59,7 @@ class PlanReader {
         read_protocol();
         read_groups();
         read_cases();
-        read_figures();
-        if (json_.has("comparisons")) {
-            plan_.comparisons = comparisons(json_);
-        }
-        if (json_.has("findings")) {
-            read_findings();
-        }
+        read_claims(json_, plan_);
         return std::move(plan_);
     }
 
@@ -177,93 +170,6 @@ class PlanReader {
         }
     }
 
-    template <class Named>
-    static void refuse_twice(const JsonReader& reader, const std::string& field,
-                             const std::vector<Named>& list) {
-        const std::string& name = list.back().name;
-        if (std::ranges::count(list, name, &Named::name) > 1) {
-            throw reader.error(field, "names that are there once", in_quotes(name) + " twice");
-        }
-    }
-
-    template <class Named>
-    static const std::string& known(const JsonReader& reader, const std::string& field,
-                                    const std::vector<Named>& list, const std::string& name) {
-        if (std::ranges::count(list, name, &Named::name) == 0) {
-            std::vector<std::string> names;
-            std::ranges::transform(list, std::back_inserter(names), &Named::name);
-            throw reader.error(field, "one of " + listed(names), in_quotes(name));
-        }
-        return name;
-    }
-
-    void read_figures() {
-        if (!json_.has("figures")) {
-            plan_.figures.push_back({plan_.title, {}});
-            std::ranges::transform(plan_.cases, std::back_inserter(plan_.figures.front().cases), &Case::name);
-            return;
-        }
-        for (const JsonReader& figure : json_.objects("figures")) {
-            figure.allow_only(figure_names);
-            plan_.figures.push_back({figure.text("title"), figure.texts("cases", most_in_list)});
-            for (const std::string& name : plan_.figures.back().cases) {
-                known(figure, "cases", plan_.cases, name);
-            }
-        }
-    }
-
-    static std::vector<std::string> names_in(const JsonReader& reader, const std::string& name) {
-        return reader.is_array(name) ? reader.texts(name, most_in_list) : std::vector{reader.text(name)};
-    }
-
-    std::vector<std::string> groups_of(const JsonReader& entry) const {
-        if (entry.has("group")) {
-            return names_in(entry, "group");
-        }
-        std::vector<std::string> all;
-        std::ranges::transform(plan_.groups, std::back_inserter(all), &OutputGroup::name);
-        return all;
-    }
-
-    static Phase phase_of(const JsonReader& entry) {
-        const std::string text = entry.text("phase");
-        for (const Phase phase : {Phase::transient, Phase::steady}) {
-            if (text == to_string(phase)) {
-                return phase;
-            }
-        }
-        throw entry.error("phase", "transient or steady", in_quotes(text));
-    }
-
-    /// Every combination of what each entry lists.
-    std::vector<Comparison> comparisons(const JsonReader& reader) const {
-        std::vector<Comparison> all;
-        for (const JsonReader& entry : reader.objects("comparisons")) {
-            entry.allow_only(comparison_names);
-            const Phase phase = phase_of(entry);
-            const double gain = entry.has("gain") ? entry.number_within("gain", -10, 0.99) : 0;
-            for (const std::string& better : names_in(entry, "better")) {
-                for (const std::string& worse : names_in(entry, "worse")) {
-                    for (const std::string& group : groups_of(entry)) {
-                        all.push_back({known(entry, "better", plan_.cases, better),
-                                       known(entry, "worse", plan_.cases, worse),
-                                       known(entry, "group", plan_.groups, group), phase, gain});
-                    }
-                }
-            }
-        }
-        return all;
-    }
-
-    void read_findings() {
-        for (const JsonReader& finding : json_.objects("findings")) {
-            finding.allow_only(finding_names);
-            plan_.findings.push_back({finding.text("name"), finding.text("statement"),
-                                      text_or(finding, "if_not", ""), comparisons(finding)});
-            refuse_twice(json_, "findings", plan_.findings);
-        }
-    }
-
     const JsonReader& json_;
     fs::path folder_;
     Plan plan_;
@@ -276,9 +182,16 @@ std::string to_string(Phase phase) { return phase == Phase::transient ? "transie
 std::string to_string(ErrorScale scale) { return scale == ErrorScale::horizon ? "horizon" : "variance"; }
 
 Plan read_plan(const fs::path& path) {
-    const nlohmann::json json = parse_json(content_of(path), shown(path));
-    const JsonReader reader(json, shown(path));
-    return PlanReader(reader, path.parent_path()).read();
+    nlohmann::json json = parse_json(content_of(path), shown(path));
+    const JsonReader own(json, shown(path));
+    const fs::path folder = path.parent_path();
+    if (own.has("like")) {
+        const fs::path other = folder / own.text("like");
+        const nlohmann::json fields = parse_json(content_of(other), shown(other));
+        const JsonReader must_be_an_object(fields, shown(other));
+        json.insert(fields.begin(), fields.end()); // only what is not there
+    }
+    return PlanReader(JsonReader(json, shown(path)), folder).read();
 }
 
 Plan quick_plan(Plan plan) {

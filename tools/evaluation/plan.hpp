@@ -97,9 +97,9 @@ struct Plan {
 std::string to_string(Phase phase);
 std::string to_string(ErrorScale scale);
 
-/// Reads a plan; relative paths are those from the plan's folder. Throws InputError with the path of the
-/// field for anything missing, unknown or out of its range, for a name that is not there, and for one that is
-/// there twice.
+/// Reads a plan, with the fields that it lacks from the plan that it names as "like"; relative paths are
+/// those from the plan's folder. Throws InputError with the path of the field for anything missing, unknown
+/// or out of its range, for a name that is not there, and for one that is there twice.
 Plan read_plan(const std::filesystem::path& path);
 
 /// The same cases with one draw, few features, rows and starts: shows in seconds that all of them run, not

@@ -2,17 +2,15 @@
 #include "tools/evaluation/plan_cases.hpp"
 
 #include "tools/common/text.hpp"
+#include "tools/evaluation/plan_names.hpp"
 #include "tools/model/model_file.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 namespace dfdyn::tools {
 
 namespace {
-
-constexpr int most_in_list = 100;
 
 constexpr std::array<std::string_view, 5> models{"P", "NP", "SP", "SP2", "SPK"};
 constexpr std::array<std::string_view, 2> hypers{"ML", "CV"};
@@ -34,12 +32,9 @@ std::string one_of(const JsonReader& entry, const std::string& name, const std::
     return text;
 }
 
-std::vector<std::string> text_or_texts(const JsonReader& entry, const std::string& name,
-                                       const std::string& fallback) {
-    if (!entry.has(name)) {
-        return {fallback};
-    }
-    return entry.is_array(name) ? entry.texts(name, most_in_list) : std::vector{entry.text(name)};
+std::vector<std::string> names_or(const JsonReader& entry, const std::string& name,
+                                  const std::string& fallback) {
+    return entry.has(name) ? names_in(entry, name) : std::vector{fallback};
 }
 
 std::vector<int> rows_per_joint(const JsonReader& entry, int fallback) {
@@ -85,15 +80,6 @@ std::string case_name(const JsonReader& entry, const Case& one) {
 
 } // namespace
 
-std::string plain_name(const JsonReader& reader, const std::string& name) {
-    const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; };
-    std::string text = reader.text(name);
-    if (text.empty() || !std::ranges::all_of(text, plain)) {
-        throw reader.error(name, "letters, digits, - and _", in_quotes(text));
-    }
-    return text;
-}
-
 Case read_defaults(const JsonReader& entry) {
     entry.allow_only(setting_names);
     Case one;
@@ -109,11 +95,11 @@ std::vector<Case> expand_cases(const JsonReader& entry, const Case& defaults) {
     Case one = defaults;
     read_settings(entry, one);
     std::vector<Case> cases;
-    for (const std::string& model : text_or_texts(entry, "model", defaults.model)) {
+    for (const std::string& model : names_or(entry, "model", defaults.model)) {
         one.model = one_of(entry, "model", model, models);
-        for (const std::string& hyper : text_or_texts(entry, "hyper", defaults.hyper)) {
+        for (const std::string& hyper : names_or(entry, "hyper", defaults.hyper)) {
             one.hyper = one_of(entry, "hyper", hyper, hypers);
-            for (const std::string& input : text_or_texts(entry, "input", to_string(defaults.input))) {
+            for (const std::string& input : names_or(entry, "input", to_string(defaults.input))) {
                 one.input = input_of(entry, input);
                 for (const int rows : rows_per_joint(entry, defaults.rows_per_joint)) {
                     one.rows_per_joint = rows;

@@ -13,9 +13,6 @@ namespace dfdyn::tools {
 /// -kN where rows_per_joint is a list, then the entry's "suffix".
 std::vector<Case> expand_cases(const JsonReader& entry, const Case& defaults);
 
-/// A text that can be part of a file's name: letters, digits, '-' and '_'.
-std::string plain_name(const JsonReader& reader, const std::string& name);
-
 /// The fields of a plan's "defaults", over those of a Case.
 Case read_defaults(const JsonReader& entry);
 

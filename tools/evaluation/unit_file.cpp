@@ -54,7 +54,7 @@ ordered_json unit_inputs(const Plan& plan, const PlanData& data, const Case& one
                         {"files", ordered_json::array()},
                         {"program", build_flags()}};
     for (const auto& [name, checksum] : data.checksums) {
-        inputs["files"].push_back(name + ": " + checksum);
+        inputs["files"].push_back({name, checksum});
     }
     return inputs;
 }

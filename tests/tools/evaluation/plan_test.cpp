@@ -202,3 +202,31 @@ TEST_CASE("a quick plan has the same cases and claims, and less of everything el
     CHECK(quick.cases.front().starts == 1);
     CHECK(quick.cases.front().lags == plan.cases.front().lags);
 }
+
+TEST_CASE("a plan takes the fields that it lacks from the one that it is like") {
+    const TemporaryDirectory directory;
+    directory.write("base.json", small_plan().dump());
+    const auto like_base = [&directory](const std::string& fields) {
+        std::string text = "{\"like\": \"base.json\", ";
+        return read_plan(directory.write("plan.json", text.append(fields).append("}")));
+    };
+    const Plan plan = like_base(R"("name": "other", "defaults": {"features": 20})");
+    CHECK(plan.name == "other");
+    CHECK(plan.title == "A small experiment");
+    CHECK(plan.cases.size() == 2);
+    CHECK(plan.cases[0].feature_count == 20);
+    CHECK(plan.cases[0].lags == 10); // "defaults" as a whole is this plan's
+    CHECK_THROWS_AS(like_base(R"("nmae": "other")"), InputError);
+    CHECK_THROWS_AS(read_plan(directory.write("plan.json", R"({"like": "none.json"})")), InputError);
+}
+
+TEST_CASE("the plans of tools/reproduce.sh are valid, and encode the same findings for both robots") {
+    const std::filesystem::path folder = DFDYN_TEST_DATA_DIR "/../../tools/reproduction";
+    const Plan icub = read_plan(folder / "icub.json");
+    const Plan ur5 = read_plan(folder / "ur5.json");
+    CHECK(case_names(icub) == case_names(ur5));
+    CHECK(icub.findings.size() == ur5.findings.size());
+    CHECK(icub.seeds.size() >= 10);
+    CHECK(ur5.seeds.size() >= 10);
+    CHECK(load_plan_data(ur5).subsets.size() == 2);
+}
