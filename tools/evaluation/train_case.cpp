@@ -20,8 +20,8 @@ constexpr std::uint64_t search_seed = 1;
 
 void check_available(const Case& one) {
     if (one.model != "NP" || one.hyper != "ML") {
-        throw InputError("case " + one.name + ": not available: expected model NP tuned by ML, found " +
-                         one.model + " by " + one.hyper);
+        throw InputError("not available: expected model NP tuned by ML, found " + one.model + " by " +
+                         one.hyper);
     }
 }
 

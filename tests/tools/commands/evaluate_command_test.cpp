@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <sstream>
 #include <string>
 
 namespace {
@@ -25,11 +26,10 @@ struct Outcome {
 };
 
 /// Runs the plan of `directory` into its folder `out`.
-Outcome evaluate(const TemporaryDirectory& directory, const std::string& options,
-                 const std::string& before = "") {
+Outcome evaluate(const TemporaryDirectory& directory, const std::string& options) {
     const std::string in = directory.path().string();
-    const std::string command = before + DFDYN_PROGRAM + " evaluate --plan " + in + "/plan.json -o " + in +
-                                "/out " + options + " >" + in + "/stdout 2>" + in + "/stderr";
+    const std::string command = std::string(DFDYN_PROGRAM) + " evaluate --plan " + in + "/plan.json -o " +
+                                in + "/out " + options + " >" + in + "/stdout 2>" + in + "/stderr";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_content(directory.path() / "stdout"),
             file_content(directory.path() / "stderr")};
@@ -98,12 +98,18 @@ TEST_CASE("a run that is ended half-way leaves whole files and goes on from them
     const TemporaryDirectory directory;
     json plan = small_plan();
     plan["draws"] = 150;
+    plan["defaults"]["features"] = 60;
     write_small_experiment(directory, plan);
     const std::string signal = GENERATE("TERM", "KILL");
-    evaluate(directory, "--jobs 2", "timeout -s " + signal + " 0.3 ");
+    const std::string in = directory.path().string();
+    std::ostringstream script; // ends the program once the fifth unit is there
+    script << DFDYN_PROGRAM << " evaluate --plan " << in << "/plan.json -o " << in << "/out --jobs 2 & "
+           << "until [ -e " << in << "/out/cases/NP-ML-STD/5.json ]; do sleep 0.001; done; kill -" << signal
+           << " $!; wait $!";
+    CHECK(std::system(script.str().c_str()) != 0);
     const std::size_t done = count_unit_files(directory);
     CAPTURE(signal, done);
-    CHECK(done > 0);
+    CHECK(done >= 5);
     CHECK(done < 300);
     const Outcome again = evaluate(directory, "--jobs 2");
     CHECK(again.status == 0);
