@@ -59,7 +59,8 @@ void add_evaluate_command(CLI::App& app, Command& chosen) {
         ->capture_default_str();
     command->add_flag("--fresh", options->run.fresh, "Do again what an earlier run has left in DIR");
     command->add_flag("--quick", options->quick,
-                      "One draw, few features and rows: shows that every case runs, not how good it is");
+                      "One draw, few features and rows: shows that every case runs, not how good it is. Give "
+                      "it a DIR of its own");
     command->footer(
         "Example:\n  dfdyn evaluate --plan plan.json -o evaluation --jobs 2\n"
         "A run that was ended goes on where it was: cases x draws whose inputs did not change are not done "

@@ -76,7 +76,7 @@ std::string opening(const std::string& title, double width, double height) {
     return joined({R"(<svg xmlns="http://www.w3.org/2000/svg" class="chart" role="img" viewBox="0 0 )",
                    number(width), " ", number(height), "\"", attribute("width", width),
                    attribute("height", height), " aria-label=\"", escape_html(title), "\">\n",
-                   text("title", 0, 16, escape_html(title))});
+                   text("title", 6, 16, escape_html(title))});
 }
 
 /// Colour and, beyond the first four, dashes: `index` counts the curves or boxes of a chart.

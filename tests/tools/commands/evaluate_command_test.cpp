@@ -97,7 +97,7 @@ TEST_CASE("a plan with a mistake, or without its recordings, gives status 2 and 
 TEST_CASE("a run that is ended half-way leaves whole files and goes on from them") {
     const TemporaryDirectory directory;
     json plan = small_plan();
-    plan["draws"] = 150;
+    plan["draws"] = 60;
     plan["defaults"]["features"] = 60;
     write_small_experiment(directory, plan);
     const std::string signal = GENERATE("TERM", "KILL");
@@ -109,11 +109,11 @@ TEST_CASE("a run that is ended half-way leaves whole files and goes on from them
     CHECK(std::system(script.str().c_str()) != 0);
     const std::size_t done = count_unit_files(directory);
     CAPTURE(signal, done);
-    CHECK(done >= 5);
-    CHECK(done < 300);
+    CHECK(done > 0);
+    CHECK(done < 120);
     const Outcome again = evaluate(directory, "--jobs 2");
     CHECK(again.status == 0);
     CHECK_THAT(again.out,
-               ContainsSubstring("300 of 300 cases x draws done (" + std::to_string(done) + " found"));
-    CHECK(count_unit_files(directory) == 300);
+               ContainsSubstring("120 of 120 cases x draws done (" + std::to_string(done) + " found"));
+    CHECK(count_unit_files(directory) == 120);
 }
