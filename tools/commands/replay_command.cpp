@@ -30,8 +30,12 @@ struct ReplayOptions {
 std::vector<ReplayedRecording> replay_all(const ReplayOptions& options, const TrainedModel& model,
                                           HostEstimator& estimator) {
     const OutputKind kind = kind_of_outputs(model.outputs.names, static_cast<std::size_t>(model.joints));
+    ReadOptions columns;
+    columns.joint_count = static_cast<std::size_t>(model.joints);
+    columns.outputs = kind;
+    columns.velocity = columns.acceleration = needs_derivatives(model);
     std::vector<ReplayedRecording> replayed;
-    for (const Recording& recording : options.recordings.read(static_cast<std::size_t>(model.joints), kind)) {
+    for (const Recording& recording : options.recordings.read(columns)) {
         Progress progress("replaying " + recording.source, recording.row_count());
         replayed.push_back(replay(estimator, model, recording, options.horizon,
                                   [&progress](std::size_t done) { progress.update(done); }));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/commands/command.hpp"
 #include "tools/commands/options.hpp"
+#include "tools/commands/robot_options.hpp"
 #include "tools/common/atomic_file.hpp"
 #include "tools/common/error.hpp"
 #include "tools/common/progress.hpp"
@@ -8,10 +9,10 @@
 #include "tools/evaluation/contradiction.hpp"
 #include "tools/model/model_file.hpp"
 #include "tools/model/model_header.hpp"
-#include "tools/training/recorded_data.hpp"
-#include "tools/training/train.hpp"
+#include "tools/physics/model_training.hpp"
 
 #include <iostream>
+#include <map>
 #include <memory>
 
 namespace dfdyn::tools {
@@ -20,14 +21,61 @@ namespace {
 
 struct TrainOptions {
     RecordingOptions recordings;
+    RobotOptions robot;
     std::string outputs;
     std::string structure = "NP";
     std::string input = "DFR";
     std::string hyper = "ML";
     std::filesystem::path model;
     std::filesystem::path header;
+    std::string derivatives = "auto";
+    std::string prior = "scaled";
+    std::vector<std::string> effects;
+    double sign_velocity = 0.05;
+    std::vector<double> torque_constants;
     TrainingOptions training;
 };
+
+template <class Value>
+using Names = std::map<std::string, Value>;
+
+const Names<ModelClass> models{{"NP", ModelClass::NP},
+                               {"P", ModelClass::P},
+                               {"SP", ModelClass::SP},
+                               {"SP2", ModelClass::SP2},
+                               {"SPK", ModelClass::SPK}};
+const Names<HyperMethod> methods{{"ML", HyperMethod::ML}, {"CV", HyperMethod::CV}};
+const Names<DerivativeSource> sources{{"auto", DerivativeSource::automatic},
+                                      {"measured", DerivativeSource::measured},
+                                      {"estimated", DerivativeSource::estimated}};
+const Names<PriorForm> priors{
+    {"scaled", PriorForm::scaled}, {"unit", PriorForm::unit}, {"diagonal", PriorForm::diagonal}};
+
+void add_physics_options(CLI::App& command, TrainOptions& options) {
+    options.robot.add_to(command, false);
+    command
+        .add_option("--effects", options.effects,
+                    "Named effects that the physics learns beside the rigid body, as viscous_friction,"
+                    "coulomb_friction,torque_offset")
+        ->delimiter(',')
+        ->type_name("NAME[,NAME...]");
+    command
+        .add_option("--sign-velocity", options.sign_velocity,
+                    "Coulomb friction is tanh(qd / this): rad/s at which the sign is at three quarters")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command
+        .add_option("--torque-constants", options.torque_constants,
+                    "N m/A at each joint, for --outputs i; else estimated from the nominal robot")
+        ->delimiter(',')
+        ->type_name("K1,K2...");
+    command.add_flag("--own-motion", options.training.physics.own_motion,
+                     "The physics sees positions filtered to velocity and acceleration by poles of its own, "
+                     "whatever the input");
+    command.add_option("--prior", options.prior, "Of the physical parameters: what gamma^2 is the same for")
+        ->check(CLI::IsMember(priors))
+        ->capture_default_str();
+}
 
 void add_training_options(CLI::App& command, TrainingOptions& training) {
     command.add_option("--lags", training.lags, "M: the window holds M+1 positions per joint")
@@ -68,18 +116,25 @@ std::string file_names(const std::vector<Recording>& recordings, TrainingRecord&
     return listed(record.recordings);
 }
 
-TrainedModel train_with_progress(const TrainingData& data, const TrainingOptions& options) {
-    std::unique_ptr<Progress> line;
-    return train(data, options,
-                 [&line](const TrainingProgress& progress) {
-                     if (line == nullptr) {
-                         line =
-                             std::make_unique<Progress>("maximising the marginal likelihood",
-                                                        static_cast<std::size_t>(progress.evaluations_most));
-                     }
-                     line->update(static_cast<std::size_t>(progress.evaluations));
-                 })
-        .model;
+/// One line for the search over hyperparameters, from whichever thread.
+ProgressCallback progress_line() {
+    const auto line = std::make_shared<std::unique_ptr<Progress>>();
+    return [line](const TrainingProgress& progress) {
+        if (*line == nullptr) {
+            *line = std::make_unique<Progress>("maximising the marginal likelihood",
+                                               static_cast<std::size_t>(progress.evaluations_most));
+        }
+        (*line)->update(static_cast<std::size_t>(progress.evaluations));
+    };
+}
+
+void print_physics(const PhysicsModel& physics) {
+    std::cout << "physics: " << physics.selected.size() << " parameters that the recording can tell apart"
+              << (physics.prior_variance > 0 ? ", learned on\n" : ", fixed\n");
+    for (std::size_t i = 0; i < physics.selected.size(); ++i) {
+        std::cout << "  " << physics.parameter_names[i] << ' '
+                  << physics.column_scale[i] * physics.start.weights[i] << '\n';
+    }
 }
 
 void print_outcome(const TrainedModel& model, const std::string& trained_on) {
@@ -89,6 +144,10 @@ void print_outcome(const TrainedModel& model, const std::string& trained_on) {
     for (const double value : model.training.all_starts) {
         std::cout << ' ' << value;
     }
+    if (model.physics) {
+        std::cout << '\n';
+        print_physics(*model.physics);
+    }
     std::cout << "\nlength scale " << model.features.length_scale << ", rho^2/sigma^2 "
               << model.outputs.prior_variance << ", noise";
     for (std::size_t k = 0; k < model.outputs.names.size(); ++k) {
@@ -97,18 +156,32 @@ void print_outcome(const TrainedModel& model, const std::string& trained_on) {
     std::cout << '\n';
 }
 
+ModelTraining model_training(const TrainOptions& options, OutputKind outputs) {
+    ModelTraining training{options.training, std::nullopt, sources.at(options.derivatives)};
+    training.options.input = parse_input_kind(options.input);
+    training.options.model = models.at(options.structure);
+    training.options.hyper = methods.at(options.hyper);
+    training.options.physics.prior = priors.at(options.prior);
+    if (has_physics(options.structure)) {
+        if (options.robot.urdf.empty()) {
+            throw InputError("--model " + options.structure + ": expected --robot and --tip, found none");
+        }
+        training.physics = {options.robot.read(outputs), options.effects, options.sign_velocity,
+                            options.torque_constants};
+    }
+    return training;
+}
+
 int run(const TrainOptions& options) {
     check_distinct({options.model, options.header}, options.recordings.logs);
     const OutputKind outputs = parse_output_kind(options.outputs);
-    TrainingOptions training = options.training;
-    training.input = parse_input_kind(options.input);
-    const std::vector<Recording> recordings = options.recordings.read(0, outputs);
-    TrainingData data = gather_training_data(recordings);
-    if (training.input == InputKind::STD) {
-        training.position_noise_bound = estimate_position_noise_bound(data);
-        estimate_derivatives(data, recordings, training.lags, training.position_noise_bound);
-    }
-    TrainedModel model = train_with_progress(data, training);
+    const ModelTraining training = model_training(options, outputs);
+    ReadOptions columns;
+    columns.outputs = outputs;
+    columns.velocity = columns.acceleration = training.derivatives != DerivativeSource::estimated;
+    const std::vector<Recording> recordings = options.recordings.read(columns);
+    TrainedModel model =
+        train_model(prepare_training(recordings, training), outputs, training, progress_line());
     const std::string trained_on = file_names(recordings, model.training);
     model.training.rows = options.recordings.rows;
     calibrate_innovation_limit(model, recordings);
@@ -134,21 +207,33 @@ void add_train_command(CLI::App& app, Command& chosen) {
                      "What to predict: tau (torques), i (motor currents), wrench")
         ->required()
         ->type_name("tau|i|wrench");
-    command->add_option("--model", options->structure, "Structure of the model")
-        ->check(CLI::IsMember({"NP"}))
+    command
+        ->add_option("--model", options->structure,
+                     "Structure of the model: features (NP), the robot (P), or both")
+        ->check(CLI::IsMember(models))
         ->capture_default_str();
     command->add_option("--input", options->input, "What the features see of the positions")
         ->type_name("STD|DF|DFW|DFR|DFSR")
         ->capture_default_str();
-    command->add_option("--hyper", options->hyper, "How hyperparameters are found: ML, marginal likelihood")
-        ->check(CLI::IsMember({"ML"}))
+    command
+        ->add_option("--hyper", options->hyper,
+                     "How hyperparameters are found: marginal likelihood, or cross validation over a grid")
+        ->check(CLI::IsMember(methods))
         ->capture_default_str();
     command->add_option("-o,--output", options->model, "The model")->required()->type_name("M.json");
     command->add_option("--header", options->header, "The same model as C++ constants for flash")
         ->type_name("M.hpp");
+    command
+        ->add_option("--derivatives", options->derivatives,
+                     "Input STD: columns qd and qdd of the recording, or estimated from the positions")
+        ->check(CLI::IsMember(sources))
+        ->capture_default_str();
     add_training_options(*command, options->training);
+    add_physics_options(*command, *options);
     command->footer(
         "Example:\n  dfdyn train --log run.csv --rows :3400 --outputs i --input DFR -o model.json\n"
+        "  dfdyn train --log run.csv --outputs tau --model SPK --robot arm.urdf --tip tool0 --own-motion"
+        " --effects viscous_friction,coulomb_friction -o model.json\n"
         "Exit status: 0 done, 2 bad usage or input.");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }

@@ -186,6 +186,14 @@ std::ostream& AtomicFile::stream() noexcept { return implementation_->stream(); 
 
 void AtomicFile::commit() { implementation_->commit(); }
 
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) {
+        throw InputError(shown(folder) + ": cannot make the folder: " + error.message());
+    }
+}
+
 void write_file(const fs::path& target, std::string_view content) {
     AtomicFile file(target);
     file.stream().write(content.data(), static_cast<std::streamsize>(content.size()));

@@ -35,6 +35,9 @@ class AtomicFile {
     std::unique_ptr<Implementation> implementation_;
 };
 
+/// Makes `folder`, and those that it lies in, unless they are there. Throws InputError with path and reason.
+void make_folder(const std::filesystem::path& folder);
+
 /// Writes `content` as the whole of the file `target`, with the promises of AtomicFile.
 void write_file(const std::filesystem::path& target, std::string_view content);
 

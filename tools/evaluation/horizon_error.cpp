@@ -39,7 +39,7 @@ void HorizonError::add_to(Model& model, const HostEstimator& estimator, std::spa
 
 void HorizonError::finish_oldest() {
     const Model& oldest = models_.front();
-    HorizonIndex index{oldest.tick, std::vector<double>(outputs_)};
+    HorizonIndex index{oldest.tick, std::vector<double>(outputs_), oldest.error_square};
     for (std::size_t k = 0; k < outputs_; ++k) {
         index.epsilon[k] = oldest.output_square[k] > 0 ? oldest.error_square[k] / oldest.output_square[k]
                                                        : std::numeric_limits<double>::infinity();

@@ -12,8 +12,9 @@ namespace dfdyn::tools {
 
 /// The paper's index ε of one time t: per output, Σ (y(t+s) - ŷ(t+s|t))² / Σ y(t+s)², s = 1 … T.
 struct HorizonIndex {
-    std::size_t tick;            ///< t, counted by `HorizonError::add` from 0
-    std::vector<double> epsilon; ///< m values; infinite where the output was 0 all along
+    std::size_t tick;                 ///< t, counted by `HorizonError::add` from 0
+    std::vector<double> epsilon;      ///< m values; infinite where the output was 0 all along
+    std::vector<double> error_square; ///< m values: Σ (y(t+s) - ŷ(t+s|t))², ε's numerator
 };
 
 /// Computes ε over a horizon of T samples (eq. pred_error): how the model learned up to t predicts the T

@@ -15,15 +15,6 @@ namespace {
 
 constexpr float not_predicted = std::numeric_limits<float>::quiet_NaN();
 
-/// Whether a part of the model needs the recording's own derivatives.
-bool needs_derivatives(const TrainedModel& model) {
-    const auto measured = [](const InputModel& input) {
-        return input.kind == InputKind::STD && input.derivatives == Derivatives::measured;
-    };
-    return (model.features.count > 0 && measured(model.input)) ||
-           (model.physics && measured(model.physics->motion));
-}
-
 void check_fit(const TrainedModel& model, const Recording& recording) {
     const auto joints = static_cast<std::size_t>(model.joints);
     if (recording.joint_count() != joints) {
@@ -61,6 +52,14 @@ void append(const Tick& tick, ReplayedRecording& replayed) {
 }
 
 } // namespace
+
+bool needs_derivatives(const TrainedModel& model) {
+    const auto measured = [](const InputModel& input) {
+        return input.kind == InputKind::STD && input.derivatives == Derivatives::measured;
+    };
+    return (model.features.count > 0 && measured(model.input)) ||
+           (model.physics && measured(model.physics->motion));
+}
 
 ReplayedRecording replay(HostEstimator& estimator, const TrainedModel& model, const Recording& recording,
                          std::size_t horizon, const std::function<void(std::size_t)>& on_tick) {

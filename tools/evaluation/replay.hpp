@@ -26,6 +26,9 @@ struct ReplayedRecording {
     std::vector<HorizonIndex> horizon;
 };
 
+/// Whether a part of the model needs the recording's own derivatives, columns qd and qdd.
+bool needs_derivatives(const TrainedModel& model);
+
 /// Runs `estimator` over `recording`, learning on throughout; what it has learned before stays. `on_tick` is
 /// told the number of ticks done. `horizon`: T of the index ε, 0 for none. Throws InputError when the
 /// recording has not the `joints` joints and `outputs` outputs of the estimator's model.

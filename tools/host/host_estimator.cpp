@@ -75,6 +75,19 @@ class EstimatorOf final : public HostEstimator {
     }
 
     void begin_recording() override { estimator_.restart_window(); }
+
+    std::vector<std::byte> snapshot() const override {
+        std::vector<std::byte> bytes(estimator_.snapshot_bytes());
+        if (estimator_.snapshot(bytes) != SnapshotResult::ok) {
+            throw std::logic_error("an estimator that its own snapshot does not hold");
+        }
+        return bytes;
+    }
+
+    bool restore(std::span<const std::byte> snapshot) override {
+        return estimator_.restore(snapshot) == SnapshotResult::ok;
+    }
+
     std::size_t state_bytes() const override { return estimator_.snapshot_bytes(); }
     Cost cost() const override {
         Cost cost = Embedded::cost(constants().sizes);

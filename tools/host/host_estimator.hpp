@@ -53,6 +53,13 @@ class HostEstimator {
     /// Begins a recording: the window restarts, what has been learned stays.
     virtual void begin_recording() = 0;
 
+    /// What has been learned, in the firmware's own format.
+    virtual std::vector<std::byte> snapshot() const = 0;
+
+    /// Back to what had been learned at the `snapshot` of an estimator of the same model, with an empty
+    /// window; false, and nothing changed, when it is no such snapshot.
+    virtual bool restore(std::span<const std::byte> snapshot) = 0;
+
     /// Bytes of what has been learned (a snapshot of it), in the firmware's types.
     virtual std::size_t state_bytes() const = 0;
     virtual Cost cost() const = 0;

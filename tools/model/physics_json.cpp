@@ -82,12 +82,8 @@ ChainModel::Joint read_joint(const JsonReader& reader) {
 
 ChainModel read_chain(const JsonReader& reader, int joints) {
     ChainModel chain;
-    for (const JsonReader& joint : reader.objects("joints", joints)) {
+    for (const JsonReader& joint : reader.objects("joints", joints, joints)) {
         chain.joints.push_back(read_joint(joint));
-    }
-    if (static_cast<int>(chain.joints.size()) != joints) {
-        throw reader.error("joints", std::to_string(joints) + " as the model has",
-                           std::to_string(chain.joints.size()));
     }
     chain.gravity = array_of<3>(reader, "gravity");
     if (reader.has("sensor")) {
@@ -120,7 +116,7 @@ EffectModel read_effect(const JsonReader& reader, const ChainModel& chain, int o
 
 std::vector<EffectModel> read_effects(const JsonReader& reader, const ChainModel& chain, int outputs) {
     std::vector<EffectModel> effects;
-    for (const JsonReader& effect : reader.objects("effects", largest_effect_count)) {
+    for (const JsonReader& effect : reader.objects("effects", 0, largest_effect_count)) {
         effects.push_back(read_effect(effect, chain, outputs));
     }
     return in_column_order(std::move(effects));

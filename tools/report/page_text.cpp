@@ -65,6 +65,17 @@ std::string escape_html(std::string_view text) {
     return escaped;
 }
 
+std::string escape_markdown(std::string_view text) {
+    std::string escaped;
+    for (const char character : text) {
+        if (std::string_view("\\`*_[]<>|").find(character) != std::string_view::npos) {
+            escaped += '\\';
+        }
+        escaped += character == '\n' ? ' ' : character;
+    }
+    return escaped;
+}
+
 std::string script_json(const nlohmann::json& data) {
     std::string text = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     replace_all(text, '&', "\\u0026");

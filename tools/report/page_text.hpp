@@ -14,6 +14,9 @@ namespace dfdyn::tools {
 /// `text` for the content or a quoted attribute of an HTML element.
 std::string escape_html(std::string_view text);
 
+/// `text` on one line of Markdown, a table's cell included, without any markup of its own.
+std::string escape_markdown(std::string_view text);
+
 /// `data` as JSON that can stand inside a <script> element: no '<', '>' or '&'; bytes that are not UTF-8
 /// become U+FFFD.
 std::string script_json(const nlohmann::json& data);

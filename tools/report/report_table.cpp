@@ -58,7 +58,7 @@ std::string to_text(double number, std::chars_format format, int precision) {
 bool is_number(const ReportCell& cell) { return std::holds_alternative<double>(cell); }
 
 struct Column {
-    std::vector<std::string> cells; ///< escaped
+    std::vector<std::string> cells; ///< plain text
     bool numeric = false;
 };
 
@@ -72,7 +72,7 @@ Column format_cells(const ReportTable& table, std::size_t index) {
     Column column;
     for (std::size_t i = 0; i < table.rows.size(); ++i) {
         const ReportCell& cell = table.rows[i][index];
-        column.cells.push_back(is_number(cell) ? formatted[i] : escape_html(std::get<std::string>(cell)));
+        column.cells.push_back(is_number(cell) ? formatted[i] : std::get<std::string>(cell));
         column.numeric = column.numeric || is_number(cell);
     }
     return column;
@@ -90,7 +90,7 @@ std::string cell_html(const std::string& content, std::string_view scope, bool n
 std::string body_row_html(const std::vector<Column>& columns, std::size_t row) {
     std::string html = "<tr>";
     for (std::size_t i = 0; i < columns.size(); ++i) {
-        html += cell_html(columns[i].cells[row], i == 0 ? "row" : "", columns[i].numeric);
+        html += cell_html(escape_html(columns[i].cells[row]), i == 0 ? "row" : "", columns[i].numeric);
     }
     return html + "</tr>\n";
 }
@@ -144,6 +144,29 @@ std::string table_html(const ReportTable& table) {
         html += "<figcaption>" + escape_html(table.note) + "</figcaption>\n";
     }
     return html + "</figure>\n";
+}
+
+std::string table_markdown(const ReportTable& table) {
+    std::ostringstream head;
+    std::ostringstream rule;
+    std::vector<Column> columns;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        columns.push_back(format_cells(table, i));
+        head << "| " << escape_markdown(table.columns[i]) << ' ';
+        rule << (columns.back().numeric ? "| ---: " : "| --- ");
+    }
+    std::ostringstream text;
+    text << "**" << escape_markdown(table.caption) << "**\n\n" << head.str() << "|\n" << rule.str() << "|\n";
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        for (const Column& column : columns) {
+            text << "| " << escape_markdown(column.cells[row]) << ' ';
+        }
+        text << "|\n";
+    }
+    if (!table.note.empty()) {
+        text << '\n' << escape_markdown(table.note) << '\n';
+    }
+    return text.str();
 }
 
 std::string facts_html(const std::vector<ReportFact>& facts) {

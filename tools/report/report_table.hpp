@@ -16,6 +16,9 @@ std::vector<std::string> format_column(const std::vector<double>& numbers);
 /// The table as HTML. A column that holds a number is right-aligned. Every row is as long as `columns`.
 std::string table_html(const ReportTable& table);
 
+/// The same table as Markdown (GitHub's dialect).
+std::string table_markdown(const ReportTable& table);
+
 /// Names and values as an HTML description list; empty for no facts.
 std::string facts_html(const std::vector<ReportFact>& facts);
 

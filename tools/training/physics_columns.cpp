@@ -21,17 +21,21 @@ MatrixXd all_columns(const Regressor& regressor, const MotionSamples& motion) {
     return result;
 }
 
-MatrixXd RegressorColumns::evaluate(const VectorXd& parameters) const {
-    const MatrixXd all = all_columns(regressor_, motion_->evaluate(parameters));
-    const auto p = static_cast<Index>(choice_.columns.size());
-    MatrixXd result(all.rows(), regressor_.outputs() * p);
-    for (Index k = 0; k < regressor_.outputs(); ++k) {
+MatrixXd chosen_columns(const Regressor& regressor, const MotionSamples& motion, const ColumnChoice& choice) {
+    const MatrixXd all = all_columns(regressor, motion);
+    const auto p = static_cast<Index>(choice.columns.size());
+    MatrixXd result(all.rows(), regressor.outputs() * p);
+    for (Index k = 0; k < regressor.outputs(); ++k) {
         for (Index c = 0; c < p; ++c) {
-            const Index from = k * regressor_.columns() + choice_.columns[static_cast<std::size_t>(c)];
-            result.col(k * p + c) = choice_.scale[c] * all.col(from);
+            const Index from = k * regressor.columns() + choice.columns[static_cast<std::size_t>(c)];
+            result.col(k * p + c) = choice.scale[c] * all.col(from);
         }
     }
     return result;
+}
+
+MatrixXd RegressorColumns::evaluate(const VectorXd& parameters) const {
+    return chosen_columns(regressor_, motion_->evaluate(parameters), choice_);
 }
 
 VectorXd RegressorColumns::pull_back(const VectorXd& parameters, const MatrixXd& gradient) const {

@@ -55,6 +55,10 @@ class RegressorColumns final : public PhysicsColumns {
     ColumnChoice choice_;
 };
 
+/// The chosen columns of the regressor, each times its scale: N x (m p).
+Eigen::MatrixXd chosen_columns(const Regressor& regressor, const MotionSamples& motion,
+                               const ColumnChoice& choice);
+
 /// All columns of the regressor, not scaled: N x (m P).
 Eigen::MatrixXd all_columns(const Regressor& regressor, const MotionSamples& motion);
 

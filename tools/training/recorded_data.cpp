@@ -81,6 +81,18 @@ TrainingData gather_training_data(std::span<const Recording> recordings) {
     return data;
 }
 
+void copy_derivatives(TrainingData& data, std::span<const Recording> recordings) {
+    data.velocities.resizeLike(data.positions);
+    data.accelerations.resizeLike(data.positions);
+    Eigen::Index sample = 0;
+    for (const Recording& recording : recordings) {
+        for (std::size_t row = 0; row < recording.row_count(); ++row, ++sample) {
+            copy_row(recording.velocity.row(row), data.velocities, sample);
+            copy_row(recording.acceleration.row(row), data.accelerations, sample);
+        }
+    }
+}
+
 double estimate_position_noise_bound(const TrainingData& data) {
     constexpr double smallest = 1e-6;
     const double third_difference_gain = std::sqrt(20.0); // of white noise: 1 + 9 + 9 + 1

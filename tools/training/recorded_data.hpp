@@ -14,6 +14,9 @@ namespace dfdyn::tools {
 /// sees to).
 TrainingData gather_training_data(std::span<const Recording> recordings);
 
+/// Fills velocities and accelerations from the recordings' columns, which they must have.
+void copy_derivatives(TrainingData& data, std::span<const Recording> recordings);
+
 /// A bound of the positions' noise (rad) for the adaptive window of input STD: three times the standard
 /// deviation of what third differences of the positions leave, the largest over the joints, and not below
 /// 1e-6.

@@ -40,7 +40,7 @@ TEST_CASE("help and version end with status 0, and every subcommand shows an exa
     const TemporaryDirectory directory;
     CHECK(run(directory, "--help").status == 0);
     CHECK_THAT(run(directory, "--version").out, Catch::Matchers::StartsWith("dfdyn "));
-    for (const std::string command : {"train", "replay"}) {
+    for (const std::string command : {"train", "replay", "evaluate"}) {
         const Outcome outcome = run(directory, command + " --help");
         CHECK(outcome.status == 0);
         CHECK_THAT(outcome.out, Catch::Matchers::ContainsSubstring("Example:"));

@@ -387,3 +387,13 @@ TEST_CASE("AtomicFile refuses a seventeenth file at once, and has room again aft
     write_file(base, "x");
     CHECK(directory.file_count() == 1);
 }
+
+TEST_CASE("make_folder makes what is missing and leaves what is there") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path folder = directory.path() / "a/b/c";
+    dfdyn::tools::make_folder(folder);
+    CHECK(std::filesystem::is_directory(folder));
+    CHECK_NOTHROW(dfdyn::tools::make_folder(folder));
+    directory.write("file", "");
+    CHECK_THROWS_AS(dfdyn::tools::make_folder(directory.path() / "file/a"), InputError);
+}

@@ -24,6 +24,8 @@ class PrescribedEstimator final : public HostEstimator {
     std::size_t weight_count() const override { return weights.size(); }
     void copy_weights(std::span<float> copy) const override { std::ranges::copy(weights, copy.begin()); }
     void begin_recording() override {}
+    std::vector<std::byte> snapshot() const override { return {}; }
+    bool restore(std::span<const std::byte> /*snapshot*/) override { return false; }
     std::size_t state_bytes() const override { return 0; }
     dfdyn::Cost cost() const override { return {}; }
 };

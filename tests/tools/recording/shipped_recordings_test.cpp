@@ -31,9 +31,11 @@ TEST_CASE("the shipped recordings of the UR5 are read whole") {
     const auto [name, rows, end_ns,
                 longest_ns] = GENERATE(table<std::string, std::size_t, std::int64_t, std::int64_t>({
         {"Movement_No3_Acc.csv", 1251, 19'855'437'000, 24'367'000},
+        {"Movement_No5_Acc_slow_no_disturbance.csv", 3255, 26'032'000'000, 8'000'000},
         {"Movement_No6_Acc_slow_Verify_Model.csv", 10264, 82'104'000'000, 8'000'000},
         {"Movement_No7_Acc_slow_Verify_Model_short.csv", 3470, 27'752'000'000, 8'000'000},
         {"Movement_No7_Acc_slow_Verify_Model_short_with_disturbance.csv", 3420, 27'352'000'000, 8'000'000},
+        {"Movement_No9_Singularity_Free_NoDist.csv", 2727, 21'808'000'000, 8'000'000},
     }));
     CAPTURE(name);
     const Recording recording = read_ur5(name);

@@ -68,3 +68,14 @@ TEST_CASE("facts are escaped and break only between words") {
     CHECK_THAT(html, ContainsSubstring("<dd><span>g++</span> <span>-O3</span> <span>&lt;x&gt;</span></dd>"));
     CHECK(tools::facts_html({}).empty());
 }
+
+TEST_CASE("a table in Markdown has the same cells, and no markup but its own") {
+    const std::string text = tools::table_markdown(
+        {"Errors", {"Output", "n|RMSE"}, {{"i_1", 0.25}, {"i*2", not_a_number}}, "a <note>"});
+    CHECK(text == "**Errors**\n\n"
+                  "| Output | n\\|RMSE |\n"
+                  "| --- | ---: |\n"
+                  "| i\\_1 | 0.250 |\n"
+                  "| i\\*2 | – |\n"
+                  "\na \\<note\\>\n");
+}

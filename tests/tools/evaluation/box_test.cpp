@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/evaluation/box.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace tools = dfdyn::tools;
+
+TEST_CASE("a box has the quantiles of its values, whatever their order") {
+    // 0 … 100, of which the quantile at a share is 100 times it
+    std::vector<double> values;
+    for (int i = 0; i <= 100; ++i) {
+        values.push_back((37 * i) % 101);
+    }
+    const tools::Box box = tools::box_of(values);
+    CHECK(box.count == 101);
+    CHECK(box.low == Approx(5));
+    CHECK(box.lower_quartile == Approx(25));
+    CHECK(box.median == Approx(50));
+    CHECK(box.upper_quartile == Approx(75));
+    CHECK(box.high == Approx(95));
+    CHECK(box.mean == Approx(50));
+}
+
+TEST_CASE("quantiles are interpolated between order statistics") {
+    const std::vector<double> values{1, 2, 4, 8};
+    CHECK(tools::interpolated_quantile(values, 0) == 1);
+    CHECK(tools::interpolated_quantile(values, 0.25) == Approx(1.75));
+    CHECK(tools::interpolated_quantile(values, 0.5) == Approx(3));
+    CHECK(tools::interpolated_quantile(values, 0.75) == Approx(5));
+    CHECK(tools::interpolated_quantile(values, 1) == 8);
+    CHECK(tools::median_of({5, 1, 3}) == 3);
+    CHECK(tools::median_of({4, 1}) == Approx(2.5));
+}
+
+TEST_CASE("values that are not finite do not count") {
+    const double infinite = std::numeric_limits<double>::infinity();
+    const tools::Box box = tools::box_of({infinite, 2, std::nan(""), 4, -infinite});
+    CHECK(box.count == 2);
+    CHECK(box.median == 3);
+    CHECK(box.mean == 3);
+    CHECK(std::isnan(tools::box_of({infinite}).median));
+    CHECK(std::isnan(tools::median_of({})));
+}

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/evaluation/comparison.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/evaluation/synthetic_units.hpp"
+
+#include <cmath>
+
+namespace {
+
+using namespace dfdyn::tools;
+using dfdyn::tests::two_case_plan;
+using dfdyn::tests::unit_at;
+
+/// A errs `ratio` times as much as B in each of the draws.
+std::vector<UnitResult> units_with(double ratio, std::size_t draws, std::mt19937_64& engine) {
+    std::vector<UnitResult> units;
+    for (std::size_t seed = 1; seed <= draws; ++seed) {
+        units.push_back(unit_at("A", seed, ratio * static_cast<double>(seed), engine));
+        units.push_back(unit_at("B", seed, static_cast<double>(seed), engine));
+    }
+    return units;
+}
+
+const Comparison a_is_less{"A", "B", "force", Phase::steady, 0};
+
+} // namespace
+
+TEST_CASE("a clear difference in every draw holds, and its opposite is contradicted") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Plan plan = two_case_plan(10);
+    const std::vector<UnitResult> units = units_with(0.6, 10, engine);
+    const ComparisonOutcome outcome = compare(a_is_less, plan, units);
+    CHECK(outcome.verdict == Verdict::holds);
+    CHECK(outcome.draws == 10);
+    CHECK(outcome.draws_agree == 10);
+    CHECK(outcome.subsets == 3);
+    CHECK(outcome.subsets_agree == 3);
+    CHECK(outcome.median_ratio == Approx(0.6).epsilon(0.05));
+    CHECK(outcome.p_holds == Approx(1.0 / 1024));
+    CHECK(compare({"B", "A", "force", Phase::steady, 0}, plan, units).verdict == Verdict::contradicted);
+}
+
+TEST_CASE("the gain is part of the claim") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Plan plan = two_case_plan(10);
+    const std::vector<UnitResult> units = units_with(0.8, 10, engine);
+    const auto with_gain = [&](const std::string& better, const std::string& worse, double gain) {
+        return compare({better, worse, "torque", Phase::transient, gain}, plan, units).verdict;
+    };
+    CHECK(with_gain("A", "B", 0.1) == Verdict::holds);
+    CHECK(with_gain("A", "B", 0.3) == Verdict::contradicted);
+    CHECK(with_gain("B", "A", -0.1) == Verdict::contradicted);
+    CHECK(with_gain("B", "A", -0.4) == Verdict::holds); // 25 % more is at most 40 % more
+}
+
+TEST_CASE("too few draws, draws that disagree and draws that are missing decide nothing") {
+    DFDYN_SEEDED_ENGINE(engine);
+    CHECK(compare(a_is_less, two_case_plan(4), units_with(0.1, 4, engine)).verdict == Verdict::undecided);
+    CHECK(compare(a_is_less, two_case_plan(5), units_with(0.1, 5, engine)).verdict == Verdict::holds);
+    std::vector<UnitResult> mixed = units_with(0.5, 4, engine);
+    for (const UnitResult& unit : units_with(2, 8, engine)) {
+        if (unit.seed > 4) {
+            mixed.push_back(unit);
+        }
+    }
+    const ComparisonOutcome outcome = compare(a_is_less, two_case_plan(8), mixed);
+    CHECK(outcome.verdict == Verdict::undecided);
+    CHECK(outcome.draws_agree == 4);
+    const ComparisonOutcome missing = compare(a_is_less, two_case_plan(8), {});
+    CHECK(missing.verdict == Verdict::undecided);
+    CHECK(missing.draws == 0);
+    CHECK(std::isnan(missing.median_ratio));
+}
+
+TEST_CASE("a difference that only one subset shows does not hold") {
+    DFDYN_SEEDED_ENGINE(engine);
+    std::vector<UnitResult> units = units_with(1.05, 10, engine);
+    for (UnitResult& unit : units) {
+        for (double& error : unit.error[0][1]) {
+            error *= unit.case_name == "A" ? 0.1 : 1;
+        }
+    }
+    const ComparisonOutcome outcome = compare(a_is_less, two_case_plan(10), units);
+    CHECK(outcome.p_holds < 0.05);
+    CHECK(outcome.subsets_agree == 1);
+    CHECK(outcome.verdict == Verdict::undecided);
+}
+
+TEST_CASE("the draws are paired by their seed, not by their order") {
+    DFDYN_SEEDED_ENGINE(engine);
+    std::vector<UnitResult> units = units_with(0.9, 10, engine);
+    std::ranges::reverse(units);
+    std::swap(units[0], units[7]);
+    // unpaired, the draws' levels 1 … 10 would drown the difference
+    CHECK(compare(a_is_less, two_case_plan(10), units).draws_agree == 10);
+}
+
+TEST_CASE("the verdict on a finding follows from its comparisons") {
+    const auto verdict = [](std::initializer_list<Verdict> verdicts) {
+        std::vector<ComparisonOutcome> outcomes;
+        for (const Verdict one : verdicts) {
+            outcomes.emplace_back().verdict = one;
+        }
+        return verdict_of(outcomes);
+    };
+    const Verdict holds = Verdict::holds;
+    const Verdict contradicted = Verdict::contradicted;
+    const Verdict undecided = Verdict::undecided;
+    CHECK(verdict({holds, holds}) == FindingVerdict::reproduced);
+    CHECK(verdict({holds, contradicted}) == FindingVerdict::partly);
+    CHECK(verdict({holds, undecided}) == FindingVerdict::partly);
+    CHECK(verdict({contradicted, undecided}) == FindingVerdict::not_reproduced);
+    CHECK(verdict({contradicted}) == FindingVerdict::not_reproduced);
+    CHECK(verdict({undecided}) == FindingVerdict::undecided);
+}
+
+TEST_CASE("ratios are said in words") {
+    CHECK(ratio_text(0.83) == "17 % less");
+    CHECK(ratio_text(1.12) == "12 % more");
+    CHECK(ratio_text(4.2) == "4.2 times as much");
+    CHECK(ratio_text(std::nan("")) == "not comparable");
+}

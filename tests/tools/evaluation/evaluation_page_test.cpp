@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/evaluation/evaluation_page.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/support/temporary_directory.hpp"
+#include "tests/tools/evaluation/synthetic_units.hpp"
+#include "tests/tools/support/balanced_markup.hpp"
+
+#include <algorithm>
+
+namespace {
+
+using namespace dfdyn::tools;
+using Catch::Matchers::ContainsSubstring;
+using dfdyn::tests::file_content;
+using dfdyn::tests::markup_fault;
+using dfdyn::tests::TemporaryDirectory;
+using dfdyn::tests::two_case_plan;
+using dfdyn::tests::unit_at;
+
+struct Evaluation {
+    Plan plan = two_case_plan(6);
+    PlanData data;
+    EvaluationResults results;
+};
+
+/// A errs half as much as B in six draws.
+Evaluation evaluation() {
+    std::mt19937_64 engine(1);
+    Evaluation one;
+    one.data.start.output.names = {"fx", "mx"};
+    one.data.subsets.resize(3);
+    for (const std::uint64_t seed : one.plan.seeds) {
+        one.results.units.push_back(unit_at("A", seed, 0.5, engine));
+        one.results.units.push_back(unit_at("B", seed, 1, engine));
+    }
+    one.plan.findings = {
+        {"A wins", "A errs less.", "Because of that.", {{"A", "B", "force", Phase::steady, 0}}},
+        {"B wins", "B errs less.", "Because of this.", {{"B", "A", "force", Phase::steady, 0}}}};
+    one.plan.comparisons = {{"A", "B", "torque", Phase::transient, 0.3}};
+    return one;
+}
+
+void write(const TemporaryDirectory& directory, const Evaluation& one) {
+    write_evaluation(directory.path(), one.plan, one.data, one.results);
+}
+
+} // namespace
+
+TEST_CASE("an evaluation writes page, tables, findings, figures and pictures") {
+    const TemporaryDirectory directory;
+    write(directory, evaluation());
+    const std::string html = file_content(directory.path() / "report.html");
+    const std::string markdown = file_content(directory.path() / "findings.md");
+    CHECK(markup_fault(html).empty());
+    for (const std::string& text : {html, markdown}) {
+        CHECK_THAT(text, ContainsSubstring("A wins: reproduced"));
+        CHECK_THAT(text, ContainsSubstring("B wins: not reproduced"));
+        CHECK_THAT(text, ContainsSubstring("Because of this."));
+        CHECK_THAT(text, !ContainsSubstring("Because of that."));
+        CHECK_THAT(text, ContainsSubstring("at least 30 % less, transient"));
+    }
+    CHECK_THAT(file_content(directory.path() / "tables.md"), ContainsSubstring("| A | 0.05"));
+    for (const std::string name : {"plan_1_force_curves", "plan_1_torque_boxes"}) {
+        CHECK_THAT(markdown, ContainsSubstring("(pictures/" + name + ".svg)"));
+        const std::string svg = file_content(directory.path() / "pictures" / (name + ".svg"));
+        CHECK(markup_fault(svg).empty());
+        CHECK_THAT(svg, ContainsSubstring("<title>A</title>"));
+        CHECK_THAT(svg, ContainsSubstring("<title>B</title>"));
+    }
+}
+
+TEST_CASE("the page needs no network and no script") {
+    const TemporaryDirectory directory;
+    write(directory, evaluation());
+    const std::string html = file_content(directory.path() / "report.html");
+    for (const std::string load :
+         {"src=", "href=", "@import", "url(", "<link", "<img", "<iframe", "<script", "https://"}) {
+        CAPTURE(load);
+        CHECK(html.find(load) == std::string::npos);
+    }
+}
+
+TEST_CASE("the results have one row per case, draw and group") {
+    const TemporaryDirectory directory;
+    write(directory, evaluation());
+    const std::string csv = file_content(directory.path() / "results.csv");
+    CHECK(std::ranges::count(csv, '\n') == 1 + 2 * 6 * 2);
+    const auto commas = std::ranges::count(csv.substr(0, csv.find('\n')), ',');
+    CHECK(std::ranges::count(csv, ',') == commas * 25);
+    CHECK_THAT(csv, ContainsSubstring("case,seed,group,transient_mean,"));
+    CHECK_THAT(csv, ContainsSubstring(",nrmse_fx,nrmse_mx,median_us,operations,state_bytes,columns\n"));
+    CHECK_THAT(csv, ContainsSubstring("\nB,6,torque,"));
+}
+
+TEST_CASE("what could not be done is said, and the rest shown") {
+    Evaluation one = evaluation();
+    std::erase_if(one.results.units, [](const UnitResult& unit) { return unit.case_name == "B"; });
+    one.results.failed = {{"B", 1, "training: <no> likelihood"}};
+    const TemporaryDirectory directory;
+    write(directory, one);
+    const std::string html = file_content(directory.path() / "report.html");
+    CHECK(markup_fault(html).empty());
+    CHECK_THAT(html, ContainsSubstring("B, draw 1: training: &lt;no&gt; likelihood"));
+    CHECK_THAT(html, ContainsSubstring("A wins: undecided"));
+}
+
+TEST_CASE("no text of a plan can leave its place in the page") {
+    const std::string hostile = "</title><script>alert(\"'&{{facts}}\")</script>";
+    Evaluation one = evaluation();
+    one.plan.title = one.plan.figures[0].title = one.plan.findings[0].statement = hostile;
+    const TemporaryDirectory directory;
+    write(directory, one);
+    const std::string html = file_content(directory.path() / "report.html");
+    CHECK(html.find("<script") == std::string::npos);
+    CHECK(markup_fault(html).empty());
+}

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/commands/command.hpp"
+#include "tools/common/progress.hpp"
+#include "tools/evaluation/evaluation_page.hpp"
+#include "tools/evaluation/plan.hpp"
+#include "tools/evaluation/plan_data.hpp"
+#include "tools/evaluation/run_plan.hpp"
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+namespace dfdyn::tools {
+
+namespace {
+
+struct EvaluateOptions {
+    std::filesystem::path plan;
+    RunOptions run;
+    bool quick = false;
+};
+
+/// Thousandths of a unit, so that a long one is seen to move.
+std::size_t progress_steps(double units) { return static_cast<std::size_t>(std::lround(1000 * units)); }
+
+int run(const EvaluateOptions& options) {
+    const Plan plan = options.quick ? quick_plan(read_plan(options.plan)) : read_plan(options.plan);
+    const PlanData data = load_plan_data(plan);
+    const std::size_t units = plan.cases.size() * plan.seeds.size();
+    Progress progress("evaluating " + std::to_string(units) + " cases x draws, thousandths of one",
+                      progress_steps(static_cast<double>(units)));
+    const EvaluationResults results = run_plan(
+        plan, data, options.run, [&progress](double done) { progress.update(progress_steps(done)); });
+    write_evaluation(options.run.folder, plan, data, results);
+    for (const FailedUnit& unit : results.failed) {
+        std::cerr << unit.case_name << ", draw " << unit.seed << ": " << unit.reason << '\n';
+    }
+    std::cout << results.units.size() << " of " << units << " cases x draws done (" << results.reused
+              << " found from an earlier run): " << (options.run.folder / "report.html").string() << '\n';
+    return results.failed.empty() ? 0 : 1;
+}
+
+} // namespace
+
+void add_evaluate_command(CLI::App& app, Command& chosen) {
+    const auto options = std::make_shared<EvaluateOptions>();
+    CLI::App* command = app.add_subcommand(
+        "evaluate", "Runs the paper's experiment over a plan's cases; writes tables, curves and box plots");
+    command->add_option("--plan", options->plan, "What to run: see docs/evaluation.md")
+        ->required()
+        ->type_name("P.json");
+    command
+        ->add_option("-o,--output", options->run.folder,
+                     "Folder for report.html, results.csv, tables.md, findings.md, pictures/ and cases/")
+        ->required()
+        ->type_name("DIR");
+    command->add_option("--jobs", options->run.jobs, "Cases x draws at a time")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    command->add_flag("--fresh", options->run.fresh, "Do again what an earlier run has left in DIR");
+    command->add_flag("--quick", options->quick,
+                      "One draw, few features and rows: shows that every case runs, not how good it is. Give "
+                      "it a DIR of its own");
+    command->footer(
+        "Example:\n  dfdyn evaluate --plan plan.json -o evaluation --jobs 2\n"
+        "A run that was ended goes on where it was: cases x draws whose inputs did not change are not done "
+        "again.\nExit status: 0 done, 1 some cases could not be done (the report names them), 2 bad usage or "
+        "input.");
+    command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// What a box plot shows of a distribution. NaN where there are no values.
+struct Box {
+    std::size_t count = 0;
+    double low, lower_quartile, median, upper_quartile, high; ///< at 5, 25, 50, 75, 95 %
+    double mean;
+};
+
+/// Of the finite ones among `values`. O(n log n).
+Box box_of(std::vector<double> values);
+
+/// The quantile at `share` (0 … 1) of ascending values, interpolated linearly between order statistics, of
+/// which the first stands at 0 and the last at 1; NaN without values.
+double interpolated_quantile(std::span<const double> ascending, double share);
+
+/// The middle one of `values`, or the mean of the two in the middle; NaN without values.
+double median_of(std::vector<double> values);
+
+/// NaN without values.
+double mean_of(std::span<const double> values);
+
+} // namespace dfdyn::tools

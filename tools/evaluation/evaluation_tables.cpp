@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/evaluation/evaluation_tables.hpp"
+
+#include "tools/common/number.hpp"
+#include "tools/evaluation/phase_error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+namespace dfdyn::tools {
+
+namespace {
+
+std::string formatted(const char* format, double value) {
+    std::array<char, 48> text{};
+    std::snprintf(text.data(), text.size(), format, value);
+    return text.data();
+}
+
+template <class Value>
+double median_over(const std::vector<const UnitResult*>& draws, const Value& value) {
+    std::vector<double> values;
+    std::ranges::transform(draws, std::back_inserter(values),
+                           [&](const UnitResult* draw) { return static_cast<double>(value(*draw)); });
+    return median_of(std::move(values));
+}
+
+/// A table with a row for each case that has a draw.
+template <class Cells>
+std::vector<std::vector<ReportCell>> rows_of_cases(const Plan& plan, std::span<const UnitResult> units,
+                                                   const Cells& cells) {
+    std::vector<std::vector<ReportCell>> rows;
+    for (const Case& one : plan.cases) {
+        const std::vector<const UnitResult*> draws = draws_of(units, one.name);
+        if (!draws.empty()) {
+            rows.push_back({one.name});
+            const std::vector<double> numbers = cells(draws);
+            rows.back().insert(rows.back().end(), numbers.begin(), numbers.end());
+        }
+    }
+    return rows;
+}
+
+std::string claim_of(const Comparison& comparison) {
+    const std::string phase = comparison.phase == Phase::transient ? "transient" : "steady state";
+    if (comparison.gain == 0) {
+        return "less, " + phase;
+    }
+    return comparison.gain > 0 ? "at least " + ratio_text(1 - comparison.gain) + ", " + phase
+                               : "at most " + ratio_text(1 - comparison.gain) + ", " + phase;
+}
+
+std::string share_text(std::size_t part, std::size_t whole) {
+    return std::to_string(part) + " of " + std::to_string(whole);
+}
+
+void write_phase(std::ostream& out, const UnitResult& unit, std::size_t group, Phase phase,
+                 double steady_after_s) {
+    const UnitResult* const draw = &unit;
+    const Box box = phase_box({&draw, 1}, group, phase, steady_after_s);
+    for (const double value :
+         {box.mean, box.median, box.lower_quartile, box.upper_quartile, box.low, box.high}) {
+        out << ',' << number_text(value);
+    }
+}
+
+} // namespace
+
+std::vector<const UnitResult*> draws_of(std::span<const UnitResult> units, const std::string& case_name) {
+    std::vector<const UnitResult*> draws;
+    for (const UnitResult& unit : units) {
+        if (unit.case_name == case_name) {
+            draws.push_back(&unit);
+        }
+    }
+    return draws;
+}
+
+ReportTable error_table(const Plan& plan, std::span<const UnitResult> units, std::size_t group) {
+    ReportTable table;
+    table.caption = "ε of " + plan.groups[group].name;
+    table.columns = {
+        "case", "transient, mean", "transient, median", "steady state, mean", "median", "25 %", "75 %", "5 %",
+        "95 %"};
+    table.rows = rows_of_cases(plan, units, [&](const std::vector<const UnitResult*>& draws) {
+        const Box transient = phase_box(draws, group, Phase::transient, plan.steady_after_s);
+        const Box steady = phase_box(draws, group, Phase::steady, plan.steady_after_s);
+        return std::vector{transient.mean,        transient.median,      steady.mean, steady.median,
+                           steady.lower_quartile, steady.upper_quartile, steady.low,  steady.high};
+    });
+    return table;
+}
+
+ReportTable step_error_table(const Plan& plan, std::span<const UnitResult> units,
+                             const std::vector<std::string>& outputs) {
+    ReportTable table;
+    table.caption = "nRMSE, one step";
+    table.columns = {"case"};
+    table.columns.insert(table.columns.end(), outputs.begin(), outputs.end());
+    table.rows = rows_of_cases(plan, units, [&](const std::vector<const UnitResult*>& draws) {
+        std::vector<double> errors;
+        for (std::size_t output = 0; output < outputs.size(); ++output) {
+            errors.push_back(
+                median_over(draws, [&](const UnitResult& draw) { return draw.normalised_error[output]; }));
+        }
+        return errors;
+    });
+    table.note =
+        "rms(measured − predicted) / std(measured) over all subsets, predicted one sample ahead; the "
+        "median over the draws.";
+    return table;
+}
+
+ReportTable cost_table(const Plan& plan, std::span<const UnitResult> units) {
+    ReportTable table;
+    table.caption = "Cost";
+    table.columns = {"case", "columns", "multiply-adds per tick", "state, bytes", "µs per tick, median"};
+    table.rows = rows_of_cases(plan, units, [](const std::vector<const UnitResult*>& draws) {
+        return std::vector{static_cast<double>(draws.front()->columns),
+                           static_cast<double>(draws.front()->operations),
+                           static_cast<double>(draws.front()->state_bytes),
+                           median_over(draws, [](const UnitResult& draw) { return draw.median_us; })};
+    });
+    table.note = "Times are of the machine that ran this, with other work beside it.";
+    return table;
+}
+
+ReportTable comparison_table(const std::string& caption, std::span<const ComparisonOutcome> outcomes) {
+    ReportTable table;
+    table.caption = caption;
+    table.columns = {"case",
+                     "against",
+                     "group",
+                     "claim: its error is",
+                     "it is, median over draws",
+                     "draws agree",
+                     "subsets agree",
+                     "p",
+                     "verdict"};
+    for (const ComparisonOutcome& outcome : outcomes) {
+        const Comparison& comparison = outcome.comparison;
+        table.rows.push_back({comparison.better, comparison.worse, comparison.group, claim_of(comparison),
+                              ratio_text(outcome.median_ratio),
+                              share_text(outcome.draws_agree, outcome.draws),
+                              share_text(outcome.subsets_agree, outcome.subsets),
+                              formatted("%.2g", outcome.p_holds), to_string(outcome.verdict)});
+    }
+    return table;
+}
+
+ReportTable finding_table(std::span<const FindingOutcome> findings) {
+    ReportTable table;
+    table.caption = "Findings";
+    table.columns = {"finding", "comparisons that hold", "contradicted", "undecided", "verdict"};
+    for (const FindingOutcome& outcome : findings) {
+        std::vector<ReportCell> row{outcome.finding->name};
+        for (const Verdict verdict : {Verdict::holds, Verdict::contradicted, Verdict::undecided}) {
+            row.emplace_back(static_cast<double>(
+                std::ranges::count(outcome.comparisons, verdict, &ComparisonOutcome::verdict)));
+        }
+        row.emplace_back(to_string(outcome.verdict));
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+void write_results_csv(std::ostream& out, const Plan& plan, std::span<const UnitResult> units,
+                       const std::vector<std::string>& outputs) {
+    out << "case,seed,group";
+    for (const std::string phase : {"transient", "steady"}) {
+        for (const std::string figure : {"mean", "median", "q25", "q75", "q05", "q95"}) {
+            out << ',' << phase << '_' << figure;
+        }
+    }
+    for (const std::string& output : outputs) {
+        out << ",nrmse_" << output;
+    }
+    out << ",median_us,operations,state_bytes,columns\n";
+    for (const UnitResult& unit : units) {
+        for (std::size_t group = 0; group < plan.groups.size(); ++group) {
+            out << unit.case_name << ',' << unit.seed << ',' << plan.groups[group].name;
+            write_phase(out, unit, group, Phase::transient, plan.steady_after_s);
+            write_phase(out, unit, group, Phase::steady, plan.steady_after_s);
+            for (const double error : unit.normalised_error) {
+                out << ',' << number_text(error);
+            }
+            out << ',' << number_text(unit.median_us) << ',' << unit.operations << ',' << unit.state_bytes
+                << ',' << unit.columns << '\n';
+        }
+    }
+}
+
+} // namespace dfdyn::tools

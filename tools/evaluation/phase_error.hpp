@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/evaluation/box.hpp"
+#include "tools/evaluation/plan.hpp"
+#include "tools/evaluation/unit_result.hpp"
+
+#include <span>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// The errors of one group in one subset that belong to a phase: before, or from, `steady_after_s` since the
+/// subset's start. Only those that are there; infinite ones included.
+std::vector<double> errors_of_phase(const UnitResult& unit, std::size_t group, std::size_t subset,
+                                    Phase phase, double steady_after_s);
+
+/// One number for them: the mean of the transient, in which the first seconds weigh as they err; the median
+/// of the steady state, the line in the paper's box plots. Finite ones only; NaN without any.
+double phase_error(const UnitResult& unit, std::size_t group, std::size_t subset, Phase phase,
+                   double steady_after_s);
+
+/// The distribution over all times of the phase, subsets and draws.
+Box phase_box(std::span<const UnitResult* const> draws, std::size_t group, Phase phase,
+              double steady_after_s);
+
+} // namespace dfdyn::tools

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/evaluation/plan_cases.hpp"
+
+#include "tools/common/text.hpp"
+#include "tools/evaluation/plan_names.hpp"
+#include "tools/model/model_file.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr std::array<std::string_view, 5> models{"P", "NP", "SP", "SP2", "SPK"};
+constexpr std::array<std::string_view, 2> hypers{"ML", "CV"};
+constexpr std::array<std::string_view, 4> physics_inputs{"same", "STD", "DFSR", "filtered"};
+
+constexpr std::array<std::string_view, 8> setting_names{"physics_input", "lags",          "features",
+                                                        "orthogonal",    "forgetting",    "likelihood_rows",
+                                                        "starts",        "rows_per_joint"};
+constexpr std::array<std::string_view, 12> entry_names{
+    "model",    "input",      "hyper",      "suffix",          "physics_input", "lags",
+    "features", "orthogonal", "forgetting", "likelihood_rows", "starts",        "rows_per_joint"};
+
+std::string one_of(const JsonReader& entry, const std::string& name, const std::string& text,
+                   std::span<const std::string_view> known) {
+    if (std::ranges::find(known, text) == known.end()) {
+        const std::vector<std::string> names(known.begin(), known.end());
+        throw entry.error(name, "one of " + listed(names), in_quotes(text));
+    }
+    return text;
+}
+
+std::vector<std::string> names_or(const JsonReader& entry, const std::string& name,
+                                  const std::string& fallback) {
+    return entry.has(name) ? names_in(entry, name) : std::vector{fallback};
+}
+
+std::vector<int> rows_per_joint(const JsonReader& entry, int fallback) {
+    if (!entry.has("rows_per_joint")) {
+        return {fallback};
+    }
+    return entry.is_array("rows_per_joint") ? entry.whole_numbers("rows_per_joint", 1, 1001)
+                                            : std::vector{entry.whole_number("rows_per_joint", 1, 1001)};
+}
+
+InputKind input_of(const JsonReader& entry, const std::string& text) {
+    try {
+        return parse_input_kind(text);
+    } catch (const InputError&) {
+        throw entry.error("input", "one of STD, DF, DFW, DFR, DFSR", in_quotes(text));
+    }
+}
+
+void read_settings(const JsonReader& entry, Case& one) {
+    const auto whole = [&entry](const std::string& name, int high, int& value) {
+        value = entry.has(name) ? entry.whole_number(name, 1, high) : value;
+    };
+    whole("lags", 1000, one.lags);
+    whole("features", 5000, one.feature_count);
+    whole("likelihood_rows", 20000, one.likelihood_rows);
+    whole("starts", 1000, one.starts);
+    one.orthogonal = entry.has("orthogonal") ? entry.flag("orthogonal") : one.orthogonal;
+    if (entry.has("forgetting")) {
+        one.forgetting_factor = entry.number_within("forgetting", 0.5, 1);
+    }
+    if (entry.has("physics_input")) {
+        one.physics_input = one_of(entry, "physics_input", entry.text("physics_input"), physics_inputs);
+    }
+}
+
+std::string case_name(const JsonReader& entry, const Case& one) {
+    std::string name = one.model + "-" + one.hyper + "-" + to_string(one.input);
+    if (entry.has("rows_per_joint") && entry.is_array("rows_per_joint")) {
+        name += "-k" + std::to_string(one.rows_per_joint);
+    }
+    return name + (entry.has("suffix") ? plain_name(entry, "suffix") : "");
+}
+
+} // namespace
+
+Case read_defaults(const JsonReader& entry) {
+    entry.allow_only(setting_names);
+    Case one;
+    read_settings(entry, one);
+    if (entry.has("rows_per_joint")) {
+        one.rows_per_joint = entry.whole_number("rows_per_joint", 1, 1001);
+    }
+    return one;
+}
+
+std::vector<Case> expand_cases(const JsonReader& entry, const Case& defaults) {
+    entry.allow_only(entry_names);
+    Case one = defaults;
+    read_settings(entry, one);
+    std::vector<Case> cases;
+    for (const std::string& model : names_or(entry, "model", defaults.model)) {
+        one.model = one_of(entry, "model", model, models);
+        for (const std::string& hyper : names_or(entry, "hyper", defaults.hyper)) {
+            one.hyper = one_of(entry, "hyper", hyper, hypers);
+            for (const std::string& input : names_or(entry, "input", to_string(defaults.input))) {
+                one.input = input_of(entry, input);
+                for (const int rows : rows_per_joint(entry, defaults.rows_per_joint)) {
+                    one.rows_per_joint = rows;
+                    one.name = case_name(entry, one);
+                    cases.push_back(one);
+                }
+            }
+        }
+    }
+    return cases;
+}
+
+} // namespace dfdyn::tools

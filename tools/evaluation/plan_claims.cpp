@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/evaluation/plan_claims.hpp"
+
+#include "tools/evaluation/plan_names.hpp"
+
+#include <array>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr std::array<std::string_view, 2> figure_names{"title", "cases"};
+constexpr std::array<std::string_view, 5> comparison_names{"better", "worse", "group", "phase", "gain"};
+constexpr std::array<std::string_view, 4> finding_names{"name", "statement", "if_not", "comparisons"};
+
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& list) {
+    std::vector<std::string> names;
+    std::ranges::transform(list, std::back_inserter(names), &Named::name);
+    return names;
+}
+
+std::vector<Figure> figures(const JsonReader& json, const Plan& plan) {
+    if (!json.has("figures")) {
+        return {{plan.title, names_of(plan.cases)}};
+    }
+    std::vector<Figure> all;
+    for (const JsonReader& figure : json.objects("figures", 1, most_entries)) {
+        figure.allow_only(figure_names);
+        all.push_back({figure.text("title"), names_in(figure, "cases")});
+        for (const std::string& name : all.back().cases) {
+            known(figure, "cases", plan.cases, name);
+        }
+    }
+    return all;
+}
+
+Phase phase_of(const JsonReader& entry) {
+    const std::string text = entry.text("phase");
+    for (const Phase phase : {Phase::transient, Phase::steady}) {
+        if (text == to_string(phase)) {
+            return phase;
+        }
+    }
+    throw entry.error("phase", "transient or steady", in_quotes(text));
+}
+
+/// Every combination of what the entry lists.
+void expand_comparison(const JsonReader& entry, const Plan& plan, std::vector<Comparison>& all) {
+    entry.allow_only(comparison_names);
+    const Phase phase = phase_of(entry);
+    const double gain = entry.has("gain") ? entry.number_within("gain", -10, 0.99) : 0;
+    const std::vector<std::string> groups =
+        entry.has("group") ? names_in(entry, "group") : names_of(plan.groups);
+    for (const std::string& better : names_in(entry, "better")) {
+        for (const std::string& worse : names_in(entry, "worse")) {
+            for (const std::string& group : groups) {
+                all.push_back({known(entry, "better", plan.cases, better),
+                               known(entry, "worse", plan.cases, worse),
+                               known(entry, "group", plan.groups, group), phase, gain});
+            }
+        }
+    }
+}
+
+std::vector<Comparison> comparisons(const JsonReader& reader, const Plan& plan) {
+    std::vector<Comparison> all;
+    for (const JsonReader& entry : reader.objects("comparisons", 1, most_entries)) {
+        expand_comparison(entry, plan, all);
+    }
+    return all;
+}
+
+} // namespace
+
+void read_claims(const JsonReader& json, Plan& plan) {
+    plan.figures = figures(json, plan);
+    if (json.has("comparisons")) {
+        plan.comparisons = comparisons(json, plan);
+    }
+    if (json.has("findings")) {
+        for (const JsonReader& finding : json.objects("findings", 1, most_entries)) {
+            finding.allow_only(finding_names);
+            plan.findings.push_back({finding.text("name"), finding.text("statement"),
+                                     finding.has("if_not") ? finding.text("if_not") : "",
+                                     comparisons(finding, plan)});
+            refuse_twice(json, "findings", plan.findings);
+        }
+    }
+}
+
+} // namespace dfdyn::tools

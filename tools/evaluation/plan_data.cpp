@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/evaluation/plan_data.hpp"
+
+#include "dfdyn/snapshot.hpp"
+#include "tools/common/error.hpp"
+#include "tools/common/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <span>
+
+namespace dfdyn::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "1a2b3c4d, 12345 bytes": CRC-32 and size.
+std::string checksum_of(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) {
+        throw system_error(path, "cannot read", errno);
+    }
+    const std::string content{std::istreambuf_iterator<char>(file), {}};
+    std::array<char, 9> text{};
+    std::snprintf(text.data(), text.size(), "%08x", crc32(std::as_bytes(std::span(content))));
+    return std::string(text.data()) + ", " + std::to_string(content.size()) + " bytes";
+}
+
+Recording read_rows(const fs::path& log, const Plan& plan, std::size_t joints, RowRange rows) {
+    ReadOptions options;
+    options.joint_count = joints;
+    options.outputs = plan.outputs;
+    options.rows = rows;
+    return read_recording(log, options);
+}
+
+void read_subsets(const Plan& plan, std::size_t joints, PlanData& data) {
+    for (const TestLog& test : plan.tests) {
+        for (std::size_t subset = 0; subset < test.count; ++subset) {
+            const std::size_t first = test.first + subset * test.rows;
+            data.subsets.push_back(read_rows(test.log, plan, joints, {first, first + test.rows}));
+        }
+    }
+}
+
+double variance_of(const std::vector<Recording>& recordings, std::size_t output) {
+    double count = 0;
+    double mean = 0;
+    double squares = 0;
+    for (const Recording& recording : recordings) {
+        for (std::size_t row = 0; row < recording.row_count(); ++row) {
+            const double difference = recording.output.row(row)[output] - mean;
+            count += 1;
+            mean += difference / count;
+            squares += difference * (recording.output.row(row)[output] - mean);
+        }
+    }
+    return squares / count;
+}
+
+std::vector<std::size_t> numbers_of(const OutputGroup& group, const std::vector<std::string>& names) {
+    std::vector<std::size_t> numbers;
+    for (const std::string& output : group.outputs) {
+        const auto found = std::ranges::find(names, output);
+        if (found == names.end()) {
+            throw InputError("plan: group " + in_quotes(group.name) + ": expected outputs among " +
+                             listed(names) + ", found " + in_quotes(output));
+        }
+        numbers.push_back(static_cast<std::size_t>(found - names.begin()));
+    }
+    return numbers;
+}
+
+} // namespace
+
+PlanData load_plan_data(const Plan& plan) {
+    PlanData data;
+    data.start = read_rows(plan.training_log, plan, 0, {0, plan.start_rows});
+    const std::size_t joints = data.start.joint_count();
+    data.online = read_rows(plan.training_log, plan, joints, {plan.start_rows, plan.training_rows});
+    read_subsets(plan, joints, data);
+    const std::vector<std::string>& names = data.start.output.names;
+    for (std::size_t output = 0; output < names.size(); ++output) {
+        data.output_variance.push_back(variance_of(data.subsets, output));
+    }
+    for (const OutputGroup& group : plan.groups) {
+        data.group_outputs.push_back(numbers_of(group, names));
+    }
+    data.checksums.emplace_back(plan.training_log.filename(), checksum_of(plan.training_log));
+    for (const TestLog& test : plan.tests) {
+        data.checksums.emplace_back(test.log.filename(), checksum_of(test.log));
+    }
+    return data;
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/evaluation/plan.hpp"
+#include "tools/recording/recording.hpp"
+
+#include <functional>
+#include <mutex>
+#include <optional>
+
+namespace dfdyn::tools {
+
+/// What the draws of one case share: the exact kernel's hyperparameters depend on no draw. Any thread may use
+/// it.
+struct CaseMemory {
+    std::mutex tuning;                 ///< held while the hyperparameters are sought
+    std::optional<TrainedModel> tuned; ///< with the features of some draw
+};
+
+/// What every case of a plan shares.
+struct CaseContext {
+    const RobotChoice& robot;
+    const Recording& start; ///< hyperparameters and start come from it
+};
+
+/// Trains `one` for the draw of random features `seed`: hyperparameters from `context.start`, unless `memory`
+/// has them already, then the batch solution over it as the start. No sample is refused for its innovation:
+/// the paper's protocol learns from all. `progress`: told the share that is done, 0 … 1. The same for the
+/// same case, seed and data, whatever was trained before. Throws InputError as `train` does, and for a case
+/// that is not available.
+TrainedModel train_case(const Case& one, const CaseContext& context, std::uint64_t seed, CaseMemory& memory,
+                        const std::function<void(double)>& progress);
+
+} // namespace dfdyn::tools

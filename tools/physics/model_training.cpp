@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/physics/model_training.hpp"
+
+#include "tools/common/error.hpp"
+#include "tools/host/host_model.hpp"
+#include "tools/model/model_file.hpp"
+#include "tools/physics/chain_model.hpp"
+#include "tools/physics/physics_regressor.hpp"
+#include "tools/physics/torque_constants.hpp"
+#include "tools/training/input_map.hpp"
+#include "tools/training/recorded_data.hpp"
+#include "tools/training/start_state.hpp"
+#include "tools/training/training_options.hpp"
+
+#include <algorithm>
+
+namespace dfdyn::tools {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+std::vector<double> to_vector(const VectorXd& vector) {
+    return {vector.data(), vector.data() + vector.size()};
+}
+
+bool have_derivatives(std::span<const Recording> recordings) {
+    return std::ranges::all_of(recordings, [](const Recording& recording) {
+        return recording.velocity.present() && recording.acceleration.present();
+    });
+}
+
+/// The chain, its effects and the outputs' gains.
+struct PhysicsColumnsOf {
+    ChainModel chain;
+    std::vector<EffectModel> effects;
+    std::vector<double> output_gain;
+};
+
+std::vector<double> output_gains(const PreparedTraining& prepared, OutputKind outputs,
+                                 const RobotPhysics& physics) {
+    const auto count = static_cast<std::size_t>(prepared.data.outputs.cols());
+    if (outputs != OutputKind::motor_current) {
+        return std::vector<double>(count, 1);
+    }
+    if (physics.torque_constants.empty()) {
+        return estimate_torque_gains(physics.robot, prepared.data, physics.sign_velocity);
+    }
+    if (physics.torque_constants.size() != count) {
+        throw InputError("torque constants: expected " + std::to_string(count) + ", one per joint, found " +
+                         std::to_string(physics.torque_constants.size()));
+    }
+    std::vector<double> gains;
+    for (const double constant : physics.torque_constants) {
+        if (!(constant > 0)) {
+            throw InputError("torque constants: expected positive numbers, found " +
+                             std::to_string(constant));
+        }
+        gains.push_back(1 / constant);
+    }
+    return gains;
+}
+
+void check_joints(const Robot& robot, const TrainingData& data) {
+    const auto joints = static_cast<Index>(robot.joints.size());
+    if (joints != data.positions.cols()) {
+        throw InputError("robot " + robot.name + ": expected a chain of " +
+                         std::to_string(data.positions.cols()) + " joints as the recording has, found " +
+                         std::to_string(joints));
+    }
+}
+
+/// The motion that the physics sees, as a model stores it.
+InputModel motion_model(const TrainedModel& model, const MatrixXd& rows) {
+    InputModel motion;
+    if (rows.size() == 0) {
+        motion = model.input; // STD: its derivatives
+    } else {
+        motion.kind = InputKind::DFR;
+        motion.lags = static_cast<int>(rows.cols()) - 1;
+        const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> by_rows = rows;
+        motion.rows.assign(by_rows.data(), by_rows.data() + by_rows.size());
+    }
+    motion.rows_per_joint = 3;
+    motion.scale.assign(static_cast<std::size_t>(3 * model.joints), 1);
+    return motion;
+}
+
+StartModel start_model(const PhysicsStart& start) {
+    return {to_vector(start.parameters), start.unit_upper, start.diagonal};
+}
+
+std::vector<double> flattened(const std::vector<MatrixXd>& coupling) {
+    std::vector<double> result;
+    for (const MatrixXd& of_output : coupling) {
+        result.insert(result.end(), of_output.data(), of_output.data() + of_output.size());
+    }
+    return result;
+}
+
+PhysicsModel physics_model(const TrainedModel& model, const TrainedPhysics& trained,
+                           const PhysicsColumnsOf& columns, const Robot& robot) {
+    PhysicsModel physics;
+    physics.chain = columns.chain;
+    physics.effects = columns.effects;
+    physics.output_gain = columns.output_gain;
+    physics.motion = motion_model(model, trained.motion_rows);
+    const std::vector<std::string> names = column_names(robot, columns.chain, columns.effects);
+    for (const Index column : trained.columns) {
+        physics.selected.push_back(static_cast<int>(column));
+        physics.parameter_names.push_back(names[static_cast<std::size_t>(column)]);
+    }
+    physics.column_scale = to_vector(trained.column_scale);
+    physics.prior_variance = trained.prior_variance;
+    physics.start = start_model(trained.start);
+    physics.coupling = flattened(trained.start.coupling);
+    return physics;
+}
+
+/// Input STD takes what the recording has, sample by sample, without a window.
+void set_derivatives(TrainedModel& model, const PreparedTraining& prepared) {
+    if (model.input.kind != InputKind::STD || prepared.derivatives == Derivatives::estimated) {
+        return;
+    }
+    model.input.derivatives = Derivatives::measured;
+    model.input.lags = 0;
+    model.input.position_noise_bound = 0;
+}
+
+/// (q, qd, qdd) of the samples `rows` as the model's physics sees them.
+MotionSamples motion_of(const PhysicsModel& physics, const TrainingData& data, const RowList& rows) {
+    const MatrixXd xi = stored_inputs(physics.motion, data, rows);
+    const auto part = [&xi](Index first) {
+        return MatrixXd(xi(Eigen::all, Eigen::seq(first, Eigen::last, 3)));
+    };
+    return {part(0), part(1), part(2)};
+}
+
+/// The selected columns in their units, N x (m p), as PhysicsColumns orders them.
+MatrixXd columns_of(const PhysicsModel& physics, const TrainingData& data, const RowList& rows) {
+    const auto regressor = physics_regressor(physics.chain, physics.effects, physics.output_gain);
+    const ColumnChoice choice{{physics.selected.begin(), physics.selected.end()},
+                              Eigen::Map<const VectorXd>(physics.column_scale.data(),
+                                                         static_cast<Index>(physics.column_scale.size()))};
+    return chosen_columns(*regressor, motion_of(physics, data, rows), choice);
+}
+
+JointStart joint_start_of(const TrainedModel& model, const PhysicsProblem& problem) {
+    const PhysicsModel& physics = *model.physics;
+    if (model.structure == "P") {
+        return parametric_start(problem, physics.prior_variance);
+    }
+    if (model.structure == "SPK") {
+        return joint_start(problem, physics.prior_variance);
+    }
+    return residual_start(problem,
+                          Eigen::Map<const VectorXd>(physics.start.weights.data(),
+                                                     static_cast<Index>(physics.start.weights.size())));
+}
+
+int lags_of(const TrainedModel& model) {
+    return std::max(has_features(model.structure) ? model.input.lags : 0,
+                    model.physics ? model.physics->motion.lags : 0);
+}
+
+} // namespace
+
+PreparedTraining prepare_training(std::span<const Recording> recordings, const ModelTraining& training) {
+    PreparedTraining prepared;
+    prepared.data = gather_training_data(recordings);
+    const bool measured = have_derivatives(recordings);
+    if (training.derivatives == DerivativeSource::measured && !measured) {
+        throw InputError(recordings.front().source +
+                         ": expected columns qd1… and qdd1… for measured derivatives, found none");
+    }
+    if (measured && training.derivatives != DerivativeSource::estimated) {
+        prepared.derivatives = Derivatives::measured;
+        copy_derivatives(prepared.data, recordings);
+        return prepared;
+    }
+    prepared.position_noise_bound = estimate_position_noise_bound(prepared.data);
+    estimate_derivatives(prepared.data, recordings, training.options.lags, prepared.position_noise_bound);
+    return prepared;
+}
+
+TrainedModel train_model(const PreparedTraining& prepared, OutputKind outputs, const ModelTraining& training,
+                         const ProgressCallback& progress) {
+    TrainingOptions options = training.options;
+    options.position_noise_bound = prepared.position_noise_bound;
+    if (options.model == ModelClass::NP) {
+        TrainedModel model = train(prepared.data, options, progress).model;
+        set_derivatives(model, prepared);
+        return model;
+    }
+    if (!training.physics) {
+        throw InputError("model " + to_string(options.model) +
+                         ": expected a robot (--robot, --tip), found none");
+    }
+    const RobotPhysics& robot = *training.physics;
+    check_joints(robot.robot, prepared.data);
+    PhysicsColumnsOf columns{chain_model(robot.robot, outputs), {}, output_gains(prepared, outputs, robot)};
+    columns.effects = effect_models(robot.effects, columns.chain, robot.sign_velocity);
+    const auto regressor = physics_regressor(columns.chain, columns.effects, columns.output_gain);
+    options.physics.regressor = regressor.get();
+    TrainingResult result = train(prepared.data, options, progress);
+    TrainedModel model = std::move(result.model);
+    set_derivatives(model, prepared);
+    model.physics = physics_model(model, *result.physics, columns, robot.robot);
+    if (!has_features(model.structure)) {
+        model.input = {};
+    }
+    return model;
+}
+
+void restart_model(TrainedModel& model, const PreparedTraining& prepared) {
+    const RowList rows = usable_rows(prepared.data.gap_before, lags_of(model));
+    if (!model.physics) {
+        model.start = batch_start(model, prepared.data, rows);
+        return;
+    }
+    PhysicsModel& physics = *model.physics;
+    const MatrixXd columns = columns_of(physics, prepared.data, rows);
+    const JointStart start = joint_start_of(model, {model, prepared.data, rows, columns});
+    model.start = start.kernel;
+    physics.start = start_model(start.physics);
+    physics.coupling = flattened(start.physics.coupling);
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# reproduce.sh [--quick] [EVALUATE OPTION...]: builds dfdyn, simulates the paper's two recordings of the iCub arm, runs the paper's experiment on them and on
+# recordings of a real UR5, and writes docs/reproduction.md with its pictures. A run that was ended goes on where it was.
+# --quick: one draw, few features and rows, into build/reproduction only; shows that everything runs, not how good it is.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+out=build/reproduction
+dfdyn=build/release/tools/dfdyn
+robot=tests/data/robots/icub_right_arm/icub_right_arm.urdf
+page=docs/reproduction.md
+options=(--jobs "$(nproc)")
+kind=full
+if [[ ${1:-} == --quick ]]; then
+    shift
+    kind=quick
+    page=$out/quick/reproduction.md
+    options+=(--quick)
+fi
+options+=("$@")
+
+step() {
+    echo
+    echo "[$1/4, ${SECONDS} s] $2"
+}
+
+build_program() {
+    cmake --preset release -DDFDYN_BUILD_TESTS=OFF >"$out/configure.log" || {
+        cat "$out/configure.log"
+        return 1
+    }
+    cmake --build --preset release --parallel "$(nproc)" --target dfdyn
+}
+
+# simulate NAME: unless it is there from an earlier run of the same scenario.
+simulate() {
+    local scenario=tests/data/scenarios/$1.json csv=$out/data/$1.csv
+    if [[ -s $csv && $csv -nt $scenario && $csv -nt $robot ]]; then
+        echo "$csv is there"
+    else
+        "$dfdyn" simulate --robot "$robot" --scenario "$scenario" -o "$csv"
+    fi
+}
+
+# evaluate NAME: some cases may fail (status 1); the page then says which.
+evaluate() {
+    local status=0
+    "$dfdyn" evaluate --plan "tools/reproduction/$1.json" -o "$out/$kind/$1" "${options[@]}" || status=$?
+    [[ $status -le 1 ]] || exit "$status"
+    failed=$((failed + status))
+}
+
+introduction() {
+    echo "# The paper's findings, tried again"
+    echo
+    echo "Written by \`tools/reproduce.sh\`; every verdict follows from the numbers beside it by the rule stated below. The paper's own recordings"
+    echo "are not public: the iCub data are simulated (\`dfdyn simulate\`), the UR5 data are measured."
+    echo
+}
+
+mkdir -p "$out/data" "$(dirname "$page")"
+failed=0
+step 1 "build"
+build_program
+step 2 "simulate the iCub arm on circles in the XY and in the XZ plane"
+simulate icub_xy
+simulate icub_xz
+step 3 "evaluate on the simulated iCub arm"
+evaluate icub
+step 4 "evaluate on the measured UR5"
+evaluate ur5
+
+{
+    introduction
+    cat "$out/$kind/icub/findings.md"
+    echo
+    cat "$out/$kind/ur5/findings.md"
+} >"$page.tmp"
+mv "$page.tmp" "$page"
+mkdir -p "$(dirname "$page")/pictures"
+cp "$out/$kind"/{icub,ur5}/pictures/*.svg "$(dirname "$page")/pictures/"
+
+echo
+echo "Done in $SECONDS s: $page"
+echo "  $out/$kind/icub/report.html, $out/$kind/ur5/report.html  the same as pages"
+[[ $failed -eq 0 ]] || {
+    echo "Some cases could not be done: see above." >&2
+    exit 1
+}
