@@ -16,6 +16,7 @@ int run(int argc, char** argv) {
     dfdyn::tools::Command command;
     dfdyn::tools::add_train_command(app, command);
     dfdyn::tools::add_replay_command(app, command);
+    dfdyn::tools::add_simulate_command(app, command);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {

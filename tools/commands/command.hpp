@@ -13,5 +13,6 @@ using Command = std::function<int()>;
 /// Each adds a subcommand to `app` and stores its work in `chosen` when the user calls it.
 void add_train_command(CLI::App& app, Command& chosen);
 void add_replay_command(CLI::App& app, Command& chosen);
+void add_simulate_command(CLI::App& app, Command& chosen);
 
 } // namespace dfdyn::tools

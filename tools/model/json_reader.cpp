@@ -4,6 +4,7 @@
 #include "tools/common/number.hpp"
 #include "tools/common/text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -58,12 +59,41 @@ const nlohmann::json& JsonReader::field(const std::string& name) const {
     return *found;
 }
 
+void JsonReader::allow_only(std::span<const std::string_view> names) const {
+    for (const auto& [name, value] : json_->items()) {
+        if (std::ranges::find(names, name) == names.end()) {
+            std::string known;
+            for (const std::string_view one : names) {
+                known.append(known.empty() ? "" : ", ").append(one);
+            }
+            throw InputError(source_ + ": " + path_ + "field " + in_quotes(name) + ": expected one of " +
+                             known + ", found another");
+        }
+    }
+}
+
 JsonReader JsonReader::object(const std::string& name) const {
     const nlohmann::json& value = field(name);
     if (!value.is_object()) {
         throw error(name, "an object", shown_value(value));
     }
     return {value, source_, path_ + name + "."};
+}
+
+std::vector<JsonReader> JsonReader::objects(const std::string& name) const {
+    const nlohmann::json& values = array(name);
+    if (values.empty()) {
+        throw error(name, "at least one object", "none");
+    }
+    std::vector<JsonReader> result;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const std::string element = name + "[" + std::to_string(i) + "]";
+        if (!values[i].is_object()) {
+            throw error(element, "an object", shown_value(values[i]));
+        }
+        result.push_back(JsonReader(values[i], source_, path_ + element + "."));
+    }
+    return result;
 }
 
 std::string JsonReader::text(const std::string& name) const {
@@ -105,8 +135,8 @@ bool JsonReader::flag(const std::string& name) const {
     return value.get<bool>();
 }
 
-int JsonReader::whole_number(const std::string& name, int low, int high) const {
-    const nlohmann::json& value = field(name);
+int JsonReader::checked_whole(const nlohmann::json& value, const std::string& name, int low,
+                              int high) const {
     const bool small = value.is_number_integer() &&
                        (!value.is_number_unsigned() || value.get<std::uint64_t>() < (1ULL << 62U));
     if (!small || value.get<std::int64_t>() < low || value.get<std::int64_t>() > high) {
@@ -114,6 +144,18 @@ int JsonReader::whole_number(const std::string& name, int low, int high) const {
                     shown_value(value));
     }
     return value.get<int>();
+}
+
+int JsonReader::whole_number(const std::string& name, int low, int high) const {
+    return checked_whole(field(name), name, low, high);
+}
+
+std::vector<int> JsonReader::whole_numbers(const std::string& name, int low, int high) const {
+    std::vector<int> result;
+    for (const nlohmann::json& value : array(name)) {
+        result.push_back(checked_whole(value, name, low, high));
+    }
+    return result;
 }
 
 std::uint64_t JsonReader::seed(const std::string& name) const {

@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -21,11 +23,22 @@ class JsonReader {
   public:
     JsonReader(const nlohmann::json& json, std::string source);
 
+    bool has(const std::string& name) const { return json_->contains(name); }
+
+    /// Refuses every field but these.
+    void allow_only(std::span<const std::string_view> names) const;
+
     JsonReader object(const std::string& name) const;
+
+    /// The objects of an array, at least one.
+    std::vector<JsonReader> objects(const std::string& name) const;
+
     std::string text(const std::string& name) const;
     std::vector<std::string> texts(const std::string& name, int at_most) const;
+    bool is_array(const std::string& name) const { return field(name).is_array(); }
     bool flag(const std::string& name) const;
     int whole_number(const std::string& name, int low, int high) const;
+    std::vector<int> whole_numbers(const std::string& name, int low, int high) const;
     std::uint64_t seed(const std::string& name) const;
     double number(const std::string& name) const;
     double positive_number(const std::string& name) const;
@@ -41,6 +54,7 @@ class JsonReader {
 
     const nlohmann::json& field(const std::string& name) const;
     const nlohmann::json& array(const std::string& name) const;
+    int checked_whole(const nlohmann::json& value, const std::string& name, int low, int high) const;
     double checked(const nlohmann::json& value, const std::string& name) const;
 
     const nlohmann::json* json_;
