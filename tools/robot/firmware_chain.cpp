@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/robot/firmware_chain.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace dfdyn::tools {
@@ -25,7 +26,7 @@ int body_count(const Robot& robot, OutputKind outputs) {
     if (!robot.sensor) {
         throw std::logic_error("body_count: a wrench needs a sensor");
     }
-    return static_cast<int>(robot.joints.size() - robot.sensor->link + 1);
+    return static_cast<int>(std::min(robot.joints.size(), robot.joints.size() + 1 - robot.sensor->link));
 }
 
 Eigen::VectorXd nominal_parameters(const Robot& robot, OutputKind outputs) {
@@ -33,7 +34,7 @@ Eigen::VectorXd nominal_parameters(const Robot& robot, OutputKind outputs) {
     const std::size_t first = first_body(robot, outputs);
     Eigen::VectorXd parameters(inertial_parameters * bodies);
     for (int body = 0; body < bodies; ++body) {
-        const bool cut = body == 0 && outputs == OutputKind::wrench;
+        const bool cut = body == 0 && outputs == OutputKind::wrench && robot.sensor->link > 0;
         parameters.segment<inertial_parameters>(inertial_parameters * body) =
             cut ? robot.sensor->inertia_beyond
                 : robot.joints[first + static_cast<std::size_t>(body) - 1].inertia;
@@ -45,7 +46,7 @@ std::vector<std::string> parameter_names(const Robot& robot, OutputKind outputs)
     std::vector<std::string> result;
     for (std::size_t link = first_body(robot, outputs); link <= robot.joints.size(); ++link) {
         for (const char* name : names) {
-            result.push_back((link == 0 ? "base" : "link" + std::to_string(link)) + " " + name);
+            result.push_back("link" + std::to_string(link) + " " + name);
         }
     }
     return result;

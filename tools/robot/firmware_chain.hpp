@@ -14,14 +14,15 @@
 namespace dfdyn::tools {
 
 /// How many bodies' inertial parameters the outputs depend on. Wrench: the links beyond the sensor, the first
-/// of them without its part on the base's side; throws std::logic_error when the robot has no sensor.
+/// of them without its part on the base's side; what a sensor on the base carries of the base itself never
+/// moves and does not count. Throws std::logic_error for a wrench when the robot has no sensor.
 int body_count(const Robot& robot, OutputKind outputs);
 
 /// The robot's own inertial parameters, body by body, that belong to the columns of the outputs' regressor:
 /// 10 body_count numbers.
 Eigen::VectorXd nominal_parameters(const Robot& robot, OutputKind outputs);
 
-/// Names of those parameters: `link2 mcx`; the base, where a sensor sits on it, is `base`.
+/// Names of those parameters: `link2 mcx`.
 std::vector<std::string> parameter_names(const Robot& robot, OutputKind outputs);
 
 /// Units of those parameters.
@@ -46,6 +47,16 @@ ChainJoint<Scalar> firmware_joint(const RobotJoint& joint) {
         result.axis[i] = static_cast<Scalar>(joint.axis[i]);
     }
     return result;
+}
+
+/// The run-time sizes of a dynamic chain for the robot; a fixed chain's are empty.
+template <class ChainType>
+typename ChainType::Sizes firmware_sizes(const Robot& robot) {
+    constexpr bool torques = std::is_same_v<typename ChainType::Output, JointTorques>;
+    const int joints = static_cast<int>(robot.joints.size());
+    return {extent<ChainType::joints>(joints), extent<ChainType::outputs>(torques ? joints : 6),
+            extent<ChainType::bodies>(
+                body_count(robot, torques ? OutputKind::joint_torque : OutputKind::wrench))};
 }
 
 /// What the firmware compiles in of the sensor.

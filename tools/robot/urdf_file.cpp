@@ -75,14 +75,30 @@ urdf::ModelInterfaceSharedPtr parse_model(const std::string& content, const std:
     return model;
 }
 
-/// urdfdom lets a link be the child of several joints.
-void check_one_parent(const urdf::ModelInterface& model, const std::string& file) {
+/// urdfdom lets a link be the child of several joints, and links hang together in a loop.
+void check_tree(const urdf::ModelInterface& model, const std::string& file) {
     std::set<std::string> children;
     for (const auto& [name, joint] : model.joints_) {
         if (!children.insert(joint->child_link_name).second) {
             throw InputError(file + ": expected a tree, found that link " +
                              in_quotes(joint->child_link_name) + " is the child of joint " + in_quotes(name) +
                              " and of another");
+        }
+    }
+    std::set<std::string> reached;
+    std::vector<const urdf::Link*> open{model.getRoot().get()};
+    while (!open.empty()) {
+        const urdf::Link* const at = open.back();
+        open.pop_back();
+        reached.insert(at->name);
+        for (const urdf::LinkSharedPtr& child : at->child_links) {
+            open.push_back(child.get());
+        }
+    }
+    for (const auto& [name, link] : model.links_) {
+        if (!reached.contains(name)) {
+            throw InputError(file + ": expected a tree, found that link " + in_quotes(name) +
+                             " is in a loop, or hangs on one");
         }
     }
 }
@@ -143,7 +159,7 @@ UrdfFile read_urdf_file(const std::filesystem::path& path) {
     tinyxml2::XMLDocument document;
     parse_xml(content, file, document);
     UrdfFile result{parse_model(content, file), {}};
-    check_one_parent(*result.model, file);
+    check_tree(*result.model, file);
     result.sensors = declared_sensors(*document.FirstChildElement("robot"), file);
     return result;
 }
