@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/commands/command.hpp"
 #include "tools/commands/options.hpp"
+#include "tools/commands/robot_options.hpp"
 #include "tools/common/atomic_file.hpp"
 #include "tools/common/progress.hpp"
-#include "tools/robot/read_robot.hpp"
 #include "tools/simulation/simulation_csv.hpp"
 
 #include <memory>
@@ -22,11 +22,14 @@ struct SimulateOptions {
 
 Robot read_chain(const SimulateOptions& options) {
     const ScenarioChain chain = read_scenario_chain(options.scenario);
-    ReadRobotOptions reading;
-    reading.tip = chain.tip;
-    reading.base = chain.base;
-    reading.ft_joint = chain.ft_joint;
-    return read_robot(options.robot, reading);
+    RobotOptions robot;
+    robot.urdf = options.robot;
+    robot.tip = chain.tip;
+    robot.base = chain.base;
+    robot.ft_joint = chain.ft_joint;
+    robot.wrench_direction = chain.wrench_direction;
+    robot.gravity = chain.gravity;
+    return robot.read(OutputKind::joint_torque); // whether it needs a sensor, the scenario tells
 }
 
 /// A recording, and the truth where asked for, that appear whole or not at all.

@@ -3,7 +3,6 @@
 
 #include "tools/common/error.hpp"
 #include "tools/common/number.hpp"
-#include "tools/simulation/joint_limits.hpp"
 #include "tools/simulation/random_streams.hpp"
 
 #include <cmath>
@@ -21,7 +20,7 @@ Circle::Circle(const CircleTask& model, const Robot& robot, double period_s, std
                SlowVariation(model.posture_variation, model.variation_time_s, period_s)) {
     position_ = kinematics_.reach(model.rest_posture, point(0), model.rest_posture);
     velocity_ = acceleration_ = JointVector::Zero(position_.size());
-    check_reach(robot);
+    check_reach();
 }
 
 Eigen::Vector3d Circle::point(double angle) const {
@@ -35,7 +34,7 @@ Eigen::Vector3d Circle::tangent(double angle) const {
     return point(angle + std::numbers::pi / 2) - model_.centre;
 }
 
-void Circle::check_reach(const Robot& robot) {
+void Circle::check_reach() {
     constexpr int points = 72;
     constexpr double tolerance = 1e-4; // m
     JointVector posture = position_;
@@ -43,13 +42,12 @@ void Circle::check_reach(const Robot& robot) {
         const double angle = 2 * std::numbers::pi * i / points;
         posture = kinematics_.reach(posture, point(angle), model_.rest_posture);
         const double miss = (kinematics_.tip(posture) - point(angle)).norm();
-        const std::string where =
-            "task.circle: at " + number_text(std::round(angle * 180 / std::numbers::pi)) + " degrees: ";
         if (!(miss <= tolerance)) {
-            throw InputError(where + "expected a point that the tip reaches, found one " +
-                             number_text(std::round(miss * 1e4) / 10) + " mm away from where it can go");
+            throw InputError("task.circle: at " + number_text(std::round(angle * 180 / std::numbers::pi)) +
+                             " degrees: expected a point that the tip reaches, found one " +
+                             number_text(std::round(miss * 1e4) / 10) + " mm away from where it can go (" +
+                             kinematics_.joints_at_limits(posture) + ")");
         }
-        check_limits(robot, posture, where);
     }
 }
 
@@ -67,6 +65,7 @@ void Circle::wander() {
 
 JointVector Circle::joint_velocity() {
     constexpr double feedback = 20; // 1/s
+    constexpr double approach = 10; // 1/s, to a joint's limit
     Eigen::Vector3d target = point(angle_);
     Eigen::Vector3d tip_velocity = angle_rate_ * tangent(angle_);
     for (Eigen::Index i = 0; i < 3; ++i) {
@@ -78,7 +77,7 @@ JointVector Circle::joint_velocity() {
         pull[i] += posture_[static_cast<std::size_t>(i)].value();
     }
     const Eigen::Vector3d miss = target - kinematics_.tip(position_);
-    return kinematics_.move(position_, tip_velocity + feedback * miss, model_.rest_pull * pull);
+    return kinematics_.move(position_, tip_velocity + feedback * miss, model_.rest_pull * pull, approach);
 }
 
 Reference Circle::next() {

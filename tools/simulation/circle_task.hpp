@@ -20,7 +20,7 @@ class Circle final : public Task {
   private:
     Eigen::Vector3d point(double angle) const;
     Eigen::Vector3d tangent(double angle) const;
-    void check_reach(const Robot& robot);
+    void check_reach();
     void wander();
     JointVector joint_velocity();
 

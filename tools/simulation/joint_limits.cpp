@@ -5,27 +5,29 @@
 
 #include <cmath>
 #include <cstdio>
-#include <string_view>
 
 namespace dfdyn::tools {
 
 namespace {
 
-std::string rounded(double value) {
+std::string length_text(const RobotJoint& joint, double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", value);
-    return text;
+    return text + std::string(joint.prismatic ? " m" : " rad");
 }
 
-[[noreturn]] void refuse(const RobotJoint& joint, double position, double limit, std::string_view name,
+[[noreturn]] void refuse(const RobotJoint& joint, double position, double limit, const std::string& name,
                          const std::string& where) {
-    const std::string unit = joint.prismatic ? " m" : " rad";
     throw InputError(where + "joint " + joint.name + ": expected a position within its limits, found " +
-                     rounded(position) + unit + ", " + rounded(std::abs(position - limit)) + unit +
-                     " beyond its " + std::string(name) + " limit " + rounded(limit) + unit);
+                     length_text(joint, position) + ", " + length_text(joint, std::abs(position - limit)) +
+                     " beyond its " + limit_text(joint, name, limit));
 }
 
 } // namespace
+
+std::string limit_text(const RobotJoint& joint, const std::string& name, double limit) {
+    return name + " limit " + length_text(joint, limit);
+}
 
 void check_limits(const Robot& robot, const JointVector& position, const std::string& where) {
     for (Eigen::Index i = 0; i < position.size(); ++i) {

@@ -12,4 +12,7 @@ namespace dfdyn::tools {
 /// which, where the limit is and by how much it is exceeded.
 void check_limits(const Robot& robot, const JointVector& position, const std::string& where);
 
+/// `upper limit 1.85 rad`.
+std::string limit_text(const RobotJoint& joint, const std::string& name, double limit);
+
 } // namespace dfdyn::tools

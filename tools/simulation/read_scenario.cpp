@@ -218,8 +218,21 @@ ScenarioChain read_scenario_chain(const std::filesystem::path& path) {
         throw reader.error("schema", std::string(schema), in_quotes(found));
     }
     const ScenarioReader chain(reader.object("chain"), 0);
-    chain.allow_only({"tip", "base", "ft_joint"});
-    return {reader.object("chain").text("tip"), chain.text_or_empty("base"), chain.text_or_empty("ft_joint")};
+    chain.allow_only({"tip", "base", "ft_joint", "wrench_direction", "gravity_m_per_s2"});
+    ScenarioChain result;
+    result.tip = chain.json().text("tip");
+    result.base = chain.text_or_empty("base");
+    result.ft_joint = chain.text_or_empty("ft_joint");
+    result.wrench_direction = chain.text_or_empty("wrench_direction");
+    if (!result.wrench_direction.empty() && result.wrench_direction != "child_to_parent" &&
+        result.wrench_direction != "parent_to_child") {
+        throw chain.json().error("wrench_direction", "child_to_parent or parent_to_child",
+                                 in_quotes(result.wrench_direction));
+    }
+    if (chain.json().has("gravity_m_per_s2")) {
+        result.gravity = chain.json().numbers("gravity_m_per_s2", 3);
+    }
+    return result;
 }
 
 Scenario read_scenario(const std::filesystem::path& path, const Robot& robot) {

@@ -48,9 +48,11 @@ struct Scenario {
 
 /// Which part of the robot's URDF a scenario is about.
 struct ScenarioChain {
-    std::string tip;      ///< link
-    std::string base;     ///< link; empty: the root
-    std::string ft_joint; ///< empty: found by itself
+    std::string tip;              ///< link
+    std::string base;             ///< link; empty: the root
+    std::string ft_joint;         ///< empty: found by itself
+    std::string wrench_direction; ///< child_to_parent, parent_to_child; empty: the robot's own
+    std::vector<double> gravity;  ///< m/s², in the frame of the robot's root; empty: 9.81 along -z
 };
 
 /// Reads the chain only: the robot must be known before the rest can be.
