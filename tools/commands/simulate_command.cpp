@@ -22,14 +22,17 @@ struct SimulateOptions {
 
 Robot read_chain(const SimulateOptions& options) {
     const ScenarioChain chain = read_scenario_chain(options.scenario);
-    RobotOptions robot;
-    robot.urdf = options.robot;
-    robot.tip = chain.tip;
-    robot.base = chain.base;
-    robot.ft_joint = chain.ft_joint;
-    robot.wrench_direction = chain.wrench_direction;
-    robot.gravity = chain.gravity;
-    return robot.read(OutputKind::joint_torque); // whether it needs a sensor, the scenario tells
+    RobotOptions reading;
+    reading.urdf = options.robot;
+    reading.tip = chain.tip;
+    reading.base = chain.base;
+    reading.ft_joint = chain.ft_joint;
+    reading.wrench_direction = chain.wrench_direction;
+    reading.gravity = chain.gravity;
+    // whether a sensor is needed, the scenario tells
+    Robot robot = reading.read(OutputKind::joint_torque);
+    robot.tip_placement.translate(chain.tip_point);
+    return robot;
 }
 
 /// A recording, and the truth where asked for, that appear whole or not at all.

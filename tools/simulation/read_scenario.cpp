@@ -218,9 +218,13 @@ ScenarioChain read_scenario_chain(const std::filesystem::path& path) {
         throw reader.error("schema", std::string(schema), in_quotes(found));
     }
     const ScenarioReader chain(reader.object("chain"), 0);
-    chain.allow_only({"tip", "base", "ft_joint", "wrench_direction", "gravity_m_per_s2"});
+    chain.allow_only({"tip", "tip_point_m", "base", "ft_joint", "wrench_direction", "gravity_m_per_s2"});
     ScenarioChain result;
     result.tip = chain.json().text("tip");
+    if (chain.json().has("tip_point_m")) {
+        const std::vector<double> point = chain.json().numbers("tip_point_m", 3);
+        result.tip_point = Eigen::Map<const Eigen::Vector3d>(point.data());
+    }
     result.base = chain.text_or_empty("base");
     result.ft_joint = chain.text_or_empty("ft_joint");
     result.wrench_direction = chain.text_or_empty("wrench_direction");
