@@ -48,9 +48,10 @@ struct Scenario {
 
 /// Which part of the robot's URDF a scenario is about.
 struct ScenarioChain {
-    std::string tip;              ///< link
-    std::string base;             ///< link; empty: the root
-    std::string ft_joint;         ///< empty: found by itself
+    std::string tip;                                     ///< link
+    Eigen::Vector3d tip_point = Eigen::Vector3d::Zero(); ///< m, in that link's frame: what tasks move
+    std::string base;                                    ///< link; empty: the root
+    std::string ft_joint;                                ///< empty: found by itself
     std::string wrench_direction; ///< child_to_parent, parent_to_child; empty: the robot's own
     std::vector<double> gravity;  ///< m/s², in the frame of the robot's root; empty: 9.81 along -z
 };
