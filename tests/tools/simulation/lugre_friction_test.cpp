@@ -26,8 +26,8 @@ LuGreParameters parameters() {
 TEST_CASE("LuGre friction settles on the Stribeck curve at every velocity, both ways") {
     for (const double velocity : {-2.0, -0.1, -0.03, 0.001, 0.02, 0.05, 0.3, 5.0}) {
         LuGreFriction friction(parameters());
-        for (int i = 0; i < 40000; ++i) {
-            friction.advance(velocity, 1.25e-4);
+        for (int i = 0; i < 1000; ++i) { // forty times as far as the bristles bend
+            friction.advance(velocity, 6e-5 / std::abs(velocity));
         }
         const double ratio = velocity / 0.05;
         const double level = 1 + 0.5 * std::exp(-ratio * ratio);

@@ -114,7 +114,6 @@ TEST_CASE(
         double turned = 0;
         double past = 0;
         constexpr int samples = 300; // 15 s: 12 turns
-        Wrench mean = Wrench::Zero();
         for (int i = 0; i < samples; ++i) {
             const SimulatedTruth truth = simulation.next().truth;
             const Eigen::Vector3d from_centre = truth.tip - circle.centre;

@@ -37,12 +37,12 @@ Robot icub() {
     return read_robot(DFDYN_TEST_DATA_DIR "/robots/icub_right_arm/icub_right_arm.urdf", options);
 }
 
-/// Centre and posture of a circle that the arm reaches: straight below the shoulder.
+/// A circle well within reach.
 CircleTask small_circle() {
     CircleTask circle;
-    circle.rest_posture = (JointVector(4) << -0.6, 0.6, 0.3, 1.0).finished();
+    circle.rest_posture = (JointVector(4) << -0.6, 0.6, 0.3, 1.3).finished();
     circle.centre = InverseKinematics(icub()).tip(circle.rest_posture);
-    circle.radius = 0.03;
+    circle.radius = 0.02;
     return circle;
 }
 
