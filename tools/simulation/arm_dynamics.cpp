@@ -7,6 +7,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -40,9 +41,9 @@ Eigen::Isometry3d moved(const RobotJoint& joint, double position) {
 
 } // namespace
 
-ArmDynamics::ArmDynamics(const Robot& robot, const JointVector& rotor_inertia)
-    : robot_(robot), rotor_inertia_(rotor_inertia) {
-    check(robot);
+ArmDynamics::ArmDynamics(Robot robot, const JointVector& rotor_inertia)
+    : robot_(std::move(robot)), rotor_inertia_(rotor_inertia) {
+    check(robot_);
 }
 
 void ArmDynamics::configure(const JointVector& position, Configuration& configuration) const {

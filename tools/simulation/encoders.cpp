@@ -9,8 +9,8 @@
 
 namespace dfdyn::tools {
 
-Encoders::Encoders(const EncoderModel& model, std::vector<bool> prismatic, std::uint64_t seed)
-    : model_(model), prismatic_(std::move(prismatic)), noise_(seed, stream::encoder_noise) {}
+Encoders::Encoders(EncoderModel model, std::vector<bool> prismatic, std::uint64_t seed)
+    : model_(std::move(model)), prismatic_(std::move(prismatic)), noise_(seed, stream::encoder_noise) {}
 
 double Encoders::count(std::size_t joint) const {
     if (model_.bits_per_turn == 0) {

@@ -21,7 +21,7 @@ struct EncoderModel {
 /// count.
 class Encoders {
   public:
-    Encoders(const EncoderModel& model, std::vector<bool> prismatic, std::uint64_t seed);
+    Encoders(EncoderModel model, std::vector<bool> prismatic, std::uint64_t seed);
 
     void observe(const JointVector& position);
     const JointVector& reading() const noexcept { return reading_; }

@@ -158,8 +158,8 @@ WrenchSensorModel read_force_torque(const ScenarioReader& reader, const Robot& r
     reader.allow_only(
         {"rate_hz", "bits", "range", "noise", "bandwidth_hz", "order", "bias", "drift_per_s", "delay_s"});
     if (!robot.sensor) {
-        throw InputError(reader.json().error("range", "a robot with a force/torque sensor",
-                                             "none on the chain " + robot.base + " to " + robot.tip));
+        throw reader.json().error("range", "a robot with a force/torque sensor",
+                                  "none on the chain " + robot.base + " to " + robot.tip);
     }
     WrenchSensorModel model;
     model.rate_hz = reader.within("rate_hz", 1, 1e5, model.rate_hz);

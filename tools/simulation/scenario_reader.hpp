@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -14,7 +15,7 @@ namespace dfdyn::tools {
 /// joints are those of the robot. Every method throws InputError as JsonReader does.
 class ScenarioReader {
   public:
-    ScenarioReader(const JsonReader& json, int joint_count) : json_(json), joint_count_(joint_count) {}
+    ScenarioReader(JsonReader json, int joint_count) : json_(std::move(json)), joint_count_(joint_count) {}
 
     const JsonReader& json() const noexcept { return json_; }
     int joint_count() const noexcept { return joint_count_; }
