@@ -96,4 +96,24 @@ Wrench dart_wrench(const tools::Robot& robot, const Eigen::VectorXd& xi) {
     return wrench;
 }
 
+Eigen::VectorXd dart_acceleration(const tools::Robot& robot, const Eigen::VectorXd& position,
+                                  const Eigen::VectorXd& velocity, const Eigen::VectorXd& torque) {
+    const dart::dynamics::SkeletonPtr skeleton = Skeleton::create();
+    build(*skeleton, robot);
+    skeleton->setGravity(robot.gravity);
+    const auto joints = static_cast<std::size_t>(position.size());
+    for (std::size_t i = 0; i < joints; ++i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        skeleton->setPosition(i, position[k]);
+        skeleton->setVelocity(i, velocity[k]);
+        skeleton->setForce(i, torque[k]);
+    }
+    skeleton->computeForwardDynamics();
+    Eigen::VectorXd acceleration(position.size());
+    for (std::size_t i = 0; i < joints; ++i) {
+        acceleration[static_cast<Eigen::Index>(i)] = skeleton->getAcceleration(i);
+    }
+    return acceleration;
+}
+
 } // namespace dfdyn::tests

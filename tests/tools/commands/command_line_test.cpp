@@ -40,7 +40,7 @@ TEST_CASE("help and version end with status 0, and every subcommand shows an exa
     const TemporaryDirectory directory;
     CHECK(run(directory, "--help").status == 0);
     CHECK_THAT(run(directory, "--version").out, Catch::Matchers::StartsWith("dfdyn "));
-    for (const std::string command : {"train", "replay", "evaluate"}) {
+    for (const std::string command : {"train", "replay", "identify", "simulate", "evaluate"}) {
         const Outcome outcome = run(directory, command + " --help");
         CHECK(outcome.status == 0);
         CHECK_THAT(outcome.out, Catch::Matchers::ContainsSubstring("Example:"));
@@ -66,6 +66,8 @@ TEST_CASE("bad usage and bad input end with status 2 and one line") {
         "train --log " + log_file + " --outputs i --features 0 -o " + in + "/x.json",
         "train --log " + log_file + " --outputs i --forgetting 1.5 -o " + in + "/x.json",
         "replay --model " + in + "/bad.json --log " + log_file,
+        "simulate --scenario none.json -o " + in + "/x.json",
+        "simulate --robot none.urdf --scenario " + in + "/bad.json -o " + in + "/x.json",
         "replay --model none.json --log " + log_file,
     };
     for (const std::string& arguments : cases) {
@@ -113,4 +115,33 @@ TEST_CASE("a replay of a recording with other outputs than the model's is refuse
     const Outcome outcome = run(directory, "replay --model " + in + "/m.json --log " + in + "/torques.csv");
     CHECK(outcome.status == 2);
     CHECK(line_count(outcome.error) == 1);
+}
+
+TEST_CASE("simulate writes a recording and the truth, or nothing at all") {
+    const TemporaryDirectory directory;
+    const std::string in = directory.path().string();
+    const std::string data = DFDYN_TEST_DATA_DIR;
+    std::string scenario = file_content(data + "/scenarios/icub_xy.json");
+    const std::string samples = "\"samples\": 10000";
+    scenario.replace(scenario.find(samples), samples.size(), "\"samples\": 25");
+    directory.write("short.json", scenario);
+    const std::string call = "simulate --robot " + data +
+                             "/robots/icub_right_arm/icub_right_arm.urdf --scenario " + in +
+                             "/short.json -o " + in + "/run.csv";
+    CHECK(run(directory, call + " --truth " + in + "/truth.csv").status == 0);
+    const std::string recording = file_content(directory.path() / "run.csv");
+    CHECK(line_count(recording) == 26);
+    CHECK(line_count(file_content(directory.path() / "truth.csv")) == 26);
+    CHECK_THAT(recording, Catch::Matchers::StartsWith("t,q1,q2,q3,q4,qd1,") &&
+                              Catch::Matchers::ContainsSubstring("qdd4,fx,fy,fz,mx,my,mz\n"));
+    CHECK(run(directory, call + " --seed 3").status == 0);
+    CHECK(file_content(directory.path() / "run.csv") != recording);
+
+    scenario.replace(scenario.find("\"radius_m\": 0.1"), 15, "\"radius_m\": 0.9");
+    directory.write("short.json", scenario);
+    std::filesystem::remove(directory.path() / "run.csv");
+    const Outcome outcome = run(directory, call);
+    CHECK(outcome.status == 2);
+    CHECK_THAT(outcome.error, Catch::Matchers::ContainsSubstring(" mm away from where it can go"));
+    CHECK_FALSE(std::filesystem::exists(directory.path() / "run.csv"));
 }

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/simulation/lugre_friction.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+
+namespace {
+
+using dfdyn::tools::LuGreFriction;
+using dfdyn::tools::LuGreParameters;
+
+LuGreParameters parameters() {
+    LuGreParameters result;
+    result.stiffness = 1000;
+    result.damping = 2;
+    result.viscous = 0.4;
+    result.coulomb = 1;
+    result.breakaway = 1.5;
+    result.stribeck_velocity = 0.05;
+    return result;
+}
+
+} // namespace
+
+TEST_CASE("LuGre friction settles on the Stribeck curve at every velocity, both ways") {
+    for (const double velocity : {-2.0, -0.1, -0.03, 0.001, 0.02, 0.05, 0.3, 5.0}) {
+        LuGreFriction friction(parameters());
+        for (int i = 0; i < 1000; ++i) { // forty times as far as the bristles bend
+            friction.advance(velocity, 6e-5 / std::abs(velocity));
+        }
+        const double ratio = velocity / 0.05;
+        const double level = 1 + 0.5 * std::exp(-ratio * ratio);
+        CAPTURE(velocity);
+        CHECK(friction.torque(velocity) ==
+              Approx(std::copysign(level, velocity) + 0.4 * velocity).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("before it breaks away LuGre friction is a spring of the bristles' stiffness") {
+    LuGreFriction friction(parameters());
+    const double velocity = 1e-4;
+    double moved = 0;
+    for (int i = 0; i < 100; ++i) {
+        friction.advance(velocity, 1e-3);
+        moved += velocity * 1e-3;
+    }
+    // the spring gives way by the ratio of its torque to the break-away torque, to first order
+    CHECK(moved < 1e-2 * 1.5 / 1000);
+    CHECK(friction.torque(0) == Approx(1000 * moved).epsilon(1e-2));
+    // and it swings back when the joint does
+    for (int i = 0; i < 100; ++i) {
+        friction.advance(-velocity, 1e-3);
+    }
+    CHECK(std::abs(friction.torque(0)) < 1e-2 * 1000 * moved);
+}
+
+TEST_CASE("the bristles' step is exact: one long one is as good as many short ones") {
+    LuGreFriction once(parameters());
+    LuGreFriction often(parameters());
+    once.advance(0.3, 0.01);
+    for (int i = 0; i < 1000; ++i) {
+        often.advance(0.3, 1e-5);
+    }
+    CHECK(once.torque(0.3) == Approx(often.torque(0.3)).epsilon(1e-10));
+}
+
+TEST_CASE("without bristles only viscous friction is left") {
+    LuGreParameters viscous;
+    viscous.viscous = 0.7;
+    LuGreFriction friction(viscous);
+    friction.advance(2, 1);
+    CHECK(friction.torque(2) == 1.4);
+    CHECK(friction.deflection() == 0);
+}

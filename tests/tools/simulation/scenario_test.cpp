@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_directory.hpp"
+#include "tests/tools/simulation/small_arms.hpp"
+#include "tools/common/error.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace {
+
+using namespace dfdyn::tools;
+using namespace dfdyn::tests;
+using nlohmann::json;
+
+json minimal() {
+    return json::parse(R"({
+        "schema": "dfdyn.scenario/1",
+        "chain": {"tip": "rod"},
+        "recording": {"rate_hz": 50, "samples": 20, "columns": ["q", "tau"]},
+        "task": {"kind": "multisine", "centre_rad": 0.1, "amplitude_rad": 0.2, "lowest_hz": 0.1,
+                 "highest_hz": 0.5, "tones": 3},
+        "controller": {"kind": "gravity_compensation", "position_gain": 100, "velocity_gain": [9]},
+        "actuators": {"friction": {"viscous_nms_per_rad": 0.3}},
+        "encoders": {"bits_per_turn": 14},
+        "derivatives": {"velocity_window": 8, "acceleration_window": 12}
+    })");
+}
+
+Scenario read(const json& scenario, const Robot& robot = pendulum(1, 1)) {
+    const TemporaryDirectory directory;
+    return read_scenario(directory.write("s.json", scenario.dump()), robot);
+}
+
+/// The error of the minimal scenario with `value` at `path`.
+std::string error_with(const std::string& path, const json& value) {
+    json scenario = minimal();
+    scenario[json::json_pointer(path)] = value;
+    try {
+        read(scenario);
+    } catch (const InputError& error) {
+        const std::string text = error.what();
+        return text.substr(text.find("s.json: ") + 8);
+    }
+    return "none";
+}
+
+} // namespace
+
+TEST_CASE("a scenario's fields arrive, with their defaults, one number for all joints or one each") {
+    const Scenario scenario = read(minimal());
+    CHECK(scenario.integration_rate_hz == 8000);
+    CHECK(scenario.recording.samples == 20);
+    CHECK(scenario.controller.kind == ControllerKind::gravity_compensation);
+    CHECK(scenario.controller.position_gain[0] == 100);
+    CHECK(scenario.controller.velocity_gain[0] == 9);
+    CHECK(scenario.actuators.friction[0].viscous == 0.3);
+    CHECK(scenario.actuators.friction[0].stiffness == 0);
+    CHECK_FALSE(scenario.actuators.torque_limit);
+    CHECK(scenario.encoders.bits_per_turn == 14);
+    CHECK_FALSE(scenario.force_torque);
+    CHECK(std::get<MultisineTask>(scenario.task).amplitude[0] == 0.2);
+}
+
+TEST_CASE("a bad scenario is refused with the path of the field, what was expected and what was found") {
+    using Catch::Matchers::ContainsSubstring;
+    using Catch::Matchers::StartsWith;
+    CHECK_THAT(error_with("/colour", 3), StartsWith("field \"colour\": expected one of schema, chain, "));
+    CHECK_THAT(error_with("/actuators/friction/colomb_nm", 3),
+               StartsWith("actuators.friction.field \"colomb_nm\""));
+    CHECK_THAT(error_with("/task/tones", 0), StartsWith("task.tones: expected a whole number from 1"));
+    CHECK_THAT(error_with("/task/kind", "dance"),
+               StartsWith("task.kind: expected multisine, point_to_point or circle, found \"dance\""));
+    CHECK_THAT(error_with("/task/highest_hz", 0.05),
+               StartsWith("task.highest_hz: expected a number from 0.1"));
+    CHECK_THAT(error_with("/controller/velocity_gain", {1, 2}),
+               StartsWith("controller.velocity_gain: expected 1 numbers"));
+    CHECK_THAT(error_with("/controller/kind", "none"),
+               StartsWith("controller.kind: expected computed_torque"));
+    CHECK_THAT(error_with("/controller/rate_hz", 3000),
+               StartsWith("controller.rate_hz: expected integration_rate_hz to be a multiple of it"));
+    CHECK_THAT(error_with("/encoders/rate_hz", 16000),
+               StartsWith("encoders.rate_hz: expected integration_rate_hz"));
+    CHECK_THAT(error_with("/recording/columns", {"q", "q"}),
+               StartsWith("recording.columns: expected some of"));
+    CHECK_THAT(error_with("/recording/columns", {"wrench"}),
+               StartsWith("recording.columns: expected force_torque"));
+    CHECK_THAT(error_with("/recording/columns", {"i"}),
+               StartsWith("recording.columns: expected actuators.torque_constant"));
+    CHECK_THAT(error_with("/recording/stamp_jitter_s", 0.01),
+               StartsWith("recording.stamp_jitter_s: expected a number"));
+    CHECK_THAT(error_with("/force_torque", json::object()),
+               ContainsSubstring(
+                   "expected a robot with a force/torque sensor, found none on the chain base to rod"));
+    CHECK_THAT(error_with("/actuators/friction/stiffness_nm_per_rad", 100),
+               StartsWith("actuators.friction.coulomb_nm: expected bristles to have"));
+    CHECK_THAT(error_with("/actuators/friction/coulomb_nm", 1),
+               StartsWith("actuators.friction.static_nm: expected at least coulomb_nm"));
+    CHECK_THAT(error_with("/actuators/torque_limit_nm", -1),
+               StartsWith("actuators.torque_limit_nm: expected positive"));
+    json missing = minimal();
+    missing.erase("controller");
+    CHECK_THROWS_WITH(read(missing), ContainsSubstring("controller: expected this field, found none"));
+}
+
+TEST_CASE("a file that is no scenario is refused") {
+    const TemporaryDirectory directory;
+    CHECK_THROWS_AS(read_scenario_chain(directory.path() / "none.json"), InputError);
+    CHECK_THROWS_AS(read_scenario_chain(directory.path()), InputError);
+    CHECK_THROWS_WITH(read_scenario_chain(directory.write("a.json", R"({"schema": "dfdyn.model/1"})")),
+                      Catch::Matchers::ContainsSubstring("schema: expected dfdyn.scenario/1"));
+    CHECK(read_scenario_chain(directory.write("b.json", minimal().dump())).tip == "rod");
+}

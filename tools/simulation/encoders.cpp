@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/simulation/encoders.hpp"
+
+#include "tools/simulation/random_streams.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace dfdyn::tools {
+
+Encoders::Encoders(EncoderModel model, std::vector<bool> prismatic, std::uint64_t seed)
+    : model_(std::move(model)), prismatic_(std::move(prismatic)), noise_(seed, stream::encoder_noise) {}
+
+double Encoders::count(std::size_t joint) const {
+    if (model_.bits_per_turn == 0) {
+        return 0;
+    }
+    return std::ldexp(prismatic_[joint] ? 1 : 2 * std::numbers::pi, -model_.bits_per_turn);
+}
+
+void Encoders::observe(const JointVector& position) {
+    reading_ = position;
+    for (Eigen::Index i = 0; i < position.size(); ++i) {
+        reading_[i] += model_.eccentricity[i] * std::sin(position[i] + model_.eccentricity_phase[i]) +
+                       model_.noise * noise_.next();
+        const double size = count(static_cast<std::size_t>(i));
+        if (size > 0) {
+            reading_[i] = size * std::round(reading_[i] / size);
+        }
+    }
+}
+
+} // namespace dfdyn::tools

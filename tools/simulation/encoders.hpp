@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/simulation/joint_vector.hpp"
+#include "tools/training/random_source.hpp"
+
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// What stands between the joint positions and their readings.
+struct EncoderModel {
+    double rate_hz = 1000;
+    int bits_per_turn = 0;          ///< 0: no quantiser; a prismatic joint has 2^bits counts per metre
+    double noise = 0;               ///< rad, standard deviation, before the quantiser
+    JointVector eccentricity;       ///< rad, amplitude of one cycle per turn
+    JointVector eccentricity_phase; ///< rad
+};
+
+/// Readings, held until the next: eccentricity (amplitude · sin(q + phase)), noise, rounding to the nearest
+/// count.
+class Encoders {
+  public:
+    Encoders(EncoderModel model, std::vector<bool> prismatic, std::uint64_t seed);
+
+    void observe(const JointVector& position);
+    const JointVector& reading() const noexcept { return reading_; }
+
+    /// The size of one count of joint `joint`, rad or m; 0 without quantiser.
+    double count(std::size_t joint) const;
+
+  private:
+    EncoderModel model_;
+    std::vector<bool> prismatic_;
+    NormalSource noise_;
+    JointVector reading_;
+};
+
+} // namespace dfdyn::tools

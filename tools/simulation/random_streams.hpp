@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+/// Who draws from which stream of a scenario's seed: independent of each other, so that another noise level
+/// of one sensor leaves the rest of a simulation as it is.
+namespace dfdyn::tools::stream {
+
+inline constexpr std::uint32_t wrench_noise = 1;
+inline constexpr std::uint32_t encoder_noise = 2;
+inline constexpr std::uint32_t torque_noise = 3;
+inline constexpr std::uint32_t clock_jitter = 4;
+inline constexpr std::uint32_t task = 5;
+inline constexpr std::uint32_t controller_model = 6;
+
+} // namespace dfdyn::tools::stream

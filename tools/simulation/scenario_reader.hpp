@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/model/json_reader.hpp"
+#include "tools/simulation/task.hpp"
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace dfdyn::tools {
+
+/// A section of a scenario: JsonReader's fields, and those with a default or with one value per joint. The
+/// joints are those of the robot. Every method throws InputError as JsonReader does.
+class ScenarioReader {
+  public:
+    ScenarioReader(JsonReader json, int joint_count) : json_(std::move(json)), joint_count_(joint_count) {}
+
+    const JsonReader& json() const noexcept { return json_; }
+    int joint_count() const noexcept { return joint_count_; }
+    ScenarioReader object(const std::string& name) const { return {json_.object(name), joint_count_}; }
+
+    /// Refuses every field but these.
+    void allow_only(std::initializer_list<std::string_view> names) const;
+
+    /// A number from `low` to `high`, or `fallback` where the field is missing.
+    double within(const std::string& name, double low, double high, double fallback) const;
+
+    std::string text_or_empty(const std::string& name) const;
+
+    /// One number per joint, or one number for all of them.
+    JointVector per_joint(const std::string& name) const;
+    JointVector per_joint(const std::string& name, double fallback) const;
+    JointVector positive_per_joint(const std::string& name) const;
+
+    /// Six numbers; zeros where the field is missing.
+    Wrench six(const std::string& name) const;
+
+  private:
+    JsonReader json_;
+    int joint_count_;
+};
+
+/// The section `task`.
+TaskModel read_task(const ScenarioReader& reader);
+
+} // namespace dfdyn::tools

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/simulation/simulation.hpp"
+
+#include "tools/common/error.hpp"
+#include "tools/common/number.hpp"
+#include "tools/simulation/joint_limits.hpp"
+#include "tools/simulation/random_streams.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dfdyn::tools {
+
+namespace {
+
+std::vector<bool> prismatic(const Robot& robot) {
+    std::vector<bool> result;
+    for (const RobotJoint& joint : robot.joints) {
+        result.push_back(joint.prismatic);
+    }
+    return result;
+}
+
+std::optional<WrenchSensor> wrench_sensor(const Scenario& scenario) {
+    if (!scenario.force_torque) {
+        return std::nullopt;
+    }
+    return WrenchSensor(*scenario.force_torque, 1 / scenario.integration_rate_hz, scenario.seed);
+}
+
+} // namespace
+
+Simulation::Simulation(const Robot& robot, const Scenario& scenario)
+    : robot_(robot), scenario_(scenario), period_s_(1 / scenario.integration_rate_hz),
+      encoder_steps_(std::llround(scenario.integration_rate_hz / scenario.encoders.rate_hz)),
+      control_steps_(std::llround(scenario.integration_rate_hz / scenario.controller.rate_hz)),
+      task_(make_task(scenario.task, robot, 1 / scenario.controller.rate_hz, scenario.seed)),
+      reference_(task_->next()), arm_(robot, scenario.actuators, reference_.position),
+      controller_(robot, scenario.actuators.rotor_inertia, scenario.controller, scenario.seed),
+      encoders_(scenario.encoders, prismatic(robot), scenario.seed),
+      derivatives_(scenario.derivatives, static_cast<int>(robot.joints.size()),
+                   1 / scenario.encoders.rate_hz),
+      wrench_sensor_(wrench_sensor(scenario)), torque_noise_(scenario.seed, stream::torque_noise),
+      jitter_(scenario.seed, stream::clock_jitter) {
+    observe();
+}
+
+void Simulation::control() {
+    const std::string where = "t = " + number_text(static_cast<double>(step_) * period_s_) + " s: ";
+    check_limits(robot_, reference_.position, where + "reference of ");
+    if (!arm_.state().position.allFinite() || arm_.state().velocity.cwiseAbs().maxCoeff() > 1e4) {
+        throw InputError(where + "expected the arm to stay under control, found it running away: gains, "
+                                 "friction or integration_rate_hz do not fit");
+    }
+    arm_.apply(controller_.torque(reference_, encoders_.reading(), derivatives_.velocity()));
+    reference_ = task_->next();
+}
+
+/// What happens at the instant of the state at hand.
+void Simulation::observe() {
+    if (step_ % encoder_steps_ == 0) {
+        encoders_.observe(arm_.state().position);
+        derivatives_.observe(encoders_.reading());
+    }
+    if (step_ % control_steps_ == 0) {
+        control();
+    }
+    if (wrench_sensor_) {
+        wrench_sensor_->observe(static_cast<double>(step_) * period_s_, arm_.wrench());
+    }
+}
+
+double Simulation::jitter(double deviation_s) { return deviation_s * std::clamp(jitter_.next(), -4.0, 4.0); }
+
+SimulatedSample Simulation::next() {
+    const RecordingModel& recording = scenario_.recording;
+    const double instant_s = recording.first_at_s + static_cast<double>(taken_++) / recording.rate_hz +
+                             jitter(recording.instant_jitter_s);
+    const std::int64_t instant = std::llround(instant_s * scenario_.integration_rate_hz);
+    while (step_ < instant) {
+        arm_.advance(period_s_);
+        ++step_;
+        observe();
+    }
+    SimulatedSample sample = take();
+    sample.time_s += jitter(recording.stamp_jitter_s);
+    return sample;
+}
+
+SimulatedSample Simulation::take() {
+    const SimulatedArm::State& state = arm_.state();
+    SimulatedSample sample;
+    sample.truth.time_s = static_cast<double>(step_) * period_s_;
+    sample.truth.position = state.position;
+    sample.truth.velocity = state.velocity;
+    sample.truth.acceleration = state.acceleration;
+    sample.truth.torque = state.torque;
+    sample.truth.friction = state.friction;
+    sample.truth.tip = arm_.dynamics().tip(arm_.configuration());
+    sample.time_s = sample.truth.time_s;
+    sample.position = encoders_.reading();
+    sample.velocity = derivatives_.velocity();
+    sample.acceleration = derivatives_.acceleration();
+    sample.torque = state.torque;
+    for (Eigen::Index i = 0; i < sample.torque.size(); ++i) {
+        sample.torque[i] += scenario_.torque_sensor.noise[i] * torque_noise_.next();
+    }
+    if (wrench_sensor_) {
+        sample.wrench = wrench_sensor_->reading();
+        sample.truth.wrench = arm_.wrench();
+    }
+    return sample;
+}
+
+} // namespace dfdyn::tools

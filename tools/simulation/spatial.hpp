@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/robot/robot.hpp"
+
+#include <Eigen/Geometry>
+
+namespace dfdyn::tools {
+
+/// Angular part, and the linear part of the point of the body that passes the base's origin. Six-dimensional
+/// vectors of R. Featherstone, "Rigid Body Dynamics Algorithms", 2008, all in the base's frame: bodies then
+/// add without transforms.
+struct SpatialMotion {
+    Eigen::Vector3d angular = Eigen::Vector3d::Zero();
+    Eigen::Vector3d linear = Eigen::Vector3d::Zero();
+
+    SpatialMotion operator+(const SpatialMotion& other) const {
+        return {angular + other.angular, linear + other.linear};
+    }
+    SpatialMotion operator*(double factor) const { return {factor * angular, factor * linear}; }
+
+    /// The rate of `other` when it moves along with this motion.
+    SpatialMotion cross(const SpatialMotion& other) const {
+        return {angular.cross(other.angular), angular.cross(other.linear) + linear.cross(other.angular)};
+    }
+};
+
+/// Force, and torque about the base's origin.
+struct SpatialForce {
+    Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+
+    SpatialForce operator+(const SpatialForce& other) const {
+        return {torque + other.torque, force + other.force};
+    }
+
+    double power(const SpatialMotion& motion) const {
+        return torque.dot(motion.angular) + force.dot(motion.linear);
+    }
+
+    /// The rate of this force when it moves along with `motion`.
+    SpatialForce moved_by(const SpatialMotion& motion) const {
+        return {motion.angular.cross(torque) + motion.linear.cross(force), motion.angular.cross(force)};
+    }
+};
+
+/// Mass, first moment and inertia about the base's origin, in the base's frame.
+struct SpatialInertia {
+    double mass = 0;
+    Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+
+    SpatialInertia operator+(const SpatialInertia& other) const {
+        return {mass + other.mass, moment + other.moment, inertia + other.inertia};
+    }
+
+    /// Momentum of the body that moves so, or the force that accelerates it so from rest.
+    SpatialForce operator*(const SpatialMotion& motion) const {
+        return {inertia * motion.angular + moment.cross(motion.linear),
+                mass * motion.linear + motion.angular.cross(moment)};
+    }
+};
+
+/// `body`, known in a frame that sits at `placement`, in the base's frame.
+SpatialInertia at_base(const InertialParameters& body, const Eigen::Isometry3d& placement);
+
+} // namespace dfdyn::tools
