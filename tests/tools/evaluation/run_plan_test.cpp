@@ -12,7 +12,6 @@ namespace {
 
 using namespace dfdyn::tools;
 using Catch::Matchers::ContainsSubstring;
-using dfdyn::tests::file_content;
 using dfdyn::tests::small_plan;
 using dfdyn::tests::TemporaryDirectory;
 using dfdyn::tests::write_small_experiment;
