@@ -91,6 +91,15 @@ TEST_CASE("only units whose inputs changed run again") {
         directory.write("test.csv", dfdyn::tests::small_recording(220, 2.61));
         CHECK(run(directory).reused == 0);
     }
+    SECTION("the robot: all") {
+        directory.write("robot.urdf", "<robot/>");
+        plan["robot"] = {{"urdf", "robot.urdf"}};
+        directory.write("plan.json", plan.dump());
+        CHECK(run(directory).reused == 0);
+        CHECK(run(directory).reused == 4);
+        directory.write("robot.urdf", "<robot name=\"other\"/>");
+        CHECK(run(directory).reused == 0);
+    }
     SECTION("a file that was cut or is another's: that one") {
         const std::filesystem::path file = directory.path() / "out/cases/NP-ML-DFR/2.json";
         std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
