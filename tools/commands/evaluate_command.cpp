@@ -23,19 +23,23 @@ struct EvaluateOptions {
 /// Thousandths of a unit, so that a long one is seen to move.
 std::size_t progress_steps(double units) { return static_cast<std::size_t>(std::lround(1000 * units)); }
 
+EvaluationResults run_with_progress(const Plan& plan, const PlanData& data, const RunOptions& options) {
+    const std::size_t units = plan.cases.size() * plan.seeds.size();
+    Progress progress("evaluating " + std::to_string(units) + " cases x draws, thousandths of one",
+                      1000 * units);
+    return run_plan(plan, data, options, [&progress](double done) { progress.update(progress_steps(done)); });
+}
+
 int run(const EvaluateOptions& options) {
     const Plan plan = options.quick ? quick_plan(read_plan(options.plan)) : read_plan(options.plan);
     const PlanData data = load_plan_data(plan);
-    const std::size_t units = plan.cases.size() * plan.seeds.size();
-    Progress progress("evaluating " + std::to_string(units) + " cases x draws, thousandths of one",
-                      progress_steps(static_cast<double>(units)));
-    const EvaluationResults results = run_plan(
-        plan, data, options.run, [&progress](double done) { progress.update(progress_steps(done)); });
+    const EvaluationResults results = run_with_progress(plan, data, options.run);
     write_evaluation(options.run.folder, plan, data, results);
     for (const FailedUnit& unit : results.failed) {
         std::cerr << unit.case_name << ", draw " << unit.seed << ": " << unit.reason << '\n';
     }
-    std::cout << results.units.size() << " of " << units << " cases x draws done (" << results.reused
+    std::cout << results.units.size() << " of " << results.units.size() + results.failed.size()
+              << " cases x draws done (" << results.reused
               << " found from an earlier run): " << (options.run.folder / "report.html").string() << '\n';
     return results.failed.empty() ? 0 : 1;
 }

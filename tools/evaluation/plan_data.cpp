@@ -95,6 +95,9 @@ PlanData load_plan_data(const Plan& plan) {
     for (const TestLog& test : plan.tests) {
         data.checksums.emplace_back(test.log.filename(), checksum_of(test.log));
     }
+    if (fs::exists(plan.robot.urdf)) { // if not, it is an error of the cases that need it
+        data.checksums.emplace_back(plan.robot.urdf.filename(), checksum_of(plan.robot.urdf));
+    }
     return data;
 }
 

@@ -17,7 +17,8 @@ struct PlanData {
     std::vector<Recording> subsets;
     std::vector<double> output_variance;                 ///< of each output over all subsets
     std::vector<std::vector<std::size_t>> group_outputs; ///< the outputs of each group, by their number
-    std::vector<std::pair<std::string, std::string>> checksums; ///< of each file: name, checksum
+    std::vector<std::pair<std::string, std::string>>
+        checksums; ///< of each recording and the robot: file name, checksum
 };
 
 /// Reads them. Throws InputError for recordings as `read_recording` does, for one with fewer rows than the

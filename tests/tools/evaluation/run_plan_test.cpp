@@ -12,7 +12,6 @@ namespace {
 
 using namespace dfdyn::tools;
 using Catch::Matchers::ContainsSubstring;
-using dfdyn::tests::file_content;
 using dfdyn::tests::small_plan;
 using dfdyn::tests::TemporaryDirectory;
 using dfdyn::tests::write_small_experiment;
@@ -90,6 +89,15 @@ TEST_CASE("only units whose inputs changed run again") {
     }
     SECTION("a recording: all") {
         directory.write("test.csv", dfdyn::tests::small_recording(220, 2.61));
+        CHECK(run(directory).reused == 0);
+    }
+    SECTION("the robot: all") {
+        directory.write("robot.urdf", "<robot/>");
+        plan["robot"] = {{"urdf", "robot.urdf"}};
+        directory.write("plan.json", plan.dump());
+        CHECK(run(directory).reused == 0);
+        CHECK(run(directory).reused == 4);
+        directory.write("robot.urdf", "<robot name=\"other\"/>");
         CHECK(run(directory).reused == 0);
     }
     SECTION("a file that was cut or is another's: that one") {
