@@ -10,6 +10,7 @@
 #include "tools/model/model_file.hpp"
 #include "tools/model/model_header.hpp"
 #include "tools/physics/model_training.hpp"
+#include "tools/training/training_options.hpp"
 
 #include <iostream>
 #include <map>
@@ -36,21 +37,9 @@ struct TrainOptions {
     TrainingOptions training;
 };
 
-template <class Value>
-using Names = std::map<std::string, Value>;
-
-const Names<ModelClass> models{{"NP", ModelClass::NP},
-                               {"P", ModelClass::P},
-                               {"SP", ModelClass::SP},
-                               {"SP2", ModelClass::SP2},
-                               {"SPK", ModelClass::SPK}};
-const Names<HyperMethod> methods{{"ML", HyperMethod::ML}, {"CV", HyperMethod::CV}};
-const Names<DerivativeSource> sources{{"auto", DerivativeSource::automatic},
-                                      {"measured", DerivativeSource::measured},
-                                      {"estimated", DerivativeSource::estimated}};
-const Names<PriorForm> priors{
-    {"scaled", PriorForm::scaled}, {"unit", PriorForm::unit}, {"diagonal", PriorForm::diagonal}};
-
+const std::map<std::string, DerivativeSource> sources{{"auto", DerivativeSource::automatic},
+                                                      {"measured", DerivativeSource::measured},
+                                                      {"estimated", DerivativeSource::estimated}};
 void add_physics_options(CLI::App& command, TrainOptions& options) {
     options.robot.add_to(command, false);
     command
@@ -73,7 +62,7 @@ void add_physics_options(CLI::App& command, TrainOptions& options) {
                      "The physics sees positions filtered to velocity and acceleration by poles of its own, "
                      "whatever the input");
     command.add_option("--prior", options.prior, "Of the physical parameters: what gamma^2 is the same for")
-        ->check(CLI::IsMember(priors))
+        ->check(CLI::IsMember({"scaled", "unit", "diagonal"}))
         ->capture_default_str();
 }
 
@@ -159,9 +148,9 @@ void print_outcome(const TrainedModel& model, const std::string& trained_on) {
 ModelTraining model_training(const TrainOptions& options, OutputKind outputs) {
     ModelTraining training{options.training, std::nullopt, sources.at(options.derivatives)};
     training.options.input = parse_input_kind(options.input);
-    training.options.model = models.at(options.structure);
-    training.options.hyper = methods.at(options.hyper);
-    training.options.physics.prior = priors.at(options.prior);
+    training.options.model = parse_model_class(options.structure);
+    training.options.hyper = parse_hyper_method(options.hyper);
+    training.options.physics.prior = parse_prior_form(options.prior);
     if (has_physics(options.structure)) {
         if (options.robot.urdf.empty()) {
             throw InputError("--model " + options.structure + ": expected --robot and --tip, found none");
@@ -210,7 +199,7 @@ void add_train_command(CLI::App& app, Command& chosen) {
     command
         ->add_option("--model", options->structure,
                      "Structure of the model: features (NP), the robot (P), or both")
-        ->check(CLI::IsMember(models))
+        ->check(CLI::IsMember({"NP", "P", "SP", "SP2", "SPK"}))
         ->capture_default_str();
     command->add_option("--input", options->input, "What the features see of the positions")
         ->type_name("STD|DF|DFW|DFR|DFSR")
@@ -218,7 +207,7 @@ void add_train_command(CLI::App& app, Command& chosen) {
     command
         ->add_option("--hyper", options->hyper,
                      "How hyperparameters are found: marginal likelihood, or cross validation over a grid")
-        ->check(CLI::IsMember(methods))
+        ->check(CLI::IsMember({"ML", "CV"}))
         ->capture_default_str();
     command->add_option("-o,--output", options->model, "The model")->required()->type_name("M.json");
     command->add_option("--header", options->header, "The same model as C++ constants for flash")

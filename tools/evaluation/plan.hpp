@@ -18,7 +18,9 @@ struct Case {
     std::string model = "NP"; ///< P, NP, SP, SP2, SPK
     InputKind input = InputKind::DFR;
     std::string hyper = "ML";           ///< ML, CV
-    std::string physics_input = "same"; ///< what the physics sees: the features' input, or STD, DFSR, …
+    std::string physics_input = "same"; ///< what the physics sees: the features' input, or filters of its own
+    std::vector<std::string> effects;   ///< of the physics, beside the rigid body
+    std::string prior = "scaled";       ///< of the physics' parameters: scaled, unit, diagonal
     int lags = 10;                      ///< M
     int rows_per_joint = 3;             ///< k of DFR
     int feature_count = 250;            ///< d

@@ -14,14 +14,15 @@ namespace {
 
 constexpr std::array<std::string_view, 5> models{"P", "NP", "SP", "SP2", "SPK"};
 constexpr std::array<std::string_view, 2> hypers{"ML", "CV"};
-constexpr std::array<std::string_view, 4> physics_inputs{"same", "STD", "DFSR", "filtered"};
+constexpr std::array<std::string_view, 2> physics_inputs{"same", "own"};
+constexpr std::array<std::string_view, 3> priors{"scaled", "unit", "diagonal"};
 
-constexpr std::array<std::string_view, 8> setting_names{"physics_input", "lags",          "features",
-                                                        "orthogonal",    "forgetting",    "likelihood_rows",
-                                                        "starts",        "rows_per_joint"};
-constexpr std::array<std::string_view, 12> entry_names{
-    "model",    "input",      "hyper",      "suffix",          "physics_input", "lags",
-    "features", "orthogonal", "forgetting", "likelihood_rows", "starts",        "rows_per_joint"};
+constexpr std::array<std::string_view, 10> setting_names{
+    "physics_input", "effects",    "prior",           "lags",   "features",
+    "orthogonal",    "forgetting", "likelihood_rows", "starts", "rows_per_joint"};
+constexpr std::array<std::string_view, 14> entry_names{
+    "model", "input",    "hyper",      "suffix",     "physics_input",   "effects", "prior",
+    "lags",  "features", "orthogonal", "forgetting", "likelihood_rows", "starts",  "rows_per_joint"};
 
 std::string one_of(const JsonReader& entry, const std::string& name, const std::string& text,
                    std::span<const std::string_view> known) {
@@ -67,6 +68,12 @@ void read_settings(const JsonReader& entry, Case& one) {
     }
     if (entry.has("physics_input")) {
         one.physics_input = one_of(entry, "physics_input", entry.text("physics_input"), physics_inputs);
+    }
+    if (entry.has("prior")) {
+        one.prior = one_of(entry, "prior", entry.text("prior"), priors);
+    }
+    if (entry.has("effects")) {
+        one.effects = names_in(entry, "effects");
     }
 }
 

@@ -33,6 +33,7 @@ std::string checksum_of(const fs::path& path) {
 
 Recording read_rows(const fs::path& log, const Plan& plan, std::size_t joints, RowRange rows) {
     ReadOptions options;
+    options.velocity = options.acceleration = true;
     options.joint_count = joints;
     options.outputs = plan.outputs;
     options.rows = rows;

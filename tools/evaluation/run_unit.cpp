@@ -105,7 +105,7 @@ void run_subsets(const Plan& plan, const PlanData& data, const TrainedModel& mod
 
 UnitResult run_unit(const Plan& plan, const PlanData& data, const Case& one, std::uint64_t seed,
                     CaseMemory& memory, const std::function<void(double)>& progress) {
-    const TrainedModel model = train_case(one, {plan.robot, data.start}, seed, memory,
+    const TrainedModel model = train_case(one, {plan.robot, plan.outputs, data.start}, seed, memory,
                                           [&](double share) { progress(share_of_training * share); });
     const auto estimator = make_estimator(model, false);
     TickProgress ticks(data, progress);
@@ -117,7 +117,8 @@ UnitResult run_unit(const Plan& plan, const PlanData& data, const Case& one, std
     result.error.resize(plan.groups.size());
     result.operations = estimator->cost().predict + estimator->cost().learn;
     result.state_bytes = estimator->state_bytes();
-    result.columns = static_cast<int>(model.start.weights.size() / model.outputs.names.size());
+    result.columns =
+        2 * model.features.count + (model.physics ? static_cast<int>(model.physics->selected.size()) : 0);
     run_subsets(plan, data, model, *estimator, ticks, result);
     return result;
 }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/evaluation/train_case.hpp"
 
-#include "tools/common/error.hpp"
+#include "tools/model/model_file.hpp"
+#include "tools/physics/model_training.hpp"
+#include "tools/robot/read_robot.hpp"
 #include "tools/training/random_features.hpp"
-#include "tools/training/recorded_data.hpp"
-#include "tools/training/row_selection.hpp"
-#include "tools/training/start_state.hpp"
-#include "tools/training/train.hpp"
+#include "tools/training/training_options.hpp"
 
 #include <limits>
 #include <span>
@@ -18,15 +17,19 @@ namespace {
 /// Of the starts of the searches: the same for all draws, so that it does not matter which comes first.
 constexpr std::uint64_t search_seed = 1;
 
-void check_available(const Case& one) {
-    if (one.model != "NP" || one.hyper != "ML") {
-        throw InputError("not available: expected model NP tuned by ML, found " + one.model + " by " +
-                         one.hyper);
-    }
+Robot robot_of(const RobotChoice& choice) {
+    ReadRobotOptions options;
+    options.base = choice.base;
+    options.tip = choice.tip;
+    options.ft_joint = choice.ft_joint;
+    return read_robot(choice.urdf, options);
 }
 
-TrainingOptions options_of(const Case& one) {
-    TrainingOptions options;
+ModelTraining training_of(const Case& one, const RobotChoice& robot) {
+    ModelTraining training;
+    TrainingOptions& options = training.options;
+    options.model = parse_model_class(one.model);
+    options.hyper = parse_hyper_method(one.hyper);
     options.input = one.input;
     options.lags = one.lags;
     options.rows_per_joint = one.rows_per_joint;
@@ -37,44 +40,41 @@ TrainingOptions options_of(const Case& one) {
     options.starts = one.starts;
     options.refinement_evaluations = 0; // it would depend on the draw
     options.seed = search_seed;
-    return options;
-}
-
-TrainedModel tune(const TrainingData& data, TrainingOptions options,
-                  const std::function<void(double)>& progress) {
-    return train(data, options, [&progress](const TrainingProgress& done) {
-        progress(static_cast<double>(done.evaluations) / static_cast<double>(done.evaluations_most));
-    });
-}
-
-/// The tuned model with other random features, and the start that belongs to them.
-TrainedModel redraw(TrainedModel model, const TrainingData& data, std::uint64_t seed) {
-    model.features = draw_features(model.features.count, model.joints * model.input.rows_per_joint,
-                                   model.features.orthogonal, model.features.length_scale, seed);
-    model.start = batch_start(model, data, usable_rows(data.gap_before, model.input.lags));
-    return model;
+    options.physics.own_motion = one.physics_input == "own";
+    options.physics.prior = parse_prior_form(one.prior);
+    if (has_physics(one.model) && !robot.urdf.empty()) {
+        training.physics.emplace();
+        training.physics->robot = robot_of(robot);
+        training.physics->effects = one.effects;
+    }
+    return training;
 }
 
 } // namespace
 
 TrainedModel train_case(const Case& one, const CaseContext& context, std::uint64_t seed, CaseMemory& memory,
                         const std::function<void(double)>& progress) {
-    check_available(one);
-    const std::span<const Recording> recordings(&context.start, 1);
-    TrainingOptions options = options_of(one);
-    TrainingData data = gather_training_data(recordings);
-    if (one.input == InputKind::STD) {
-        options.position_noise_bound = estimate_position_noise_bound(data);
-        estimate_derivatives(data, recordings, options.lags, options.position_noise_bound);
-    }
+    const ModelTraining training = training_of(one, context.robot);
+    const PreparedTraining prepared = prepare_training(std::span(&context.start, 1), training);
+    TrainedModel model;
     {
         const std::lock_guard lock(memory.tuning);
         if (!memory.tuned) {
-            memory.tuned = tune(data, options, progress);
+            memory.tuned =
+                train_model(prepared, context.outputs, training, [&progress](const TrainingProgress& done) {
+                    progress(static_cast<double>(done.evaluations) /
+                             static_cast<double>(done.evaluations_most));
+                });
             memory.tuned->limits.innovation = static_cast<double>(std::numeric_limits<float>::max());
         }
+        model = *memory.tuned;
     }
-    return redraw(*memory.tuned, data, seed);
+    if (has_features(model.structure)) {
+        model.features = draw_features(model.features.count, model.joints * model.input.rows_per_joint,
+                                       model.features.orthogonal, model.features.length_scale, seed);
+        restart_model(model, prepared);
+    }
+    return model;
 }
 
 } // namespace dfdyn::tools

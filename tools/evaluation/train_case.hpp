@@ -20,6 +20,7 @@ struct CaseMemory {
 /// What every case of a plan shares.
 struct CaseContext {
     const RobotChoice& robot;
+    OutputKind outputs;
     const Recording& start; ///< hyperparameters and start come from it
 };
 

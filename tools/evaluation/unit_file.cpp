@@ -21,6 +21,8 @@ ordered_json case_json(const Case& one) {
             {"input", to_string(one.input)},
             {"hyper", one.hyper},
             {"physics_input", one.physics_input},
+            {"effects", one.effects},
+            {"prior", one.prior},
             {"lags", one.lags},
             {"rows_per_joint", one.rows_per_joint},
             {"features", one.feature_count},

@@ -5,7 +5,7 @@
 #include "tools/host/host_model.hpp"
 #include "tools/model/model_file.hpp"
 #include "tools/physics/chain_model.hpp"
-#include "tools/physics/physics_regressor.hpp"
+#include "tools/physics/robot_regressor.hpp"
 #include "tools/physics/torque_constants.hpp"
 #include "tools/training/input_map.hpp"
 #include "tools/training/recorded_data.hpp"
@@ -140,7 +140,7 @@ MotionSamples motion_of(const PhysicsModel& physics, const TrainingData& data, c
 
 /// The selected columns in their units, N x (m p), as PhysicsColumns orders them.
 MatrixXd columns_of(const PhysicsModel& physics, const TrainingData& data, const RowList& rows) {
-    const auto regressor = physics_regressor(physics.chain, physics.effects, physics.output_gain);
+    const auto regressor = robot_regressor(physics.chain, physics.effects, physics.output_gain);
     const ColumnChoice choice{{physics.selected.begin(), physics.selected.end()},
                               Eigen::Map<const VectorXd>(physics.column_scale.data(),
                                                          static_cast<Index>(physics.column_scale.size()))};
@@ -202,7 +202,7 @@ TrainedModel train_model(const PreparedTraining& prepared, OutputKind outputs, c
     check_joints(robot.robot, prepared.data);
     PhysicsColumnsOf columns{chain_model(robot.robot, outputs), {}, output_gains(prepared, outputs, robot)};
     columns.effects = effect_models(robot.effects, columns.chain, robot.sign_velocity);
-    const auto regressor = physics_regressor(columns.chain, columns.effects, columns.output_gain);
+    const auto regressor = robot_regressor(columns.chain, columns.effects, columns.output_gain);
     options.physics.regressor = regressor.get();
     TrainingResult result = train(prepared.data, options, progress);
     TrainedModel model = std::move(result.model);

@@ -2,7 +2,7 @@
 #include "tools/physics/torque_constants.hpp"
 
 #include "tools/physics/chain_model.hpp"
-#include "tools/physics/physics_regressor.hpp"
+#include "tools/physics/robot_regressor.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
 #include <Eigen/QR>
@@ -23,7 +23,7 @@ constexpr double share_of_median_most = 3;
 /// Torques of the nominal rigid body, T x n.
 MatrixXd nominal_torques(const Robot& robot, const TrainingData& data) {
     const std::vector<double> gains(robot.joints.size(), 1);
-    const auto regressor = physics_regressor(chain_model(robot, OutputKind::joint_torque), {}, gains);
+    const auto regressor = robot_regressor(chain_model(robot, OutputKind::joint_torque), {}, gains);
     const VectorXd parameters = nominal_parameters(robot, OutputKind::joint_torque);
     MatrixXd torques(data.positions.rows(), data.positions.cols());
     MatrixXd rows;

@@ -7,6 +7,7 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr double longest_s = 1e6;
+constexpr int most_postures = 10000;
 
 double required(const ScenarioReader& reader, const std::string& name, double low, double high) {
     return reader.json().number_within(name, low, high);
@@ -27,7 +28,7 @@ MultisineTask read_multisine(const ScenarioReader& reader) {
 PointToPointTask read_point_to_point(const ScenarioReader& reader) {
     reader.allow_only({"kind", "postures", "move_s", "dwell_s"});
     PointToPointTask task;
-    for (const JsonReader& posture : reader.json().objects("postures")) {
+    for (const JsonReader& posture : reader.json().objects("postures", 1, most_postures)) {
         const ScenarioReader one(posture, reader.joint_count());
         one.allow_only({"position_rad"});
         task.postures.push_back(one.per_joint("position_rad"));

@@ -3,10 +3,40 @@
 
 #include "tools/common/error.hpp"
 #include "tools/common/number.hpp"
+#include "tools/common/text.hpp"
 #include "tools/model/model_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
 
 namespace dfdyn::tools {
 namespace {
+
+template <class Value>
+using Name = std::pair<std::string_view, Value>;
+
+constexpr std::array<Name<ModelClass>, 5> model_names{{{"NP", ModelClass::NP},
+                                                       {"P", ModelClass::P},
+                                                       {"SP", ModelClass::SP},
+                                                       {"SP2", ModelClass::SP2},
+                                                       {"SPK", ModelClass::SPK}}};
+constexpr std::array<Name<PriorForm>, 3> prior_names{
+    {{"scaled", PriorForm::scaled}, {"unit", PriorForm::unit}, {"diagonal", PriorForm::diagonal}}};
+constexpr std::array<Name<HyperMethod>, 2> method_names{{{"ML", HyperMethod::ML}, {"CV", HyperMethod::CV}}};
+
+template <class Names>
+auto named(const Names& names, const std::string& what, const std::string& name) {
+    std::string known;
+    for (const auto& [text, value] : names) {
+        if (text == name) {
+            return value;
+        }
+        known.append(known.empty() ? "" : ", ").append(text);
+    }
+    throw InputError(what + ": expected one of " + known + ", found " + in_quotes(name));
+}
 
 constexpr int likelihood_rows_least = 20;
 
@@ -81,19 +111,15 @@ void check_physics(const TrainingOptions& options, const TrainingData& data) {
 } // namespace
 
 std::string to_string(ModelClass model) {
-    switch (model) {
-    case ModelClass::NP:
-        return "NP";
-    case ModelClass::P:
-        return "P";
-    case ModelClass::SP:
-        return "SP";
-    case ModelClass::SP2:
-        return "SP2";
-    default:
-        return "SPK";
-    }
+    return std::ranges::find(model_names, model, &std::pair<std::string_view, ModelClass>::second)
+        ->first.data();
 }
+
+ModelClass parse_model_class(const std::string& name) { return named(model_names, "model", name); }
+
+PriorForm parse_prior_form(const std::string& name) { return named(prior_names, "prior", name); }
+
+HyperMethod parse_hyper_method(const std::string& name) { return named(method_names, "hyper", name); }
 
 void check_options(const TrainingOptions& options, const TrainingData& data) {
     check_lags(options);

@@ -56,14 +56,14 @@ TEST_CASE("lists of a case multiply, and name the cases") {
         {"model": ["NP", "SPK"], "input": ["STD", "DFR"]},
         {"model": "SP2", "hyper": ["ML", "CV"], "input": "DFSR"},
         {"input": "DFR", "rows_per_joint": [1, 2]},
-        {"model": "SPK", "physics_input": "DFSR", "suffix": "-own", "lags": 7}])");
+        {"model": "SPK", "physics_input": "own", "suffix": "-own", "lags": 7}])");
     const Plan plan = plan_of(content);
     CHECK(case_names(plan) == std::vector<std::string>{"NP-ML-STD", "NP-ML-DFR", "SPK-ML-STD", "SPK-ML-DFR",
                                                        "SP2-ML-DFSR", "SP2-CV-DFSR", "NP-ML-DFR-k1",
                                                        "NP-ML-DFR-k2", "SPK-ML-DFR-own"});
     CHECK(plan.cases[6].rows_per_joint == 1);
     CHECK(plan.cases[7].rows_per_joint == 2);
-    CHECK(plan.cases[8].physics_input == "DFSR");
+    CHECK(plan.cases[8].physics_input == "own");
     CHECK(plan.cases[8].lags == 7);
     CHECK(plan.cases[7].lags == 4);
 }

@@ -5,7 +5,7 @@
 #include "tests/support/random_robot.hpp"
 #include "tests/support/seed.hpp"
 #include "tools/physics/chain_model.hpp"
-#include "tools/physics/physics_regressor.hpp"
+#include "tools/physics/robot_regressor.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
 #include <cmath>
@@ -30,7 +30,7 @@ TrainingData currents(std::mt19937_64& engine, const Robot& robot, const std::ve
     data.velocities = MatrixXd::NullaryExpr(400, joints, draw);
     data.accelerations = MatrixXd::NullaryExpr(400, joints, draw);
     data.outputs = MatrixXd::Zero(400, joints);
-    const auto regressor = physics_regressor(chain_model(robot, OutputKind::joint_torque), {},
+    const auto regressor = robot_regressor(chain_model(robot, OutputKind::joint_torque), {},
                                              std::vector<double>(gains.size(), 1));
     MatrixXd rows;
     for (Index t = 0; t < 400; ++t) {

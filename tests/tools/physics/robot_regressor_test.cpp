@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The regressor that training sees: its gradient against differences, its columns against the robot's
 // torques.
-#include "tools/physics/physics_regressor.hpp"
+#include "tools/physics/robot_regressor.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/random_robot.hpp"
@@ -71,7 +71,7 @@ TEST_CASE(
             const auto effects =
                 effect_models(wrench ? std::vector<std::string>{"ft_bias"} : of_torques, chain, 0.5);
             const std::vector<double> gains(wrench ? 6 : static_cast<std::size_t>(joints), 0.7);
-            const auto regressor = physics_regressor(chain, effects, gains);
+            const auto regressor = robot_regressor(chain, effects, gains);
             REQUIRE(regressor->columns() ==
                     static_cast<Index>(10 * static_cast<std::size_t>(joints) + effects.size()));
             const MatrixXd gradient = MatrixXd::NullaryExpr(regressor->outputs(), regressor->columns(),
@@ -86,7 +86,7 @@ TEST_CASE("columns times the robot's parameters are gravity's torques at rest, i
     DFDYN_SEEDED_ENGINE(engine);
     Robot robot = random_robot(engine, 1);
     robot.joints[0].prismatic = false;
-    const auto regressor = physics_regressor(chain_model(robot, OutputKind::joint_torque), {}, {0.1});
+    const auto regressor = robot_regressor(chain_model(robot, OutputKind::joint_torque), {}, {0.1});
     const double q = uniform(engine, -3, 3);
     MatrixXd values;
     regressor->evaluate({VectorXd::Constant(1, q), VectorXd::Zero(1), VectorXd::Zero(1)}, values);
