@@ -27,7 +27,8 @@ constexpr int most_in_list = 1000;
 constexpr std::array<std::string_view, 16> plan_names{
     "schema", "name",           "title",       "robot", "outputs", "training", "tests", "horizon",
     "seeds",  "steady_after_s", "error_scale", "draws", "groups",  "defaults", "cases", "figures"};
-constexpr std::array<std::string_view, 3> later_names{"comparisons", "findings", "like"};
+constexpr std::array<std::string_view, 6> later_names{"comparisons", "findings",      "like",
+                                                      "more_cases",  "more_findings", "more_figures"};
 constexpr std::array<std::string_view, 4> robot_names{"urdf", "base", "tip", "ft_joint"};
 constexpr std::array<std::string_view, 3> training_names{"log", "start_rows", "rows"};
 constexpr std::array<std::string_view, 4> test_names{"log", "first", "rows", "count"};
@@ -162,10 +163,17 @@ class PlanReader {
 
     void read_cases() {
         const Case defaults = json_.has("defaults") ? read_defaults(json_.object("defaults")) : Case{};
-        for (const JsonReader& entry : json_.objects("cases", 1, most_entries)) {
+        add_cases("cases", defaults);
+        if (json_.has("more_cases")) {
+            add_cases("more_cases", defaults);
+        }
+    }
+
+    void add_cases(const std::string& field, const Case& defaults) {
+        for (const JsonReader& entry : json_.objects(field, 1, most_entries)) {
             for (const Case& one : expand_cases(entry, defaults)) {
                 plan_.cases.push_back(one);
-                refuse_twice(json_, "cases", plan_.cases);
+                refuse_twice(json_, field, plan_.cases);
             }
         }
     }

@@ -25,11 +25,16 @@ std::vector<Figure> figures(const JsonReader& json, const Plan& plan) {
         return {{plan.title, names_of(plan.cases)}};
     }
     std::vector<Figure> all;
-    for (const JsonReader& figure : json.objects("figures", 1, most_entries)) {
-        figure.allow_only(figure_names);
-        all.push_back({figure.text("title"), names_in(figure, "cases")});
-        for (const std::string& name : all.back().cases) {
-            known(figure, "cases", plan.cases, name);
+    for (const char* field : {"figures", "more_figures"}) {
+        if (!json.has(field)) {
+            continue;
+        }
+        for (const JsonReader& figure : json.objects(field, 1, most_entries)) {
+            figure.allow_only(figure_names);
+            all.push_back({figure.text("title"), names_in(figure, "cases")});
+            for (const std::string& name : all.back().cases) {
+                known(figure, "cases", plan.cases, name);
+            }
         }
     }
     return all;
@@ -71,6 +76,19 @@ std::vector<Comparison> comparisons(const JsonReader& reader, const Plan& plan) 
     return all;
 }
 
+void add_findings(const JsonReader& json, const std::string& field, Plan& plan) {
+    if (!json.has(field)) {
+        return;
+    }
+    for (const JsonReader& finding : json.objects(field, 1, most_entries)) {
+        finding.allow_only(finding_names);
+        plan.findings.push_back({finding.text("name"), finding.text("statement"),
+                                 finding.has("if_not") ? finding.text("if_not") : "",
+                                 comparisons(finding, plan)});
+        refuse_twice(json, field, plan.findings);
+    }
+}
+
 } // namespace
 
 void read_claims(const JsonReader& json, Plan& plan) {
@@ -78,15 +96,8 @@ void read_claims(const JsonReader& json, Plan& plan) {
     if (json.has("comparisons")) {
         plan.comparisons = comparisons(json, plan);
     }
-    if (json.has("findings")) {
-        for (const JsonReader& finding : json.objects("findings", 1, most_entries)) {
-            finding.allow_only(finding_names);
-            plan.findings.push_back({finding.text("name"), finding.text("statement"),
-                                     finding.has("if_not") ? finding.text("if_not") : "",
-                                     comparisons(finding, plan)});
-            refuse_twice(json, "findings", plan.findings);
-        }
-    }
+    add_findings(json, "findings", plan);
+    add_findings(json, "more_findings", plan);
 }
 
 } // namespace dfdyn::tools

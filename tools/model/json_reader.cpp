@@ -69,7 +69,7 @@ std::vector<JsonReader> JsonReader::objects(const std::string& name, int at_leas
     std::vector<JsonReader> result;
     for (const nlohmann::json& value : values) {
         if (!value.is_object()) {
-            throw error(name, "objects", shown_value(value));
+            throw error(name + "[" + std::to_string(result.size()) + "]", "an object", shown_value(value));
         }
         result.push_back({value, source_, path_ + name + "[" + std::to_string(result.size()) + "]."});
     }

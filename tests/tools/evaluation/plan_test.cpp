@@ -99,7 +99,7 @@ TEST_CASE("a mistake in a plan is named by its field") {
         {[](json& j) { j["name"] = "a/b"; }, "name: expected letters, digits, - and _, found \"a/b\""},
         {[](json& j) { j["outputs"] = "wind"; }, "outputs: expected tau, i or wrench, found \"wind\""},
         {[](json& j) { j["training"]["start_rows"] = 3; }, "training.start_rows: expected a whole number"},
-        {[](json& j) { j["tests"] = json::array(); }, "tests: expected at least one object, found none"},
+        {[](json& j) { j["tests"] = json::array(); }, "tests: expected 1 to 10000 objects, found 0"},
         {[](json& j) { j["tests"][0]["rows"] = -1; }, "tests[0].rows: expected a whole number from 2"},
         {[](json& j) { j["tests"][0] = 3; }, "tests[0]: expected an object"},
         {[](json& j) { j["horizon"] = 0; }, "horizon: expected a whole number from 1"},
@@ -224,8 +224,13 @@ TEST_CASE("the plans of tools/reproduce.sh are valid, and encode the same findin
     const std::filesystem::path folder = DFDYN_TEST_DATA_DIR "/../../tools/reproduction";
     const Plan icub = read_plan(folder / "icub.json");
     const Plan ur5 = read_plan(folder / "ur5.json");
-    CHECK(case_names(icub) == case_names(ur5));
-    CHECK(icub.findings.size() == ur5.findings.size());
+    constexpr std::size_t of_the_paper = 9;
+    for (std::size_t i = 0; i < of_the_paper; ++i) {
+        CHECK(icub.findings[i].name == ur5.findings[i].name);
+        CHECK(icub.findings[i].comparisons.size() == ur5.findings[i].comparisons.size());
+    }
+    CHECK(icub.findings.size() > of_the_paper);
+    CHECK(ur5.findings.size() > of_the_paper);
     CHECK(icub.seeds.size() >= 10);
     CHECK(ur5.seeds.size() >= 10);
     CHECK(load_plan_data(ur5).subsets.size() == 2);

@@ -146,7 +146,7 @@ TEST_CASE("a unit is the protocol, written out") {
     const UnitResult unit = run_unit(plan, data, plan.cases[1], 7, memory, ignore);
 
     CaseMemory other;
-    const TrainedModel model = train_case(plan.cases[1], {plan.robot, data.start}, 7, other, ignore);
+    const TrainedModel model = train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 7, other, ignore);
     for (std::size_t subset = 0; subset < 2; ++subset) {
         const auto estimator = make_estimator(model, false);
         replay(*estimator, model, data.online, 0, [](std::size_t) {});
@@ -189,9 +189,9 @@ TEST_CASE("which draw tunes the hyperparameters does not matter") {
     const PlanData data = load_plan_data(plan);
     CaseMemory fresh;
     CaseMemory used;
-    train_case(plan.cases[1], {plan.robot, data.start}, 1, used, ignore);
-    const TrainedModel a = train_case(plan.cases[1], {plan.robot, data.start}, 2, fresh, ignore);
-    const TrainedModel b = train_case(plan.cases[1], {plan.robot, data.start}, 2, used, ignore);
+    train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 1, used, ignore);
+    const TrainedModel a = train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 2, fresh, ignore);
+    const TrainedModel b = train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 2, used, ignore);
     CHECK(a.features.omega == b.features.omega);
     CHECK(a.input.rows == b.input.rows);
     CHECK(a.start.weights == b.start.weights);

@@ -4,6 +4,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/support/small_model.hpp"
+#include "tools/model/model_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,6 +14,7 @@ namespace {
 
 using namespace dfdyn::tools;
 using dfdyn::tests::small_model;
+using dfdyn::tests::small_physics_model;
 
 /// Ticks `first` … `last` - 1 of a motion; the predictions of all of them, one after the other.
 std::vector<float> run(HostEstimator& estimator, int first, int last) {
@@ -24,7 +26,8 @@ std::vector<float> run(HostEstimator& estimator, int first, int last) {
         for (std::size_t k = 0; k < 6; ++k) {
             output[k] = std::sin(3 * t) * static_cast<double>(k) + std::cos(5 * t);
         }
-        const Tick result = estimator.tick(std::int64_t{4000000} * tick, position, output);
+        const Tick result =
+            estimator.tick({std::int64_t{4000000} * tick, position, position, position, output});
         predictions.insert(predictions.end(), result.prediction.begin(), result.prediction.end());
     }
     return predictions;
@@ -36,7 +39,10 @@ TEST_CASE("an estimator goes on from its snapshot as it did when it was taken") 
     DFDYN_SEEDED_ENGINE(engine);
     const auto kind =
         GENERATE(InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR);
-    const TrainedModel model = small_model(engine, kind);
+    const std::string structure = GENERATE("NP", "P", "SP", "SPK");
+    const TrainedModel model =
+        structure == "NP" ? small_model(engine, kind) : small_physics_model(engine, structure, kind, true);
+    CAPTURE(structure, to_string(kind));
     const auto estimator = make_estimator(model, false);
     run(*estimator, 0, 100);
     const std::vector<std::byte> snapshot = estimator->snapshot();
