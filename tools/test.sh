@@ -40,8 +40,12 @@ test_long() { ctest --test-dir build/release --label-regex '^long$' --parallel "
 
 # clang++ has the sanitizers: it builds them in about three quarters of the time that g++ takes, and is the second compiler.
 test_sanitized() {
-    build asan-ubsan dfdyn_embedding dfdyn_firmware_headers dfdyn_firmware_tests dfdyn_tools_tests
-    run_tests asan-ubsan --label-regex '^(firmware|tools|embedding|headers)$'
+    build asan-ubsan dfdyn_embedding dfdyn_firmware_headers dfdyn_firmware_tests
+    run_tests asan-ubsan --label-regex '^(firmware|embedding|headers)$'
+}
+test_sanitized_tools() {
+    build asan-ubsan dfdyn_tools_tests
+    run_tests asan-ubsan --label-regex '^tools$'
 }
 
 # Optimised, unlike the sanitized build.
@@ -65,13 +69,14 @@ steps=(
     "test_units:unit tests and firmware headers"
     "test_promises:promises on real recordings (the demo)"
     "test_elsewhere:use by another project, and on a bare Cortex-M7 under QEMU"
-    "test_sanitized:clang++, address and undefined-behaviour sanitizers"
+    "test_sanitized:firmware by clang++, address and undefined-behaviour sanitizers"
     "analyse_product:static analysis"
 )
 case ${1:-} in
 "") ;;
 --long)
     steps+=(
+        "test_sanitized_tools:host tools by clang++, address and undefined-behaviour sanitizers"
         "test_long:long tests"
         "test_clang:optimised clang++ build of the firmware"
         "analyse_tests:static analysis of the tests"

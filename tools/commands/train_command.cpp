@@ -126,19 +126,28 @@ void print_physics(const PhysicsModel& physics) {
     }
 }
 
+void print_kernel(const TrainedModel& model) {
+    std::cout << "features: input " << to_string(model.input.kind) << ", length scale "
+              << model.features.length_scale << ", rho^2/sigma^2 " << model.outputs.prior_variance << '\n';
+}
+
 void print_outcome(const TrainedModel& model, const std::string& trained_on) {
-    std::cout << "trained " << model.structure << " with input " << to_string(model.input.kind) << " on "
-              << trained_on << ", rows " << model.training.rows << " (" << model.training.likelihood_rows
-              << " in the exact kernel)\nlog likelihood per start:";
-    for (const double value : model.training.all_starts) {
-        std::cout << ' ' << value;
+    std::cout << "trained " << model.structure << " on " << trained_on << ", rows " << model.training.rows
+              << " (" << model.training.likelihood_rows << " in the exact kernel)\n";
+    if (!model.training.all_starts.empty()) {
+        std::cout << "log likelihood per start:";
+        for (const double value : model.training.all_starts) {
+            std::cout << ' ' << value;
+        }
+        std::cout << '\n';
     }
     if (model.physics) {
-        std::cout << '\n';
         print_physics(*model.physics);
     }
-    std::cout << "\nlength scale " << model.features.length_scale << ", rho^2/sigma^2 "
-              << model.outputs.prior_variance << ", noise";
+    if (has_features(model.structure)) {
+        print_kernel(model);
+    }
+    std::cout << "noise:";
     for (std::size_t k = 0; k < model.outputs.names.size(); ++k) {
         std::cout << ' ' << model.outputs.names[k] << ' ' << model.outputs.noise_std[k];
     }

@@ -24,15 +24,24 @@ constexpr std::array<EffectKind, 7> kinds{
 
 std::span<const EffectKind> effect_kinds() { return kinds; }
 
-const EffectKind& effect_kind(const std::string& name) {
+std::string effect_names() {
+    std::string names;
+    for (const EffectKind& kind : kinds) {
+        names.append(names.empty() ? "" : ", ").append(kind.name);
+    }
+    return names;
+}
+
+const EffectKind* find_effect_kind(const std::string& name) {
     const auto* const kind =
-        std::ranges::find(kinds, name, [](const EffectKind& k) { return std::string(k.name); });
-    if (kind == kinds.end()) {
-        std::string known;
-        for (const EffectKind& other : kinds) {
-            known += (known.empty() ? "" : ", ") + std::string(other.name);
-        }
-        throw InputError("effect: expected one of " + known + ", found " + in_quotes(name));
+        std::ranges::find(kinds, name, [](const EffectKind& one) { return std::string(one.name); });
+    return kind == kinds.end() ? nullptr : kind;
+}
+
+const EffectKind& effect_kind(const std::string& name) {
+    const EffectKind* const kind = find_effect_kind(name);
+    if (kind == nullptr) {
+        throw InputError("effect: expected one of " + effect_names() + ", found " + in_quotes(name));
     }
     return *kind;
 }

@@ -21,6 +21,12 @@ struct EffectKind {
 /// All of them, in the order of the columns.
 std::span<const EffectKind> effect_kinds();
 
+/// Their names, for a message.
+std::string effect_names();
+
+/// Null for a name that is none of them.
+const EffectKind* find_effect_kind(const std::string& name);
+
 /// Throws InputError for a name that is none of them.
 const EffectKind& effect_kind(const std::string& name);
 

@@ -97,9 +97,12 @@ ChainModel read_chain(const JsonReader& reader, int joints) {
 EffectModel read_effect(const JsonReader& reader, const ChainModel& chain, int outputs) {
     EffectModel effect{reader.text("effect"), reader.whole_number("row", 0, outputs - 1),
                        reader.number("sign_velocity"), reader.number("stribeck_velocity")};
-    const EffectKind& kind = effect_kind(effect.name);
+    const EffectKind* const kind = find_effect_kind(effect.name);
+    if (kind == nullptr) {
+        throw reader.error("effect", "one of " + effect_names(), in_quotes(effect.name));
+    }
     const std::string offset = offset_effect(chain);
-    if ((kind.at_joint && chain.sensor) || (!kind.at_joint && effect.name != offset)) {
+    if ((kind->at_joint && chain.sensor) || (!kind->at_joint && effect.name != offset)) {
         throw reader.error("effect", chain.sensor ? "ft_bias" : "an effect on joint torques",
                            in_quotes(effect.name));
     }

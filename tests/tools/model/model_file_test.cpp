@@ -67,7 +67,8 @@ TEST_CASE("a model with physics that cannot be is refused") {
                StartsWith("m.json: physics.selected: expected ascending"));
     CHECK_THAT(refusal_of("/physics/selected/7", 25), StartsWith("m.json: physics.selected: expected"));
     CHECK_THAT(refusal_of("/physics/column_scale/0", 0), StartsWith("m.json: physics.column_scale"));
-    CHECK_THAT(refusal_of("/physics/effects/0/effect", "magic"), StartsWith("effect: expected one of"));
+    CHECK_THAT(refusal_of("/physics/effects/0/effect", "magic"),
+               StartsWith("m.json: physics.effects[0].effect: expected one of"));
     CHECK_THAT(refusal_of("/physics/effects/0/effect", "ft_bias"),
                StartsWith("m.json: physics.effects[0].effect: expected an effect on joint torques"));
     CHECK_THAT(refusal_of("/physics/effects/2/sign_velocity", 0),
