@@ -185,7 +185,7 @@ TEST_CASE("a sample in hand is learned on in ticks that are refused or blind") {
 TEST_CASE("the cost of a tick is a constant expression of the model") {
     constexpr Cost cost = Estimator<UdFloat>::cost();
     static_assert(cost.predict > 0 && cost.variance > 0 && cost.learn > cost.largest_step);
-    // inputs: n k (M+2); features: d (n k + 30); weights: m 2d
-    static_assert(cost.predict == 2 * 3 * 8 + 15 * (6 + 30) + 2 * 30);
+    // inputs: n k (M+2); features: d (n k + 30); weights: m 2d, once more for the innovation
+    static_assert(cost.predict == 2 * 3 * 8 + 15 * (6 + 30) + 2 * 2 * 30);
     SUCCEED();
 }

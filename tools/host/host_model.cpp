@@ -266,9 +266,13 @@ std::int64_t cost_of_input(const InputModel& input, int joints) {
 
 template <class Scalar, class Arm>
 typename HostPhysics::template Constants<Scalar, Arm> host_physics(const PhysicsModel& physics) {
-    return {host_chain<Scalar, Arm>(physics.chain),  host_input<Scalar, 3>(physics.motion),
-            host_effects<Scalar>(physics),           converted<std::int32_t>(physics.selected),
-            converted<Scalar>(physics.column_scale), converted<Scalar, Arm::outputs>(physics.output_gain)};
+    return {host_chain<Scalar, Arm>(physics.chain),
+            host_input<Scalar, 3>(physics.motion),
+            host_effects<Scalar>(physics),
+            converted<Scalar>(physics.motion_limit),
+            converted<std::int32_t>(physics.selected),
+            converted<Scalar>(physics.column_scale),
+            converted<Scalar, Arm::outputs>(physics.output_gain)};
 }
 
 template <class Arm>

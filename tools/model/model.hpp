@@ -105,6 +105,7 @@ struct PhysicsModel {
     ChainModel chain;
     InputModel motion; ///< STD, or DFR with three rows in 1, 1/s, 1/s^2; scale 1
     std::vector<EffectModel> effects;
+    std::vector<double> motion_limit;         ///< 3 n: |q|, |qd|, |qdd| of each joint at most
     std::vector<int> selected;                ///< p, ascending, among all columns
     std::vector<std::string> parameter_names; ///< p, with unit: "link2 mcx (kg m)"
     std::vector<double> column_scale;         ///< p: the physical parameter is scale * pi

@@ -92,7 +92,8 @@ std::string physics_constants(const PhysicsModel& physics) {
     }
     return "{.chain = " + chain_constants(physics.chain) +
            ",\n        .motion = " + input_constants(physics.motion) + ",\n        .effects = {" +
-           joined(effects, ", ") + "},\n        .selected = " + integers(physics.selected) +
+           joined(effects, ", ") + "},\n        .motion_limit = " + braced(physics.motion_limit) +
+           ",\n        .selected = " + integers(physics.selected) +
            ",\n        .column_scale = " + braced(physics.column_scale) +
            ",\n        .output_gain = " + braced(physics.output_gain) + "}";
 }

@@ -145,11 +145,15 @@ std::vector<int> read_selected(const JsonReader& reader, int count) {
 } // namespace
 
 ordered_json physics_to_json(const PhysicsModel& physics) {
-    ordered_json json{
-        {"chain", chain_to_json(physics.chain)},       {"motion", input_to_json(physics.motion)},
-        {"effects", effects_to_json(physics.effects)}, {"selected", physics.selected},
-        {"parameter_names", physics.parameter_names},  {"column_scale", singles(physics.column_scale)},
-        {"output_gain", singles(physics.output_gain)}, {"prior_variance", single(physics.prior_variance)}};
+    ordered_json json{{"chain", chain_to_json(physics.chain)},
+                      {"motion", input_to_json(physics.motion)},
+                      {"effects", effects_to_json(physics.effects)},
+                      {"motion_limit", singles(physics.motion_limit)},
+                      {"selected", physics.selected},
+                      {"parameter_names", physics.parameter_names},
+                      {"column_scale", singles(physics.column_scale)},
+                      {"output_gain", singles(physics.output_gain)},
+                      {"prior_variance", single(physics.prior_variance)}};
     if (physics.prior_variance > 0) {
         json["start"] = start_to_json(physics.start);
     } else {
@@ -174,6 +178,7 @@ PhysicsModel read_physics(const JsonReader& reader, const TrainedModel& model) {
         throw reader.error("motion", "three rows per joint", std::to_string(physics.motion.rows_per_joint));
     }
     physics.effects = read_effects(reader, physics.chain, outputs);
+    physics.motion_limit = reader.positive_numbers("motion_limit", 3 * model.joints);
     physics.selected = read_selected(reader, inertial_parameters * body_count(physics.chain) +
                                                  static_cast<int>(physics.effects.size()));
     const auto columns = static_cast<int>(physics.selected.size());

@@ -119,6 +119,16 @@ PhysicsModel physics_model(const TrainedModel& model, const TrainedPhysics& trai
     return physics;
 }
 
+/// The largest position, velocity and acceleration of each joint that the physics saw in training, times
+/// `margin`.
+std::vector<double> motion_limits(const PhysicsModel& physics, const TrainingData& data) {
+    constexpr double margin = 5;
+    constexpr double least = 1e-3; // of a joint that was held still
+    const RowList rows = usable_rows(data.gap_before, physics.motion.lags);
+    const MatrixXd xi = stored_inputs(physics.motion, data, rows);
+    return to_vector((margin * xi.cwiseAbs().colwise().maxCoeff().transpose()).cwiseMax(least));
+}
+
 /// Input STD takes what the recording has, sample by sample, without a window.
 void set_derivatives(TrainedModel& model, const PreparedTraining& prepared) {
     if (model.input.kind != InputKind::STD || prepared.derivatives == Derivatives::estimated) {
@@ -208,6 +218,7 @@ TrainedModel train_model(const PreparedTraining& prepared, OutputKind outputs, c
     TrainedModel model = std::move(result.model);
     set_derivatives(model, prepared);
     model.physics = physics_model(model, *result.physics, columns, robot.robot);
+    model.physics->motion_limit = motion_limits(*model.physics, prepared.data);
     if (!has_features(model.structure)) {
         model.input = {};
     }

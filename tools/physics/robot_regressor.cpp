@@ -18,6 +18,7 @@ PhysicsModel whole_physics(const ChainModel& chain, const std::vector<EffectMode
     physics.motion.kind = InputKind::STD;
     physics.motion.derivatives = Derivatives::measured;
     physics.effects = effects;
+    physics.motion_limit.assign(3 * chain.joints.size(), 0); // of the firmware's gate, which is not used here
     physics.selected.resize(static_cast<std::size_t>(inertial_parameters * body_count(chain)) +
                             effects.size());
     std::iota(physics.selected.begin(), physics.selected.end(), 0);

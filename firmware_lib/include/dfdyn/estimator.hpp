@@ -5,6 +5,7 @@
 #include "dfdyn/model.hpp"
 #include "dfdyn/snapshot.hpp"
 #include "dfdyn/status.hpp"
+#include "dfdyn/structure/regression.hpp"
 
 #include <cmath>
 #include <limits>
@@ -18,8 +19,9 @@ struct Estimate {
     Storage<Scalar, m> prediction;         ///< in the output's unit, made before the sample was learned
     Storage<Scalar, m> standard_deviation; ///< of the measurement about it: parameter uncertainty and noise
     Storage<Scalar, m> innovation;         ///< measured - prediction; 0 without a usable measurement
-    Scalar normalised_innovation_squared;  ///< over the outputs; about m while the model holds, 0 without a
-                                           ///< measurement
+    /// Over the outputs; about m while the model holds, 0 without a measurement. Where outputs share
+    /// parameters (P, SPK) it is not chi-square: how their errors correlate is not looked at.
+    Scalar normalised_innovation_squared;
     Status status;
 };
 
@@ -45,6 +47,7 @@ class Estimator {
     using Estimate = dfdyn::Estimate<Scalar, Model::outputs>;
 
     using Regression = typename Model::Structure::template Regression<Model>;
+    static_assert(RegressionOf<Regression, Scalar, Sample>);
 
     /// Consecutive samples from the past after which the sender's clock is taken to have been set back.
     static constexpr int clock_restart_samples = 3;
@@ -56,8 +59,9 @@ class Estimator {
 
     /// Predicts the sample's output from its position and the past, then learns it as far as the budget goes.
     /// A refused sample leaves what has been learned as it is. At most
-    /// `cost().predict` + `cost().variance` + the budget multiply-adds, whatever the input; with forgetting,
-    /// learning may take a second sweep of `cost().learn`, within the budget too.
+    /// `cost().predict` + `cost().variance` + the budget multiply-adds, whatever the input. Within the
+    /// budget, learning may take more than `cost().learn`: a second sweep with forgetting, and for SPK the
+    /// products of φ with all weights once more where another sample ended in the same tick.
     Estimate tick(const Sample& sample, Budget budget) noexcept {
         Estimate estimate = unknown();
         Status& status = estimate.status;
@@ -323,9 +327,10 @@ class Estimator {
 
     /// Sizes and scalar as well as the constants' identity: two builds may share the latter.
     [[nodiscard]] std::uint32_t model_identity() const noexcept {
-        const std::int32_t parts[] = {
-            sizes_.joint_count,   sizes_.output_count,         sizes_.lag_count, sizes_.features_per_joint,
-            sizes_.feature_count, sizes_.physics.column_count, sizeof(Scalar)};
+        const std::int32_t parts[] = {sizes_.joint_count,         sizes_.output_count,
+                                      sizes_.lag_count,           sizes_.features_per_joint,
+                                      sizes_.feature_count,       sizes_.physics.column_count,
+                                      Model::Structure::identity, sizeof(Scalar)};
         return crc32(std::as_bytes(std::span(parts)), constants_->identity);
     }
 

@@ -10,8 +10,8 @@ namespace dfdyn {
 enum class Reason : std::uint8_t {
     ok = 0,
 
-    /// The lag window holds fewer than M+1 positions since the start, a gap or a clock restart. Cure: wait M
-    /// ticks.
+    /// The lag window (the longer of features and physics) holds fewer than M+1 positions since the start, a
+    /// gap or a clock restart. Cure: wait M ticks.
     window_filling = 1,
     /// The sample came later than the model's gap time: samples were lost, and the window restarts with this
     /// one. Cure: find out why the bus or the scheduler lost them.
@@ -35,7 +35,8 @@ enum class Reason : std::uint8_t {
     position_out_of_range = 33,
     /// The time stamp equals the last one or is earlier: a repeated or reordered sample.
     time_not_increasing = 34,
-    /// The positions give feature arguments far outside anything trained (a jump within the window).
+    /// The positions give feature arguments, or a motion, far outside anything trained (a jump within the
+    /// window).
     input_out_of_range = 35,
     /// A measured output is NaN or infinite: predicted, not learned.
     output_not_finite = 36,

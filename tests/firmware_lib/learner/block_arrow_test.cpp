@@ -2,6 +2,8 @@
 // Model SPK by its block-arrow structure equals the dense solution of all its unknowns.
 #include "dfdyn/learner/block_arrow.hpp"
 
+#include "dfdyn/snapshot.hpp"
+
 #include "tests/firmware_lib/support/regression.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
@@ -242,6 +244,55 @@ TEST_CASE("the block arrow learns in slices what it learns at once, bit for bit"
         REQUIRE(whole.variances(problem, t) == sliced.variances(problem, t));
     }
     CHECK(steps > 3 * problem.instants());
+}
+
+TEST_CASE("while a sample is learned in slices, predictions are those before it, of some of its rows, or "
+          "after it") {
+    DFDYN_SEEDED_ENGINE(engine);
+    ArrowProblem problem(engine, 60, 12, 5, 1); // one output: no state between its rows
+    const Cost cost = Arrow<double>::Learner::cost(12, 5, 1);
+    Arrow<double> whole(problem);
+    Arrow<double> sliced(problem);
+    int looks = 0;
+    for (int t = 0; t + 7 < problem.instants(); ++t) {
+        const int probe = t + 7;
+        const VectorXd before = sliced.predict(problem, probe);
+        const VectorXd variance_before = sliced.variances(problem, probe);
+        whole.learn(problem, t);
+        const VectorXd after = whole.predict(problem, probe);
+        const VectorXd variance_after = whole.variances(problem, probe);
+        sliced.predict(problem, t);
+        sliced.begin(problem, t);
+        Budget budget{cost.largest_step};
+        while (!sliced.learner().advance(budget)) {
+            const VectorXd during = sliced.predict(problem, probe);
+            const VectorXd variance = sliced.variances(problem, probe);
+            const bool old = relative_error(during, before) < 1e-9;
+            REQUIRE((old || relative_error(during, after) < 1e-9 ||
+                     (during[0] - before[0]) * (during[0] - after[0]) < 0));
+            REQUIRE(variance[0] < variance_before[0] * (1 + 1e-9));
+            REQUIRE(variance[0] > variance_after[0] * (1 - 1e-9));
+            budget = Budget{cost.largest_step};
+            ++looks;
+        }
+    }
+    CHECK(looks > 100);
+}
+
+TEST_CASE("reset gives back the state after construction") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const ArrowProblem problem(engine, 30, 9, 4, 2);
+    Arrow<float> used(problem);
+    Arrow<float> fresh(problem);
+    for (int t = 0; t < 20; ++t) {
+        used.learn(problem, t);
+    }
+    used.learner().reset();
+    std::vector<std::byte> a(snapshot_bytes(used.learner()));
+    std::vector<std::byte> b(a.size());
+    REQUIRE(write_snapshot(used.learner(), 1, a) == SnapshotResult::ok);
+    REQUIRE(write_snapshot(fresh.learner(), 1, b) == SnapshotResult::ok);
+    CHECK(a == b);
 }
 
 TEST_CASE("a sample predicted before another one was learned is learned as if predicted after it") {

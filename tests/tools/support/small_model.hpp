@@ -94,6 +94,7 @@ inline tools::TrainedModel small_physics_model(std::mt19937_64& engine, const st
         physics.motion.rows = numbers(15, normal);
     }
     physics.motion.scale = {1, 1, 1, 1, 1, 1};
+    physics.motion_limit = {10, 50, 100, 10, 50, 100};
     const std::size_t columns = physics.selected.size();
     physics.parameter_names.assign(columns, "parameter");
     physics.column_scale = numbers(columns, positive);

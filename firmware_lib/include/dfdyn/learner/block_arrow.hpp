@@ -3,6 +3,8 @@
 
 #include "dfdyn/learner/common_parameters.hpp"
 
+#include <algorithm>
+
 namespace dfdyn {
 
 /// The two parts of a block-arrow regression (see `BlockArrow`). The start of `features` holds, output after
@@ -26,8 +28,11 @@ struct BlockArrowConstants {
 /// Then E[w_k] = a_k - G_k π. A row costs 1.5 (2d)² + 2·2d·m(1+p) + 1.5 m p² multiply-adds instead of
 /// 1.5 (m·2d + p)²; memory (2d)²/2 + 2d·m(1+p) + p²/2.
 ///
-/// Learning can be sliced: the sweep after any panel, the weights after any column. `variances` are those
-/// before the sample as long as the sweep runs; π is new before the last of the weights are.
+/// Under forgetting that holds while both parts can afford the same λ; each has an account of its own (see
+/// `Forgetting`), and the bound is on the variance of w given π.
+///
+/// Learning can be sliced: the sweep after any panel, the weights after any column. Predictions and variances
+/// are those before the sample until its rows reach π, and after it from then on.
 template <class Scalar, int columns, int p, int m>
 class BlockArrow {
   public:
@@ -54,20 +59,25 @@ class BlockArrow {
         }
         common_.reset();
         forgetting_.restart();
-        present_ = zero_residual();
-        in_hand_ = zero_residual();
+        clear(present_);
+        clear(in_hand_);
+        alpha_ = 1;
         task_ = Task::none;
         next_ = 0;
+        fresh_ = false;
     }
 
     /// Means of the m outputs for φ and the rows ψ (m × p), which become the present columns of `variances`
     /// and `begin`. O(2d m (1+p)).
     void predict(const Scalar* phi, const Scalar* psi, Scalar* means) noexcept {
+        const Scalar pending =
+            task_ == Task::weights ? detail::dot(factor_.gain(), phi, columns_) / alpha_ : Scalar(0);
         for (int k = 0; k < outputs_; ++k) {
-            present_.output[k] = detail::dot(weights(k, 0), phi, columns_);
+            const int first = k * (1 + parameters_);
+            present_.output[k] = projection(first, phi, pending);
             Scalar* row = present_.rows.data() + k * parameters_;
             for (int c = 0; c < parameters_; ++c) {
-                row[c] = psi[k * parameters_ + c] - detail::dot(weights(k, 1 + c), phi, columns_);
+                row[c] = psi[k * parameters_ + c] - projection(first + 1 + c, phi, pending);
             }
         }
         common_.predict(present_.rows.data(), means);
@@ -101,6 +111,7 @@ class BlockArrow {
         factor_.begin(phi, 1);
         next_ = 0;
         task_ = fresh_ ? Task::sweep : Task::residual;
+        fresh_ = false;
     }
 
     /// Works on the sample in hand as far as the budget goes; true when there is nothing left.
@@ -139,10 +150,12 @@ class BlockArrow {
     [[nodiscard]] static constexpr Cost cost(int column_count, int parameters, int outputs) noexcept {
         const Cost shared = CommonParameters<Scalar, p, m>::cost(parameters, outputs);
         const std::int64_t weights = std::int64_t{column_count} * outputs * (1 + parameters);
-        const std::int64_t sweep_step = larger(Factor::largest_step(column_count), 2 * column_count);
-        return {weights + shared.predict, Factor::variance_cost(column_count) + shared.variance,
+        const std::int64_t sweep_step =
+            std::max(Factor::largest_step(column_count), std::int64_t{2} * column_count);
+        return {weights + column_count + shared.predict,
+                Factor::variance_cost(column_count) + shared.variance,
                 Factor::sweep_cost(column_count) + shared.learn + weights + 2 * column_count,
-                larger(sweep_step, shared.largest_step)};
+                std::max(sweep_step, shared.largest_step)};
     }
 
     template <class Self, class Visitor>
@@ -177,13 +190,23 @@ class BlockArrow {
                 Storage<Scalar, m>::zeros(outputs_)};
     }
 
+    static void clear(Residual& residual) noexcept {
+        std::fill(residual.rows.begin(), residual.rows.end(), Scalar(0));
+        std::fill(residual.output.begin(), residual.output.end(), Scalar(0));
+    }
+
     static constexpr int padded(int count) noexcept { return Factor::padded(count); }
-    static constexpr std::int64_t larger(std::int64_t a, std::int64_t b) noexcept { return a > b ? a : b; }
     [[nodiscard]] int regression_count() const noexcept { return outputs_ * (1 + parameters_); }
 
-    /// Weights of column c of output k: 0 its y, 1 … p its ψ.
+    /// Weights of column c of output k: 0 a_k, 1 … p those of G_k.
     [[nodiscard]] const Scalar* weights(int k, int c) const noexcept {
         return weights_.data() + (k * (1 + parameters_) + c) * padded(columns_);
+    }
+
+    /// φ times the weights of regression i, as they are once an update under way is done; `pending` = φ'K/α.
+    [[nodiscard]] Scalar projection(int i, const Scalar* phi, Scalar pending) const noexcept {
+        const Scalar now = detail::dot(weights_.data() + i * padded(columns_), phi, columns_);
+        return i < next_ ? now : now + pending * residual(*this, i);
     }
 
     void load(const LearnerStart<Scalar, columns, regressions>& start) noexcept {
@@ -217,11 +240,11 @@ class BlockArrow {
             break;
         case Task::sweep:
             alpha_ = factor_.alpha();
-            factor_.close();
             common_.begin(in_hand_.rows.data(), in_hand_.output.data(), alpha_);
             task_ = Task::common;
             break;
         case Task::common:
+            factor_.close();
             next_ = 0;
             task_ = Task::weights;
             break;
@@ -234,11 +257,12 @@ class BlockArrow {
         }
     }
 
-    /// The residual in hand that weights number `i` work on.
-    [[nodiscard]] Scalar& residual(int i) noexcept {
-        const int k = i / (1 + parameters_);
-        const int c = i % (1 + parameters_);
-        return c == 0 ? in_hand_.output[k] : in_hand_.rows[k * parameters_ + c - 1];
+    /// The residual in hand of regression i.
+    template <class Self>
+    [[nodiscard]] static auto& residual(Self& self, int i) noexcept {
+        const int k = i / (1 + self.parameters_);
+        const int c = i % (1 + self.parameters_);
+        return c == 0 ? self.in_hand_.output[k] : self.in_hand_.rows[k * self.parameters_ + c - 1];
     }
 
     bool subtract_features(Budget& budget) noexcept {
@@ -246,7 +270,7 @@ class BlockArrow {
             if (!budget.spend(columns_)) {
                 return false;
             }
-            residual(next_) -=
+            residual(*this, next_) -=
                 detail::dot(weights_.data() + next_ * padded(columns_), factor_.row(), columns_);
         }
         return true;
@@ -257,7 +281,7 @@ class BlockArrow {
             if (!budget.spend(columns_)) {
                 return false;
             }
-            detail::add_scaled(residual(next_) / alpha_, factor_.gain(),
+            detail::add_scaled(residual(*this, next_) / alpha_, factor_.gain(),
                                weights_.data() + next_ * padded(columns_), columns_);
             fresh_ = false;
         }

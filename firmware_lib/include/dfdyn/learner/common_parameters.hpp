@@ -7,7 +7,8 @@ namespace dfdyn {
 
 /// Recursive least squares of p parameters that all outputs share: y_k = h_k'π + e_k, k = 1 … m, a row h_k of
 /// its own for each output, as a rigid body has. The m rows of an instant are folded in one after the other,
-/// each exactly; forgetting happens once per instant. Memory about p²/2 + (m+4) p.
+/// each exactly; forgetting happens once per instant. Sliced learning can stop between rows: π is then that
+/// of the rows done. Memory about p²/2 + (m+4) p.
 template <class Scalar, int p, int m>
 class CommonParameters {
   public:
@@ -58,7 +59,7 @@ class CommonParameters {
             targets_[k] = targets[k];
         }
         noise_variance_ = noise_variance;
-        next_ = 0;
+        next_ = -outputs_;
     }
 
     /// Works on the rows in hand as far as the budget goes; true when there is nothing left.
@@ -67,11 +68,14 @@ class CommonParameters {
             if (next_ == outputs_) {
                 return true;
             }
-            if (!budget.spend(next_ == 0 ? first_row_cost(parameters_, outputs_) : parameters_)) {
+            if (!budget.spend(next_ < 0 ? UdFactor<Scalar, p>::variance_cost(parameters_) : parameters_)) {
                 return false;
             }
-            if (next_ == 0) {
-                variances(rows_.data(), variances_.data());
+            if (next_ < 0) {
+                const int k = next_ + outputs_;
+                variances_[k] = learner_.variance(rows_.data() + k * parameters_);
+                ++next_;
+                continue;
             }
             learner_.begin_row(rows_.data() + next_ * parameters_, &targets_[next_], noise_variance_,
                                next_ + 1 == outputs_);
@@ -83,16 +87,14 @@ class CommonParameters {
     /// h_k'P h_k of the last rows learned, before any of them was; m values.
     [[nodiscard]] const Scalar* last_variances() const noexcept { return variances_.data(); }
 
-    /// π, in units of the noise per row.
+    /// π.
     [[nodiscard]] const Scalar* parameters() const noexcept { return learner_.weights(0); }
     [[nodiscard]] const UdCovariance<Scalar, p, 1>& learner() const noexcept { return learner_; }
 
     [[nodiscard]] static constexpr Cost cost(int parameters, int outputs) noexcept {
         const Cost row = UdCovariance<Scalar, p, 1>::cost(parameters, 1);
-        const std::int64_t first = first_row_cost(parameters, outputs);
         return {outputs * row.predict, outputs * row.variance,
-                outputs * row.learn + (outputs - 1) * parameters + first,
-                first > row.largest_step ? first : row.largest_step};
+                outputs * (row.variance + parameters + row.learn), std::max(row.variance, row.largest_step)};
     }
 
     template <class Self, class Visitor>
@@ -102,17 +104,12 @@ class CommonParameters {
         visitor.array(self.targets_.data(), self.targets_.size());
         visitor.array(self.variances_.data(), self.variances_.size());
         visitor.positive_array(&self.noise_variance_, 1);
-        visitor.ranged(self.next_, 0, static_cast<int>(self.outputs_));
+        visitor.ranged(self.next_, -static_cast<int>(self.outputs_), static_cast<int>(self.outputs_));
     }
 
   private:
     using Rows = Storage<Scalar, product(m, p)>;
     using Targets = Storage<Scalar, m>;
-
-    /// Of beginning the first row of an instant, with the variances.
-    static constexpr std::int64_t first_row_cost(int parameters, int outputs) noexcept {
-        return parameters + outputs * UdFactor<Scalar, p>::variance_cost(parameters);
-    }
 
     [[no_unique_address]] Extent<p> parameters_;
     [[no_unique_address]] Extent<m> outputs_;
@@ -121,7 +118,7 @@ class CommonParameters {
     Targets targets_;
     Targets variances_;
     Scalar noise_variance_ = 1;
-    int next_; ///< row to fold in; m when there is none
+    int next_; ///< row to fold in; below 0: variance to compute first, of row m + next; m: nothing
 };
 
 } // namespace dfdyn

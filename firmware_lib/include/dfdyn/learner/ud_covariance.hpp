@@ -4,6 +4,9 @@
 #include "dfdyn/learner/forgetting.hpp"
 #include "dfdyn/learner/ud_factor.hpp"
 
+#include <algorithm>
+#include <limits>
+
 namespace dfdyn {
 
 /// Recursive least squares of m outputs over the same p columns, by the factor P = U D U' of their covariance
@@ -37,6 +40,7 @@ class UdCovariance {
         }
         forgetting_.restart();
         task_ = Task::none;
+        noise_variance_ = 1;
         ratio_ = 1;
         information_ = 1;
         last_of_instant_ = 1;
@@ -99,9 +103,8 @@ class UdCovariance {
     [[nodiscard]] static constexpr Cost cost(int columns, int outputs) noexcept {
         using Factor = UdFactor<Scalar, p>;
         const std::int64_t finish = finish_cost(columns, outputs);
-        const std::int64_t step = Factor::largest_step(columns);
         return {std::int64_t{columns} * outputs, Factor::variance_cost(columns),
-                Factor::sweep_cost(columns) + finish, step > finish ? step : finish};
+                Factor::sweep_cost(columns) + finish, std::max(Factor::largest_step(columns), finish)};
     }
 
     template <class Self, class Visitor>
@@ -150,7 +153,9 @@ class UdCovariance {
                                weights_.data() + k * padded(columns_), columns_);
         }
         ratio_ = factor_.alpha() / noise_variance_;
-        information_ *= ratio_;
+        if (forgetting_.active()) {
+            information_ = std::min(information_ * ratio_, std::numeric_limits<Scalar>::max());
+        }
         if (last_of_instant_ != 0) {
             forget();
             information_ = 1;

@@ -66,6 +66,7 @@ struct CoulombFriction {
 template <int count>
 struct StribeckFriction {
     static constexpr bool at_joint = true;
+    static constexpr int faded = 40; ///< exp(-40) is nothing, and beyond 87 a float has denormals
 
     template <class Scalar>
     struct Constants {
@@ -80,8 +81,12 @@ struct StribeckFriction {
         using std::tanh;
         const Scalar& velocity = xi[3 * constants.row[column] + 1];
         const Scalar ratio = velocity / constants.stribeck_velocity[column];
+        const Scalar square = ratio * ratio;
+        if (square > faded) {
+            return Scalar(0);
+        }
         const Scalar sign = tanh(Scalar(velocity / constants.sign_velocity[column]));
-        const Scalar fading = exp(Scalar(-ratio * ratio));
+        const Scalar fading = exp(Scalar(-square));
         return sign * fading;
     }
 };

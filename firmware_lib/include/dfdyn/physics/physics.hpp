@@ -27,6 +27,9 @@ struct Physics {
         typename Arm::template Constants<Scalar> chain;
         typename MotionType::template Constants<Scalar, Arm::joints> motion;
         [[no_unique_address]] EffectConstants<Scalar> effects;
+        /// |q|, |q̇|, |q̈| of each joint beyond which there is no row (rad, m, s): one glitch of an encoder
+        /// would weigh more than all that was learned.
+        Storage<Scalar, product(3, Arm::joints)> motion_limit;
         Storage<std::int32_t, p> selected; ///< indices of the selected columns among all, ascending
         Storage<Scalar, p> column_scale;   ///< the parameter that is learned is the physical one / scale
         Storage<Scalar, Arm::outputs> output_gain; ///< output per N·m (N): 1, or 1 / torque constant (A/N·m)
@@ -79,16 +82,17 @@ struct Physics {
             motion_.push(sample);
         }
 
-        /// Writes ψ (outputs × p, row-major, in the outputs' units) of the newest sample. False if anything
-        /// of it is not finite; ψ is then void.
+        /// Writes ψ (outputs × p, row-major, in the outputs' units) of the newest sample. False, and ψ void,
+        /// if its motion is beyond the limits or no number.
         bool evaluate(Scalar* psi) noexcept {
             motion_.evaluate(xi_.data());
-            evaluate_rows(*constants_, sizes_, xi_.data(), psi);
-            bool finite = true;
-            for (int i = 0; i < sizes_.output_count * sizes_.column_count; ++i) {
-                finite = finite && std::isfinite(psi[i]);
+            for (int i = 0; i < 3 * sizes_.joint_count; ++i) {
+                if (!(std::abs(xi_[i]) <= constants_->motion_limit[i])) {
+                    return false;
+                }
             }
-            return finite;
+            evaluate_rows(*constants_, sizes_, xi_.data(), psi);
+            return true;
         }
 
         /// Multiply-adds of `evaluate`, at most.

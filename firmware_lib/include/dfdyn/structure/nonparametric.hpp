@@ -11,22 +11,11 @@ namespace dfdyn {
 /// learned by one learner.
 ///
 /// A structure is a type that names the physics it uses (`NoPhysics` if none), the constants of its learner,
-/// and a `Regression`: what an estimator predicts with and learns. In a regression all outputs are in units
-/// of their noise and about their offset.
-///  - `push`, `ready`, `restart`: the window of past positions.
-///  - `evaluate`: computes the present columns; false if they mean nothing.
-///  - `predict(means)` at the present columns; `variances(ratios)`: 1 + the variance of each mean there, of
-///  the
-///    last whole state.
-///  - `begin(targets)`: takes the present columns in, after `predict`, when `idle()`; `advance(budget)` works
-///    on them and says whether nothing is left to do; `sample_pending()`; `last_ratios(ratios)`: as
-///    `variances` gave before the last sample learned.
-///  - `weight_count`, `copy_weights`, `predict_with(weights, means)`: what has been learned as plain numbers,
-///  to
-///    predict with later.
+/// a `Regression` (see `RegressionOf`), and a number that tells it from the others.
 template <template <class Scalar, int columns, int outputs> class LearnerForm = UdCovariance>
 struct Nonparametric {
     using Physics = NoPhysics;
+    static constexpr int identity = 1;
 
     template <class Scalar, int columns, int outputs>
     using Constants = typename LearnerForm<Scalar, columns, outputs>::Constants;
@@ -84,7 +73,9 @@ struct Nonparametric {
 
         [[nodiscard]] static constexpr Cost cost(const typename Model::Sizes& sizes) noexcept {
             Cost cost = Learner::cost(sizes.column_count(), sizes.output_count);
-            cost.predict += FeatureColumns<Model>::cost(sizes);
+            // The learner predicts once more, for the innovation.
+            cost.predict +=
+                FeatureColumns<Model>::cost(sizes) + std::int64_t{sizes.column_count()} * sizes.output_count;
             return cost;
         }
 

@@ -13,6 +13,7 @@ namespace dfdyn {
 template <class PhysicsType>
 struct Parametric {
     using Physics = PhysicsType;
+    static constexpr int identity = 2;
 
     template <class Scalar, int columns, int outputs>
     using Constants = LearnerConstants<Scalar, Physics::columns, 1>;

@@ -3,6 +3,7 @@
 
 #include "dfdyn/storage.hpp"
 
+#include <cmath>
 #include <cstdint>
 
 namespace dfdyn {
@@ -23,19 +24,21 @@ class PhysicsColumns {
     [[nodiscard]] bool ready() const noexcept { return map_.ready(); }
     void push(const typename Model::Sample& sample) noexcept { map_.push(sample); }
 
-    /// False if a row is not finite; ψ is then void.
+    /// False if the motion is beyond the physics' limits, or a row not finite; ψ is then void.
     bool evaluate() noexcept {
         if (!map_.evaluate(psi_.data())) {
             return false;
         }
+        bool finite = true;
         const int parameters = constants_->sizes.physics.column_count;
         for (int k = 0; k < constants_->sizes.output_count; ++k) {
             const Scalar precision = 1 / constants_->output_noise_std[k];
             for (int c = 0; c < parameters; ++c) {
                 psi_[k * parameters + c] *= precision;
+                finite = finite && std::isfinite(psi_[k * parameters + c]);
             }
         }
-        return true;
+        return finite;
     }
 
     /// ψ of the last `evaluate`, m × p.

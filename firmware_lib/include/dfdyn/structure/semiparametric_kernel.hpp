@@ -12,6 +12,7 @@ namespace dfdyn {
 template <class PhysicsType>
 struct SemiparametricKernel {
     using Physics = PhysicsType;
+    static constexpr int identity = 4;
 
     template <class Scalar, int columns, int outputs>
     using Constants = BlockArrowConstants<Scalar, columns, Physics::columns, outputs>;

@@ -19,6 +19,7 @@ template <class PhysicsType,
           template <class Scalar, int columns, int outputs> class LearnerForm = UdCovariance>
 struct SemiparametricMean {
     using Physics = PhysicsType;
+    static constexpr int identity = 3;
 
     template <class Scalar, int columns, int outputs>
     using Constants =

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/budget.hpp"
+
+#include <concepts>
+
+namespace dfdyn {
+
+/// What an estimator predicts with and learns: the part of a model that its structure brings. All outputs are
+/// in units of their noise and about their offset.
+///  - `push`, `ready`, `restart`: the window of past positions.
+///  - `evaluate`: computes the present columns; false if they mean nothing.
+///  - `predict(means)` at the present columns, m values; `variances(ratios)`: 1 + the variance of each mean
+///  there.
+///  - `begin(targets)`: takes the present columns in, after `predict`, when `idle()`; `advance(budget)` works
+///  on
+///    them and says whether nothing is left to do; `sample_pending()`: they are not learned yet;
+///    `last_ratios(ratios)`: as `variances` gave before the last sample learned.
+///  - `weight_count`, `copy_weights` (when idle), `predict_with(weights, means)`: what has been learned as
+///  plain
+///    numbers, to predict with later.
+///  - `reset()`: back to the start, all of it.
+template <class R, class Scalar, class Sample>
+concept RegressionOf = requires(R regression, const R& constant, Scalar* values, const Scalar* numbers,
+                                const Sample& sample, Budget& budget) {
+    regression.reset();
+    regression.restart();
+    regression.push(sample);
+    { constant.ready() } -> std::same_as<bool>;
+    { regression.evaluate() } -> std::same_as<bool>;
+    regression.predict(values);
+    constant.variances(values);
+    constant.last_ratios(values);
+    { constant.idle() } -> std::same_as<bool>;
+    { constant.sample_pending() } -> std::same_as<bool>;
+    regression.begin(numbers);
+    { regression.advance(budget) } -> std::same_as<bool>;
+    { constant.weight_count() } -> std::same_as<int>;
+    constant.copy_weights(values);
+    constant.predict_with(numbers, values);
+};
+
+} // namespace dfdyn
