@@ -9,8 +9,8 @@
 
 #include <Eigen/QR>
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace dfdyn::tests {
 
@@ -51,7 +51,7 @@ MatrixXd physics_columns(const tools::TrainedModel& model, const tools::Training
 
 DenseRegression::DenseRegression(const tools::TrainedModel& model, const tools::TrainingData& data)
     : weight_variance_(model.outputs.prior_variance) {
-    tools::RowList usable = tools::usable_rows(
+    const tools::RowList usable = tools::usable_rows(
         data.gap_before, std::max(model.input.lags, model.physics ? model.physics->motion.lags : 0));
     const Index samples = data.outputs.rows();
     const Index outputs = data.outputs.cols();

@@ -2,17 +2,14 @@
 // Every model × input × tuning of the paper: trained, run by the embedded estimator in float, and compared
 // with the solution of its regression over all samples so far at once, in double.
 #include "tests/acceptance/dense_solution.hpp"
+#include "tests/acceptance/model_table.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/temporary_directory.hpp"
 #include "tools/host/host_estimator.hpp"
 #include "tools/physics/model_training.hpp"
-#include "tools/robot/read_robot.hpp"
-#include "tools/simulation/simulation_csv.hpp"
 #include "tools/training/recorded_data.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -22,106 +19,15 @@
 namespace {
 
 using namespace dfdyn::tools;
+using dfdyn::tests::Combination;
 using dfdyn::tests::DenseRegression;
 using dfdyn::tests::DenseSolution;
+using dfdyn::tests::SimulatedRecording;
 using Eigen::Index;
 
 constexpr std::size_t training_rows = 250;
 constexpr std::size_t online_rows = 200;
 constexpr std::size_t held_out_rows = 30; ///< after each checkpoint
-
-Robot small_arm() {
-    ReadRobotOptions options;
-    options.tip = "tool";
-    return read_robot(DFDYN_TEST_DATA_DIR "/robots/small_arm/small_arm.urdf", options);
-}
-
-/// What the sensors of the small arm show in a few seconds of motion.
-class SimulatedRecording {
-  public:
-    explicit SimulatedRecording(const Robot& robot) {
-        const Scenario scenario = read_scenario(DFDYN_TEST_DATA_DIR "/scenarios/small_arm.json", robot);
-        std::ofstream file(path());
-        SimulatedRecordingCsv csv(file, scenario, robot.joints.size());
-        Simulation simulation(robot, scenario);
-        for (std::size_t row = 0; row < scenario.recording.samples; ++row) {
-            csv.write(simulation.next());
-        }
-    }
-
-    Recording rows(OutputKind outputs, std::size_t first, std::size_t last) const {
-        ReadOptions options;
-        options.outputs = outputs;
-        options.velocity = options.acceleration = true;
-        options.rows = {first, last};
-        return read_recording(path(), options);
-    }
-
-  private:
-    std::filesystem::path path() const { return directory_.path() / "run.csv"; }
-
-    dfdyn::tests::TemporaryDirectory directory_;
-};
-
-struct Combination {
-    ModelClass model;
-    InputKind input;
-    DerivativeSource derivatives;
-    HyperMethod hyper;
-};
-
-std::string name(const Combination& one) {
-    const char* const inputs[] = {"STD", "DF", "DFW", "DFR", "DFSR"};
-    const char* const models[] = {"NP", "P", "SP", "SP2", "SPK"};
-    return std::string(models[static_cast<int>(one.model)]) + " " + inputs[static_cast<int>(one.input)] +
-           (one.input == InputKind::STD && one.derivatives == DerivativeSource::measured ? " (measured)"
-                                                                                         : "") +
-           (one.hyper == HyperMethod::ML ? " ML" : " CV");
-}
-
-/// CV exists for NP, P and SP2 with STD, DF and DFSR; STD with derivatives measured and estimated.
-std::vector<Combination> table() {
-    std::vector<Combination> rows;
-    for (const ModelClass model :
-         {ModelClass::NP, ModelClass::P, ModelClass::SP, ModelClass::SP2, ModelClass::SPK}) {
-        for (const InputKind input :
-             {InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR}) {
-            const bool cv = model != ModelClass::SP && model != ModelClass::SPK && input != InputKind::DFW &&
-                            input != InputKind::DFR;
-            for (const HyperMethod hyper : {HyperMethod::ML, HyperMethod::CV}) {
-                if (hyper == HyperMethod::CV && !cv) {
-                    continue;
-                }
-                rows.push_back({model, input, DerivativeSource::estimated, hyper});
-                if (input == InputKind::STD) {
-                    rows.push_back({model, input, DerivativeSource::measured, hyper});
-                }
-            }
-        }
-    }
-    return rows;
-}
-
-ModelTraining training_of(const Combination& one, OutputKind outputs, const Robot& robot) {
-    ModelTraining training;
-    training.derivatives = one.derivatives;
-    TrainingOptions& options = training.options;
-    options.model = one.model;
-    options.input = one.input;
-    options.hyper = one.hyper;
-    options.lags = 6;
-    options.feature_count = 15;
-    options.likelihood_rows = 80;
-    options.starts = 1;
-    options.evaluations_per_start = 30;
-    options.refinement_evaluations = 0;
-    options.threads = 1;
-    training.physics = RobotPhysics{robot, {"ft_bias"}, 0.1, {}};
-    if (outputs == OutputKind::joint_torque) {
-        training.physics->effects = {"viscous_friction", "coulomb_friction", "torque_offset"};
-    }
-    return training;
-}
 
 /// The samples of all recordings with the derivatives that the model computes itself.
 PreparedTraining prepared_for(const TrainedModel& model, const ModelTraining& training,
@@ -277,9 +183,9 @@ constexpr double deviation_tolerance = 2e-5;
 constexpr double start_tolerance = 1e-8;
 
 void check_table(OutputKind outputs) {
-    const Robot robot = small_arm();
+    const Robot robot = dfdyn::tests::small_arm();
     const SimulatedRecording recording(robot);
-    for (const Combination& one : table()) {
+    for (const Combination& one : dfdyn::tests::table()) {
         CAPTURE(name(one));
         const Disagreement worst = Row(one, outputs, robot, recording).run({60, online_rows - held_out_rows});
         CHECK(worst.prediction < prediction_tolerance);
