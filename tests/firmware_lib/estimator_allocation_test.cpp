@@ -34,18 +34,23 @@ std::vector<typename Model::Sample> samples_of_every_kind(std::mt19937_64& engin
     return samples;
 }
 
-/// Everything that can be asked of a learner.
+/// Everything that can be asked of a regression.
 template <class Model>
 void use(const Estimator<Model>& estimator) {
     typename Model::Scalar means[Model::outputs];
-    const auto& learner = estimator.regression().learner();
-    learner.predict(estimator.regression().columns(), means);
-    static_cast<void>(learner.variance(estimator.regression().columns()));
-    static_cast<void>(learner.parameter_variance(1));
-    static_cast<void>(learner.weights(0));
-    static_cast<void>(learner.last_ratio());
-    static_cast<void>(learner.idle() || learner.sample_pending());
+    typename Model::Scalar weights[Model::outputs * Model::columns + Model::parameters];
+    const auto& regression = estimator.regression();
+    regression.variances(means);
+    regression.last_ratios(means);
+    regression.copy_weights(weights);
+    regression.predict_with(weights, means);
+    static_cast<void>(regression.idle() || regression.sample_pending());
     static_cast<void>(estimator.counters().ticks + name(Reason::gap)[0]);
+    if constexpr (requires { regression.learner().last_ratio(); }) {
+        regression.learner().predict(regression.columns(), means);
+        static_cast<void>(regression.learner().variance(regression.columns()));
+        static_cast<void>(regression.learner().parameter_variance(1));
+    }
 }
 
 /// Calls every function of an estimator; returns the heap calls on the way.
@@ -70,9 +75,8 @@ HeapCalls heap_calls(const typename Model::Constants& constants,
     return calls;
 }
 
-template <class Scalar, class Input, template <class, int, int> class Form>
+template <class Model>
 void check(std::mt19937_64& engine) {
-    using Model = TestModel<Scalar, Input, 4, Form>;
     const auto constants = make_constants<Model>(engine, 0.99);
     const HeapCalls calls = heap_calls<Model>(constants, samples_of_every_kind<Model>(engine));
     CHECK(calls.allocations == 0);
@@ -85,8 +89,21 @@ TEMPLATE_TEST_CASE("nothing in an estimator's life calls the heap", "", Derivati
                    DerivativeFreeWeighted<5>, (DerivativeFreeReduced<5, 3>), DerivativeFreeStructured<5>,
                    DerivativeFreeStructuredRecursive<5>, Standard<5>, StandardMeasured) {
     DFDYN_SEEDED_ENGINE(engine);
-    check<float, TestType, UdCovariance>(engine);
-    check<double, TestType, UdCovariance>(engine);
-    check<float, TestType, CholeskyInformation>(engine);
-    check<double, TestType, CholeskyInformation>(engine);
+    check<TestModel<float, TestType, 4, UdCovariance>>(engine);
+    check<TestModel<double, TestType, 4, UdCovariance>>(engine);
+    check<TestModel<float, TestType, 4, CholeskyInformation>>(engine);
+    check<TestModel<double, TestType, 4, CholeskyInformation>>(engine);
+}
+
+TEMPLATE_TEST_CASE("nothing in the life of an estimator with physics calls the heap", "",
+                   (DerivativeFreeReduced<5, 3>), DerivativeFreeStructuredRecursive<5>, Standard<5>,
+                   StandardMeasured) {
+    DFDYN_SEEDED_ENGINE(engine);
+    check<TestParametric<float, TestType>>(engine);
+    check<TestParametric<double, TestType>>(engine);
+    check<TestMean<float, TestType, 4>>(engine);
+    check<TestKernel<float, TestType, 4>>(engine);
+    check<TestKernel<double, TestType, 4>>(engine);
+    check<TestKernel<float, DerivativeFree<5>, 4, TestType>>(
+        engine); // features and physics see different inputs
 }

@@ -20,6 +20,11 @@ using UdFloat = ModelOf<float, UdCovariance>;
 using UdDouble = ModelOf<double, UdCovariance>;
 using InformationFloat = ModelOf<float, CholeskyInformation>;
 using InformationDouble = ModelOf<double, CholeskyInformation>;
+using Parametric = TestParametric<float>;
+using ParametricDouble = TestParametric<double, StandardMeasured>;
+using Mean = TestMean<float, DerivativeFreeReduced<6, 3>, 15>;
+using Kernel = TestKernel<float, DerivativeFreeReduced<6, 3>, 15>;
+using KernelDouble = TestKernel<double, DerivativeFree<6>, 15, StandardMeasured>;
 
 template <class Model>
 constexpr Cost cost_of() {
@@ -30,16 +35,6 @@ constexpr Cost cost_of() {
 bool taken(const Status& status) {
     return status.predicted() &&
            (status.learning == Reason::ok || status.learning == Reason::learning_in_progress);
-}
-
-template <class Model>
-bool same_weights(const Estimator<Model>& a, const Estimator<Model>& b) {
-    return std::equal(a.regression().learner().weights(0),
-                      a.regression().learner().weights(0) + Model::columns,
-                      b.regression().learner().weights(0)) &&
-           std::equal(a.regression().learner().weights(1),
-                      a.regression().learner().weights(1) + Model::columns,
-                      b.regression().learner().weights(1));
 }
 
 template <class Scalar, int m>
@@ -55,7 +50,8 @@ double largest_difference(const Storage<Scalar, m>& a, const Storage<Scalar, m>&
 
 // The whole estimator learns exactly the samples that the sliced one took in.
 TEMPLATE_TEST_CASE("random budgets learn the same as unlimited ones, bit for bit", "", UdFloat, UdDouble,
-                   InformationFloat, InformationDouble) {
+                   InformationFloat, InformationDouble, Parametric, ParametricDouble, Mean, Kernel,
+                   KernelDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine, 0.99);
     Estimator<TestType> sliced(constants);
@@ -70,9 +66,9 @@ TEMPLATE_TEST_CASE("random budgets learn the same as unlimited ones, bit for bit
             sliced.tick(sample, to_the_end ? Budget::unlimited() : Budget{operations(engine)});
         sample.output_valid = taken(estimate.status);
         whole.tick(sample, Budget::unlimited());
-        if (sliced.regression().learner().idle()) {
+        if (sliced.regression().idle()) {
             ++compared;
-            different += same_weights(sliced, whole) ? 0 : 1;
+            different += weights_of(sliced) == weights_of(whole) ? 0 : 1;
         }
     }
     CHECK(compared >= 300);
@@ -81,7 +77,7 @@ TEMPLATE_TEST_CASE("random budgets learn the same as unlimited ones, bit for bit
 }
 
 TEMPLATE_TEST_CASE("while a sample is being learned the estimates are those of before", "", UdFloat, UdDouble,
-                   InformationFloat, InformationDouble) {
+                   InformationFloat, InformationDouble, Mean) {
     DFDYN_SEEDED_ENGINE(engine);
     const double rounding = std::is_same_v<typename TestType::Scalar, float> ? 1e-4 : 1e-12;
     const auto constants = make_constants<TestType>(engine, 0.999);
@@ -94,7 +90,7 @@ TEMPLATE_TEST_CASE("while a sample is being learned the estimates are those of b
     int busy = 0;
     for (int t = 51; t < 500; ++t) {
         auto sample = moving_sample<TestType>(t, engine);
-        const bool idle = estimator.regression().learner().idle();
+        const bool idle = estimator.regression().idle();
         const auto estimate = estimator.tick(sample, Budget{cost_of<TestType>().largest_step / 3});
         sample.output_valid = false;
         const auto expected = before.tick(sample, Budget::unlimited());
@@ -110,7 +106,8 @@ TEMPLATE_TEST_CASE("while a sample is being learned the estimates are those of b
     CHECK(busy > 100);
 }
 
-TEMPLATE_TEST_CASE("samples that arrive meanwhile are skipped, and counted", "", UdFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("samples that arrive meanwhile are skipped, and counted", "", UdFloat, InformationDouble,
+                   Parametric, Mean, Kernel) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine);
     Estimator<TestType> estimator(constants);
@@ -123,7 +120,7 @@ TEMPLATE_TEST_CASE("samples that arrive meanwhile are skipped, and counted", "",
         const Counters& counters = estimator.counters();
         const auto count_of = [&](Reason reason) { return counters.reasons[static_cast<int>(reason)]; };
         REQUIRE(counters.ticks == static_cast<std::uint32_t>(t + 1));
-        REQUIRE(counters.learned + (estimator.regression().learner().sample_pending() ? 1 : 0) == begun);
+        REQUIRE(counters.learned + (estimator.regression().sample_pending() ? 1 : 0) == begun);
         REQUIRE(begun == count_of(Reason::ok) + count_of(Reason::learning_in_progress));
         REQUIRE(counters.predicted == begun + count_of(Reason::learner_busy) + count_of(Reason::no_budget));
     }
@@ -132,7 +129,8 @@ TEMPLATE_TEST_CASE("samples that arrive meanwhile are skipped, and counted", "",
 }
 
 TEMPLATE_TEST_CASE("a budget of the largest step always gets on, a smaller one never finishes", "", UdFloat,
-                   UdDouble, InformationFloat, InformationDouble) {
+                   UdDouble, InformationFloat, InformationDouble, Parametric, ParametricDouble, Mean, Kernel,
+                   KernelDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine);
     Estimator<TestType> enough(constants);
@@ -146,19 +144,18 @@ TEMPLATE_TEST_CASE("a budget of the largest step always gets on, a smaller one n
     const auto steps = static_cast<std::uint32_t>(2 * cost.learn / cost.largest_step + 1);
     CHECK(enough.counters().learned >= 494 / steps);
     CHECK(too_little.counters().learned == 0);
-    CHECK(std::all_of(too_little.regression().learner().weights(0),
-                      too_little.regression().learner().weights(0) + TestType::columns,
-                      [](auto weight) { return weight == 0; }));
+    CHECK(std::ranges::all_of(weights_of(too_little), [](auto weight) { return weight == 0; }));
 }
 
-TEST_CASE("without any budget a sample is predicted and not taken in") {
+TEMPLATE_TEST_CASE("without any budget a sample is predicted and not taken in", "", UdFloat, Parametric, Mean,
+                   Kernel) {
     DFDYN_SEEDED_ENGINE(engine);
-    const auto constants = make_constants<UdFloat>(engine);
-    Estimator<UdFloat> estimator(constants);
+    const auto constants = make_constants<TestType>(engine);
+    Estimator<TestType> estimator(constants);
     const auto before = snapshot_of(estimator);
     for (int t = 0; t < 20; ++t) {
         const Budget budget = t % 2 == 0 ? Budget::predict_only() : Budget{-5};
-        const auto estimate = estimator.tick(moving_sample<UdFloat>(t, engine), budget);
+        const auto estimate = estimator.tick(moving_sample<TestType>(t, engine), budget);
         CHECK((t < 6 || estimate.status.reason() == Reason::no_budget));
         CHECK((t < 6 || std::isfinite(estimate.standard_deviation[0])));
     }
@@ -166,19 +163,20 @@ TEST_CASE("without any budget a sample is predicted and not taken in") {
     CHECK(estimator.counters().learned == 0);
 }
 
-TEST_CASE("a sample in hand is learned on in ticks that are refused or blind") {
+TEMPLATE_TEST_CASE("a sample in hand is learned on in ticks that are refused or blind", "", UdFloat,
+                   Parametric, Mean, Kernel) {
     DFDYN_SEEDED_ENGINE(engine);
-    const auto constants = make_constants<UdFloat>(engine);
-    Estimator<UdFloat> estimator(constants);
-    constexpr Cost cost = cost_of<UdFloat>();
+    const auto constants = make_constants<TestType>(engine);
+    Estimator<TestType> estimator(constants);
+    constexpr Cost cost = cost_of<TestType>();
     for (int t = 0; t <= 6; ++t) {
-        estimator.tick(moving_sample<UdFloat>(t, engine), Budget{cost.largest_step - 1});
+        estimator.tick(moving_sample<TestType>(t, engine), Budget{cost.largest_step - 1});
     }
-    REQUIRE(estimator.regression().learner().sample_pending());
-    auto refused = moving_sample<UdFloat>(7, engine);
+    REQUIRE(estimator.regression().sample_pending());
+    auto refused = moving_sample<TestType>(7, engine);
     refused.position[0] = 1e9F;
     estimator.tick(refused, Budget::unlimited());
-    CHECK(estimator.regression().learner().idle());
+    CHECK(estimator.regression().idle());
     CHECK(estimator.counters().learned == 1);
 }
 

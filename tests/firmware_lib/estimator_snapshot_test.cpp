@@ -22,6 +22,10 @@ using UdFloat = ModelOf<float, UdCovariance>;
 using UdDouble = ModelOf<double, UdCovariance>;
 using InformationFloat = ModelOf<float, CholeskyInformation>;
 using InformationDouble = ModelOf<double, CholeskyInformation>;
+using Parametric = TestParametric<float>;
+using Mean = TestMean<float, DerivativeFreeReduced<6, 3>, 5>;
+using Kernel = TestKernel<float, DerivativeFreeReduced<6, 3>, 5>;
+using KernelDouble = TestKernel<double, DerivativeFreeReduced<6, 3>, 5>;
 
 /// An estimator with a past; `tiny` leaves a sample half learned.
 template <class Model>
@@ -70,12 +74,13 @@ struct Pair {
 } // namespace
 
 TEMPLATE_TEST_CASE("a restored estimator goes on as the original does, once its window has filled", "",
-                   UdFloat, UdDouble, InformationFloat, InformationDouble) {
+                   UdFloat, UdDouble, InformationFloat, InformationDouble, Parametric, Mean, Kernel,
+                   KernelDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     for (const bool half_learned : {false, true}) {
         CAPTURE(half_learned);
         Pair<TestType> pair(engine, half_learned);
-        REQUIRE(pair.original.regression().learner().sample_pending() == half_learned);
+        REQUIRE(pair.original.regression().sample_pending() == half_learned);
         REQUIRE(restored(pair.other, snapshot_of(pair.original)) == SnapshotResult::ok);
         CHECK((snapshot_of(pair.other) == snapshot_of(pair.original)));
         int compared = 0;
@@ -95,7 +100,7 @@ TEMPLATE_TEST_CASE("a restored estimator goes on as the original does, once its 
 }
 
 TEMPLATE_TEST_CASE("every changed byte and every truncation of a snapshot is rejected whole", "", UdFloat,
-                   UdDouble, InformationFloat, InformationDouble) {
+                   UdDouble, InformationFloat, InformationDouble, Parametric, Mean, Kernel, KernelDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     Pair<TestType> pair(engine, true);
     const Bytes bytes = snapshot_of(pair.original);
@@ -111,7 +116,7 @@ TEMPLATE_TEST_CASE("every changed byte and every truncation of a snapshot is rej
 }
 
 TEMPLATE_TEST_CASE("no number of a snapshot may be missing, whatever the checksum says", "", UdFloat,
-                   UdDouble, InformationFloat, InformationDouble) {
+                   UdDouble, InformationFloat, InformationDouble, Parametric, Mean, Kernel, KernelDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     Pair<TestType> pair(engine, true);
     const Bytes bytes = snapshot_of(pair.original);

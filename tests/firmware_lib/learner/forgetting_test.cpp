@@ -11,7 +11,8 @@ namespace {
 
 using dfdyn::Forgetting;
 
-constexpr double payback = 20; // nats given away per nat that a sample brings, as documented
+/// Nats given away per nat that a sample brings, as documented, by 40 parameters or more.
+constexpr double payback = 20;
 
 /// Nats per parameter that were forgotten over `samples` samples, each of which brought nothing.
 template <class Scalar>
@@ -75,7 +76,7 @@ TEMPLATE_TEST_CASE("excitation is not saved up beyond one horizon, and restart f
 
 TEST_CASE("what is forgotten is never more than was brought in, and as much as that allows") {
     DFDYN_SEEDED_ENGINE(engine);
-    constexpr int parameters = 30;
+    constexpr int parameters = 40;
     constexpr double factor = 0.99;
     const double price = -parameters * std::log(factor);
     std::exponential_distribution<double> brought(1 / (0.9 * price / payback));
@@ -92,6 +93,26 @@ TEST_CASE("what is forgotten is never more than was brought in, and as much as t
     }
     CHECK(paid_in_full > 1000); // both branches were taken
     CHECK(paid_in_full < 9000);
+}
+
+// Of p parameters the rows of an instant always show the same directions; v is their variance. What is
+// forgotten of all p is then bounded by what these directions learn, about log(ticks (1 - factor)) each.
+TEMPLATE_TEST_CASE("a standstill stops forgetting, however many rows an instant has", "", float, double) {
+    const struct { int parameters, rows; } cases[] = {{10, 2}, {23, 6}, {60, 6}, {16, 1}, {64, 1}};
+    for (const auto& one : cases) {
+        CAPTURE(one.parameters, one.rows);
+        const double factor = 0.999;
+        Forgetting<TestType> forgetting(static_cast<TestType>(factor), one.parameters, one.rows);
+        double variance = 1 - factor;
+        double nats = 0;
+        for (int t = 0; t < 100'000; ++t) {
+            const auto ratio = static_cast<TestType>(std::pow(1 + variance, one.rows));
+            const auto applied = static_cast<double>(forgetting.factor_after(ratio));
+            nats -= std::log(applied);
+            variance = variance / (1 + variance) / applied;
+        }
+        CHECK(nats < 8); // of 100 at the full factor
+    }
 }
 
 TEST_CASE("the parameters come in turn") {

@@ -3,6 +3,7 @@
 
 #include "dfdyn/dfdyn.hpp"
 #include "tests/firmware_lib/support/positions.hpp"
+#include "tests/firmware_lib/support/two_link_arm.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,6 +11,7 @@
 #include <cstddef>
 #include <limits>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 namespace dfdyn::tests {
@@ -19,15 +21,18 @@ template <class Scalar, class Input = DerivativeFreeReduced<6, 3>, int d = 8,
           template <class, int, int> class Form = UdCovariance>
 using TestModel = Model<Scalar, Joints<2, 2>, Input, RandomFourier<d>, Nonparametric<Form>>;
 
-/// Where a two-jointed arm is at a time, and the torque that takes it there.
-struct ArmState {
-    std::array<double, 2> position, velocity, acceleration;
+/// The physics of the test arm: rigid bodies, viscous friction, offsets.
+template <class Motion = DerivativeFreeReduced<6, 3>>
+using TestPhysics = Physics<Motion, two_link_column_count, ViscousFriction<2>, OutputOffset<2>>;
 
-    [[nodiscard]] double torque(std::size_t joint) const {
-        return 2 * std::sin(position[joint]) + 0.3 * std::cos(position[0] + position[1]) +
-               0.2 * velocity[joint] + 0.05 * acceleration[joint];
-    }
-};
+/// Models with that physics.
+template <class Scalar, class Motion = DerivativeFreeReduced<6, 3>>
+using TestParametric = Model<Scalar, Chain<2>, NoInput, NoFeatures, Parametric<TestPhysics<Motion>>>;
+template <class Scalar, class Input = DerivativeFreeReduced<6, 3>, int d = 8, class Motion = Input>
+using TestMean = Model<Scalar, Chain<2>, Input, RandomFourier<d>, SemiparametricMean<TestPhysics<Motion>>>;
+template <class Scalar, class Input = DerivativeFreeReduced<6, 3>, int d = 8, class Motion = Input>
+using TestKernel =
+    Model<Scalar, Chain<2>, Input, RandomFourier<d>, SemiparametricKernel<TestPhysics<Motion>>>;
 
 inline ArmState moving_arm(double time_s) {
     ArmState arm{};
@@ -48,18 +53,29 @@ inline ArmState standing_arm(double time_s) { return {moving_arm(time_s).positio
 
 inline constexpr double torque_noise = 0.05;
 
+/// The torques of the arm that a model is tested on: that of its physics where it has one, or the plain one.
+template <class Model>
+std::array<double, 2> torques_of(const ArmState& arm) {
+    if constexpr (Model::parameters == 0) {
+        return {arm.torque(0), arm.torque(1)};
+    } else {
+        return two_link_torques(arm, Model::columns > 0);
+    }
+}
+
 /// What the sensors of an arm show, at tick number `tick`.
 template <class Model>
 typename Model::Sample sample_of(const ArmState& arm, std::int64_t tick, std::mt19937_64& engine) {
     using Scalar = typename Model::Scalar;
     std::normal_distribution<double> noise(0, torque_noise);
+    const std::array<double, 2> torques = torques_of<Model>(arm);
     typename Model::Sample sample{};
     sample.time_ns = tick * period_ns;
     sample.output_valid = true;
     for (std::size_t i = 0; i < 2; ++i) {
         const auto joint = static_cast<int>(i);
         sample.position[joint] = static_cast<Scalar>(arm.position[i]);
-        sample.output[joint] = static_cast<Scalar>(arm.torque(i) + noise(engine));
+        sample.output[joint] = static_cast<Scalar>(torques[i] + noise(engine));
         if constexpr (requires { sample.velocity; }) {
             sample.velocity[joint] = static_cast<Scalar>(arm.velocity[i]);
             sample.acceleration[joint] = static_cast<Scalar>(arm.acceleration[i]);
@@ -74,22 +90,21 @@ typename Model::Sample moving_sample(std::int64_t tick, std::mt19937_64& engine)
     return sample_of<Model>(moving_arm(period_s * static_cast<double>(tick)), tick, engine);
 }
 
-/// Constants of a model's input such that its elements are of size 1 on the moving arm.
-template <class Model>
-void set_input(typename Model::InputConstants& input) {
-    using Scalar = typename Model::Scalar;
+/// Constants of an input such that (q, q̇, q̈) of a joint come out times `sizes`; other elements as they are.
+template <class Input, class Constants>
+void set_input(Constants& input, const std::array<double, 3>& sizes) {
     constexpr double beta = 0.05; // so small that six lags leave nothing of the tail
     constexpr double alpha1 = (1 - beta) / period_s;
     constexpr double alpha2 = (1 - beta) / (period_s * period_s);
-    constexpr int per_joint = Model::Input::features_per_joint;
+    using Scalar = std::remove_cvref_t<decltype(input.scale[0])>;
     for (int element = 0; element < input.scale.size(); ++element) {
-        constexpr double sizes[] = {1, 0.3, 0.05};
-        input.scale[element] = static_cast<Scalar>(per_joint == 3 ? sizes[element % 3] : 1);
+        const auto row = static_cast<std::size_t>(element % 3);
+        input.scale[element] = static_cast<Scalar>(Input::features_per_joint == 3 ? sizes[row] : 1);
     }
     if constexpr (requires { input.rows; }) {
-        std::array<double, 3 * (Model::Input::lags + 1)> rows{};
-        structured_rows<double>({alpha1, alpha2, beta, beta}, Model::Input::lags, rows.data());
-        to_difference_form(rows.data(), 3, Model::Input::lags, rows.data());
+        std::array<double, 3 * (Input::lags + 1)> rows{};
+        structured_rows<double>({alpha1, alpha2, beta, beta}, Input::lags, rows.data());
+        to_difference_form(rows.data(), 3, Input::lags, rows.data());
         std::transform(rows.begin(), rows.end(), input.rows.begin(),
                        [](double value) { return static_cast<Scalar>(value); });
     }
@@ -101,6 +116,41 @@ void set_input(typename Model::InputConstants& input) {
     }
 }
 
+/// Prior and forgetting of all of a structure's learners.
+template <class Scalar, class Learner>
+void set_learner(Learner& learner, double forgetting_factor) {
+    const auto lambda = static_cast<Scalar>(forgetting_factor);
+    if constexpr (requires { learner.common; }) {
+        learner.features = {1000, lambda, nullptr};
+        learner.common = {100, lambda, nullptr};
+    } else if constexpr (requires { learner.residual; }) {
+        learner.residual = {1000, lambda, nullptr};
+    } else {
+        learner.prior_variance = 1000;
+        learner.forgetting_factor = lambda;
+    }
+}
+
+/// Chain and columns of a test model's physics; SP's fixed parameters are a bit off the true ones.
+template <class Model>
+void set_physics(typename Model::Constants& constants) {
+    using Scalar = typename Model::Scalar;
+    set_two_links(constants.physics.chain);
+    set_input<typename Model::Physics::Motion>(constants.physics.motion, {1, 1, 1});
+    constants.physics.effects = {{{{0, 1}}}, {{{0, 1}}}};
+    std::ranges::copy(two_link_columns, constants.physics.selected.begin());
+    for (Scalar& scale : constants.physics.column_scale) {
+        scale = 1;
+    }
+    constants.physics.output_gain = {{1, 1}};
+    if constexpr (requires { constants.learner.parameters_of_mean; }) {
+        for (std::size_t c = 0; c < two_link_parameters.size(); ++c) {
+            constants.learner.parameters_of_mean[static_cast<int>(c)] =
+                static_cast<Scalar>(1.1 * two_link_parameters[c]);
+        }
+    }
+}
+
 /// The constants of a test model with random frequencies.
 template <class Model>
 typename Model::Constants make_constants(std::mt19937_64& engine, double forgetting_factor = 1) {
@@ -108,19 +158,23 @@ typename Model::Constants make_constants(std::mt19937_64& engine, double forgett
     typename Model::Constants constants{};
     constants.identity = 0x1234;
     constants.gap_ns = 3 * period_ns / 2;
-    set_input<Model>(constants.input);
-    std::normal_distribution<double> normal(0, 0.4);
-    for (Scalar& frequency : constants.features.frequencies) {
-        frequency = static_cast<Scalar>(normal(engine));
+    if constexpr (Model::columns > 0) {
+        set_input<typename Model::Input>(constants.input, {1, 0.3, 0.05});
+        std::normal_distribution<double> normal(0, 0.4);
+        for (Scalar& frequency : constants.features.frequencies) {
+            frequency = static_cast<Scalar>(normal(engine));
+        }
+        constants.features.amplitude = static_cast<Scalar>(1 / std::sqrt(Model::Features::count));
     }
-    constants.features.amplitude = static_cast<Scalar>(1 / std::sqrt(Model::Features::count));
+    if constexpr (Model::parameters > 0) {
+        set_physics<Model>(constants);
+    }
     constants.output_offset = {{Scalar(0.25), Scalar(-0.5)}};
     constants.output_noise_std = {{Scalar(0.05), Scalar(0.08)}};
     constants.position_limit = {{10, 10}};
     constants.output_limit = {{100, 100}};
     constants.innovation_limit = std::numeric_limits<Scalar>::max(); // learn everything
-    constants.learner.prior_variance = 1000;
-    constants.learner.forgetting_factor = static_cast<Scalar>(forgetting_factor);
+    set_learner<Scalar>(constants.learner, forgetting_factor);
     return constants;
 }
 
@@ -132,6 +186,15 @@ std::vector<std::byte> snapshot_of(const Estimator& estimator) {
         bytes.clear();
     }
     return bytes;
+}
+
+/// What a regression has learned as plain numbers.
+template <class Model>
+std::vector<typename Model::Scalar> weights_of(const Estimator<Model>& estimator) {
+    std::vector<typename Model::Scalar> weights(
+        static_cast<std::size_t>(estimator.regression().weight_count()));
+    estimator.regression().copy_weights(weights.data());
+    return weights;
 }
 
 template <class Scalar, int m>

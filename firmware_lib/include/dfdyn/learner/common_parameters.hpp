@@ -15,7 +15,7 @@ class CommonParameters {
     using Constants = LearnerConstants<Scalar, p, 1>;
 
     CommonParameters(const Constants& constants, Extent<p> parameters, Extent<m> outputs) noexcept
-        : parameters_(parameters), outputs_(outputs), learner_(constants, parameters, {}),
+        : parameters_(parameters), outputs_(outputs), learner_(constants, parameters, {}, outputs),
           rows_(Rows::zeros(extent<product(m, p)>(outputs * parameters))), targets_(Targets::zeros(outputs)),
           variances_(Targets::zeros(outputs)), next_(outputs) {}
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace dfdyn {
@@ -11,16 +12,19 @@ namespace dfdyn {
 /// a sample that brings less makes the covariance grow along everything the motion does not touch, without
 /// bound while the arm stands still. So forgetting is paid for from an account: each sample pays in `payback`
 /// times the information log(1 + φ'Pφ) that it brought, and forgetting is reduced to what the account covers.
-/// While the motion excites at least 1/`payback` of the parameters, λ is applied exactly; at a standstill
-/// forgetting stops by itself. What grows nevertheless is bounded by the learner, which looks at one
-/// parameter per sample and takes its variance back to the prior's.
+/// While the motion excites at least 1/`payback` of the parameters, λ is applied exactly. A standstill
+/// excites as many directions as an instant has rows; so that these do not pay for all others, `payback` is
+/// 20 but at most half of the parameters per row (and at least 1), and forgetting stops by itself. What grows
+/// nevertheless is bounded by the learner, which looks at one parameter per sample and takes its variance
+/// back to the prior's.
 template <class Scalar>
 class Forgetting {
   public:
     /// 1 - 1/`parameters` ≤ `factor` ≤ 1: a shorter memory than one sample per parameter determines none of
-    /// them. `parameters` ≥ 1.
-    constexpr Forgetting(Scalar factor, int parameters) noexcept
-        : factor_(factor), parameters_(static_cast<Scalar>(parameters)) {
+    /// them. `parameters` ≥ 1, `rows` ≥ 1 in an instant.
+    constexpr Forgetting(Scalar factor, int parameters, int rows = 1) noexcept
+        : factor_(factor), parameters_(static_cast<Scalar>(parameters)),
+          payback_(std::clamp(parameters_ / (2 * static_cast<Scalar>(rows)), Scalar(1), Scalar(20))) {
         restart();
     }
 
@@ -38,7 +42,7 @@ class Forgetting {
         if (!active()) {
             return 1;
         }
-        account_ += payback * std::log(ratio);
+        account_ += payback_ * std::log(ratio);
         account_ = account_ < capacity() ? account_ : capacity();
         const Scalar price = parameters_ * -std::log(factor_);
         if (account_ >= price) {
@@ -64,13 +68,12 @@ class Forgetting {
     }
 
   private:
-    static constexpr Scalar payback = 20;
-
     /// log(1/λ)/(1-λ) ≈ 1 nat per parameter: what one horizon of forgetting costs.
     [[nodiscard]] constexpr Scalar capacity() const noexcept { return parameters_; }
 
     Scalar factor_;
     Scalar parameters_;
+    Scalar payback_;
     Scalar account_ = 0;
     int next_parameter_ = 0;
 };

@@ -19,9 +19,11 @@ class UdCovariance {
   public:
     using Constants = LearnerConstants<Scalar, p, m>;
 
-    UdCovariance(const Constants& constants, Extent<p> columns, Extent<m> outputs) noexcept
+    /// `rows_of_instant`: that `begin_row` is given before it forgets.
+    UdCovariance(const Constants& constants, Extent<p> columns, Extent<m> outputs,
+                 int rows_of_instant = 1) noexcept
         : constants_(&constants), columns_(columns), outputs_(outputs),
-          forgetting_(constants.forgetting_factor, columns), factor_(columns),
+          forgetting_(constants.forgetting_factor, columns, rows_of_instant), factor_(columns),
           weights_(Weights::zeros(extent<product(m, padded(p))>(outputs * padded(columns)))),
           innovation_(Outputs::zeros(outputs)) {
         reset();

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// Models with a robot from the command line: simulate, train, replay.
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+using Catch::Matchers::ContainsSubstring;
+using dfdyn::tests::file_content;
+using dfdyn::tests::TemporaryDirectory;
+
+struct Outcome {
+    int status;
+    std::string out;
+    std::string error;
+};
+
+const std::string urdf = DFDYN_TEST_DATA_DIR "/robots/small_arm/small_arm.urdf";
+const std::string robot = " --robot " + urdf + " --tip tool ";
+const std::string icub =
+    " --robot " DFDYN_TEST_DATA_DIR "/robots/icub_right_arm/icub_right_arm.urdf --base chest --tip r_hand ";
+
+/// The rows of a CSV file without the columns whose names begin with `prefix`.
+std::string without_columns(const std::string& csv, const std::string& prefix) {
+    std::istringstream lines(csv);
+    std::vector<bool> kept;
+    std::string result;
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream fields(line);
+        std::vector<std::string> values;
+        for (std::string field; std::getline(fields, field, ',');) {
+            values.push_back(field);
+        }
+        std::string row;
+        for (std::size_t column = 0; column < values.size(); ++column) {
+            if (kept.size() < values.size()) {
+                kept.push_back(!values[column].starts_with(prefix));
+            }
+            if (kept[column]) {
+                row.append(row.empty() ? "" : ",").append(values[column]);
+            }
+        }
+        result.append(row).append("\n");
+    }
+    return result;
+}
+
+/// A recording of the small arm and a place for models.
+class Bench {
+  public:
+    Bench() {
+        REQUIRE(call("simulate --robot " + urdf +
+                     " --scenario " DFDYN_TEST_DATA_DIR "/scenarios/small_arm.json -o " + path("run.csv"))
+                    .status == 0);
+        directory_.write("positions.csv", without_columns(file_content(path("run.csv")), "qd"));
+    }
+
+    std::string path(const std::string& name) const { return directory_.path() / name; }
+
+    Outcome call(const std::string& arguments) const {
+        const std::string command =
+            std::string(DFDYN_PROGRAM) + " " + arguments + " >" + path("out") + " 2>" + path("error");
+        const int status = std::system(command.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_content(path("out")),
+                file_content(path("error"))};
+    }
+
+    Outcome train(const std::string& arguments, const std::string& model = "model.json") const {
+        return call("train --log " + path("run.csv") +
+                    " --rows :300 --features 12 --starts 1 --likelihood-rows 60 --refinement 0 -o " +
+                    path(model) + " " + arguments);
+    }
+
+    Outcome replay(const std::string& log, const std::string& arguments = "") const {
+        return call("replay --model " + path("model.json") + " --log " + log + " " + arguments);
+    }
+
+    nlohmann::json model() const { return nlohmann::json::parse(file_content(path("model.json"))); }
+
+  private:
+    TemporaryDirectory directory_;
+};
+
+/// The largest of the figures behind `label` in a summary.
+double largest_figure(const std::string& summary, const std::string& label) {
+    std::istringstream line(summary.substr(summary.find(label) + label.size()));
+    std::string rest;
+    std::getline(line, rest);
+    std::istringstream figures(rest);
+    double largest = -1;
+    for (double value = 0; figures >> value;) {
+        largest = std::max(largest, value);
+    }
+    return largest;
+}
+
+struct Call {
+    std::string arguments;
+    double error_below; ///< nRMSE of every output over the second half, from what a run reaches, a third more
+};
+
+void check_refused(const Outcome& outcome, const std::string& words) {
+    CAPTURE(outcome.error);
+    CHECK(outcome.status == 2);
+    CHECK(outcome.out.empty());
+    const std::size_t message = outcome.error.find("dfdyn: ");
+    REQUIRE(message != std::string::npos);
+    CHECK(std::ranges::count(outcome.error.substr(message), '\n') == 1);
+    CHECK_THAT(outcome.error, ContainsSubstring(words));
+}
+
+} // namespace
+
+TEST_CASE("models with a robot are trained and replayed from one command each") {
+    const Bench bench;
+    const Call calls[] = {
+        {"--outputs tau --model P --input DFSR --effects viscous_friction,coulomb_friction,torque_offset",
+         0.08},
+        {"--outputs wrench --model P --own-motion --effects ft_bias --forgetting 0.999", 0.15},
+        {"--outputs tau --model P --input STD --derivatives measured --hyper CV", 0.40},
+        {"--outputs tau --model SP --input STD --derivatives estimated --effects viscous_friction", 0.13},
+        {"--outputs tau --model SP --input DFW --own-motion", 0.13},
+        {"--outputs tau --model SP2 --input DFSR --hyper CV", 0.09},
+        {"--outputs i --model SP --torque-constants 5,3 --effects coulomb_friction,rotor_inertia", 0.07},
+        {"--outputs i --model SPK --effects stribeck_friction,joint_spring", 0.10},
+        {"--outputs tau --model SPK --own-motion --prior unit --input DF", 0.12},
+        {"--outputs tau --model SPK --prior diagonal --input STD --derivatives measured", 0.10},
+        {"--outputs wrench --model SPK --effects ft_bias --ft-joint sensor", 0.12},
+    };
+    for (const Call& call : calls) {
+        CAPTURE(call.arguments);
+        const Outcome trained = bench.train(robot + call.arguments + " --header " + bench.path("model.hpp"));
+        CAPTURE(trained.error);
+        REQUIRE(trained.status == 0);
+        CHECK_THAT(trained.out, ContainsSubstring("parameters that the recording can tell apart"));
+        CHECK_FALSE(file_content(bench.path("model.hpp")).empty());
+        const Outcome replayed = bench.replay(bench.path("run.csv"), "--rows 300: -o " + bench.path("r.csv"));
+        CAPTURE(replayed.error);
+        REQUIRE(replayed.status == 0);
+        CHECK(std::ranges::count(file_content(bench.path("r.csv")), '\n') == 1 + 150);
+        CAPTURE(replayed.out);
+        CHECK(largest_figure(replayed.out, "nRMSE, second half") < call.error_below);
+    }
+}
+
+TEST_CASE("the same model is trained from a robot twice with the same bytes") {
+    const Bench bench;
+    const std::string arguments = robot + "--outputs tau --model SPK --own-motion --effects viscous_friction";
+    REQUIRE(bench.train(arguments).status == 0);
+    REQUIRE(bench.train(arguments, "again.json").status == 0);
+    CHECK(file_content(bench.path("model.json")) == file_content(bench.path("again.json")));
+    CHECK(bench.model()["structure"] == "SPK");
+}
+
+TEST_CASE("what a model with a robot cannot be trained with is refused in one line") {
+    const Bench bench;
+    const std::string tau = "--outputs tau --model ";
+    const struct {
+        std::string arguments, words;
+    } cases[] = {
+        {tau + "SP", "--model SP: expected --robot and --tip, found none"},
+        {robot + tau + "P --effects wind", "found \"wind\""},
+        {robot + tau + "P --effects viscous_friction,viscous_friction", "expected once, found twice"},
+        {robot + "--outputs wrench --model P --effects viscous_friction",
+         "effect \"viscous_friction\": expected one that a wrench can show (ft_bias)"},
+        {robot + tau + "P --effects ft_bias", "effect \"ft_bias\""},
+        {" --robot " + urdf + " --tip hand " + tau + "P", "expected a link \"hand\", found base"},
+        {" --robot none.urdf --tip hand " + tau + "P", "none.urdf"},
+        {icub + tau + "SPK", "expected a chain of 2 joints as the recording has, found 4"},
+        {robot + "--outputs wrench --ft-joint wrist_2 --model P", "wrist_2"},
+        {robot + tau + "SPK --hyper CV", "expected model NP, P or SP2 for cross validation, found SPK"},
+        {robot + tau + "NP --hyper CV --input DFR", "cross validation, found DFR"},
+        {robot + tau + "SP --input DFR --lags 4 --features-per-joint 6", "expected 1 to lags + 1 rows"},
+        {robot + tau + "SP --input DFR --features-per-joint 2", "expected at least 3 rows per joint"},
+        {robot + tau + "P --lags 1", "expected at least 2 lags, found 1"},
+        {robot + "--outputs i --model P --torque-constants 5", "expected 2, one per joint, found 1"},
+        {robot + "--outputs i --model P --torque-constants 5,-3", "expected positive numbers, found -3"},
+    };
+    for (const auto& one : cases) {
+        CAPTURE(one.arguments);
+        check_refused(bench.train(one.arguments), one.words);
+        CHECK_FALSE(std::filesystem::exists(bench.path("model.json")));
+    }
+    check_refused(bench.call("train --log " + bench.path("positions.csv") +
+                             " --outputs tau --input STD --derivatives measured -o " +
+                             bench.path("model.json")),
+                  "expected columns qd1… and qdd1… for measured derivatives, found none");
+}
+
+TEST_CASE("a replay of a recording that the model with a robot does not fit is refused in one line") {
+    const Bench bench;
+    REQUIRE(bench.train(robot + "--outputs tau --model SP --input STD --derivatives measured").status == 0);
+    CHECK(bench.replay(bench.path("run.csv")).status == 0);
+    check_refused(
+        bench.replay(bench.path("positions.csv")),
+        "expected columns qd1… and qdd1…, whose derivatives the model was trained with, found none");
+    check_refused(
+        bench.replay(DFDYN_TEST_DATA_DIR "/ur5_kufieta/Movement_No7_Acc_slow_Verify_Model_short.csv"),
+        "expected 2 joint positions, as the chain has joints, found 6");
+    REQUIRE(bench.train(robot + "--outputs tau --model SP --input STD --derivatives estimated").status == 0);
+    CHECK(bench.replay(bench.path("positions.csv")).status == 0);
+}
