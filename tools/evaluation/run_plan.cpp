@@ -2,6 +2,7 @@
 #include "tools/evaluation/run_plan.hpp"
 
 #include "tools/common/error.hpp"
+#include "tools/evaluation/common_ticks.hpp"
 #include "tools/evaluation/run_unit.hpp"
 #include "tools/evaluation/unit_file.hpp"
 
@@ -72,6 +73,7 @@ class PlanRun {
                 results.failed.push_back({unit.one.name, unit.seed, unit.failure});
             }
         }
+        keep_common_ticks(plan_, data_, results.units);
         return results;
     }
 

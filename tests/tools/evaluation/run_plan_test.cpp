@@ -138,6 +138,23 @@ TEST_CASE("a case that cannot be done does not stop the others, and is tried aga
     }
 }
 
+TEST_CASE("all cases are scored at the same ticks") {
+    const TemporaryDirectory directory;
+    json plan = small_plan();
+    plan["cases"].push_back({{"input", "DFR"}, {"lags", 9}, {"suffix", "-long"}});
+    write_small_experiment(directory, plan);
+    const EvaluationResults results = run(directory);
+    REQUIRE(results.units.size() == 6);
+    for (const UnitResult& unit : results.units) {
+        CAPTURE(unit.case_name, unit.seed);
+        for (std::size_t tick = 0; tick < 100; ++tick) {
+            const bool scored = tick >= 9 && tick < 95;
+            CHECK(std::isfinite(unit.error[0][1][tick]) == scored);
+            CHECK(std::isnan(unit.error[0][1][tick]) == !scored);
+        }
+    }
+}
+
 TEST_CASE("a unit is the protocol, written out") {
     const TemporaryDirectory directory;
     const Plan plan = read_plan(write_small_experiment(directory));
@@ -146,7 +163,8 @@ TEST_CASE("a unit is the protocol, written out") {
     const UnitResult unit = run_unit(plan, data, plan.cases[1], 7, memory, ignore);
 
     CaseMemory other;
-    const TrainedModel model = train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 7, other, ignore);
+    const TrainedModel model =
+        train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 7, other, ignore);
     for (std::size_t subset = 0; subset < 2; ++subset) {
         const auto estimator = make_estimator(model, false);
         replay(*estimator, model, data.online, 0, [](std::size_t) {});
@@ -190,7 +208,8 @@ TEST_CASE("which draw tunes the hyperparameters does not matter") {
     CaseMemory fresh;
     CaseMemory used;
     train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 1, used, ignore);
-    const TrainedModel a = train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 2, fresh, ignore);
+    const TrainedModel a =
+        train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 2, fresh, ignore);
     const TrainedModel b = train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 2, used, ignore);
     CHECK(a.features.omega == b.features.omega);
     CHECK(a.input.rows == b.input.rows);
