@@ -58,7 +58,7 @@ TEST_CASE("an evaluation writes page, tables, findings, figures and pictures") {
     for (const std::string& text : {html, markdown}) {
         CHECK_THAT(text, ContainsSubstring("A wins: reproduced"));
         CHECK_THAT(text, ContainsSubstring("B wins: not reproduced"));
-        CHECK_THAT(text, ContainsSubstring("Because of this."));
+        CHECK_THAT(text, ContainsSubstring("Why it is not reproduced: Because of this."));
         CHECK_THAT(text, !ContainsSubstring("Because of that."));
         CHECK_THAT(text, ContainsSubstring("at least 30 % less, transient"));
     }

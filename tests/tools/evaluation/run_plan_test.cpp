@@ -3,8 +3,11 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/evaluation/small_experiment.hpp"
+#include "tools/build_flags.hpp"
+#include "tools/evaluation/file_checksum.hpp"
 #include "tools/evaluation/replay.hpp"
 #include "tools/evaluation/run_unit.hpp"
+#include "tools/evaluation/unit_file.hpp"
 
 #include <cmath>
 
@@ -82,6 +85,14 @@ TEST_CASE("only units whose inputs changed run again") {
         directory.write("plan.json", plan.dump());
         CHECK(run(directory).reused == 2);
     }
+    SECTION("how it is trained, one case: that one") {
+        plan["cases"] = {{{"input", "STD"}, {"relevance", false}}, {{"input", "DFR"}}};
+        directory.write("plan.json", plan.dump());
+        CHECK(run(directory).reused == 2);
+        plan["cases"] = {{{"input", "STD"}, {"relevance", false}}, {{"input", "DFR"}, {"centred", false}}};
+        directory.write("plan.json", plan.dump());
+        CHECK(run(directory).reused == 2);
+    }
     SECTION("the protocol: all") {
         plan["horizon"] = 6;
         directory.write("plan.json", plan.dump());
@@ -109,6 +120,29 @@ TEST_CASE("only units whose inputs changed run again") {
         CHECK(run(directory).reused == 3);
         CHECK(run(directory).reused == 4);
     }
+}
+
+TEST_CASE("a unit's inputs hold the program's checksum") {
+    const TemporaryDirectory directory;
+    // the check value of CRC-32
+    CHECK(file_checksum(directory.write("text", "123456789")) == "cbf43926, 9 bytes");
+    const Plan plan = read_plan(write_small_experiment(directory));
+    const std::string program = unit_inputs(plan, load_plan_data(plan), plan.cases[0], 1)["program"];
+    CHECK_THAT(program, ContainsSubstring(build_flags()));
+    CHECK_THAT(program, ContainsSubstring(file_checksum("/proc/self/exe")));
+}
+
+TEST_CASE("the first draws of all cases come before any second") {
+    const TemporaryDirectory directory;
+    write_small_experiment(directory);
+    run(directory);
+    const auto written = [&directory](const std::string& file) {
+        return std::filesystem::last_write_time(directory.path() / "out/cases" / file);
+    };
+    // a clock tick may hold several that have nothing to tune, not the tuning of DFR
+    CHECK(written("NP-ML-STD/1.json") < written("NP-ML-DFR/1.json"));
+    CHECK(written("NP-ML-DFR/1.json") <= written("NP-ML-STD/2.json"));
+    CHECK(written("NP-ML-STD/2.json") <= written("NP-ML-DFR/2.json"));
 }
 
 TEST_CASE("several jobs give what one gives, in the same order") {
@@ -160,7 +194,7 @@ TEST_CASE("a unit is the protocol, written out") {
     const Plan plan = read_plan(write_small_experiment(directory));
     const PlanData data = load_plan_data(plan);
     CaseMemory memory;
-    const UnitResult unit = run_unit(plan, data, plan.cases[1], 7, memory, ignore);
+    const UnitResult unit = run_unit(plan, data, plan.cases[1], 7, memory, 2, ignore);
 
     CaseMemory other;
     const TrainedModel model =
@@ -188,8 +222,8 @@ TEST_CASE("relative to the variance, the error is the horizon's squared error ov
     const Plan plan = read_plan(write_small_experiment(directory, content));
     const PlanData data = load_plan_data(plan);
     CaseMemory memory;
-    const UnitResult by_horizon = run_unit(relative, data, plan.cases[1], 1, memory, ignore);
-    const UnitResult by_variance = run_unit(plan, data, plan.cases[1], 1, memory, ignore);
+    const UnitResult by_horizon = run_unit(relative, data, plan.cases[1], 1, memory, 2, ignore);
+    const UnitResult by_variance = run_unit(plan, data, plan.cases[1], 1, memory, 2, ignore);
     const Recording& subset = data.subsets[1];
     for (std::size_t tick = 4; tick < 90; ++tick) {
         double square = 0;
