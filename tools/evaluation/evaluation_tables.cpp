@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 namespace dfdyn::tools {
@@ -34,7 +35,10 @@ std::string spread_over(const std::vector<const UnitResult*>& draws, const Value
     std::ranges::transform(draws, std::back_inserter(values),
                            [&](const UnitResult* draw) { return value(*draw); });
     const Box box = box_of(std::move(values));
-    return formatted("%.3g", box.lower_quartile) + "–" + formatted("%.3g", box.upper_quartile);
+    const auto shown_as = [](double number) {
+        return std::isinf(number) ? std::string("∞") : formatted("%.3g", number);
+    };
+    return shown_as(box.lower_quartile) + "–" + shown_as(box.upper_quartile);
 }
 
 /// A table with a row for each case that has a draw.
@@ -107,7 +111,7 @@ std::string error_note(const Plan& plan, std::span<const UnitResult> units, std:
     using Draws = std::vector<const UnitResult*>;
     const std::string lost = list_of_cases(plan, units, [&](const Case& one, const Draws& draws) {
         const double share = lost_share(draws, group);
-        return share > 0 ? one.name + " " + formatted("%.2g", 100 * share) + " %" : std::string();
+        return share > 0 ? one.name + " " + formatted("%.3g", 100 * share) + " %" : std::string();
     });
     const std::string same = list_of_cases(plan, units, [](const Case& one, const Draws&) {
         return one.model == "P" ? one.name : std::string();

@@ -10,6 +10,7 @@
 #include "tools/evaluation/unit_file.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace {
 
@@ -130,6 +131,22 @@ TEST_CASE("a unit's inputs hold the program's checksum") {
     const std::string program = unit_inputs(plan, load_plan_data(plan), plan.cases[0], 1)["program"];
     CHECK_THAT(program, ContainsSubstring(build_flags()));
     CHECK_THAT(program, ContainsSubstring(file_checksum("/proc/self/exe")));
+}
+
+TEST_CASE("a unit that learned no tick, or lost some, is read as it was written") {
+    const TemporaryDirectory directory;
+    UnitResult unit;
+    unit.case_name = "A";
+    unit.median_us = std::nan("");
+    unit.error = {{{std::nan(""), std::numeric_limits<double>::infinity(), 0.5}}};
+    const nlohmann::ordered_json inputs{{"seed", 1}};
+    write_unit(directory.path() / "1.json", inputs, unit);
+    const auto read = read_unit(directory.path() / "1.json", inputs);
+    REQUIRE(read);
+    CHECK(std::isnan(read->median_us));
+    CHECK(std::isnan(read->error[0][0][0]));
+    CHECK(std::isinf(read->error[0][0][1]));
+    CHECK(read->error[0][0][2] == 0.5);
 }
 
 TEST_CASE("the first draws of all cases come before any second") {
