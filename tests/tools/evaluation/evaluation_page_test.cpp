@@ -108,7 +108,7 @@ TEST_CASE("lost ticks and cases without draws are said beside the table") {
     one.plan.cases[0].model = std::string("P");
     write(directory, one);
     const std::string tables = file_content(directory.path() / "tables.md");
-    CHECK_THAT(tables, ContainsSubstring("counted as infinite: B 0.56 %")); // 1 of 180
+    CHECK_THAT(tables, ContainsSubstring("counted as infinite: B 0.556 %")); // 1 of 180
     CHECK_THAT(tables, ContainsSubstring("all draws are the same: A."));
     CHECK_THAT(tables, ContainsSubstring("∞"));
     CHECK_THAT(tables, !ContainsSubstring("A 0"));
