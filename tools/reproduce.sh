@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# reproduce.sh [--quick] [EVALUATE OPTION...]: builds dfdyn, simulates the paper's two recordings of the iCub arm, runs the paper's experiment on them and on
-# recordings of a real UR5, and writes docs/reproduction.md with its pictures. A run that was ended goes on where it was.
+# reproduce.sh [--quick] [EVALUATE OPTION...]: installs what is missing, builds dfdyn, simulates the paper's two recordings of the
+# iCub arm, runs the paper's experiment on them and on recordings of a real UR5, and writes docs/reproduction.md and pictures.
+# A run that was ended goes on where it was.
 # --quick: one draw, few features and rows, into build/reproduction only; shows that everything runs, not how good it is.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -22,7 +23,7 @@ options+=("$@")
 
 step() {
     echo
-    echo "[$1/4, ${SECONDS} s] $2"
+    echo "[$1/5, ${SECONDS} s] $2"
 }
 
 build_program() {
@@ -33,19 +34,23 @@ build_program() {
     cmake --build --preset release --parallel "$(nproc)" --target dfdyn
 }
 
-# simulate NAME: unless it is there from an earlier run of the same scenario.
+# simulate NAME: unless it is there from the same program, scenario and robot, whose checksums stand beside it.
 simulate() {
-    local scenario=tests/data/scenarios/$1.json csv=$out/data/$1.csv
-    if [[ -s $csv && $csv -nt $scenario && $csv -nt $robot ]]; then
+    local scenario=tests/data/scenarios/$1.json csv=$out/data/$1.csv inputs
+    inputs=$(cksum "$dfdyn" "$scenario" "$robot")
+    if [[ -s $csv && -s $csv.cksum && $(<"$csv.cksum") == "$inputs" ]]; then
         echo "$csv is there"
     else
+        rm -f "$csv.cksum"
         "$dfdyn" simulate --robot "$robot" --scenario "$scenario" -o "$csv"
+        echo "$inputs" >"$csv.cksum"
     fi
 }
 
 # evaluate NAME: some cases may fail (status 1); the page then says which.
 evaluate() {
     local status=0
+    rm -f "$out/$kind/$1"/pictures/*.svg # a plan that has fewer figures by now
     "$dfdyn" evaluate --plan "tools/reproduction/$1.json" -o "$out/$kind/$1" "${options[@]}" || status=$?
     [[ $status -le 1 ]] || exit "$status"
     failed=$((failed + status))
@@ -54,21 +59,23 @@ evaluate() {
 introduction() {
     echo "# The paper's findings, tried again"
     echo
-    echo "Written by \`tools/reproduce.sh\`; every verdict follows from the numbers beside it by the rule stated below. The paper's own recordings"
-    echo "are not public: the iCub data are simulated (\`dfdyn simulate\`), the UR5 data are measured."
+    echo "Written by \`tools/reproduce.sh\`; every verdict follows from the numbers beside it by the rule stated below."
+    echo "The paper's own recordings are not public: the iCub data are simulated (\`dfdyn simulate\`), the UR5 data are measured."
     echo
 }
 
 mkdir -p "$out/data" "$(dirname "$page")"
 failed=0
-step 1 "build"
+step 1 "packages"
+tools/install_packages.sh demo
+step 2 "build"
 build_program
-step 2 "simulate the iCub arm on circles in the XY and in the XZ plane"
+step 3 "simulate the iCub arm on circles in the XY and in the XZ plane"
 simulate icub_xy
 simulate icub_xz
-step 3 "evaluate on the simulated iCub arm"
+step 4 "evaluate on the simulated iCub arm"
 evaluate icub
-step 4 "evaluate on the measured UR5"
+step 5 "evaluate on the measured UR5"
 evaluate ur5
 
 {
@@ -79,6 +86,7 @@ evaluate ur5
 } >"$page.tmp"
 mv "$page.tmp" "$page"
 mkdir -p "$(dirname "$page")/pictures"
+rm -f "$(dirname "$page")"/pictures/{icub,ur5}_*.svg
 cp "$out/$kind"/{icub,ur5}/pictures/*.svg "$(dirname "$page")/pictures/"
 
 echo

@@ -6,7 +6,6 @@
 #include "tools/evaluation/plan_data.hpp"
 #include "tools/evaluation/run_plan.hpp"
 
-#include <cmath>
 #include <iostream>
 #include <memory>
 
@@ -20,14 +19,10 @@ struct EvaluateOptions {
     bool quick = false;
 };
 
-/// Thousandths of a unit, so that a long one is seen to move.
-std::size_t progress_steps(double units) { return static_cast<std::size_t>(std::lround(1000 * units)); }
-
 EvaluationResults run_with_progress(const Plan& plan, const PlanData& data, const RunOptions& options) {
     const std::size_t units = plan.cases.size() * plan.seeds.size();
-    Progress progress("evaluating " + std::to_string(units) + " cases x draws, thousandths of one",
-                      1000 * units);
-    return run_plan(plan, data, options, [&progress](double done) { progress.update(progress_steps(done)); });
+    Progress progress("evaluating, units done", units);
+    return run_plan(plan, data, options, [&progress](double done) { progress.update_part(done); });
 }
 
 int run(const EvaluateOptions& options) {

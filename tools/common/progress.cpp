@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/common/progress.hpp"
 
+#include <array>
+#include <cstdio>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -22,12 +24,25 @@ Progress::~Progress() {
 }
 
 void Progress::update(std::size_t done) {
-    if (!terminal_ || std::chrono::steady_clock::now() < next_) {
-        return;
+    if (due()) {
+        show(std::to_string(done), static_cast<double>(done));
     }
-    std::string line = erase_line + label_ + ": " + std::to_string(done);
+}
+
+void Progress::update_part(double done) {
+    if (due()) {
+        std::array<char, 48> text{};
+        std::snprintf(text.data(), text.size(), "%.1f", done);
+        show(text.data(), done);
+    }
+}
+
+bool Progress::due() const { return terminal_ && std::chrono::steady_clock::now() >= next_; }
+
+void Progress::show(const std::string& shown, double done) {
+    std::string line = erase_line + label_ + ": " + shown;
     if (total_ > 0) {
-        const double percent = 100.0 * static_cast<double>(done) / static_cast<double>(total_);
+        const double percent = 100.0 * done / static_cast<double>(total_);
         line += " of " + std::to_string(total_) + " (" + std::to_string(static_cast<int>(percent)) + " %)";
     }
     write(line);

@@ -22,7 +22,12 @@ class Progress {
     /// Cheap enough for every row: reads a clock, and only on a terminal.
     void update(std::size_t done);
 
+    /// The same where parts of one count; shows tenths.
+    void update_part(double done);
+
   private:
+    bool due() const;
+    void show(const std::string& shown, double done);
     void write(const std::string& text) const;
 
     std::string label_;

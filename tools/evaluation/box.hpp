@@ -14,7 +14,7 @@ struct Box {
     double mean;
 };
 
-/// Of the finite ones among `values`. O(n log n).
+/// Of `values` without the NaN; an infinite one counts like any other. O(n log n).
 Box box_of(std::vector<double> values);
 
 /// The quantile at `share` (0 … 1) of ascending values, interpolated linearly between order statistics, of

@@ -34,6 +34,23 @@ std::vector<Pair> pairs_of(const Comparison& comparison, std::span<const UnitRes
     return pairs;
 }
 
+struct ErrorPair {
+    double better = 0, worse = 0;
+
+    bool there() const { return !std::isnan(better) && !std::isnan(worse); }
+
+    /// 1 also where both are 0 or both infinite.
+    double ratio() const { return better == worse ? 1 : better / worse; }
+
+    /// ln(ratio / threshold), within finite bounds where one error is 0 or infinite; 0, a tie, where both
+    /// are infinite.
+    double difference(double threshold) const {
+        constexpr double most = 1e300;
+        const bool tie = std::isinf(better) && std::isinf(worse);
+        return tie ? 0 : std::clamp(std::log(ratio() / threshold), -most, most);
+    }
+};
+
 /// The errors of both cases in each subset, over the plan's groups and phases.
 class PairErrors {
   public:
@@ -42,18 +59,19 @@ class PairErrors {
           group_(static_cast<std::size_t>(
               std::ranges::find(plan.groups, comparison.group, &OutputGroup::name) - plan.groups.begin())) {}
 
-    double ratio(const Pair& pair, std::size_t subset) const {
-        return error(*pair.better, subset) / error(*pair.worse, subset);
+    ErrorPair in_subset(const Pair& pair, std::size_t subset) const {
+        return {error(*pair.better, subset), error(*pair.worse, subset)};
     }
 
-    double ratio(const Pair& pair) const {
-        double better = 0;
-        double worse = 0;
+    /// Summed over the subsets.
+    ErrorPair of(const Pair& pair) const {
+        ErrorPair sum;
         for (std::size_t subset = 0; subset < subset_count(pair); ++subset) {
-            better += error(*pair.better, subset);
-            worse += error(*pair.worse, subset);
+            const ErrorPair errors = in_subset(pair, subset);
+            sum.better += errors.better;
+            sum.worse += errors.worse;
         }
-        return better / worse;
+        return sum;
     }
 
     std::size_t subset_count(const Pair& pair) const { return pair.better->error[group_].size(); }
@@ -75,12 +93,17 @@ Verdict verdict_of(const ComparisonOutcome& outcome) {
     return outcome.p_contradicted < significance ? Verdict::contradicted : Verdict::undecided;
 }
 
-/// The ratios of all draws in one subset.
-std::vector<double> ratios_in(const std::vector<Pair>& pairs, const PairErrors& errors, std::size_t subset) {
-    std::vector<double> ratios;
-    std::ranges::transform(pairs, std::back_inserter(ratios),
-                           [&](const Pair& pair) { return errors.ratio(pair, subset); });
-    return ratios;
+/// Of all draws in one subset.
+std::vector<double> differences_in(const std::vector<Pair>& pairs, const PairErrors& errors,
+                                   std::size_t subset, double threshold) {
+    std::vector<double> differences;
+    for (const Pair& pair : pairs) {
+        const ErrorPair both = errors.in_subset(pair, subset);
+        if (both.there()) {
+            differences.push_back(both.difference(threshold));
+        }
+    }
+    return differences;
 }
 
 } // namespace
@@ -93,18 +116,21 @@ ComparisonOutcome compare(const Comparison& comparison, const Plan& plan, std::s
     std::vector<double> ratios;
     std::vector<double> differences;
     for (const Pair& pair : pairs) {
-        const double ratio = errors.ratio(pair);
-        if (std::isfinite(ratio) && ratio > 0) {
-            ratios.push_back(ratio);
-            differences.push_back(std::log(ratio / threshold));
-            outcome.draws_agree += ratio < threshold ? 1 : 0;
+        const ErrorPair both = errors.of(pair);
+        if (both.there()) {
+            ratios.push_back(both.ratio());
+            differences.push_back(both.difference(threshold));
+            outcome.draws_agree += differences.back() < 0 ? 1 : 0;
         }
     }
     outcome.draws = ratios.size();
-    outcome.median_ratio = median_of(std::move(ratios));
+    const Box box = box_of(std::move(ratios));
+    outcome.lower_ratio = box.lower_quartile;
+    outcome.median_ratio = box.median;
+    outcome.upper_ratio = box.upper_quartile;
     outcome.subsets = pairs.empty() ? 0 : errors.subset_count(pairs.front());
     for (std::size_t subset = 0; subset < outcome.subsets; ++subset) {
-        outcome.subsets_agree += median_of(ratios_in(pairs, errors, subset)) < threshold ? 1 : 0;
+        outcome.subsets_agree += median_of(differences_in(pairs, errors, subset, threshold)) < 0 ? 1 : 0;
     }
     const SignedRankTest test = signed_rank_test(differences);
     outcome.p_holds = test.p_negative;
@@ -173,8 +199,11 @@ std::string to_string(FindingVerdict verdict) {
 
 std::string ratio_text(double ratio) {
     std::array<char, 48> text{};
-    if (!std::isfinite(ratio)) {
+    if (std::isnan(ratio)) {
         return "not comparable";
+    }
+    if (std::isinf(ratio)) {
+        return "∞ times as much";
     }
     if (ratio > 2) {
         std::snprintf(text.data(), text.size(), "%.1f times as much", ratio);

@@ -11,11 +11,11 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Mean over the subsets at one tick; NaN where none has a finite value.
+/// Mean over the subsets that have a value at the tick; NaN where none has.
 double subset_mean(const UnitResult& draw, std::size_t group, std::size_t tick) {
     std::vector<double> values;
     for (const std::vector<double>& subset : draw.error[group]) {
-        if (tick < subset.size() && std::isfinite(subset[tick])) {
+        if (tick < subset.size() && !std::isnan(subset[tick])) {
             values.push_back(subset[tick]);
         }
     }
@@ -52,7 +52,7 @@ ErrorCurve error_curve(std::span<const UnitResult* const> draws, std::size_t gro
 ErrorCurve thinned(const ErrorCurve& curve, int per_decade) {
     std::map<long, std::vector<std::size_t>> stretches;
     for (std::size_t tick = 0; tick < curve.time_s.size(); ++tick) {
-        if (curve.time_s[tick] > 0 && std::isfinite(curve.mean[tick])) {
+        if (curve.time_s[tick] > 0 && !std::isnan(curve.mean[tick])) {
             stretches[std::lround(std::floor(std::log10(curve.time_s[tick]) * per_decade))].push_back(tick);
         }
     }

@@ -8,15 +8,15 @@
 
 namespace dfdyn::tools {
 
-/// ε of one case against time since the subset's start. NaN where there is none.
+/// ε of one case against time since the subset's start. NaN where there is none, infinite where a draw lost
+/// the tick.
 struct ErrorCurve {
     std::vector<double> time_s;
     std::vector<double> mean;      ///< over subsets and draws
     std::vector<double> low, high; ///< quartiles of the draws, each averaged over its subsets
 };
 
-/// The paper's curve, tick by tick: the mean over the subsets that have a finite value there, then over
-/// draws.
+/// The paper's curve, tick by tick: the mean over the subsets that have a value there, then over draws.
 ErrorCurve error_curve(std::span<const UnitResult* const> draws, std::size_t group);
 
 /// The curve with at most `per_decade` points in a decade of time, each the mean over its stretch of times,

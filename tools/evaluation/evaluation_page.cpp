@@ -172,7 +172,8 @@ class EvaluationPage {
                             {},
                             {comparison_table("Comparisons", outcome.comparisons)}};
         if (outcome.verdict != FindingVerdict::reproduced && !outcome.finding->if_not.empty()) {
-            section.paragraphs.push_back(outcome.finding->if_not);
+            section.paragraphs.push_back("Why it is " + to_string(outcome.verdict) + ": " +
+                                         outcome.finding->if_not);
         }
         return section;
     }

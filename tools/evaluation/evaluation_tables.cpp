@@ -2,10 +2,12 @@
 #include "tools/evaluation/evaluation_tables.hpp"
 
 #include "tools/common/number.hpp"
+#include "tools/common/text.hpp"
 #include "tools/evaluation/phase_error.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 namespace dfdyn::tools {
@@ -26,6 +28,19 @@ double median_over(const std::vector<const UnitResult*>& draws, const Value& val
     return median_of(std::move(values));
 }
 
+/// The middle half of the draws' values.
+template <class Value>
+std::string spread_over(const std::vector<const UnitResult*>& draws, const Value& value) {
+    std::vector<double> values;
+    std::ranges::transform(draws, std::back_inserter(values),
+                           [&](const UnitResult* draw) { return value(*draw); });
+    const Box box = box_of(std::move(values));
+    const auto shown_as = [](double number) {
+        return std::isinf(number) ? std::string("∞") : formatted("%.3g", number);
+    };
+    return shown_as(box.lower_quartile) + "–" + shown_as(box.upper_quartile);
+}
+
 /// A table with a row for each case that has a draw.
 template <class Cells>
 std::vector<std::vector<ReportCell>> rows_of_cases(const Plan& plan, std::span<const UnitResult> units,
@@ -35,8 +50,7 @@ std::vector<std::vector<ReportCell>> rows_of_cases(const Plan& plan, std::span<c
         const std::vector<const UnitResult*> draws = draws_of(units, one.name);
         if (!draws.empty()) {
             rows.push_back({one.name});
-            const std::vector<double> numbers = cells(draws);
-            rows.back().insert(rows.back().end(), numbers.begin(), numbers.end());
+            std::ranges::copy(cells(draws), std::back_inserter(rows.back()));
         }
     }
     return rows;
@@ -77,18 +91,75 @@ std::vector<const UnitResult*> draws_of(std::span<const UnitResult> units, const
     return draws;
 }
 
+namespace {
+
+/// A list of what `text_of` says of the cases that have results; those of which it says nothing are left out.
+template <class TextOf>
+std::string list_of_cases(const Plan& plan, std::span<const UnitResult> units, const TextOf& text_of) {
+    std::vector<std::string> cases;
+    for (const Case& one : plan.cases) {
+        const std::vector<const UnitResult*> draws = draws_of(units, one.name);
+        const std::string text = draws.empty() ? std::string() : text_of(one, draws);
+        if (!text.empty()) {
+            cases.push_back(text);
+        }
+    }
+    return listed(cases);
+}
+
+std::string error_note(const Plan& plan, std::span<const UnitResult> units, std::size_t group) {
+    using Draws = std::vector<const UnitResult*>;
+    const std::string lost = list_of_cases(plan, units, [&](const Case& one, const Draws& draws) {
+        const double share = lost_share(draws, group);
+        return share > 0 ? one.name + " " + formatted("%.3g", 100 * share) + " %" : std::string();
+    });
+    const std::string same = list_of_cases(plan, units, [](const Case& one, const Draws&) {
+        return one.model == "P" ? one.name : std::string();
+    });
+    std::string note =
+        "Times of all draws and subsets together; its draws: the middle half of the draws, each "
+        "with all its subsets.";
+    note += same.empty() ? "" : " No random features, so that all draws are the same: " + same + ".";
+    note += lost.empty() ? "" : " Lost, without a prediction, and counted as infinite: " + lost + ".";
+    return note;
+}
+
+} // namespace
+
 ReportTable error_table(const Plan& plan, std::span<const UnitResult> units, std::size_t group) {
+    const auto box_of_draws = [&](std::span<const UnitResult* const> draws, Phase phase) {
+        return phase_box(draws, group, phase, plan.steady_after_s);
+    };
+    const auto box_of_draw = [&](const UnitResult& draw, Phase phase) {
+        const UnitResult* const one = &draw;
+        return box_of_draws({&one, 1}, phase);
+    };
     ReportTable table;
     table.caption = "ε of " + plan.groups[group].name;
-    table.columns = {
-        "case", "transient, mean", "transient, median", "steady state, mean", "median", "25 %", "75 %", "5 %",
-        "95 %"};
+    table.columns = {"case",
+                     "transient, mean",
+                     "its draws, 25–75 %",
+                     "transient, median",
+                     "steady state, mean",
+                     "median",
+                     "its draws, 25–75 %",
+                     "25 %",
+                     "75 %",
+                     "5 %",
+                     "95 %"};
     table.rows = rows_of_cases(plan, units, [&](const std::vector<const UnitResult*>& draws) {
-        const Box transient = phase_box(draws, group, Phase::transient, plan.steady_after_s);
-        const Box steady = phase_box(draws, group, Phase::steady, plan.steady_after_s);
-        return std::vector{transient.mean,        transient.median,      steady.mean, steady.median,
-                           steady.lower_quartile, steady.upper_quartile, steady.low,  steady.high};
+        const Box transient = box_of_draws(draws, Phase::transient);
+        const Box steady = box_of_draws(draws, Phase::steady);
+        const std::string means = spread_over(
+            draws, [&](const UnitResult& draw) { return box_of_draw(draw, Phase::transient).mean; });
+        const std::string medians = spread_over(
+            draws, [&](const UnitResult& draw) { return box_of_draw(draw, Phase::steady).median; });
+        return std::vector<ReportCell>{
+            transient.mean, means,      transient.median,      steady.mean,
+            steady.median,  medians,    steady.lower_quartile, steady.upper_quartile,
+            steady.low,     steady.high};
     });
+    table.note = error_note(plan, units, group);
     return table;
 }
 
@@ -99,16 +170,16 @@ ReportTable step_error_table(const Plan& plan, std::span<const UnitResult> units
     table.columns = {"case"};
     table.columns.insert(table.columns.end(), outputs.begin(), outputs.end());
     table.rows = rows_of_cases(plan, units, [&](const std::vector<const UnitResult*>& draws) {
-        std::vector<double> errors;
+        std::vector<ReportCell> errors;
         for (std::size_t output = 0; output < outputs.size(); ++output) {
-            errors.push_back(
+            errors.emplace_back(
                 median_over(draws, [&](const UnitResult& draw) { return draw.normalised_error[output]; }));
         }
         return errors;
     });
     table.note =
-        "rms(measured − predicted) / std(measured) over all subsets, predicted one sample ahead; the "
-        "median over the draws.";
+        "rms(measured − predicted) / std(measured) over all subsets, predicted one sample ahead where "
+        "there is a prediction; the median over the draws.";
     return table;
 }
 
@@ -117,10 +188,10 @@ ReportTable cost_table(const Plan& plan, std::span<const UnitResult> units) {
     table.caption = "Cost";
     table.columns = {"case", "columns", "multiply-adds per tick", "state, bytes", "µs per tick, median"};
     table.rows = rows_of_cases(plan, units, [](const std::vector<const UnitResult*>& draws) {
-        return std::vector{static_cast<double>(draws.front()->columns),
-                           static_cast<double>(draws.front()->operations),
-                           static_cast<double>(draws.front()->state_bytes),
-                           median_over(draws, [](const UnitResult& draw) { return draw.median_us; })};
+        return std::vector<ReportCell>{
+            static_cast<double>(draws.front()->columns), static_cast<double>(draws.front()->operations),
+            static_cast<double>(draws.front()->state_bytes),
+            median_over(draws, [](const UnitResult& draw) { return draw.median_us; })};
     });
     table.note = "Times are of the machine that ran this, with other work beside it.";
     return table;
@@ -134,6 +205,7 @@ ReportTable comparison_table(const std::string& caption, std::span<const Compari
                      "group",
                      "claim: its error is",
                      "it is, median over draws",
+                     "draws, 25–75 %",
                      "draws agree",
                      "subsets agree",
                      "p",
@@ -142,6 +214,7 @@ ReportTable comparison_table(const std::string& caption, std::span<const Compari
         const Comparison& comparison = outcome.comparison;
         table.rows.push_back({comparison.better, comparison.worse, comparison.group, claim_of(comparison),
                               ratio_text(outcome.median_ratio),
+                              ratio_text(outcome.lower_ratio) + " – " + ratio_text(outcome.upper_ratio),
                               share_text(outcome.draws_agree, outcome.draws),
                               share_text(outcome.subsets_agree, outcome.subsets),
                               formatted("%.2g", outcome.p_holds), to_string(outcome.verdict)});
@@ -176,7 +249,7 @@ void write_results_csv(std::ostream& out, const Plan& plan, std::span<const Unit
     for (const std::string& output : outputs) {
         out << ",nrmse_" << output;
     }
-    out << ",median_us,operations,state_bytes,columns\n";
+    out << ",lost,median_us,operations,state_bytes,columns\n";
     for (const UnitResult& unit : units) {
         for (std::size_t group = 0; group < plan.groups.size(); ++group) {
             out << unit.case_name << ',' << unit.seed << ',' << plan.groups[group].name;
@@ -185,8 +258,9 @@ void write_results_csv(std::ostream& out, const Plan& plan, std::span<const Unit
             for (const double error : unit.normalised_error) {
                 out << ',' << number_text(error);
             }
-            out << ',' << number_text(unit.median_us) << ',' << unit.operations << ',' << unit.state_bytes
-                << ',' << unit.columns << '\n';
+            const UnitResult* const draw = &unit;
+            out << ',' << number_text(lost_share({&draw, 1}, group)) << ',' << number_text(unit.median_us)
+                << ',' << unit.operations << ',' << unit.state_bytes << ',' << unit.columns << '\n';
         }
     }
 }

@@ -25,6 +25,20 @@ double phase_error(const UnitResult& unit, std::size_t group, std::size_t subset
     return phase == Phase::transient ? box.mean : box.median;
 }
 
+double lost_share(std::span<const UnitResult* const> draws, std::size_t group) {
+    double scored = 0;
+    double lost = 0;
+    for (const UnitResult* draw : draws) {
+        for (const std::vector<double>& subset : draw->error[group]) {
+            for (const double error : subset) {
+                scored += std::isnan(error) ? 0 : 1;
+                lost += std::isinf(error) ? 1 : 0;
+            }
+        }
+    }
+    return scored > 0 ? lost / scored : 0;
+}
+
 Box phase_box(std::span<const UnitResult* const> draws, std::size_t group, Phase phase,
               double steady_after_s) {
     std::vector<double> all;

@@ -29,7 +29,8 @@ constexpr std::array<std::string_view, 16> plan_names{
     "seeds",  "steady_after_s", "error_scale", "draws", "groups",  "defaults", "cases", "figures"};
 constexpr std::array<std::string_view, 6> later_names{"comparisons", "findings",      "like",
                                                       "more_cases",  "more_findings", "more_figures"};
-constexpr std::array<std::string_view, 4> robot_names{"urdf", "base", "tip", "ft_joint"};
+constexpr std::array<std::string_view, 7> robot_names{
+    "urdf", "base", "tip", "ft_joint", "gravity", "sign_velocity", "torque_constants"};
 constexpr std::array<std::string_view, 3> training_names{"log", "start_rows", "rows"};
 constexpr std::array<std::string_view, 4> test_names{"log", "first", "rows", "count"};
 constexpr std::array<std::string_view, 2> group_names{"name", "outputs"};
@@ -115,8 +116,20 @@ class PlanReader {
         }
         const JsonReader robot = json_.object("robot");
         robot.allow_only(robot_names);
-        plan_.robot = {path_in(robot, "urdf"), text_or(robot, "base", ""), text_or(robot, "tip", ""),
-                       text_or(robot, "ft_joint", "")};
+        plan_.robot.urdf = path_in(robot, "urdf");
+        plan_.robot.base = text_or(robot, "base", "");
+        plan_.robot.tip = text_or(robot, "tip", "");
+        plan_.robot.ft_joint = text_or(robot, "ft_joint", "");
+        if (robot.has("gravity")) {
+            std::ranges::copy(robot.numbers("gravity", 3), plan_.robot.gravity.begin());
+        }
+        if (robot.has("sign_velocity")) {
+            plan_.robot.sign_velocity = robot.positive_number("sign_velocity");
+        }
+        if (robot.has("torque_constants")) {
+            const auto joints = static_cast<int>(robot.numbers("torque_constants").size());
+            plan_.robot.torque_constants = robot.positive_numbers("torque_constants", joints);
+        }
     }
 
     TestLog test_log(const JsonReader& test) const {

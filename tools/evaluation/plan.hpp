@@ -4,6 +4,7 @@
 #include "tools/model/model.hpp"
 #include "tools/recording/recording.hpp"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -15,6 +16,7 @@ namespace dfdyn::tools {
 /// One way to model the arm: a row of the table model × input × tuning. The values here are the defaults.
 struct Case {
     std::string name;         ///< unique in its plan, e.g. NP-ML-DFR
+    std::string suffix;       ///< the end of the name that the plan chose; empty: one of the paper's
     std::string model = "NP"; ///< P, NP, SP, SP2, SPK
     InputKind input = InputKind::DFR;
     std::string hyper = "ML";           ///< ML, CV
@@ -25,6 +27,8 @@ struct Case {
     int rows_per_joint = 3;             ///< k of DFR
     int feature_count = 250;            ///< d
     bool orthogonal = true;             ///< orthogonal random features
+    bool relevance = true;              ///< STD: velocity and acceleration have gains; false: as in the paper
+    bool centred = true;                ///< NP: outputs less their mean; false: as in the paper
     double forgetting_factor = 1;
     int likelihood_rows = 1000; ///< samples in the exact kernel, at most
     int starts = 6;             ///< local searches
@@ -39,7 +43,10 @@ struct OutputGroup {
 /// The robot of the models with physics; `urdf` empty: the plan has none.
 struct RobotChoice {
     std::filesystem::path urdf;
-    std::string base, tip, ft_joint; ///< empty: found by itself
+    std::string base, tip, ft_joint;            ///< empty: found by itself
+    std::array<double, 3> gravity{0, 0, -9.81}; ///< m/s², in the frame of the URDF's root link
+    double sign_velocity = 0.05;                ///< of Coulomb friction's tanh(qd / v), rad/s
+    std::vector<double> torque_constants;       ///< N·m/A of each joint, for currents; empty: estimated
 };
 
 /// A recording cut into subsets of `rows` rows each, `count` of them from row `first` on.

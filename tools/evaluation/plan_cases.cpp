@@ -3,6 +3,7 @@
 
 #include "tools/common/text.hpp"
 #include "tools/evaluation/plan_names.hpp"
+#include "tools/model/effects.hpp"
 #include "tools/model/model_file.hpp"
 
 #include <algorithm>
@@ -17,12 +18,13 @@ constexpr std::array<std::string_view, 2> hypers{"ML", "CV"};
 constexpr std::array<std::string_view, 2> physics_inputs{"same", "own"};
 constexpr std::array<std::string_view, 3> priors{"scaled", "unit", "diagonal"};
 
-constexpr std::array<std::string_view, 10> setting_names{
-    "physics_input", "effects",    "prior",           "lags",   "features",
-    "orthogonal",    "forgetting", "likelihood_rows", "starts", "rows_per_joint"};
-constexpr std::array<std::string_view, 14> entry_names{
-    "model", "input",    "hyper",      "suffix",     "physics_input",   "effects", "prior",
-    "lags",  "features", "orthogonal", "forgetting", "likelihood_rows", "starts",  "rows_per_joint"};
+constexpr std::array<std::string_view, 12> setting_names{
+    "physics_input", "effects",         "prior",  "lags",           "features",  "orthogonal",
+    "forgetting",    "likelihood_rows", "starts", "rows_per_joint", "relevance", "centred"};
+constexpr std::array<std::string_view, 16> entry_names{
+    "model",  "input",          "hyper",     "suffix",     "physics_input", "effects",
+    "prior",  "lags",           "features",  "orthogonal", "forgetting",    "likelihood_rows",
+    "starts", "rows_per_joint", "relevance", "centred"};
 
 std::string one_of(const JsonReader& entry, const std::string& name, const std::string& text,
                    std::span<const std::string_view> known) {
@@ -54,6 +56,16 @@ InputKind input_of(const JsonReader& entry, const std::string& text) {
     }
 }
 
+std::vector<std::string> effects_of(const JsonReader& entry) {
+    std::vector<std::string> effects = names_in(entry, "effects");
+    for (const std::string& effect : effects) {
+        if (find_effect_kind(effect) == nullptr) {
+            throw entry.error("effects", "one of " + effect_names(), in_quotes(effect));
+        }
+    }
+    return effects;
+}
+
 void read_settings(const JsonReader& entry, Case& one) {
     const auto whole = [&entry](const std::string& name, int high, int& value) {
         value = entry.has(name) ? entry.whole_number(name, 1, high) : value;
@@ -62,7 +74,12 @@ void read_settings(const JsonReader& entry, Case& one) {
     whole("features", 5000, one.feature_count);
     whole("likelihood_rows", 20000, one.likelihood_rows);
     whole("starts", 1000, one.starts);
-    one.orthogonal = entry.has("orthogonal") ? entry.flag("orthogonal") : one.orthogonal;
+    const auto flag = [&entry](const std::string& name, bool& value) {
+        value = entry.has(name) ? entry.flag(name) : value;
+    };
+    flag("orthogonal", one.orthogonal);
+    flag("relevance", one.relevance);
+    flag("centred", one.centred);
     if (entry.has("forgetting")) {
         one.forgetting_factor = entry.number_within("forgetting", 0.5, 1);
     }
@@ -73,7 +90,7 @@ void read_settings(const JsonReader& entry, Case& one) {
         one.prior = one_of(entry, "prior", entry.text("prior"), priors);
     }
     if (entry.has("effects")) {
-        one.effects = names_in(entry, "effects");
+        one.effects = effects_of(entry);
     }
 }
 
@@ -82,7 +99,7 @@ std::string case_name(const JsonReader& entry, const Case& one) {
     if (entry.has("rows_per_joint") && entry.is_array("rows_per_joint")) {
         name += "-k" + std::to_string(one.rows_per_joint);
     }
-    return name + (entry.has("suffix") ? plain_name(entry, "suffix") : "");
+    return name + one.suffix;
 }
 
 } // namespace
@@ -101,6 +118,7 @@ std::vector<Case> expand_cases(const JsonReader& entry, const Case& defaults) {
     entry.allow_only(entry_names);
     Case one = defaults;
     read_settings(entry, one);
+    one.suffix = entry.has("suffix") ? plain_name(entry, "suffix") : "";
     std::vector<Case> cases;
     for (const std::string& model : names_or(entry, "model", defaults.model)) {
         one.model = one_of(entry, "model", model, models);

@@ -9,6 +9,8 @@ namespace dfdyn::tools {
 
 namespace {
 
+constexpr std::string_view set_of_the_paper = "paper"; ///< in a comparison: all cases without a suffix
+
 constexpr std::array<std::string_view, 2> figure_names{"title", "cases"};
 constexpr std::array<std::string_view, 5> comparison_names{"better", "worse", "group", "phase", "gain"};
 constexpr std::array<std::string_view, 4> finding_names{"name", "statement", "if_not", "comparisons"};
@@ -21,10 +23,10 @@ std::vector<std::string> names_of(const std::vector<Named>& list) {
 }
 
 std::vector<Figure> figures(const JsonReader& json, const Plan& plan) {
-    if (!json.has("figures")) {
-        return {{plan.title, names_of(plan.cases)}};
-    }
     std::vector<Figure> all;
+    if (!json.has("figures")) {
+        all.push_back({plan.title, names_of(plan.cases)});
+    }
     for (const char* field : {"figures", "more_figures"}) {
         if (!json.has(field)) {
             continue;
@@ -50,6 +52,23 @@ Phase phase_of(const JsonReader& entry) {
     throw entry.error("phase", "transient or steady", in_quotes(text));
 }
 
+/// The cases that the entry names, those of a set in the plan's order.
+std::vector<std::string> cases_in(const JsonReader& entry, const std::string& field, const Plan& plan) {
+    std::vector<std::string> cases;
+    for (const std::string& name : names_in(entry, field)) {
+        if (name != set_of_the_paper) {
+            cases.push_back(known(entry, field, plan.cases, name));
+            continue;
+        }
+        for (const Case& one : plan.cases) {
+            if (one.suffix.empty()) {
+                cases.push_back(one.name);
+            }
+        }
+    }
+    return cases;
+}
+
 /// Every combination of what the entry lists.
 void expand_comparison(const JsonReader& entry, const Plan& plan, std::vector<Comparison>& all) {
     entry.allow_only(comparison_names);
@@ -57,12 +76,11 @@ void expand_comparison(const JsonReader& entry, const Plan& plan, std::vector<Co
     const double gain = entry.has("gain") ? entry.number_within("gain", -10, 0.99) : 0;
     const std::vector<std::string> groups =
         entry.has("group") ? names_in(entry, "group") : names_of(plan.groups);
-    for (const std::string& better : names_in(entry, "better")) {
-        for (const std::string& worse : names_in(entry, "worse")) {
+    const std::vector<std::string> worse_cases = cases_in(entry, "worse", plan);
+    for (const std::string& better : cases_in(entry, "better", plan)) {
+        for (const std::string& worse : worse_cases) {
             for (const std::string& group : groups) {
-                all.push_back({known(entry, "better", plan.cases, better),
-                               known(entry, "worse", plan.cases, worse),
-                               known(entry, "group", plan.groups, group), phase, gain});
+                all.push_back({better, worse, known(entry, "group", plan.groups, group), phase, gain});
             }
         }
     }

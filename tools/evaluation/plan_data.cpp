@@ -1,35 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/evaluation/plan_data.hpp"
 
-#include "dfdyn/snapshot.hpp"
 #include "tools/common/error.hpp"
 #include "tools/common/text.hpp"
+#include "tools/evaluation/file_checksum.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstdio>
-#include <fstream>
-#include <iterator>
-#include <span>
 
 namespace dfdyn::tools {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// "1a2b3c4d, 12345 bytes": CRC-32 and size.
-std::string checksum_of(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) {
-        throw system_error(path, "cannot read", errno);
-    }
-    const std::string content{std::istreambuf_iterator<char>(file), {}};
-    std::array<char, 9> text{};
-    std::snprintf(text.data(), text.size(), "%08x", crc32(std::as_bytes(std::span(content))));
-    return std::string(text.data()) + ", " + std::to_string(content.size()) + " bytes";
-}
 
 Recording read_rows(const fs::path& log, const Plan& plan, std::size_t joints, RowRange rows) {
     ReadOptions options;
@@ -92,12 +74,12 @@ PlanData load_plan_data(const Plan& plan) {
     for (const OutputGroup& group : plan.groups) {
         data.group_outputs.push_back(numbers_of(group, names));
     }
-    data.checksums.emplace_back(plan.training_log.filename(), checksum_of(plan.training_log));
+    data.checksums.emplace_back(plan.training_log.filename(), file_checksum(plan.training_log));
     for (const TestLog& test : plan.tests) {
-        data.checksums.emplace_back(test.log.filename(), checksum_of(test.log));
+        data.checksums.emplace_back(test.log.filename(), file_checksum(test.log));
     }
     if (fs::exists(plan.robot.urdf)) { // if not, it is an error of the cases that need it
-        data.checksums.emplace_back(plan.robot.urdf.filename(), checksum_of(plan.robot.urdf));
+        data.checksums.emplace_back(plan.robot.urdf.filename(), file_checksum(plan.robot.urdf));
     }
     return data;
 }

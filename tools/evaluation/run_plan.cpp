@@ -2,9 +2,11 @@
 #include "tools/evaluation/run_plan.hpp"
 
 #include "tools/common/error.hpp"
+#include "tools/evaluation/common_ticks.hpp"
 #include "tools/evaluation/run_unit.hpp"
 #include "tools/evaluation/unit_file.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -38,6 +40,8 @@ class PlanRun {
   public:
     PlanRun(const Plan& plan, const PlanData& data, const RunOptions& options)
         : plan_(plan), data_(data), options_(options) {
+        const int cores = static_cast<int>(std::thread::hardware_concurrency());
+        threads_ = std::max(1, cores / options.jobs);
         for (const Case& one : plan.cases) {
             CaseMemory& memory = memories_.emplace_back();
             for (const std::uint64_t seed : plan.seeds) {
@@ -72,6 +76,7 @@ class PlanRun {
                 results.failed.push_back({unit.one.name, unit.seed, unit.failure});
             }
         }
+        keep_common_ticks(plan_, data_, results.units);
         return results;
     }
 
@@ -79,7 +84,7 @@ class PlanRun {
     void work() {
         try {
             for (std::size_t next = next_++; next < units_.size(); next = next_++) {
-                do_unit(units_[next]);
+                do_unit(unit_in_turn(next));
             }
         } catch (...) {
             const std::lock_guard lock(mutex_);
@@ -91,6 +96,13 @@ class PlanRun {
         finished_.notify_all();
     }
 
+    /// All cases' first draws before any second: the cases tune at the same time, no draw waits for its own
+    /// case's.
+    Unit& unit_in_turn(std::size_t turn) {
+        const std::size_t cases = plan_.cases.size();
+        return units_[turn % cases * plan_.seeds.size() + turn / cases];
+    }
+
     void do_unit(Unit& unit) {
         const nlohmann::ordered_json inputs = unit_inputs(plan_, data_, unit.one, unit.seed);
         if (!options_.fresh) {
@@ -100,7 +112,7 @@ class PlanRun {
         try {
             if (!unit.result) {
                 unit.result = write_unit(unit.path, inputs,
-                                         run_unit(plan_, data_, unit.one, unit.seed, unit.memory,
+                                         run_unit(plan_, data_, unit.one, unit.seed, unit.memory, threads_,
                                                   [&unit](double share) { unit.done = share; }));
             }
         } catch (const InputError& error) {
@@ -122,7 +134,8 @@ class PlanRun {
     const PlanData& data_;
     const RunOptions& options_;
     std::deque<CaseMemory> memories_; ///< one per case
-    std::deque<Unit> units_;
+    std::deque<Unit> units_;          ///< case by case, draw by draw
+    int threads_ = 1;                 ///< of each training
     std::atomic<std::size_t> next_ = 0;
     std::mutex mutex_;
     std::condition_variable finished_;

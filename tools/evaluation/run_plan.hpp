@@ -19,7 +19,8 @@ struct FailedUnit {
 };
 
 struct EvaluationResults {
-    std::vector<UnitResult> units; ///< in the plan's order: case by case, draw by draw
+    /// In the plan's order: case by case, draw by draw; with errors as `keep_common_ticks` leaves them.
+    std::vector<UnitResult> units;
     std::vector<FailedUnit> failed;
     std::size_t reused = 0; ///< of the units, found in the folder
 };

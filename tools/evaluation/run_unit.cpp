@@ -104,8 +104,8 @@ void run_subsets(const Plan& plan, const PlanData& data, const TrainedModel& mod
 } // namespace
 
 UnitResult run_unit(const Plan& plan, const PlanData& data, const Case& one, std::uint64_t seed,
-                    CaseMemory& memory, const std::function<void(double)>& progress) {
-    const TrainedModel model = train_case(one, {plan.robot, plan.outputs, data.start}, seed, memory,
+                    CaseMemory& memory, int threads, const std::function<void(double)>& progress) {
+    const TrainedModel model = train_case(one, {plan.robot, plan.outputs, data.start, threads}, seed, memory,
                                           [&](double share) { progress(share_of_training * share); });
     const auto estimator = make_estimator(model, false);
     TickProgress ticks(data, progress);

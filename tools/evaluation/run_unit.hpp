@@ -11,8 +11,9 @@ namespace dfdyn::tools {
 
 /// The paper's protocol (section "Inverse Dynamics Learning on iCub") for one case and one draw: start from
 /// `data.start`, online over `data.online`, then each subset from the state at the end of that, learning on,
-/// with an empty window. `progress`: told the share that is done, 0 … 1. Deterministic but for the times.
+/// with an empty window. `threads`: of the training, >= 1. `progress`: told the share that is done, 0 … 1.
+/// Deterministic but for the times.
 UnitResult run_unit(const Plan& plan, const PlanData& data, const Case& one, std::uint64_t seed,
-                    CaseMemory& memory, const std::function<void(double)>& progress);
+                    CaseMemory& memory, int threads, const std::function<void(double)>& progress);
 
 } // namespace dfdyn::tools

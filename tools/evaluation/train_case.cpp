@@ -21,11 +21,12 @@ Robot robot_of(const RobotChoice& choice) {
     ReadRobotOptions options;
     options.base = choice.base;
     options.tip = choice.tip;
+    options.gravity = Eigen::Vector3d(choice.gravity.data());
     options.ft_joint = choice.ft_joint;
     return read_robot(choice.urdf, options);
 }
 
-ModelTraining training_of(const Case& one, const RobotChoice& robot) {
+ModelTraining training_of(const Case& one, const RobotChoice& robot, int threads) {
     ModelTraining training;
     TrainingOptions& options = training.options;
     options.model = parse_model_class(one.model);
@@ -40,12 +41,15 @@ ModelTraining training_of(const Case& one, const RobotChoice& robot) {
     options.starts = one.starts;
     options.refinement_evaluations = 0; // it would depend on the draw
     options.seed = search_seed;
+    options.threads = threads;
     options.physics.own_motion = one.physics_input == "own";
     options.physics.prior = parse_prior_form(one.prior);
     if (has_physics(one.model) && !robot.urdf.empty()) {
         training.physics.emplace();
         training.physics->robot = robot_of(robot);
         training.physics->effects = one.effects;
+        training.physics->sign_velocity = robot.sign_velocity;
+        training.physics->torque_constants = robot.torque_constants;
     }
     return training;
 }
@@ -54,7 +58,7 @@ ModelTraining training_of(const Case& one, const RobotChoice& robot) {
 
 TrainedModel train_case(const Case& one, const CaseContext& context, std::uint64_t seed, CaseMemory& memory,
                         const std::function<void(double)>& progress) {
-    const ModelTraining training = training_of(one, context.robot);
+    const ModelTraining training = training_of(one, context.robot, context.threads);
     const PreparedTraining prepared = prepare_training(std::span(&context.start, 1), training);
     TrainedModel model;
     {

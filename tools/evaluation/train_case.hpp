@@ -22,6 +22,7 @@ struct CaseContext {
     const RobotChoice& robot;
     OutputKind outputs;
     const Recording& start; ///< hyperparameters and start come from it
+    int threads = 1;        ///< >= 1, of each training; does not change its result
 };
 
 /// Trains `one` for the draw of random features `seed`: hyperparameters from `context.start`, unless `memory`

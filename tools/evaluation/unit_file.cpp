@@ -3,6 +3,7 @@
 
 #include "tools/build_flags.hpp"
 #include "tools/common/atomic_file.hpp"
+#include "tools/evaluation/file_checksum.hpp"
 #include "tools/model/model_file.hpp"
 
 #include <fstream>
@@ -27,6 +28,8 @@ ordered_json case_json(const Case& one) {
             {"rows_per_joint", one.rows_per_joint},
             {"features", one.feature_count},
             {"orthogonal", one.orthogonal},
+            {"relevance", one.relevance},
+            {"centred", one.centred},
             {"forgetting", one.forgetting_factor},
             {"likelihood_rows", one.likelihood_rows},
             {"starts", one.starts}};
@@ -37,7 +40,9 @@ ordered_json protocol_json(const Plan& plan) {
                       {"training_rows", plan.training_rows.value_or(0)},
                       {"horizon", plan.horizon},
                       {"error_scale", to_string(plan.error_scale)},
-                      {"robot", {plan.robot.base, plan.robot.tip, plan.robot.ft_joint}}};
+                      {"robot",
+                       {plan.robot.base, plan.robot.tip, plan.robot.ft_joint, plan.robot.gravity,
+                        plan.robot.sign_velocity, plan.robot.torque_constants}}};
     for (const TestLog& test : plan.tests) {
         json["tests"].push_back({test.first, test.rows, test.count});
     }
@@ -47,6 +52,15 @@ ordered_json protocol_json(const Plan& plan) {
     return json;
 }
 
+/// The running program's build flags, and its checksum where the system shows its file.
+const std::string& program() {
+    static const std::string known = [] {
+        const std::filesystem::path itself = "/proc/self/exe";
+        return std::filesystem::exists(itself) ? build_flags() + "; " + file_checksum(itself) : build_flags();
+    }();
+    return known;
+}
+
 } // namespace
 
 ordered_json unit_inputs(const Plan& plan, const PlanData& data, const Case& one, std::uint64_t seed) {
@@ -54,7 +68,7 @@ ordered_json unit_inputs(const Plan& plan, const PlanData& data, const Case& one
                         {"seed", seed},
                         {"protocol", protocol_json(plan)},
                         {"files", ordered_json::array()},
-                        {"program", build_flags()}};
+                        {"program", program()}};
     for (const auto& [name, checksum] : data.checksums) {
         inputs["files"].push_back({name, checksum});
     }

@@ -10,7 +10,7 @@
 namespace dfdyn::tools {
 
 /// Everything that a unit's result depends on, for a comparison: case, seed, protocol, checksums of the
-/// recordings (and of the robot's file), program.
+/// recordings (and of the robot's file), program: its build flags and, where it can be read, its checksum.
 nlohmann::ordered_json unit_inputs(const Plan& plan, const PlanData& data, const Case& one,
                                    std::uint64_t seed);
 

@@ -15,7 +15,8 @@ struct UnitResult {
     std::uint64_t seed = 0; ///< of the draw
     double sample_period_s = 0;
     /// [group][subset][tick]: the index ε of the T samples after the subset's tick, averaged over the group's
-    /// outputs; NaN where there is none, infinite where an output rests at 0 and is the scale.
+    /// outputs. In a unit's file: NaN where there is none, infinite where an output rests at 0 and is the
+    /// scale. Once the units are compared: as `keep_common_ticks` says.
     std::vector<std::vector<std::vector<double>>> error;
     std::vector<double> normalised_error; ///< one-step nRMSE of each output over all subsets
     double median_us = 0;                 ///< of the ticks that learned

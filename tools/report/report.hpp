@@ -47,8 +47,8 @@ struct ReportRecording {
     std::string name;
 };
 
-/// A number is shown with digits that suit its whole column, right-aligned; a number that is not finite as a
-/// dash.
+/// A number is shown with digits that suit its whole column, right-aligned; an infinite one above as ∞, any
+/// other that is not finite as a dash.
 using ReportCell = std::variant<std::string, double>;
 
 struct ReportTable {

@@ -48,7 +48,7 @@ Magnitudes measure(const std::vector<double>& numbers) {
 
 std::string to_text(double number, std::chars_format format, int precision) {
     if (!std::isfinite(number)) {
-        return "–";
+        return number > 0 ? "∞" : "–";
     }
     std::array<char, 64> text{};
     const auto end = std::to_chars(text.data(), text.data() + text.size(), number, format, precision).ptr;

@@ -9,7 +9,7 @@
 namespace dfdyn::tools {
 
 /// The numbers of one column with as many decimals as give a typical one of them three digits; whole numbers
-/// with none; "–" for what is not finite. A column that spans more than five decades gets three digits in
+/// with none; "∞" for infinity, "–" for what else is not finite. A column that spans more than five decades gets three digits in
 /// each number instead.
 std::vector<std::string> format_column(const std::vector<double>& numbers);
 

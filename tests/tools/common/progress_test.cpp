@@ -100,3 +100,11 @@ TEST_CASE("Progress is silent in a pipe") {
     CHECK(::read(ends[0], &byte, 1) == 0);
     ::close(ends[0]);
 }
+
+TEST_CASE("Progress shows parts of one as tenths") {
+    const PseudoTerminal terminal;
+    Progress progress("units", 360, terminal.descriptor());
+    wait_one_period();
+    progress.update_part(37.44);
+    CHECK(terminal.written().ends_with("units: 37.4 of 360 (10 %)"));
+}

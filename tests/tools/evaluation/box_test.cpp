@@ -35,12 +35,19 @@ TEST_CASE("quantiles are interpolated between order statistics") {
     CHECK(tools::median_of({4, 1}) == Approx(2.5));
 }
 
-TEST_CASE("values that are not finite do not count") {
+TEST_CASE("NaN do not count, infinite values do") {
     const double infinite = std::numeric_limits<double>::infinity();
-    const tools::Box box = tools::box_of({infinite, 2, std::nan(""), 4, -infinite});
+    const tools::Box box = tools::box_of({2, std::nan(""), 4});
     CHECK(box.count == 2);
     CHECK(box.median == 3);
     CHECK(box.mean == 3);
-    CHECK(std::isnan(tools::box_of({infinite}).median));
+    const tools::Box lost = tools::box_of({infinite, 2, std::nan(""), infinite, 4, 1, 3});
+    CHECK(lost.count == 6);
+    CHECK(lost.lower_quartile == Approx(2.25));
+    CHECK(lost.median == Approx(3.5));
+    CHECK(lost.upper_quartile == infinite); // between 4 and infinity
+    CHECK(lost.high == infinite);           // between two infinities
+    CHECK(lost.mean == infinite);
+    CHECK(tools::box_of({infinite}).median == infinite);
     CHECK(std::isnan(tools::median_of({})));
 }

@@ -6,6 +6,7 @@
 #include "tests/tools/evaluation/synthetic_units.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace {
 
@@ -21,6 +22,18 @@ std::vector<UnitResult> units_with(double ratio, std::size_t draws, std::mt19937
         units.push_back(unit_at("B", seed, static_cast<double>(seed), engine));
     }
     return units;
+}
+
+const double infinite = std::numeric_limits<double>::infinity();
+
+/// Makes one tick of `name`'s first group in every subset infinite, in the draws up to `last`.
+void lose(std::vector<UnitResult>& units, const std::string& name, std::size_t tick,
+          std::uint64_t last = 100) {
+    for (UnitResult& unit : units) {
+        for (std::vector<double>& subset : unit.error[0]) {
+            subset[tick] = unit.case_name == name && unit.seed <= last ? infinite : subset[tick];
+        }
+    }
 }
 
 const Comparison a_is_less{"A", "B", "force", Phase::steady, 0};
@@ -88,6 +101,62 @@ TEST_CASE("a difference that only one subset shows does not hold") {
     CHECK(outcome.verdict == Verdict::undecided);
 }
 
+TEST_CASE("a case that loses ticks loses the draw") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Plan plan = two_case_plan(10);
+    const Comparison transient{"A", "B", "force", Phase::transient, 0};
+    std::vector<UnitResult> units = units_with(0.5, 10, engine);
+    SECTION("the better one") {
+        lose(units, "A", 4);
+        const ComparisonOutcome outcome = compare(transient, plan, units);
+        CHECK(outcome.draws == 10);
+        CHECK(outcome.draws_agree == 0);
+        CHECK(outcome.subsets_agree == 0);
+        CHECK(outcome.median_ratio == infinite);
+        CHECK(outcome.verdict == Verdict::contradicted);
+        CHECK(compare(a_is_less, plan, units).verdict == Verdict::holds); // no tick of this phase
+    }
+    SECTION("the better one in some draws") {
+        lose(units, "A", 4, 4);
+        const ComparisonOutcome outcome = compare(transient, plan, units);
+        CHECK(outcome.draws_agree == 6);
+        CHECK(outcome.subsets_agree == 3);
+        CHECK(outcome.upper_ratio == infinite);
+        CHECK(outcome.verdict == Verdict::undecided);
+    }
+    SECTION("the worse one") {
+        lose(units, "B", 4);
+        const ComparisonOutcome outcome = compare({"A", "B", "force", Phase::transient, 0.9}, plan, units);
+        CHECK(outcome.median_ratio == 0);
+        CHECK(outcome.verdict == Verdict::holds);
+    }
+    SECTION("both: a tie, whatever the gain") {
+        lose(units, "A", 4);
+        lose(units, "B", 5);
+        for (const double gain : {-0.5, 0.0, 0.5}) {
+            const ComparisonOutcome outcome =
+                compare({"A", "B", "force", Phase::transient, gain}, plan, units);
+            CHECK(outcome.draws == 10);
+            CHECK(outcome.draws_agree == 0);
+            CHECK(outcome.median_ratio == 1);
+            CHECK(outcome.verdict == Verdict::undecided);
+        }
+    }
+}
+
+TEST_CASE("the spread of a comparison's ratio is its quartiles over the draws") {
+    DFDYN_SEEDED_ENGINE(engine);
+    std::vector<UnitResult> units;
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        units.push_back(unit_at("A", seed, 0.1 * static_cast<double>(seed), engine));
+        units.push_back(unit_at("B", seed, 1, engine));
+    }
+    const ComparisonOutcome outcome = compare(a_is_less, two_case_plan(5), units);
+    CHECK(outcome.lower_ratio == Approx(0.2).epsilon(0.1));
+    CHECK(outcome.median_ratio == Approx(0.3).epsilon(0.1));
+    CHECK(outcome.upper_ratio == Approx(0.4).epsilon(0.1));
+}
+
 TEST_CASE("the draws are paired by their seed, not by their order") {
     DFDYN_SEEDED_ENGINE(engine);
     std::vector<UnitResult> units = units_with(0.9, 10, engine);
@@ -121,4 +190,5 @@ TEST_CASE("ratios are said in words") {
     CHECK(ratio_text(1.12) == "12 % more");
     CHECK(ratio_text(4.2) == "4.2 times as much");
     CHECK(ratio_text(std::nan("")) == "not comparable");
+    CHECK(ratio_text(infinite) == "∞ times as much");
 }

@@ -43,7 +43,7 @@ double draw_mean(const UnitResult& draw, std::size_t tick) {
     int count = 0;
     for (std::size_t subset = 0; subset < 3; ++subset) {
         const std::vector<double>& error = draw.error[1][subset];
-        const bool there = tick < error.size() && !std::isnan(error[tick]) && !std::isinf(error[tick]);
+        const bool there = tick < error.size() && !std::isnan(error[tick]);
         sum += there ? error[tick] : 0;
         count += there ? 1 : 0;
     }
@@ -60,6 +60,10 @@ TEST_CASE("the curve is the mean over subsets, then over draws, with the draws' 
     CHECK(std::isnan(curve.mean[0]));
     CHECK(std::isnan(curve.mean[1]));
     for (std::size_t tick = 2; tick < 60; ++tick) {
+        if (tick == 7) { // lost
+            CHECK(curve.mean[tick] == infinite);
+            continue;
+        }
         const double a = draw_mean(draws[0], tick);
         const double b = draw_mean(draws[1], tick);
         const double c = draw_mean(draws[2], tick);
@@ -91,6 +95,9 @@ TEST_CASE("a thinned curve averages each stretch of its logarithmic axis once") 
         CHECK(thin.high[i] == Approx(2 * thin.mean[i]));
     }
     CHECK(thin.time_s.back() > 80);
+    curve.mean[10] = infinite; // t = 1
+    const auto lost = std::ranges::count(thinned(curve, 10).mean, infinite);
+    CHECK(lost == 1); // a break in the line, not a better point
 }
 
 TEST_CASE("the phases part at the settling time") {
@@ -103,8 +110,10 @@ TEST_CASE("the phases part at the settling time") {
     CHECK(steady.size() == 40);
     CHECK(steady.front() == draw.error[1][0][20]);
     CHECK(phase_error(draw, 1, 0, Phase::steady, 2) == Approx(median_of(steady)));
-    std::vector<double> finite = transient;
-    std::erase(finite, infinite);
-    CHECK(phase_error(draw, 1, 0, Phase::transient, 2) == Approx(mean_of(finite)));
+    CHECK(phase_error(draw, 1, 0, Phase::transient, 2) == infinite);
+    CHECK(phase_error(draw, 1, 1, Phase::transient, 2) ==
+          Approx(mean_of(errors_of_phase(draw, 1, 1, Phase::transient, 2))));
+    CHECK(lost_share(pointers(draws), 1) == Approx(1.0 / (58 + 58 + 38)));
+    CHECK(lost_share(pointers(draws), 0) == 0);
     CHECK(phase_box(pointers(draws), 1, Phase::steady, 2).count == 3 * (40 + 40 + 20));
 }

@@ -8,6 +8,7 @@
 #include "tests/tools/support/balanced_markup.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace {
 
@@ -57,7 +58,7 @@ TEST_CASE("an evaluation writes page, tables, findings, figures and pictures") {
     for (const std::string& text : {html, markdown}) {
         CHECK_THAT(text, ContainsSubstring("A wins: reproduced"));
         CHECK_THAT(text, ContainsSubstring("B wins: not reproduced"));
-        CHECK_THAT(text, ContainsSubstring("Because of this."));
+        CHECK_THAT(text, ContainsSubstring("Why it is not reproduced: Because of this."));
         CHECK_THAT(text, !ContainsSubstring("Because of that."));
         CHECK_THAT(text, ContainsSubstring("at least 30 % less, transient"));
     }
@@ -90,8 +91,47 @@ TEST_CASE("the results have one row per case, draw and group") {
     const auto commas = std::ranges::count(csv.substr(0, csv.find('\n')), ',');
     CHECK(std::ranges::count(csv, ',') == commas * 25);
     CHECK_THAT(csv, ContainsSubstring("case,seed,group,transient_mean,"));
-    CHECK_THAT(csv, ContainsSubstring(",nrmse_fx,nrmse_mx,median_us,operations,state_bytes,columns\n"));
+    CHECK_THAT(csv, ContainsSubstring(",nrmse_fx,nrmse_mx,lost,median_us,operations,state_bytes,columns\n"));
     CHECK_THAT(csv, ContainsSubstring("\nB,6,torque,"));
+}
+
+TEST_CASE("lost ticks and cases without draws are said beside the table") {
+    Evaluation one = evaluation();
+    const TemporaryDirectory directory;
+    write(directory, one);
+    CHECK_THAT(file_content(directory.path() / "tables.md"), !ContainsSubstring("Lost"));
+    for (UnitResult& unit : one.results.units) {
+        if (unit.case_name == "B") {
+            unit.error[1][2][50] = std::numeric_limits<double>::infinity();
+        }
+    }
+    one.plan.cases[0].model = std::string("P");
+    write(directory, one);
+    const std::string tables = file_content(directory.path() / "tables.md");
+    CHECK_THAT(tables, ContainsSubstring("counted as infinite: B 0.556 %")); // 1 of 180
+    CHECK_THAT(tables, ContainsSubstring("all draws are the same: A."));
+    CHECK_THAT(tables, ContainsSubstring("∞"));
+    CHECK_THAT(tables, !ContainsSubstring("A 0"));
+}
+
+TEST_CASE("the tables show the spread over the draws") {
+    Evaluation one;
+    std::mt19937_64 engine(1);
+    one.plan.seeds = {1, 2, 3};
+    one.data.start.output.names = {"fx", "mx"};
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+        one.results.units.push_back(unit_at("A", seed, 1, engine));
+        for (auto& group : one.results.units.back().error) {
+            for (std::vector<double>& subset : group) {
+                std::ranges::fill(subset, static_cast<double>(seed));
+            }
+        }
+    }
+    const TemporaryDirectory directory;
+    write(directory, one);
+    // mean and median over everything are 2, of the draws 1, 2 and 3
+    CHECK_THAT(file_content(directory.path() / "tables.md"),
+               ContainsSubstring("| A | 2 | 1.5–2.5 | 2 | 2 | 2 | 1.5–2.5 | 1 | 3 | 1 | 3 |"));
 }
 
 TEST_CASE("what could not be done is said, and the rest shown") {

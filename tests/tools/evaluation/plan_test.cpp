@@ -6,6 +6,7 @@
 #include "tools/common/error.hpp"
 #include "tools/evaluation/plan_data.hpp"
 
+#include <array>
 #include <functional>
 
 namespace {
@@ -84,6 +85,50 @@ TEST_CASE("comparisons multiply over lists, and over all groups where none is na
     CHECK(comparisons[4].gain == 0);
 }
 
+TEST_CASE("a comparison may name the cases without a suffix as a set") {
+    json content = small_plan();
+    content["more_cases"] = {{{"input", {"STD", "DF"}}, {"suffix", "-own"}}};
+    content["comparisons"] = json::parse(R"([
+        {"better": "NP-ML-DF-own", "worse": "paper", "group": "both", "phase": "steady"},
+        {"better": ["paper", "NP-ML-DF-own"], "worse": "NP-ML-STD-own", "group": "both", "phase": "steady"}])");
+    const Plan plan = plan_of(content);
+    std::vector<std::pair<std::string, std::string>> pairs;
+    for (const Comparison& comparison : plan.comparisons) {
+        pairs.emplace_back(comparison.better, comparison.worse);
+    }
+    CHECK(pairs == std::vector<std::pair<std::string, std::string>>{{"NP-ML-DF-own", "NP-ML-STD"},
+                                                                    {"NP-ML-DF-own", "NP-ML-DFR"},
+                                                                    {"NP-ML-STD", "NP-ML-STD-own"},
+                                                                    {"NP-ML-DFR", "NP-ML-STD-own"},
+                                                                    {"NP-ML-DF-own", "NP-ML-STD-own"}});
+}
+
+TEST_CASE("more figures are added to the one that is there by default") {
+    json content = small_plan();
+    content["more_figures"] = {{{"title", "One"}, {"cases", {"NP-ML-DFR"}}}};
+    const Plan plan = plan_of(content);
+    REQUIRE(plan.figures.size() == 2);
+    CHECK(plan.figures[0].cases.size() == 2);
+    CHECK(plan.figures[1].title == "One");
+}
+
+TEST_CASE("the settings of training and of the robot are read") {
+    json content = small_plan();
+    content["defaults"]["relevance"] = false;
+    content["cases"] =
+        json::parse(R"([{"input": "STD", "centred": false}, {"input": "DF", "relevance": true}])");
+    content["robot"] = json::parse(R"({"urdf": "r.urdf", "gravity": [0, 9.8, 1], "sign_velocity": 0.01,
+                                       "torque_constants": [10, 7.5]})");
+    const Plan plan = plan_of(content);
+    CHECK_FALSE(plan.cases[0].relevance);
+    CHECK_FALSE(plan.cases[0].centred);
+    CHECK(plan.cases[1].relevance);
+    CHECK(plan.cases[1].centred);
+    CHECK(plan.robot.gravity == std::array<double, 3>{0, 9.8, 1});
+    CHECK(plan.robot.sign_velocity == 0.01);
+    CHECK(plan.robot.torque_constants == std::vector<double>{10, 7.5});
+}
+
 TEST_CASE("a mistake in a plan is named by its field") {
     struct Mistake {
         std::function<void(json&)> make;
@@ -116,6 +161,28 @@ TEST_CASE("a mistake in a plan is named by its field") {
         {[](json& j) { j["cases"][0]["model"] = "XP"; }, "cases[0].model: expected one of P, NP, SP"},
         {[](json& j) { j["cases"][0]["hyper"] = "XP"; }, "cases[0].hyper: expected one of ML, CV"},
         {[](json& j) { j["cases"][0]["suffix"] = "/../"; }, "cases[0].suffix: expected letters"},
+        {[](json& j) {
+             j["cases"][0]["effects"] = {"viscous_friction", "viscous"};
+         },
+         "plan.json: cases[0].effects: expected one of"},
+        {[](json& j) { j["defaults"]["effects"] = "bias"; }, "defaults.effects: expected one of"},
+        {[](json& j) { j["cases"][0]["centred"] = 1; }, "cases[0].centred: expected true or false"},
+        {[](json& j) {
+             j["robot"] = {{"urdf", "r"}, {"gravity", {0, 1}}};
+         },
+         "robot.gravity: expected 3 numbers"},
+        {[](json& j) {
+             j["robot"] = {{"urdf", "r"}, {"sign_velocity", 0}};
+         },
+         "robot.sign_velocity: expected a positive number"},
+        {[](json& j) {
+             j["robot"] = {{"urdf", "r"}, {"torque_constants", {1, -1}}};
+         },
+         "robot.torque_constants"},
+        {[](json& j) {
+             j["comparisons"] = {{{"better", "NP-ML-STD"}, {"worse", "papers"}, {"phase", "steady"}}};
+         },
+         "comparisons[0].worse: expected one of"},
         {[](json& j) { j["cases"].push_back(j["cases"][0]); }, "\"NP-ML-STD\" twice"},
         {[](json& j) { j["defaults"]["features"] = 0; }, "defaults.features: expected a whole number from 1"},
         {[](json& j) { j["defaults"]["forgetting"] = 2; }, "defaults.forgetting: expected a number from 0.5"},

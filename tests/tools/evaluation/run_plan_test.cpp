@@ -3,10 +3,14 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/evaluation/small_experiment.hpp"
+#include "tools/build_flags.hpp"
+#include "tools/evaluation/file_checksum.hpp"
 #include "tools/evaluation/replay.hpp"
 #include "tools/evaluation/run_unit.hpp"
+#include "tools/evaluation/unit_file.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace {
 
@@ -82,6 +86,14 @@ TEST_CASE("only units whose inputs changed run again") {
         directory.write("plan.json", plan.dump());
         CHECK(run(directory).reused == 2);
     }
+    SECTION("how it is trained, one case: that one") {
+        plan["cases"] = {{{"input", "STD"}, {"relevance", false}}, {{"input", "DFR"}}};
+        directory.write("plan.json", plan.dump());
+        CHECK(run(directory).reused == 2);
+        plan["cases"] = {{{"input", "STD"}, {"relevance", false}}, {{"input", "DFR"}, {"centred", false}}};
+        directory.write("plan.json", plan.dump());
+        CHECK(run(directory).reused == 2);
+    }
     SECTION("the protocol: all") {
         plan["horizon"] = 6;
         directory.write("plan.json", plan.dump());
@@ -111,6 +123,45 @@ TEST_CASE("only units whose inputs changed run again") {
     }
 }
 
+TEST_CASE("a unit's inputs hold the program's checksum") {
+    const TemporaryDirectory directory;
+    // the check value of CRC-32
+    CHECK(file_checksum(directory.write("text", "123456789")) == "cbf43926, 9 bytes");
+    const Plan plan = read_plan(write_small_experiment(directory));
+    const std::string program = unit_inputs(plan, load_plan_data(plan), plan.cases[0], 1)["program"];
+    CHECK_THAT(program, ContainsSubstring(build_flags()));
+    CHECK_THAT(program, ContainsSubstring(file_checksum("/proc/self/exe")));
+}
+
+TEST_CASE("a unit that learned no tick, or lost some, is read as it was written") {
+    const TemporaryDirectory directory;
+    UnitResult unit;
+    unit.case_name = "A";
+    unit.median_us = std::nan("");
+    unit.error = {{{std::nan(""), std::numeric_limits<double>::infinity(), 0.5}}};
+    const nlohmann::ordered_json inputs{{"seed", 1}};
+    write_unit(directory.path() / "1.json", inputs, unit);
+    const auto read = read_unit(directory.path() / "1.json", inputs);
+    REQUIRE(read);
+    CHECK(std::isnan(read->median_us));
+    CHECK(std::isnan(read->error[0][0][0]));
+    CHECK(std::isinf(read->error[0][0][1]));
+    CHECK(read->error[0][0][2] == 0.5);
+}
+
+TEST_CASE("the first draws of all cases come before any second") {
+    const TemporaryDirectory directory;
+    write_small_experiment(directory);
+    run(directory);
+    const auto written = [&directory](const std::string& file) {
+        return std::filesystem::last_write_time(directory.path() / "out/cases" / file);
+    };
+    // a clock tick may hold several that have nothing to tune, not the tuning of DFR
+    CHECK(written("NP-ML-STD/1.json") < written("NP-ML-DFR/1.json"));
+    CHECK(written("NP-ML-DFR/1.json") <= written("NP-ML-STD/2.json"));
+    CHECK(written("NP-ML-STD/2.json") <= written("NP-ML-DFR/2.json"));
+}
+
 TEST_CASE("several jobs give what one gives, in the same order") {
     const TemporaryDirectory serial;
     const TemporaryDirectory parallel;
@@ -138,15 +189,33 @@ TEST_CASE("a case that cannot be done does not stop the others, and is tried aga
     }
 }
 
+TEST_CASE("all cases are scored at the same ticks") {
+    const TemporaryDirectory directory;
+    json plan = small_plan();
+    plan["cases"].push_back({{"input", "DFR"}, {"lags", 9}, {"suffix", "-long"}});
+    write_small_experiment(directory, plan);
+    const EvaluationResults results = run(directory);
+    REQUIRE(results.units.size() == 6);
+    for (const UnitResult& unit : results.units) {
+        CAPTURE(unit.case_name, unit.seed);
+        for (std::size_t tick = 0; tick < 100; ++tick) {
+            const bool scored = tick >= 9 && tick < 95;
+            CHECK(std::isfinite(unit.error[0][1][tick]) == scored);
+            CHECK(std::isnan(unit.error[0][1][tick]) == !scored);
+        }
+    }
+}
+
 TEST_CASE("a unit is the protocol, written out") {
     const TemporaryDirectory directory;
     const Plan plan = read_plan(write_small_experiment(directory));
     const PlanData data = load_plan_data(plan);
     CaseMemory memory;
-    const UnitResult unit = run_unit(plan, data, plan.cases[1], 7, memory, ignore);
+    const UnitResult unit = run_unit(plan, data, plan.cases[1], 7, memory, 2, ignore);
 
     CaseMemory other;
-    const TrainedModel model = train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 7, other, ignore);
+    const TrainedModel model =
+        train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 7, other, ignore);
     for (std::size_t subset = 0; subset < 2; ++subset) {
         const auto estimator = make_estimator(model, false);
         replay(*estimator, model, data.online, 0, [](std::size_t) {});
@@ -170,8 +239,8 @@ TEST_CASE("relative to the variance, the error is the horizon's squared error ov
     const Plan plan = read_plan(write_small_experiment(directory, content));
     const PlanData data = load_plan_data(plan);
     CaseMemory memory;
-    const UnitResult by_horizon = run_unit(relative, data, plan.cases[1], 1, memory, ignore);
-    const UnitResult by_variance = run_unit(plan, data, plan.cases[1], 1, memory, ignore);
+    const UnitResult by_horizon = run_unit(relative, data, plan.cases[1], 1, memory, 2, ignore);
+    const UnitResult by_variance = run_unit(plan, data, plan.cases[1], 1, memory, 2, ignore);
     const Recording& subset = data.subsets[1];
     for (std::size_t tick = 4; tick < 90; ++tick) {
         double square = 0;
@@ -190,7 +259,8 @@ TEST_CASE("which draw tunes the hyperparameters does not matter") {
     CaseMemory fresh;
     CaseMemory used;
     train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 1, used, ignore);
-    const TrainedModel a = train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 2, fresh, ignore);
+    const TrainedModel a =
+        train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 2, fresh, ignore);
     const TrainedModel b = train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 2, used, ignore);
     CHECK(a.features.omega == b.features.omega);
     CHECK(a.input.rows == b.input.rows);

