@@ -60,15 +60,15 @@ Eigen::MatrixXd polynomial_weights(const Recording& recording, std::size_t begin
 
 } // namespace
 
-Derivatives zero_phase_derivatives(const Recording& recording, const Columns& columns,
-                                   const ZeroPhaseWindow& window) {
+SampledDerivatives zero_phase_derivatives(const Recording& recording, const Columns& columns,
+                                          const ZeroPhaseWindow& window) {
     const auto rows = static_cast<Eigen::Index>(recording.row_count());
     const auto signals = static_cast<Eigen::Index>(columns.names.size());
     const Eigen::Map<const RowMajor> values(columns.values.data(), rows, signals);
     const std::vector<std::size_t> stretch = stretches(recording);
     const auto half = static_cast<std::size_t>(window.half_width);
-    Derivatives result{Eigen::MatrixXd::Zero(rows, signals), Eigen::MatrixXd::Zero(rows, signals),
-                       std::vector<std::uint8_t>(recording.row_count(), 0)};
+    SampledDerivatives result{Eigen::MatrixXd::Zero(rows, signals), Eigen::MatrixXd::Zero(rows, signals),
+                              std::vector<std::uint8_t>(recording.row_count(), 0)};
     for (std::size_t row = half; row + half < recording.row_count(); ++row) {
         if (stretch[row - half] != stretch[row + half]) {
             continue;

@@ -20,7 +20,7 @@ constexpr double alike_least = 0.05;     // correlation of a row with the deriva
 
 Bounds no_bounds() { return {VectorXd(0), VectorXd(0)}; }
 
-class GivenMotion final : public Motion {
+class GivenMotion final : public LearnedMotion {
   public:
     GivenMotion(const TrainingData& data, const RowList& rows)
         : samples_{data.positions(rows, Eigen::all), data.velocities(rows, Eigen::all),
@@ -38,7 +38,7 @@ class GivenMotion final : public Motion {
     MotionSamples samples_;
 };
 
-class LagMotion final : public Motion {
+class LagMotion final : public LearnedMotion {
   public:
     LagMotion(const MatrixXd& positions, const RowList& rows, int lags,
               std::unique_ptr<MotionRows> motion_rows)
@@ -211,12 +211,12 @@ class ScaledMotion final : public MotionRows {
 
 } // namespace
 
-std::unique_ptr<Motion> given_motion(const TrainingData& data, const RowList& rows) {
+std::unique_ptr<LearnedMotion> given_motion(const TrainingData& data, const RowList& rows) {
     return std::make_unique<GivenMotion>(data, rows);
 }
 
-std::unique_ptr<Motion> lag_motion(const MatrixXd& positions, const RowList& rows, int lags,
-                                   std::unique_ptr<MotionRows> motion_rows) {
+std::unique_ptr<LearnedMotion> lag_motion(const MatrixXd& positions, const RowList& rows, int lags,
+                                          std::unique_ptr<MotionRows> motion_rows) {
     return std::make_unique<LagMotion>(positions, rows, lags, std::move(motion_rows));
 }
 

@@ -31,12 +31,12 @@ struct MotionGradient {
 };
 
 /// The motion of a set of samples as a differentiable function of the input's parameters, then its own.
-class Motion {
+class LearnedMotion {
   public:
-    Motion() = default;
-    Motion(const Motion&) = delete;
-    Motion& operator=(const Motion&) = delete;
-    virtual ~Motion() = default;
+    LearnedMotion() = default;
+    LearnedMotion(const LearnedMotion&) = delete;
+    LearnedMotion& operator=(const LearnedMotion&) = delete;
+    virtual ~LearnedMotion() = default;
 
     virtual Bounds bounds() const = 0; ///< of its own parameters
     virtual Eigen::VectorXd start(const Eigen::VectorXd& input) const = 0;
@@ -68,11 +68,11 @@ class MotionRows {
 };
 
 /// The recording's derivatives at `rows`. Nothing is learned.
-std::unique_ptr<Motion> given_motion(const TrainingData& data, const RowList& rows);
+std::unique_ptr<LearnedMotion> given_motion(const TrainingData& data, const RowList& rows);
 
 /// Measured positions, and derivatives by `motion_rows` of each joint's last positions.
-std::unique_ptr<Motion> lag_motion(const Eigen::MatrixXd& positions, const RowList& rows, int lags,
-                                   std::unique_ptr<MotionRows> motion_rows);
+std::unique_ptr<LearnedMotion> lag_motion(const Eigen::MatrixXd& positions, const RowList& rows, int lags,
+                                          std::unique_ptr<MotionRows> motion_rows);
 
 /// The polynomial of degree 2 through the window, in the least-squares sense, at its newest sample. 2 <=
 /// lags.

@@ -78,7 +78,7 @@ std::unique_ptr<MotionRows> TrainingSetup::motion_rows(InputKind kind) const {
     }
 }
 
-std::unique_ptr<Motion> TrainingSetup::motion(InputKind kind, const RowList& at) const {
+std::unique_ptr<LearnedMotion> TrainingSetup::motion(InputKind kind, const RowList& at) const {
     std::unique_ptr<MotionRows> own = motion_rows(kind);
     return own == nullptr ? given_motion(data, at)
                           : lag_motion(data.positions, at, options.lags, std::move(own));

@@ -35,7 +35,7 @@ struct TrainingSetup {
     std::unique_ptr<InputMap> input(InputKind kind, const RowList& at) const;
 
     /// What the regressor sees over the rows `at` beside an input of that kind.
-    std::unique_ptr<Motion> motion(InputKind kind, const RowList& at) const;
+    std::unique_ptr<LearnedMotion> motion(InputKind kind, const RowList& at) const;
 
     /// The parameters of that motion that training begins with: the input's, then its own.
     Eigen::VectorXd motion_start(InputKind kind) const;
