@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/recording/zero_phase_derivatives.hpp"
 
+#include "tools/common/quantile.hpp"
+
 #include <Eigen/QR>
 
-#include <algorithm>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -21,15 +23,10 @@ std::vector<std::size_t> stretches(const Recording& recording) {
     for (std::size_t row = 1; row < recording.row_count(); ++row) {
         steps.push_back(step_s(recording, row));
     }
-    double median = 0;
-    if (!steps.empty()) {
-        const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-        std::ranges::nth_element(steps, middle);
-        median = *middle;
-    }
+    const double longest = 3 * median(std::move(steps)); // not used where there is no step
     std::vector<std::size_t> first(recording.row_count(), 0);
     for (std::size_t row = 1; row < recording.row_count(); ++row) {
-        const bool gap = recording.gap_before[row] != 0 || step_s(recording, row) > 3 * median;
+        const bool gap = recording.gap_before[row] != 0 || step_s(recording, row) > longest;
         first[row] = gap ? row : first[row - 1];
     }
     return first;

@@ -57,6 +57,9 @@ void check_outputs_vary(const TrainingSetup& setup);
 /// there is none.
 ColumnChoice choose_columns(const TrainingSetup& setup);
 
+/// What the model adds to everything: NP's mean over the rows in motion if it is centred; else 0.
+Eigen::VectorXd output_offset(const TrainingSetup& setup);
+
 /// Standard deviations of the outputs over the likelihood rows.
 Eigen::VectorXd output_deviations(const TrainingSetup& setup);
 
