@@ -68,7 +68,7 @@ TrainedModel train_case(const Case& one, const CaseContext& context, std::uint64
                 train_model(prepared, context.outputs, training, [&progress](const TrainingProgress& done) {
                     progress(static_cast<double>(done.evaluations) /
                              static_cast<double>(done.evaluations_most));
-                });
+                }).model;
             memory.tuned->limits.innovation = static_cast<double>(std::numeric_limits<float>::max());
         }
         model = *memory.tuned;
