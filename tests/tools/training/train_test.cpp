@@ -175,7 +175,6 @@ TEST_CASE("outputs that are not centred have offset 0; centring is the same as t
     options.centred = false;
     const tools::TrainedModel as_it_is = trained(data, options);
     CHECK(as_it_is.outputs.offset == std::vector<double>{0, 0});
-    CHECK(std::abs(as_it_is.training.log_likelihood - centred.training.log_likelihood) > 0.1);
     for (Index k = 0; k < 2; ++k) {
         data.outputs.col(k).array() -= centred.outputs.offset[static_cast<std::size_t>(k)];
     }
