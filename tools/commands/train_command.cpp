@@ -2,6 +2,7 @@
 #include "tools/commands/command.hpp"
 #include "tools/commands/options.hpp"
 #include "tools/commands/robot_options.hpp"
+#include "tools/commands/train_outcome.hpp"
 #include "tools/common/atomic_file.hpp"
 #include "tools/common/error.hpp"
 #include "tools/common/progress.hpp"
@@ -12,6 +13,7 @@
 #include "tools/physics/model_training.hpp"
 #include "tools/training/training_options.hpp"
 
+#include <initializer_list>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -21,6 +23,7 @@ namespace dfdyn::tools {
 namespace {
 
 struct TrainOptions {
+    const CLI::App* command = nullptr; ///< that filled them in
     RecordingOptions recordings;
     RobotOptions robot;
     std::string outputs;
@@ -40,6 +43,7 @@ struct TrainOptions {
 const std::map<std::string, DerivativeSource> sources{{"auto", DerivativeSource::automatic},
                                                       {"measured", DerivativeSource::measured},
                                                       {"estimated", DerivativeSource::estimated}};
+
 void add_physics_options(CLI::App& command, TrainOptions& options) {
     options.robot.add_to(command, false);
     command
@@ -81,6 +85,12 @@ void add_training_options(CLI::App& command, TrainingOptions& training) {
     command
         .add_option("--forgetting", training.forgetting_factor, "Forgetting factor of the learner; 1: none")
         ->capture_default_str();
+    command.add_flag("--relevance,!--no-relevance", training.relevance,
+                     "Input STD with ML: velocity and acceleration have gains of their own (default), or, as "
+                     "in the paper, one width for inputs of unit deviation");
+    command.add_flag(
+        "--centred,!--not-centred", training.centred,
+        "Model NP: outputs less their mean (default), or, as in the paper, a prior of mean zero");
     command.add_option("--likelihood-rows", training.likelihood_rows, "Samples in the exact kernel, at most")
         ->check(CLI::Range(20, 20000))
         ->capture_default_str();
@@ -106,52 +116,16 @@ std::string file_names(const std::vector<Recording>& recordings, TrainingRecord&
 }
 
 /// One line for the search over hyperparameters, from whichever thread.
-ProgressCallback progress_line() {
+ProgressCallback progress_line(HyperMethod hyper) {
     const auto line = std::make_shared<std::unique_ptr<Progress>>();
-    return [line](const TrainingProgress& progress) {
+    return [line, hyper](const TrainingProgress& progress) {
         if (*line == nullptr) {
-            *line = std::make_unique<Progress>("maximising the marginal likelihood",
-                                               static_cast<std::size_t>(progress.evaluations_most));
+            *line = std::make_unique<Progress>(
+                hyper == HyperMethod::CV ? "cross validation" : "maximising the marginal likelihood",
+                static_cast<std::size_t>(progress.evaluations_most));
         }
         (*line)->update(static_cast<std::size_t>(progress.evaluations));
     };
-}
-
-void print_physics(const PhysicsModel& physics) {
-    std::cout << "physics: " << physics.selected.size() << " parameters that the recording can tell apart"
-              << (physics.prior_variance > 0 ? ", learned on\n" : ", fixed\n");
-    for (std::size_t i = 0; i < physics.selected.size(); ++i) {
-        std::cout << "  " << physics.parameter_names[i] << ' '
-                  << physics.column_scale[i] * physics.start.weights[i] << '\n';
-    }
-}
-
-void print_kernel(const TrainedModel& model) {
-    std::cout << "features: input " << to_string(model.input.kind) << ", length scale "
-              << model.features.length_scale << ", rho^2/sigma^2 " << model.outputs.prior_variance << '\n';
-}
-
-void print_outcome(const TrainedModel& model, const std::string& trained_on) {
-    std::cout << "trained " << model.structure << " on " << trained_on << ", rows " << model.training.rows
-              << " (" << model.training.likelihood_rows << " in the exact kernel)\n";
-    if (!model.training.all_starts.empty()) {
-        std::cout << "log likelihood per start:";
-        for (const double value : model.training.all_starts) {
-            std::cout << ' ' << value;
-        }
-        std::cout << '\n';
-    }
-    if (model.physics) {
-        print_physics(*model.physics);
-    }
-    if (has_features(model.structure)) {
-        print_kernel(model);
-    }
-    std::cout << "noise:";
-    for (std::size_t k = 0; k < model.outputs.names.size(); ++k) {
-        std::cout << ' ' << model.outputs.names[k] << ' ' << model.outputs.noise_std[k];
-    }
-    std::cout << '\n';
 }
 
 ModelTraining model_training(const TrainOptions& options, OutputKind outputs) {
@@ -170,16 +144,43 @@ ModelTraining model_training(const TrainOptions& options, OutputKind outputs) {
     return training;
 }
 
+/// Says which of the options that were given do nothing here.
+void note_ignored(const TrainOptions& options, OutputKind outputs) {
+    const std::string model = "model " + options.structure;
+    const bool physics = has_physics(options.structure);
+    const bool learned = options.structure == "P" || options.structure == "SPK";
+    const bool cross_validation = options.hyper == "CV";
+    const auto note = [&](bool ignored, std::initializer_list<const char*> names, const std::string& by) {
+        for (const char* const name : names) {
+            if (ignored && options.command->count(name) > 0) {
+                std::cerr << "note: " << name << " is ignored: " << by << " does not read it\n";
+            }
+        }
+    };
+    note(!physics, {"--robot", "--effects", "--sign-velocity", "--own-motion"}, model);
+    note(!learned, {"--prior"}, model);
+    note(!physics, {"--torque-constants"}, model);
+    note(physics && outputs != OutputKind::motor_current, {"--torque-constants"},
+         "--outputs " + options.outputs);
+    note(cross_validation, {"--starts", "--refinement"}, "--hyper CV");
+    note(options.input != "STD", {"--relevance"}, "input " + options.input);
+    note(options.input == "STD" && options.structure == "P", {"--relevance"}, model);
+    note(options.input == "STD" && cross_validation, {"--relevance"}, "--hyper CV");
+    note(options.structure != "NP", {"--centred"}, model);
+}
+
 int run(const TrainOptions& options) {
     check_distinct({options.model, options.header}, options.recordings.logs);
     const OutputKind outputs = parse_output_kind(options.outputs);
     const ModelTraining training = model_training(options, outputs);
+    note_ignored(options, outputs);
     ReadOptions columns;
     columns.outputs = outputs;
     columns.velocity = columns.acceleration = training.derivatives != DerivativeSource::estimated;
     const std::vector<Recording> recordings = options.recordings.read(columns);
-    TrainedModel model =
-        train_model(prepare_training(recordings, training), outputs, training, progress_line());
+    ModelTrainingResult result = train_model(prepare_training(recordings, training), outputs, training,
+                                             progress_line(training.options.hyper));
+    TrainedModel& model = result.model;
     const std::string trained_on = file_names(recordings, model.training);
     model.training.rows = options.recordings.rows;
     calibrate_innovation_limit(model, recordings);
@@ -189,7 +190,7 @@ int run(const TrainOptions& options) {
     if (!options.header.empty()) {
         write_file(options.header, model_to_header(model, to_identifier(options.header.stem().string())));
     }
-    print_outcome(model, trained_on);
+    print_outcome(result, trained_on);
     return 0;
 }
 
@@ -199,6 +200,7 @@ void add_train_command(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<TrainOptions>();
     CLI::App* command =
         app.add_subcommand("train", "Fits hyperparameters and the start of learning to recordings");
+    options->command = command;
     options->recordings.add_to(*command);
     command
         ->add_option("--outputs", options->outputs,

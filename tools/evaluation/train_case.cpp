@@ -36,6 +36,8 @@ ModelTraining training_of(const Case& one, const RobotChoice& robot, int threads
     options.rows_per_joint = one.rows_per_joint;
     options.feature_count = one.feature_count;
     options.orthogonal = one.orthogonal;
+    options.relevance = one.relevance;
+    options.centred = one.centred;
     options.forgetting_factor = one.forgetting_factor;
     options.likelihood_rows = one.likelihood_rows;
     options.starts = one.starts;
@@ -68,7 +70,7 @@ TrainedModel train_case(const Case& one, const CaseContext& context, std::uint64
                 train_model(prepared, context.outputs, training, [&progress](const TrainingProgress& done) {
                     progress(static_cast<double>(done.evaluations) /
                              static_cast<double>(done.evaluations_most));
-                });
+                }).model;
             memory.tuned->limits.innovation = static_cast<double>(std::numeric_limits<float>::max());
         }
         model = *memory.tuned;

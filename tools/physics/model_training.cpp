@@ -2,11 +2,11 @@
 #include "tools/physics/model_training.hpp"
 
 #include "tools/common/error.hpp"
+#include "tools/common/to_vector.hpp"
 #include "tools/host/host_model.hpp"
 #include "tools/model/model_file.hpp"
 #include "tools/physics/chain_model.hpp"
 #include "tools/physics/robot_regressor.hpp"
-#include "tools/physics/torque_constants.hpp"
 #include "tools/training/input_map.hpp"
 #include "tools/training/recorded_data.hpp"
 #include "tools/training/start_state.hpp"
@@ -22,10 +22,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-std::vector<double> to_vector(const VectorXd& vector) {
-    return {vector.data(), vector.data() + vector.size()};
-}
-
 bool have_derivatives(std::span<const Recording> recordings) {
     return std::ranges::all_of(recordings, [](const Recording& recording) {
         return recording.velocity.present() && recording.acceleration.present();
@@ -39,11 +35,12 @@ struct PhysicsColumnsOf {
     std::vector<double> output_gain;
 };
 
-std::vector<double> output_gains(const PreparedTraining& prepared, OutputKind outputs,
-                                 const RobotPhysics& physics) {
+/// Of currents; nothing for other outputs.
+std::vector<TorqueGain> torque_gains(const PreparedTraining& prepared, OutputKind outputs,
+                                     const RobotPhysics& physics) {
     const auto count = static_cast<std::size_t>(prepared.data.outputs.cols());
     if (outputs != OutputKind::motor_current) {
-        return std::vector<double>(count, 1);
+        return {};
     }
     if (physics.torque_constants.empty()) {
         return estimate_torque_gains(physics.robot, prepared.data, physics.sign_velocity);
@@ -52,14 +49,20 @@ std::vector<double> output_gains(const PreparedTraining& prepared, OutputKind ou
         throw InputError("torque constants: expected " + std::to_string(count) + ", one per joint, found " +
                          std::to_string(physics.torque_constants.size()));
     }
-    std::vector<double> gains;
+    std::vector<TorqueGain> gains;
     for (const double constant : physics.torque_constants) {
         if (!(constant > 0)) {
             throw InputError("torque constants: expected positive numbers, found " +
                              std::to_string(constant));
         }
-        gains.push_back(1 / constant);
+        gains.push_back({1 / constant, TorqueGain::Source::given});
     }
+    return gains;
+}
+
+std::vector<double> output_gains(const std::vector<TorqueGain>& torque_gains, Index outputs) {
+    std::vector<double> gains(static_cast<std::size_t>(outputs), 1);
+    std::ranges::transform(torque_gains, gains.begin(), &TorqueGain::gain);
     return gains;
 }
 
@@ -185,14 +188,14 @@ PreparedTraining prepare_training(std::span<const Recording> recordings, const M
     return prepared;
 }
 
-TrainedModel train_model(const PreparedTraining& prepared, OutputKind outputs, const ModelTraining& training,
-                         const ProgressCallback& progress) {
+ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind outputs,
+                                const ModelTraining& training, const ProgressCallback& progress) {
     TrainingOptions options = training.options;
     options.position_noise_bound = prepared.position_noise_bound;
     if (options.model == ModelClass::NP) {
-        TrainedModel model = train(prepared.data, options, progress).model;
-        set_derivatives(model, prepared);
-        return model;
+        TrainingResult result = train(prepared.data, options, progress);
+        set_derivatives(result.model, prepared);
+        return {std::move(result.model), std::move(result.hold_out), {}};
     }
     if (!training.physics) {
         throw InputError("model " + to_string(options.model) +
@@ -200,7 +203,9 @@ TrainedModel train_model(const PreparedTraining& prepared, OutputKind outputs, c
     }
     const RobotPhysics& robot = *training.physics;
     check_joints(robot.robot, prepared.data);
-    PhysicsColumnsOf columns{chain_model(robot.robot, outputs), {}, output_gains(prepared, outputs, robot)};
+    std::vector<TorqueGain> gains = torque_gains(prepared, outputs, robot);
+    PhysicsColumnsOf columns{
+        chain_model(robot.robot, outputs), {}, output_gains(gains, prepared.data.outputs.cols())};
     columns.effects = effect_models(robot.effects, columns.chain, robot.sign_velocity);
     const auto regressor = robot_regressor(columns.chain, columns.effects, columns.output_gain);
     options.physics.regressor = regressor.get();
@@ -211,7 +216,7 @@ TrainedModel train_model(const PreparedTraining& prepared, OutputKind outputs, c
     if (!has_features(model.structure)) {
         model.input = {};
     }
-    return model;
+    return {std::move(model), std::move(result.hold_out), std::move(gains)};
 }
 
 void restart_model(TrainedModel& model, const PreparedTraining& prepared) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/physics/torque_constants.hpp"
 #include "tools/recording/recording.hpp"
 #include "tools/robot/robot.hpp"
 #include "tools/training/train.hpp"
@@ -44,10 +45,17 @@ struct PreparedTraining {
 /// recordings lack.
 PreparedTraining prepare_training(std::span<const Recording> recordings, const ModelTraining& training);
 
+/// A model, and what training found out beside it.
+struct ModelTrainingResult {
+    TrainedModel model;
+    std::vector<HoldOutPoint> hold_out;   ///< CV: the errors over the grid
+    std::vector<TorqueGain> torque_gains; ///< of each joint, for physics of currents
+};
+
 /// Trains a model on `prepared`; see train(). `training.rows`, `training.recordings` and the innovation limit
 /// are left to the caller. Throws InputError also for physics without a robot.
-TrainedModel train_model(const PreparedTraining& prepared, OutputKind outputs, const ModelTraining& training,
-                         const ProgressCallback& progress);
+ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind outputs,
+                                const ModelTraining& training, const ProgressCallback& progress);
 
 /// Computes the start of `model` again, by batch least squares over all usable samples of `prepared`, with
 /// everything else as the model has it: its hyperparameters, motion, features. For another draw of features,

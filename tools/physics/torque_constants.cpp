@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/physics/torque_constants.hpp"
 
+#include "tools/common/quantile.hpp"
 #include "tools/physics/chain_model.hpp"
 #include "tools/physics/robot_regressor.hpp"
 #include "tools/robot/firmware_chain.hpp"
@@ -8,6 +9,8 @@
 #include <Eigen/QR>
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -45,23 +48,21 @@ double gain_of(const VectorXd& current, const VectorXd& torque, const VectorXd& 
 
 } // namespace
 
-std::vector<double> estimate_torque_gains(const Robot& robot, const TrainingData& data,
-                                          double sign_velocity) {
+std::vector<TorqueGain> estimate_torque_gains(const Robot& robot, const TrainingData& data,
+                                              double sign_velocity) {
     const MatrixXd torques = nominal_torques(robot, data);
-    std::vector<double> gains;
+    std::vector<double> found;
     for (Index i = 0; i < torques.cols(); ++i) {
-        gains.push_back(gain_of(data.outputs.col(i), torques.col(i), data.velocities.col(i), sign_velocity));
+        found.push_back(gain_of(data.outputs.col(i), torques.col(i), data.velocities.col(i), sign_velocity));
     }
-    std::vector<double> sorted;
-    std::ranges::copy_if(gains, std::back_inserter(sorted), [](double gain) { return gain > 0; });
-    if (sorted.empty()) {
-        return std::vector<double>(gains.size(), 1);
-    }
-    std::ranges::sort(sorted);
-    const double median = sorted[sorted.size() / 2];
-    for (double& gain : gains) {
-        const bool plausible = gain > share_of_median_least * median && gain < share_of_median_most * median;
-        gain = plausible ? gain : median;
+    std::vector<double> positive;
+    std::ranges::copy_if(found, std::back_inserter(positive), [](double gain) { return gain > 0; });
+    const double middle = positive.empty() ? 1 : median(std::move(positive));
+    std::vector<TorqueGain> gains;
+    for (const double gain : found) {
+        const bool plausible = gain > share_of_median_least * middle && gain < share_of_median_most * middle;
+        gains.push_back(plausible ? TorqueGain{gain, TorqueGain::Source::estimated}
+                                  : TorqueGain{middle, TorqueGain::Source::median});
     }
     return gains;
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/recording/zero_phase_derivatives.hpp"
 
+#include "tools/common/quantile.hpp"
+
 #include <Eigen/QR>
 
-#include <algorithm>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -21,15 +23,10 @@ std::vector<std::size_t> stretches(const Recording& recording) {
     for (std::size_t row = 1; row < recording.row_count(); ++row) {
         steps.push_back(step_s(recording, row));
     }
-    double median = 0;
-    if (!steps.empty()) {
-        const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-        std::ranges::nth_element(steps, middle);
-        median = *middle;
-    }
+    const double longest = 3 * median(std::move(steps)); // not used where there is no step
     std::vector<std::size_t> first(recording.row_count(), 0);
     for (std::size_t row = 1; row < recording.row_count(); ++row) {
-        const bool gap = recording.gap_before[row] != 0 || step_s(recording, row) > 3 * median;
+        const bool gap = recording.gap_before[row] != 0 || step_s(recording, row) > longest;
         first[row] = gap ? row : first[row - 1];
     }
     return first;
@@ -60,15 +57,15 @@ Eigen::MatrixXd polynomial_weights(const Recording& recording, std::size_t begin
 
 } // namespace
 
-Derivatives zero_phase_derivatives(const Recording& recording, const Columns& columns,
-                                   const ZeroPhaseWindow& window) {
+SampledDerivatives zero_phase_derivatives(const Recording& recording, const Columns& columns,
+                                          const ZeroPhaseWindow& window) {
     const auto rows = static_cast<Eigen::Index>(recording.row_count());
     const auto signals = static_cast<Eigen::Index>(columns.names.size());
     const Eigen::Map<const RowMajor> values(columns.values.data(), rows, signals);
     const std::vector<std::size_t> stretch = stretches(recording);
     const auto half = static_cast<std::size_t>(window.half_width);
-    Derivatives result{Eigen::MatrixXd::Zero(rows, signals), Eigen::MatrixXd::Zero(rows, signals),
-                       std::vector<std::uint8_t>(recording.row_count(), 0)};
+    SampledDerivatives result{Eigen::MatrixXd::Zero(rows, signals), Eigen::MatrixXd::Zero(rows, signals),
+                              std::vector<std::uint8_t>(recording.row_count(), 0)};
     for (std::size_t row = half; row + half < recording.row_count(); ++row) {
         if (stretch[row - half] != stretch[row + half]) {
             continue;

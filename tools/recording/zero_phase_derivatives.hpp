@@ -17,7 +17,7 @@ struct ZeroPhaseWindow {
 };
 
 /// One row per sample, one column per signal.
-struct Derivatives {
+struct SampledDerivatives {
     Eigen::MatrixXd first, second;   ///< per s, per s²
     std::vector<std::uint8_t> valid; ///< 1 where the whole window lies within the recording, without a gap
 };
@@ -26,7 +26,7 @@ struct Derivatives {
 /// (Savitzky–Golay, with the samples' own times): without phase lag, hence offline only. No window reaches
 /// over a gap: one that the recording marks, or a time step above three times the median. Cost: rows ·
 /// half_width · degree².
-Derivatives zero_phase_derivatives(const Recording& recording, const Columns& columns,
-                                   const ZeroPhaseWindow& window);
+SampledDerivatives zero_phase_derivatives(const Recording& recording, const Columns& columns,
+                                          const ZeroPhaseWindow& window);
 
 } // namespace dfdyn::tools

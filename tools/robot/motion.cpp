@@ -31,7 +31,7 @@ struct States {
 
 States states_of(const Recording& recording, const ZeroPhaseWindow& window) {
     States states;
-    Motion& motion = states.all.motion;
+    RobotMotion& motion = states.all.motion;
     motion.position = matrix(recording.position);
     states.all.outputs = matrix(recording.output);
     if (recording.velocity.present() && recording.acceleration.present()) {
@@ -39,12 +39,12 @@ States states_of(const Recording& recording, const ZeroPhaseWindow& window) {
         motion.acceleration = matrix(recording.acceleration);
         states.valid.assign(recording.row_count(), 1);
     } else if (recording.velocity.present()) {
-        Derivatives derivatives = zero_phase_derivatives(recording, recording.velocity, window);
+        SampledDerivatives derivatives = zero_phase_derivatives(recording, recording.velocity, window);
         motion.velocity = matrix(recording.velocity);
         motion.acceleration = std::move(derivatives.first);
         states.valid = std::move(derivatives.valid);
     } else {
-        Derivatives derivatives = zero_phase_derivatives(recording, recording.position, window);
+        SampledDerivatives derivatives = zero_phase_derivatives(recording, recording.position, window);
         motion.velocity = std::move(derivatives.first);
         motion.acceleration = std::move(derivatives.second);
         states.valid = std::move(derivatives.valid);
@@ -66,11 +66,11 @@ void start_with_columns(RecordedMotion& result, const RecordedMotion& like) {
 
 } // namespace
 
-Motion random_motion(const Robot& robot, Eigen::Index rows, std::uint64_t seed) {
+RobotMotion random_motion(const Robot& robot, Eigen::Index rows, std::uint64_t seed) {
     std::mt19937_64 engine(seed);
     const auto joints = static_cast<Eigen::Index>(robot.joints.size());
-    Motion motion{Eigen::MatrixXd(rows, joints), Eigen::MatrixXd(rows, joints),
-                  Eigen::MatrixXd(rows, joints)};
+    RobotMotion motion{Eigen::MatrixXd(rows, joints), Eigen::MatrixXd(rows, joints),
+                       Eigen::MatrixXd(rows, joints)};
     for (Eigen::Index row = 0; row < rows; ++row) {
         for (Eigen::Index i = 0; i < joints; ++i) {
             const RobotJoint& joint = robot.joints[static_cast<std::size_t>(i)];

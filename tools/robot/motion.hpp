@@ -12,7 +12,7 @@
 namespace dfdyn::tools {
 
 /// T states of n joints; rad, m, s.
-struct Motion {
+struct RobotMotion {
     Eigen::MatrixXd position, velocity, acceleration; ///< T x n
 
     Eigen::Index rows() const { return position.rows(); }
@@ -21,11 +21,11 @@ struct Motion {
 /// States within the joints' limits, uniform: positions (±π, ±0.5 m where there are no limits), velocities
 /// within the limits and ±3 rad/s (1 m/s), accelerations within ±10 rad/s² (5 m/s²). The same for the same
 /// seed, with every standard library.
-Motion random_motion(const Robot& robot, Eigen::Index rows, std::uint64_t seed);
+RobotMotion random_motion(const Robot& robot, Eigen::Index rows, std::uint64_t seed);
 
 /// What a recording says of motion and outputs.
 struct RecordedMotion {
-    Motion motion;
+    RobotMotion motion;
     Eigen::MatrixXd outputs; ///< T x m
 };
 

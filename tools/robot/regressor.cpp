@@ -13,7 +13,7 @@ namespace {
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 template <class Arm>
-RowMajor regressor(const Robot& robot, const Motion& motion) {
+RowMajor regressor(const Robot& robot, const RobotMotion& motion) {
     const auto chain = firmware_chain<Arm, double>(robot);
     const auto sizes = firmware_sizes<Arm>(robot);
     const int outputs = sizes.output_count;
@@ -34,7 +34,7 @@ RowMajor regressor(const Robot& robot, const Motion& motion) {
 
 } // namespace
 
-Eigen::MatrixXd stacked_regressor(const Robot& robot, OutputKind outputs, const Motion& motion) {
+Eigen::MatrixXd stacked_regressor(const Robot& robot, OutputKind outputs, const RobotMotion& motion) {
     return outputs == OutputKind::wrench ? regressor<Chain<dynamic, WrenchAtSensor<dynamic>>>(robot, motion)
                                          : regressor<Chain<dynamic>>(robot, motion);
 }

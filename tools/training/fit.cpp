@@ -20,7 +20,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int structured_starts = 2;
-constexpr double refinement_tolerance = 0.1;
 
 const Minimum& best_of(const std::vector<Minimum>& minima) {
     const auto best = std::min_element(minima.begin(), minima.end(),
@@ -71,20 +70,14 @@ class Search {
     }
 
     /// Goes on from `theta` by the likelihood of the model that will run, over all usable rows.
-    Found refined(const VectorXd& theta) const {
+    Found refined(const VectorXd& theta) {
         const Found found{theta, *problem_.exact().evaluate(theta)};
         if (setup_.options.refinement_evaluations == 0) {
             return found;
         }
         const FitProblem everywhere(setup_, setup_.options.input, setup_.rows.usable, model_);
         const std::unique_ptr<Likelihood> likelihood = everywhere.running();
-        const auto value_of = [&](const VectorXd& at) -> std::optional<PointValue> {
-            const auto value = likelihood->evaluate(at);
-            return value ? std::optional(PointValue{value->minus_two_log_likelihood, value->gradient})
-                         : std::nullopt;
-        };
-        const Minimum minimum = minimise(value_of, problem_.bounds(), theta, refinement_tolerance,
-                                         setup_.options.refinement_evaluations);
+        const Minimum minimum = starts_.refine(*likelihood, problem_.bounds(), theta);
         if (!std::isfinite(minimum.value)) {
             return found;
         }
@@ -115,7 +108,7 @@ PhysicsPart part_of(const FitProblem& problem, const FitModel& model, const Foun
 FitModel physics_alone(const TrainingSetup& setup, PhysicsPrior prior) {
     FitModel model;
     model.kernel = false;
-    model.offset = VectorXd::Zero(setup.data.outputs.cols());
+    model.offset = output_offset(setup);
     model.columns = choose_columns(setup);
     model.prior = prior;
     return model;
@@ -128,17 +121,12 @@ PhysicsPart least_squares_physics(const TrainingSetup& setup, MultiStart& starts
     return part_of(search.problem(), model, {theta, *search.problem().exact().evaluate(theta)});
 }
 
-VectorXd mean_output(const TrainingSetup& setup) {
-    return setup.outputs(setup.rows.moving).colwise().mean().transpose();
-}
-
 FitModel model_to_fit(const TrainingSetup& setup, MultiStart& starts) {
     const TrainingOptions& options = setup.options;
     FitModel model;
-    model.offset = VectorXd::Zero(setup.data.outputs.cols());
+    model.offset = output_offset(setup);
     switch (options.model) {
     case ModelClass::NP:
-        model.offset = mean_output(setup);
         return model;
     case ModelClass::SP2:
         model.mean = options.physics.given ? given_physics(setup) : least_squares_physics(setup, starts);

@@ -33,6 +33,6 @@ Fit fit_by_likelihood(const TrainingSetup& setup, const ProgressCallback& progre
 
 /// By cross validation on a grid (eq:CVcost); inputs and motion have the parameters of their first start.
 /// Throws InputError where no point of the grid has a finite error.
-Fit fit_by_hold_out(const TrainingSetup& setup);
+Fit fit_by_hold_out(const TrainingSetup& setup, const ProgressCallback& progress);
 
 } // namespace dfdyn::tools

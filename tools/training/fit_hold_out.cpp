@@ -53,6 +53,16 @@ const HoldOutPoint& finite_best(const std::vector<HoldOutPoint>& points) {
     return best;
 }
 
+PointCallback counted(const ProgressCallback& progress, int points) {
+    if (!progress) {
+        return {};
+    }
+    return [&progress, so_far = TrainingProgress{0, points, std::nullopt}]() mutable {
+        ++so_far.evaluations;
+        progress(so_far);
+    };
+}
+
 TrainingRecord record_of(const TrainingSetup& setup, double minus_two_log_likelihood) {
     TrainingRecord record;
     record.method = "CV";
@@ -65,24 +75,23 @@ TrainingRecord record_of(const TrainingSetup& setup, double minus_two_log_likeli
 
 FitModel kernel_model(const TrainingSetup& setup, const RowList& at) {
     FitModel model;
-    model.offset = VectorXd::Zero(setup.data.outputs.cols());
+    model.offset = output_offset(setup);
     if (setup.options.model == ModelClass::SP2) {
         model.mean = physics_over(setup, at);
-    } else {
-        model.offset = setup.outputs(setup.rows.moving).colwise().mean().transpose();
     }
     return model;
 }
 
-Fit fit_kernel(const TrainingSetup& setup) {
+Fit fit_kernel(const TrainingSetup& setup, const ProgressCallback& progress) {
     const RowList& rows = setup.rows.likelihood;
     const RowList first = training_part(setup);
     const FitModel model = kernel_model(setup, rows);
     const FitProblem problem(setup, setup.options.input, rows, model);
     VectorXd theta = problem.start(0);
-    std::vector<HoldOutPoint> points = hold_out_kernel(
-        problem.input().inputs(problem.split(theta).input),
-        remaining_outputs(setup, kernel_model(setup, first), rows), static_cast<Index>(first.size()));
+    std::vector<HoldOutPoint> points =
+        hold_out_kernel(problem.input().inputs(problem.split(theta).input),
+                        remaining_outputs(setup, kernel_model(setup, first), rows),
+                        static_cast<Index>(first.size()), counted(progress, kernel_grid_points));
     const HoldOutPoint best = finite_best(points);
     theta.head(kernel_parameters) << std::log(best.noise_ratio), std::log(best.length_scale);
     const auto value = problem.exact().evaluate(theta);
@@ -97,12 +106,13 @@ Fit fit_kernel(const TrainingSetup& setup) {
             std::move(points)};
 }
 
-Fit fit_parametric(const TrainingSetup& setup) {
+Fit fit_parametric(const TrainingSetup& setup, const ProgressCallback& progress) {
     const RowList& rows = setup.rows.likelihood;
     PhysicsPart part = physics_over(setup, rows);
     const MatrixXd columns = setup.physics(setup.options.input, rows, part.choice)->evaluate(part.motion);
     const MatrixXd outputs = setup.outputs(rows);
-    const auto points = hold_out_physics(columns, outputs, static_cast<Index>(training_part(setup).size()));
+    const auto points = hold_out_physics(columns, outputs, static_cast<Index>(training_part(setup).size()),
+                                         counted(progress, physics_grid_points));
     if (!points) {
         throw InputError("training: expected physics that least squares can solve for, found dependent "
                          "columns");
@@ -117,7 +127,7 @@ Fit fit_parametric(const TrainingSetup& setup) {
     Fit fit;
     fit.hyper.input = part.motion.head(setup.input(setup.options.input, rows)->bounds().lower.size());
     fit.output_variance = best->output_variance;
-    fit.offset = VectorXd::Zero(outputs.cols());
+    fit.offset = output_offset(setup);
     fit.record = record_of(setup, best->at.value);
     fit.physics = std::move(part);
     fit.hold_out = *points;
@@ -126,8 +136,9 @@ Fit fit_parametric(const TrainingSetup& setup) {
 
 } // namespace
 
-Fit fit_by_hold_out(const TrainingSetup& setup) {
-    return setup.options.model == ModelClass::P ? fit_parametric(setup) : fit_kernel(setup);
+Fit fit_by_hold_out(const TrainingSetup& setup, const ProgressCallback& progress) {
+    return setup.options.model == ModelClass::P ? fit_parametric(setup, progress)
+                                                : fit_kernel(setup, progress);
 }
 
 } // namespace dfdyn::tools

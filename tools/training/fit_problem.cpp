@@ -99,10 +99,19 @@ VectorXd FitProblem::start_from(const FitProblem& structured, const VectorXd& th
     const VectorXd input =
         free_parameters(structured_rows(setup_.options.lags)->evaluate(from), setup_.spread.pooled_factor(),
                         result.segment(first_input(), inputs));
-    const VectorXd own =
-        setup_.options.physics.own_motion ? structured.split(theta).physics : outputs_->start(input);
-    result << theta.head(first_input()), input, own;
+    result << theta.head(first_input()), input, physics_from(structured.split(theta), input);
     return result;
+}
+
+VectorXd FitProblem::physics_from(const Hyperparameters& structured, const VectorXd& input) const {
+    if (physics_ == nullptr || setup_.options.physics.own_motion) {
+        return structured.physics;
+    }
+    const TrainingOptions& options = setup_.options;
+    const MatrixXd pooled = setup_.spread.pooled_factor();
+    const InputRows rows = free_rows(options.lags, options.rows_per_joint, pooled)->evaluate(input);
+    const MatrixXd wanted = setup_.motion_rows(InputKind::DFSR)->evaluate(structured.input);
+    return stacked(log_factors(rows.rows.middleRows(1, 2), wanted, pooled), structured.physics);
 }
 
 Hyperparameters FitProblem::split(const VectorXd& theta) const {

@@ -41,12 +41,17 @@ class FitProblem {
     std::unique_ptr<Likelihood> running() const;
 
     /// The start that does as `structured` does at `theta`, a problem with input DFSR; this one has DFR.
+    /// Where the physics shares rows with the input, it does so up to beta^M: the input's filters are the
+    /// paper's, the physics' own are exact for ramps and parabolas (see difference_motion()).
     Eigen::VectorXd start_from(const FitProblem& structured, const Eigen::VectorXd& theta) const;
 
     /// P: r = l = 0.
     Hyperparameters split(const Eigen::VectorXd& theta) const;
 
   private:
+    /// The parameters of the physics that do as DFSR's, beside the input at `input`.
+    Eigen::VectorXd physics_from(const Hyperparameters& structured, const Eigen::VectorXd& input) const;
+
     Eigen::Index first_input() const { return kernel_ ? kernel_parameters : 0; }
 
     const TrainingSetup& setup_;

@@ -6,6 +6,7 @@
 #include "tools/training/physics_likelihood.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -17,6 +18,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr int kernel_grid_side = 13;
+static_assert(kernel_grid_side * kernel_grid_side == kernel_grid_points);
 constexpr double no_error = std::numeric_limits<double>::infinity();
 
 /// first, first * factor, … `count` values.
@@ -58,22 +61,30 @@ MatrixXd products(const MatrixXd& columns, const VectorXd& parameters, Index out
     return result;
 }
 
+void tell(const PointCallback& done) {
+    if (done) {
+        done();
+    }
+}
+
 } // namespace
 
-std::vector<HoldOutPoint> hold_out_kernel(const MatrixXd& inputs, const MatrixXd& outputs, Index training) {
+std::vector<HoldOutPoint> hold_out_kernel(const MatrixXd& inputs, const MatrixXd& outputs, Index training,
+                                          const PointCallback& done) {
     std::vector<HoldOutPoint> points;
-    for (const double length_scale : geometric(0.5, std::sqrt(2.0), 13)) {
+    for (const double length_scale : geometric(0.5, std::sqrt(2.0), kernel_grid_side)) {
         const MatrixXd kernel = gaussian_kernel(inputs, length_scale);
-        for (const double noise_ratio : geometric(1e-6, std::sqrt(10.0), 13)) {
+        for (const double noise_ratio : geometric(1e-6, std::sqrt(10.0), kernel_grid_side)) {
             points.push_back(
                 {length_scale, noise_ratio, 0, kernel_error(kernel, outputs, training, noise_ratio)});
+            tell(done);
         }
     }
     return points;
 }
 
 std::optional<std::vector<HoldOutPoint>> hold_out_physics(const MatrixXd& columns, const MatrixXd& outputs,
-                                                          Index training) {
+                                                          Index training, const PointCallback& done) {
     const MatrixXd psi = columns.topRows(training);
     const MatrixXd y = outputs.topRows(training);
     const LinearStatistics statistics = linear_statistics(y, psi, y, psi);
@@ -89,7 +100,7 @@ std::optional<std::vector<HoldOutPoint>> hold_out_physics(const MatrixXd& column
     VectorXd x(y.cols() + 1);
     x.head(y.cols()) = least_squares->output_variance.array().log();
     std::vector<HoldOutPoint> points;
-    for (const double factor : geometric(1e-6, std::sqrt(10.0), 25)) {
+    for (const double factor : geometric(1e-6, std::sqrt(10.0), physics_grid_points)) {
         const double prior_variance = factor * static_cast<double>(y.cols()) / energy;
         x[y.cols()] = std::log(prior_variance);
         const auto at = variance_criterion(statistics, PhysicsPrior::shared, x);
@@ -99,6 +110,7 @@ std::optional<std::vector<HoldOutPoint>> hold_out_physics(const MatrixXd& column
              at ? relative_error(products(columns.bottomRows(held_out), at->parameters, y.cols()),
                                  outputs.bottomRows(held_out))
                 : no_error});
+        tell(done);
     }
     return points;
 }
@@ -106,6 +118,16 @@ std::optional<std::vector<HoldOutPoint>> hold_out_physics(const MatrixXd& column
 const HoldOutPoint& best_point(const std::vector<HoldOutPoint>& points) {
     return *std::min_element(points.begin(), points.end(),
                              [](const HoldOutPoint& a, const HoldOutPoint& b) { return a.error < b.error; });
+}
+
+bool at_edge(const HoldOutPoint& best, const std::vector<HoldOutPoint>& points) {
+    constexpr std::array coordinates{&HoldOutPoint::length_scale, &HoldOutPoint::noise_ratio,
+                                     &HoldOutPoint::prior_variance};
+    return std::ranges::any_of(coordinates, [&](double HoldOutPoint::*coordinate) {
+        const auto [least, largest] = std::ranges::minmax(points, {}, coordinate);
+        return least.*coordinate < largest.*coordinate &&
+               (best.*coordinate == least.*coordinate || best.*coordinate == largest.*coordinate);
+    });
 }
 
 } // namespace dfdyn::tools

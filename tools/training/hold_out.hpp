@@ -5,10 +5,17 @@
 
 #include <Eigen/Core>
 
+#include <functional>
 #include <optional>
 #include <vector>
 
 namespace dfdyn::tools {
+
+/// Called after every point of a grid; may be empty.
+using PointCallback = std::function<void()>;
+
+constexpr int kernel_grid_points = 169;
+constexpr int physics_grid_points = 25;
 
 /// One point of a grid of hold-out cross validation (eq:CVcost).
 struct HoldOutPoint {
@@ -25,15 +32,20 @@ struct HoldOutPoint {
 /// N x D of unit deviation, `outputs` N x m without mean. One factorisation per point serves all outputs. 0 <
 /// training < N.
 std::vector<HoldOutPoint> hold_out_kernel(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& outputs,
-                                          Eigen::Index training);
+                                          Eigen::Index training, const PointCallback& done = {});
 
 /// The same for physics alone: gamma^2 from 1e-6 to 1e6, in factors of the root of ten, of the value at which
 /// prior and outputs have the same size. Outputs are weighted by what least squares leaves of them. `columns`
 /// N x (m p) as of PhysicsColumns. Nothing where least squares has no solution.
-std::optional<std::vector<HoldOutPoint>>
-hold_out_physics(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& outputs, Eigen::Index training);
+std::optional<std::vector<HoldOutPoint>> hold_out_physics(const Eigen::MatrixXd& columns,
+                                                          const Eigen::MatrixXd& outputs,
+                                                          Eigen::Index training,
+                                                          const PointCallback& done = {});
 
 /// The point with the smallest error, the first of equals. Not empty.
 const HoldOutPoint& best_point(const std::vector<HoldOutPoint>& points);
+
+/// Whether one of the coordinates of `best` is the grid's least or largest: the true optimum may lie outside.
+bool at_edge(const HoldOutPoint& best, const std::vector<HoldOutPoint>& points);
 
 } // namespace dfdyn::tools

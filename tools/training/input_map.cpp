@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/input_map.hpp"
 
+#include "tools/common/to_vector.hpp"
+
 #include <cmath>
 #include <utility>
 
@@ -13,10 +15,6 @@ using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 double inverse_or_one(double deviation) { return deviation > 0 ? 1 / deviation : 1; }
-
-std::vector<double> to_vector(const RowMajor& matrix) {
-    return {matrix.data(), matrix.data() + matrix.size()};
-}
 
 class LagInput final : public InputMap {
   public:
@@ -67,7 +65,7 @@ class LagInput final : public InputMap {
         }
         InputModel model;
         model.rows_per_joint = static_cast<int>(rows.gain.size());
-        model.rows = to_vector(stored_gain.asDiagonal() * rows.rows);
+        model.rows = to_vector(RowMajor(stored_gain.asDiagonal() * rows.rows));
         model.scale = to_vector(scale);
         family_->describe(parameters, model);
         return model;
@@ -140,16 +138,16 @@ VectorXd inverse_column_deviations(const MatrixXd& columns, const LagSpread& spr
 class DerivativeInput final : public InputMap {
   public:
     DerivativeInput(const TrainingData& data, const RowList& rows, const RowList& scale_rows,
-                    const LagSpread& spread)
-        : columns_(derivative_columns(data, rows)),
+                    const LagSpread& spread, bool relevance)
+        : columns_(derivative_columns(data, rows)), gains_(relevance ? derivatives - 1 : 0),
           inverse_deviations_(inverse_column_deviations(derivative_columns(data, scale_rows), spread)) {
         columns_.rowwise() -= columns_.colwise().mean().eval();
     }
 
-    Bounds bounds() const override { return log_gain_bounds(derivatives - 1); }
+    Bounds bounds() const override { return log_gain_bounds(gains_); }
 
     VectorXd start(int index, NormalSource& random) const override {
-        return perturbed(VectorXd::Zero(derivatives - 1), index, 1, random);
+        return perturbed(VectorXd::Zero(gains_), index, 1, random);
     }
 
     MatrixXd inputs(const VectorXd& parameters) const override {
@@ -159,9 +157,9 @@ class DerivativeInput final : public InputMap {
     VectorXd pull_back(const VectorXd& parameters, const MatrixXd& input_gradient) const override {
         const VectorXd per_column =
             inputs(parameters).cwiseProduct(input_gradient).colwise().sum().transpose();
-        VectorXd result = VectorXd::Zero(derivatives - 1);
+        VectorXd result = VectorXd::Zero(gains_);
         for (Index c = 0; c < per_column.size(); ++c) {
-            if (c % derivatives > 0) {
+            if (has_gain(c)) {
                 result[c % derivatives - 1] += per_column[c];
             }
         }
@@ -176,10 +174,12 @@ class DerivativeInput final : public InputMap {
     }
 
   private:
+    bool has_gain(Index column) const { return gains_ > 0 && column % derivatives > 0; }
+
     VectorXd scale(const VectorXd& parameters) const {
         VectorXd scale = inverse_deviations_;
         for (Index c = 0; c < scale.size(); ++c) {
-            if (c % derivatives > 0) {
+            if (has_gain(c)) {
                 scale[c] *= std::exp(parameters[c % derivatives - 1]);
             }
         }
@@ -187,6 +187,7 @@ class DerivativeInput final : public InputMap {
     }
 
     MatrixXd columns_; // N x 3n, each column without its mean
+    Index gains_;      // that are learned
     VectorXd inverse_deviations_;
 };
 
@@ -198,8 +199,9 @@ std::unique_ptr<InputMap> lag_input(const MatrixXd& positions, const RowList& ro
 }
 
 std::unique_ptr<InputMap> derivative_input(const TrainingData& data, const RowList& rows,
-                                           const RowList& scale_rows, const LagSpread& spread) {
-    return std::make_unique<DerivativeInput>(data, rows, scale_rows, spread);
+                                           const RowList& scale_rows, const LagSpread& spread,
+                                           bool relevance) {
+    return std::make_unique<DerivativeInput>(data, rows, scale_rows, spread, relevance);
 }
 
 MatrixXd stored_inputs(const InputModel& model, const TrainingData& data, const RowList& rows) {

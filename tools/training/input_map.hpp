@@ -40,9 +40,11 @@ std::unique_ptr<InputMap> lag_input(const Eigen::MatrixXd& positions, const RowL
                                     std::unique_ptr<RowFamily> family);
 
 /// STD: position, velocity and acceleration with unit deviation over `scale_rows`, times gains 1, a_1, a_2,
-/// learned as log a_j. `spread` says which joints are held: their inputs get scale 1.
+/// with `relevance` learned as log a_j, else 1. `spread` says which joints are held: their inputs get
+/// scale 1.
 std::unique_ptr<InputMap> derivative_input(const TrainingData& data, const RowList& rows,
-                                           const RowList& scale_rows, const LagSpread& spread);
+                                           const RowList& scale_rows, const LagSpread& spread,
+                                           bool relevance);
 
 /// The inputs xi exactly as the product computes them: scale .* (R q_i(t^-)), or scale .* (q, qd, qdd) for
 /// STD. rows x (n k).

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/minimise.hpp"
 
+#include "tools/common/to_vector.hpp"
+
 #include <nlopt.hpp>
 
 #include <algorithm>
@@ -10,10 +12,6 @@
 
 namespace dfdyn::tools {
 namespace {
-
-std::vector<double> to_vector(const Eigen::VectorXd& vector) {
-    return {vector.data(), vector.data() + vector.size()};
-}
 
 struct Search {
     const Differentiable& function;
@@ -66,7 +64,8 @@ void descend(Search& search, const Bounds& bounds, const Eigen::VectorXd& start,
     optimiser.set_upper_bounds(to_vector(bounds.upper));
     optimiser.set_ftol_abs(tolerance);
     optimiser.set_maxeval(search.evaluations_most - search.best.evaluations);
-    std::vector<double> point = to_vector(start.cwiseMax(bounds.lower).cwiseMin(bounds.upper));
+    std::vector<double> point =
+        to_vector(Eigen::VectorXd(start.cwiseMax(bounds.lower).cwiseMin(bounds.upper)));
     double value = 0;
     try {
         optimiser.optimize(point, value);

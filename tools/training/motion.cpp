@@ -16,11 +16,12 @@ using Eigen::VectorXd;
 constexpr double logit_most = 6;         // beta between 0.0025 and 0.9975
 constexpr double beta_start = 0.4;       // the filters of DFR's starts
 constexpr double log_factor_range = 4.6; // a hundred times either way
+constexpr double log_room = 0.7;         // twice
 constexpr double alike_least = 0.05;     // correlation of a row with the derivative it starts as
 
 Bounds no_bounds() { return {VectorXd(0), VectorXd(0)}; }
 
-class GivenMotion final : public Motion {
+class GivenMotion final : public LearnedMotion {
   public:
     GivenMotion(const TrainingData& data, const RowList& rows)
         : samples_{data.positions(rows, Eigen::all), data.velocities(rows, Eigen::all),
@@ -38,7 +39,7 @@ class GivenMotion final : public Motion {
     MotionSamples samples_;
 };
 
-class LagMotion final : public Motion {
+class LagMotion final : public LearnedMotion {
   public:
     LagMotion(const MatrixXd& positions, const RowList& rows, int lags,
               std::unique_ptr<MotionRows> motion_rows)
@@ -110,6 +111,12 @@ class PolynomialMotion final : public MotionRows {
     MatrixXd rows_;
 };
 
+/// The filters of DFSR in physical units.
+MatrixXd difference_rows(double beta_1, double beta_2, int lags, double sample_period) {
+    return physical_rows(mean_difference_row(1, beta_1, lags), mean_difference_row(2, beta_2, lags),
+                         sample_period);
+}
+
 class DifferenceMotion final : public MotionRows {
   public:
     DifferenceMotion(int lags, double sample_period, Index first, bool own)
@@ -127,8 +134,7 @@ class DifferenceMotion final : public MotionRows {
     bool learns() const override { return true; }
 
     MatrixXd evaluate(const VectorXd& parameters) const override {
-        return physical_rows(mean_difference_row(1, beta(parameters, 0), lags_),
-                             mean_difference_row(2, beta(parameters, 1), lags_), period_);
+        return difference_rows(beta(parameters, 0), beta(parameters, 1), lags_, period_);
     }
 
     VectorXd pull_back(const VectorXd& parameters, const MatrixXd& gradient) const override {
@@ -158,25 +164,17 @@ class ScaledMotion final : public MotionRows {
   public:
     ScaledMotion(std::unique_ptr<RowFamily> family, int lags, double sample_period, MatrixXd pooled_factor)
         : family_(std::move(family)), inputs_(family_->bounds().lower.size()),
-          polynomial_(polynomial_rows(lags, sample_period)), factor_(std::move(pooled_factor)) {}
+          polynomial_(polynomial_rows(lags, sample_period)), factor_(std::move(pooled_factor)),
+          log_most_(difference_rows(0, 0, lags, sample_period).rowwise().norm().array().log() + log_room) {}
 
     Bounds bounds() const override {
         const VectorXd typical = polynomial_.rowwise().norm().array().log();
-        return {typical.array() - log_factor_range, typical.array() + log_factor_range};
+        return {typical.array() - log_factor_range,
+                (typical.array() + log_factor_range).max(log_most_.array())};
     }
 
-    /// Least squares over the windows; where the row has nothing of the derivative, the polynomial's length.
     VectorXd start(const VectorXd& input) const override {
-        const MatrixXd rows = family_->evaluate(input).rows;
-        VectorXd logarithms(2);
-        for (Index order = 0; order < 2; ++order) {
-            const VectorXd found = factor_ * rows.row(order + 1).transpose();
-            const VectorXd wanted = factor_ * polynomial_.row(order).transpose();
-            const bool alike = found.dot(wanted) > alike_least * found.norm() * wanted.norm();
-            logarithms[order] =
-                std::log(alike ? found.dot(wanted) / found.squaredNorm() : polynomial_.row(order).norm());
-        }
-        return logarithms;
+        return log_factors(family_->evaluate(input).rows.middleRows(1, 2), polynomial_, factor_);
     }
 
     bool learns() const override { return true; }
@@ -207,16 +205,17 @@ class ScaledMotion final : public MotionRows {
     Index inputs_;
     MatrixXd polynomial_;
     MatrixXd factor_;
+    VectorXd log_most_; // no filter of DFSR is longer
 };
 
 } // namespace
 
-std::unique_ptr<Motion> given_motion(const TrainingData& data, const RowList& rows) {
+std::unique_ptr<LearnedMotion> given_motion(const TrainingData& data, const RowList& rows) {
     return std::make_unique<GivenMotion>(data, rows);
 }
 
-std::unique_ptr<Motion> lag_motion(const MatrixXd& positions, const RowList& rows, int lags,
-                                   std::unique_ptr<MotionRows> motion_rows) {
+std::unique_ptr<LearnedMotion> lag_motion(const MatrixXd& positions, const RowList& rows, int lags,
+                                          std::unique_ptr<MotionRows> motion_rows) {
     return std::make_unique<LagMotion>(positions, rows, lags, std::move(motion_rows));
 }
 
@@ -226,6 +225,18 @@ std::unique_ptr<MotionRows> polynomial_motion(int lags, double sample_period) {
 
 std::unique_ptr<MotionRows> difference_motion(int lags, double sample_period, Index first, bool own) {
     return std::make_unique<DifferenceMotion>(lags, sample_period, first, own);
+}
+
+VectorXd log_factors(const MatrixXd& rows, const MatrixXd& wanted, const MatrixXd& pooled_factor) {
+    VectorXd logarithms(rows.rows());
+    for (Index order = 0; order < rows.rows(); ++order) {
+        const VectorXd here = pooled_factor * rows.row(order).transpose();
+        const VectorXd there = pooled_factor * wanted.row(order).transpose();
+        const bool alike = here.dot(there) > alike_least * here.norm() * there.norm();
+        logarithms[order] = std::log(alike ? here.dot(there) / here.squaredNorm()
+                                           : wanted.row(order).norm() / rows.row(order).norm());
+    }
+    return logarithms;
 }
 
 std::unique_ptr<MotionRows> scaled_motion(std::unique_ptr<RowFamily> family, int lags, double sample_period,

@@ -31,12 +31,12 @@ struct MotionGradient {
 };
 
 /// The motion of a set of samples as a differentiable function of the input's parameters, then its own.
-class Motion {
+class LearnedMotion {
   public:
-    Motion() = default;
-    Motion(const Motion&) = delete;
-    Motion& operator=(const Motion&) = delete;
-    virtual ~Motion() = default;
+    LearnedMotion() = default;
+    LearnedMotion(const LearnedMotion&) = delete;
+    LearnedMotion& operator=(const LearnedMotion&) = delete;
+    virtual ~LearnedMotion() = default;
 
     virtual Bounds bounds() const = 0; ///< of its own parameters
     virtual Eigen::VectorXd start(const Eigen::VectorXd& input) const = 0;
@@ -68,11 +68,11 @@ class MotionRows {
 };
 
 /// The recording's derivatives at `rows`. Nothing is learned.
-std::unique_ptr<Motion> given_motion(const TrainingData& data, const RowList& rows);
+std::unique_ptr<LearnedMotion> given_motion(const TrainingData& data, const RowList& rows);
 
 /// Measured positions, and derivatives by `motion_rows` of each joint's last positions.
-std::unique_ptr<Motion> lag_motion(const Eigen::MatrixXd& positions, const RowList& rows, int lags,
-                                   std::unique_ptr<MotionRows> motion_rows);
+std::unique_ptr<LearnedMotion> lag_motion(const Eigen::MatrixXd& positions, const RowList& rows, int lags,
+                                          std::unique_ptr<MotionRows> motion_rows);
 
 /// The polynomial of degree 2 through the window, in the least-squares sense, at its newest sample. 2 <=
 /// lags.
@@ -84,9 +84,14 @@ std::unique_ptr<MotionRows> polynomial_motion(int lags, double sample_period);
 /// (DFSR), or with `own` the physics' own, the only ones behind `first` of the input's. 2 <= lags.
 std::unique_ptr<MotionRows> difference_motion(int lags, double sample_period, Eigen::Index first, bool own);
 
-/// Rows 2 and 3 of `family` (DFR: of length 1) times a factor each, learned as its logarithm. It starts where
-/// the row, over the windows that `pooled_factor` stands for, comes closest to the polynomial's. The
-/// family must have three rows or more.
+/// Logarithms of the factors by which `rows`, over the windows that `pooled_factor` stands for, come closest
+/// to `wanted`, 2 x (M+1) each; where a row has nothing of the one wanted, the factor gives it the same
+/// length.
+Eigen::VectorXd log_factors(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& wanted,
+                            const Eigen::MatrixXd& pooled_factor);
+
+/// Rows 2 and 3 of `family` (DFR: of length 1) times a factor each, learned as its logarithm. It starts with
+/// the log_factors() towards the polynomial's rows. The family must have three rows or more.
 std::unique_ptr<MotionRows> scaled_motion(std::unique_ptr<RowFamily> family, int lags, double sample_period,
                                           const Eigen::MatrixXd& pooled_factor);
 

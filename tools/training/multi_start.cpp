@@ -10,6 +10,7 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr double log_likelihood_tolerance = 0.001; // far below what separates one model from another
+constexpr double refinement_tolerance = 0.1;       // of -2 log L
 
 } // namespace
 
@@ -19,7 +20,8 @@ std::vector<Minimum> MultiStart::run(const Likelihood& likelihood, const Bounds&
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
         for (std::size_t start = next++; start < starts.size(); start = next++) {
-            minima[start] = search(likelihood, bounds, starts[start]);
+            minima[start] = search(likelihood, bounds, starts[start], 2 * log_likelihood_tolerance,
+                                   options_.evaluations_per_start);
             if (announced) {
                 const double value = minima[start].value;
                 report(0, TrainingProgress::End{static_cast<int>(start),
@@ -38,14 +40,19 @@ std::vector<Minimum> MultiStart::run(const Likelihood& likelihood, const Bounds&
     return minima;
 }
 
-Minimum MultiStart::search(const Likelihood& likelihood, const Bounds& bounds, const Eigen::VectorXd& start) {
+Minimum MultiStart::refine(const Likelihood& likelihood, const Bounds& bounds, const Eigen::VectorXd& start) {
+    return search(likelihood, bounds, start, refinement_tolerance, options_.refinement_evaluations);
+}
+
+Minimum MultiStart::search(const Likelihood& likelihood, const Bounds& bounds, const Eigen::VectorXd& start,
+                           double tolerance, int evaluations) {
     const auto value_of = [&](const Eigen::VectorXd& theta) -> std::optional<PointValue> {
         const auto value = likelihood.evaluate(theta);
         report(1, std::nullopt);
         return value ? std::optional(PointValue{value->minus_two_log_likelihood, value->gradient})
                      : std::nullopt;
     };
-    return minimise(value_of, bounds, start, 2 * log_likelihood_tolerance, options_.evaluations_per_start);
+    return minimise(value_of, bounds, start, tolerance, evaluations);
 }
 
 void MultiStart::report(int evaluations, const std::optional<TrainingProgress::End>& end) {

@@ -14,10 +14,11 @@ namespace dfdyn::tools {
 /// Refers to both arguments.
 class MultiStart {
   public:
-    /// `searches`: of all runs to come, for the progress.
+    /// `searches`: of all runs to come, for the progress, beside one refinement.
     MultiStart(const TrainingOptions& options, const ProgressCallback& callback, int searches)
         : options_(options), callback_(callback) {
-        progress_.evaluations_most = searches * options.evaluations_per_start;
+        progress_.evaluations_most =
+            searches * options.evaluations_per_start + options.refinement_evaluations;
     }
 
     /// One Minimum per start, in their order, its value -2 log L; each search depends on its own start only.
@@ -25,8 +26,13 @@ class MultiStart {
     std::vector<Minimum> run(const Likelihood& likelihood, const Bounds& bounds,
                              const std::vector<Eigen::VectorXd>& starts, bool announced);
 
+    /// One search with the budget of the refinement.
+    Minimum refine(const Likelihood& likelihood, const Bounds& bounds, const Eigen::VectorXd& start);
+
   private:
-    Minimum search(const Likelihood& likelihood, const Bounds& bounds, const Eigen::VectorXd& start);
+    /// `tolerance` of -2 log L; at most `evaluations`.
+    Minimum search(const Likelihood& likelihood, const Bounds& bounds, const Eigen::VectorXd& start,
+                   double tolerance, int evaluations);
     void report(int evaluations, const std::optional<TrainingProgress::End>& end);
 
     const TrainingOptions& options_;

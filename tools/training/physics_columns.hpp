@@ -39,7 +39,7 @@ class PhysicsColumns {
 class RegressorColumns final : public PhysicsColumns {
   public:
     /// Refers to `regressor`, which must outlive it. `choice.scale` has as many entries as `choice.columns`.
-    RegressorColumns(const Regressor& regressor, std::unique_ptr<Motion> motion, ColumnChoice choice)
+    RegressorColumns(const Regressor& regressor, std::unique_ptr<LearnedMotion> motion, ColumnChoice choice)
         : regressor_(regressor), motion_(std::move(motion)), choice_(std::move(choice)) {}
 
     Eigen::Index columns() const override { return choice_.scale.size(); }
@@ -51,7 +51,7 @@ class RegressorColumns final : public PhysicsColumns {
 
   private:
     const Regressor& regressor_;
-    std::unique_ptr<Motion> motion_;
+    std::unique_ptr<LearnedMotion> motion_;
     ColumnChoice choice_;
 };
 

@@ -3,6 +3,7 @@
 
 #include "dfdyn/input/adaptive_window.hpp"
 #include "tools/common/error.hpp"
+#include "tools/common/quantile.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,12 +17,6 @@ namespace {
 constexpr double median_to_deviation = 1.4826;
 
 Eigen::Index index(std::size_t value) { return static_cast<Eigen::Index>(value); }
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
-}
 
 double median_period_s(std::span<const Recording> recordings) {
     std::vector<double> steps;

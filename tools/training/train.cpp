@@ -3,6 +3,7 @@
 
 #include "tools/common/error.hpp"
 #include "tools/common/number.hpp"
+#include "tools/common/to_vector.hpp"
 #include "tools/model/model_file.hpp"
 #include "tools/training/fit.hpp"
 #include "tools/training/random_features.hpp"
@@ -24,14 +25,10 @@ using Eigen::VectorXd;
 
 constexpr double limit_factor = 10;
 
-std::vector<double> to_vector(const VectorXd& vector) {
-    return {vector.data(), vector.data() + vector.size()};
-}
-
 LimitModel limits_of(const TrainingData& data) {
     const VectorXd positions = limit_factor * data.positions.cwiseAbs().colwise().maxCoeff().transpose();
     const VectorXd outputs = limit_factor * data.outputs.cwiseAbs().colwise().maxCoeff().transpose();
-    return {to_vector(positions.cwiseMax(2 * std::numbers::pi)), to_vector(outputs)};
+    return {to_vector(VectorXd(positions.cwiseMax(2 * std::numbers::pi))), to_vector(outputs)};
 }
 
 /// All but the start.
@@ -52,12 +49,12 @@ TrainedModel model_of(const TrainingSetup& setup, const Fit& fit) {
     model.limits = limits_of(data);
     model.training = fit.record;
     if (options.model == ModelClass::P) {
-        model.outputs.noise_std = to_vector(fit.output_variance.cwiseSqrt());
+        model.outputs.noise_std = to_vector(VectorXd(fit.output_variance.cwiseSqrt()));
         return model;
     }
     model.features = draw_features(options.feature_count, model.joints * model.input.rows_per_joint,
                                    options.orthogonal, fit.hyper.length_scale, options.seed);
-    model.outputs.noise_std = to_vector((fit.hyper.noise_ratio * fit.output_variance).cwiseSqrt());
+    model.outputs.noise_std = to_vector(VectorXd((fit.hyper.noise_ratio * fit.output_variance).cwiseSqrt()));
     model.outputs.prior_variance = 1 / fit.hyper.noise_ratio;
     return model;
 }
@@ -127,8 +124,8 @@ TrainingResult train(const TrainingData& data, const TrainingOptions& options,
     check_training_data(data, options.input);
     const TrainingSetup setup(data, options);
     check_outputs_vary(setup);
-    const Fit fit =
-        options.hyper == HyperMethod::ML ? fit_by_likelihood(setup, progress) : fit_by_hold_out(setup);
+    const Fit fit = options.hyper == HyperMethod::ML ? fit_by_likelihood(setup, progress)
+                                                     : fit_by_hold_out(setup, progress);
     TrainingResult result{model_of(setup, fit), std::nullopt, fit.hold_out};
     if (fit.physics) {
         result.physics = start_physics(setup, *fit.physics, result.model);

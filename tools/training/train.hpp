@@ -52,11 +52,15 @@ struct TrainingOptions {
     PhysicsOptions physics; ///< read unless the model is NP
     InputKind input = InputKind::DFR;
     int lags = 10; ///< M >= 1 (DFSR and filters of the physics: >= 2); STD: the longest window minus one
-    int rows_per_joint = 3;          ///< k of DFR, 1 … M+1; the other inputs have their own
-    int feature_count = 250;         ///< d >= 1; P has none
-    bool orthogonal = true;          ///< orthogonal random features
-    int likelihood_rows = 1000;      ///< samples in the exact kernel, at most; >= 20; time goes with the cube
-    int starts = 6;                  ///< local searches, >= 1
+    int rows_per_joint = 3; ///< k of DFR, 1 … M+1; the other inputs have their own
+    /// STD: gains of velocity and acceleration beside the length scale, by ML. False, the paper's: one width
+    /// for inputs of unit deviation.
+    bool relevance = true;
+    bool centred = true;        ///< NP: outputs less their mean; false, the paper's: a prior of mean zero
+    int feature_count = 250;    ///< d >= 1; P has none
+    bool orthogonal = true;     ///< orthogonal random features
+    int likelihood_rows = 1000; ///< samples in the exact kernel, at most; >= 20; time goes with the cube
+    int starts = 6;             ///< local searches, >= 1
     int evaluations_per_start = 200; ///< at most, >= 1
     int refinement_evaluations = 40; ///< at most, by the model that will run over all rows; 0: no refinement
     int threads = 2;                 ///< >= 1; does not change the result
@@ -66,10 +70,10 @@ struct TrainingOptions {
     double training_share = 0.7;     ///< CV: of the likelihood rows, the others are held out; in (0, 1)
 };
 
-/// How far training is: after every evaluation of the likelihood.
+/// How far training is: after every evaluation of the likelihood, or every point of the grid.
 struct TrainingProgress {
-    int evaluations = 0;      ///< so far, of all starts
-    int evaluations_most = 0; ///< if no start ends early
+    int evaluations = 0;      ///< so far, of all starts and the refinement
+    int evaluations_most = 0; ///< if none ends early
     /// Only in the call that reports a start's end.
     struct End {
         int start = 0;
@@ -110,10 +114,10 @@ struct TrainingResult {
 /// best fit of DFSR, then with polynomial differentiators and filters. CV: over a grid, training on the first
 /// of these rows and measured on the last. Then the batch solution over all usable rows as the start.
 ///
-/// NP's outputs are centred at their mean over the rows in motion; with physics the offset is 0, since
-/// gravity and an offset among the effects explain the mean. SP: pi by generalised least squares under the
-/// best kernel; SP2: least squares of the physics alone, its motion rows included, each output weighted by
-/// what remains of it, then NP on the residual.
+/// NP's outputs are centred at their mean over the rows in motion unless `centred` is false; with physics the
+/// offset is 0, since gravity and an offset among the effects explain the mean. SP: pi by generalised least
+/// squares under the best kernel; SP2: least squares of the physics alone, its motion rows included, each
+/// output weighted by what remains of it, then NP on the residual.
 ///
 /// A plausible position is at most ten times the largest magnitude seen (at least 2 pi), an output ten times
 /// its largest. The same data, options and program give the same model bit for bit, whatever the number of

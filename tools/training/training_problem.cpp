@@ -45,7 +45,7 @@ std::unique_ptr<InputMap> TrainingSetup::input(InputKind kind, const RowList& at
     };
     switch (kind) {
     case InputKind::STD:
-        return derivative_input(data, at, rows.moving, spread);
+        return derivative_input(data, at, rows.moving, spread, options.relevance);
     case InputKind::DF:
         return lagged(identity_rows(options.lags));
     case InputKind::DFW:
@@ -78,7 +78,7 @@ std::unique_ptr<MotionRows> TrainingSetup::motion_rows(InputKind kind) const {
     }
 }
 
-std::unique_ptr<Motion> TrainingSetup::motion(InputKind kind, const RowList& at) const {
+std::unique_ptr<LearnedMotion> TrainingSetup::motion(InputKind kind, const RowList& at) const {
     std::unique_ptr<MotionRows> own = motion_rows(kind);
     return own == nullptr ? given_motion(data, at)
                           : lag_motion(data.positions, at, options.lags, std::move(own));
@@ -100,6 +100,13 @@ VectorXd output_deviations(const TrainingSetup& setup) {
     const MatrixXd outputs = setup.outputs(setup.rows.likelihood);
     const MatrixXd centred = outputs.rowwise() - outputs.colwise().mean();
     return centred.colwise().norm().transpose() / std::sqrt(static_cast<double>(outputs.rows()));
+}
+
+VectorXd output_offset(const TrainingSetup& setup) {
+    if (setup.options.model != ModelClass::NP || !setup.options.centred) {
+        return VectorXd::Zero(setup.data.outputs.cols());
+    }
+    return setup.outputs(setup.rows.moving).colwise().mean().transpose();
 }
 
 void check_outputs_vary(const TrainingSetup& setup) {

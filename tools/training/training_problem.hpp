@@ -35,7 +35,7 @@ struct TrainingSetup {
     std::unique_ptr<InputMap> input(InputKind kind, const RowList& at) const;
 
     /// What the regressor sees over the rows `at` beside an input of that kind.
-    std::unique_ptr<Motion> motion(InputKind kind, const RowList& at) const;
+    std::unique_ptr<LearnedMotion> motion(InputKind kind, const RowList& at) const;
 
     /// The parameters of that motion that training begins with: the input's, then its own.
     Eigen::VectorXd motion_start(InputKind kind) const;
@@ -56,6 +56,9 @@ void check_outputs_vary(const TrainingSetup& setup);
 /// the units of their parameters (see TrainedPhysics, before the factor of the outputs). Throws InputError if
 /// there is none.
 ColumnChoice choose_columns(const TrainingSetup& setup);
+
+/// What the model adds to everything: NP's mean over the rows in motion if it is centred; else 0.
+Eigen::VectorXd output_offset(const TrainingSetup& setup);
 
 /// Standard deviations of the outputs over the likelihood rows.
 Eigen::VectorXd output_deviations(const TrainingSetup& setup);

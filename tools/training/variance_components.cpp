@@ -62,6 +62,8 @@ class Newton {
         : statistics_(statistics), prior_(prior), lower_(std::move(lower)), upper_(std::move(upper)),
           tolerance_(1e-11 * static_cast<double>(statistics.samples)) {}
 
+    /// Nothing unless the box' minimum was reached, to a loose bound: gradients of what depends on it would
+    /// be wrong.
     std::optional<VarianceCriterion> run(VectorXd& x) const {
         auto here = variance_criterion(statistics_, prior_, x);
         double damping = 1e-3;
@@ -79,10 +81,12 @@ class Newton {
                 damping = std::max(10 * damping, 1e-6);
             }
         }
-        return here;
+        return here && slope(*here, x) <= loose * tolerance_ ? here : std::nullopt;
     }
 
   private:
+    static constexpr double loose = 1e5;
+
     /// 1 where the box does not hold the coordinate back.
     VectorXd free(const VarianceCriterion& at, const VectorXd& x) const {
         VectorXd result = VectorXd::Ones(x.size());

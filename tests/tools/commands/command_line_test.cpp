@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <sstream>
 #include <string>
 
 namespace {
@@ -29,6 +30,18 @@ Outcome run(const TemporaryDirectory& directory, const std::string& arguments) {
 }
 
 long line_count(const std::string& text) { return std::ranges::count(text, '\n'); }
+
+/// The lines that begin with "note: ".
+std::string notes(const std::string& text) {
+    std::istringstream lines(text);
+    std::string result;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.rfind("note: ", 0) == 0) {
+            result += line + '\n';
+        }
+    }
+    return result;
+}
 
 const std::string log_file = DFDYN_TEST_DATA_DIR "/ur5_kufieta/Movement_No7_Acc_slow_Verify_Model_short.csv";
 const std::string quick =
@@ -105,6 +118,50 @@ TEST_CASE("train and replay work together for every input, twice with the same b
         CHECK(line_count(file_content(directory.path() / "r.csv")) == 1 + 3470 - 1200);
         CHECK_THAT(file_content(directory.path() / "r.html"), Catch::Matchers::ContainsSubstring("</html>"));
     }
+}
+
+TEST_CASE("train says which options it ignores, and goes on") {
+    const TemporaryDirectory directory;
+    const std::string in = directory.path().string();
+    const std::string train = "train --log " + log_file + quick + "-o " + in + "/m.json ";
+    CHECK(notes(run(directory, train).error).empty());
+    const Outcome nonparametric =
+        run(directory, train + "--effects viscous_friction --prior unit --own-motion "
+                               "--torque-constants 1,1,1,1,1,1 --no-relevance");
+    CHECK(nonparametric.status == 0);
+    CHECK(line_count(notes(nonparametric.error)) == 5);
+    for (const std::string option : {"--effects", "--prior", "--own-motion", "--torque-constants"}) {
+        CHECK_THAT(nonparametric.error, Catch::Matchers::ContainsSubstring(
+                                            "note: " + option + " is ignored: model NP does not read it\n"));
+    }
+    CHECK_THAT(nonparametric.error,
+               Catch::Matchers::ContainsSubstring("--relevance is ignored: input DFR does not read it\n"));
+    const Outcome on_a_grid = run(directory, train + "--refinement 3 --input STD --hyper CV --not-centred");
+    CHECK(on_a_grid.status == 0);
+    CHECK(notes(on_a_grid.error) == "note: --starts is ignored: --hyper CV does not read it\n"
+                                    "note: --refinement is ignored: --hyper CV does not read it\n");
+    CHECK_THAT(on_a_grid.out, Catch::Matchers::ContainsSubstring("cross validation: least error "));
+    CHECK_THAT(on_a_grid.out, Catch::Matchers::ContainsSubstring("a grid of 169 points\n"));
+}
+
+TEST_CASE("train prints what its physics found") {
+    const TemporaryDirectory directory;
+    const std::string in = directory.path().string();
+    const std::string train = "train --log " + log_file + quick + "--model P --input STD --robot " +
+                              DFDYN_TEST_DATA_DIR "/robots/ur5/ur5_robot.urdf --tip ee_link -o " + in +
+                              "/m.json ";
+    const Outcome estimated = run(directory, train);
+    CAPTURE(estimated.error);
+    REQUIRE(estimated.status == 0);
+    CHECK_THAT(estimated.out, Catch::Matchers::ContainsSubstring(
+                                  "; each stands for the combination that the recording determines\n"));
+    CHECK_THAT(estimated.out, Catch::Matchers::ContainsSubstring(" (estimated)"));
+    const Outcome given = run(directory, train + "--torque-constants 13,13,13,9,9,9.5 --centred");
+    CHECK_THAT(given.out, Catch::Matchers::ContainsSubstring(
+                              "torque constants (N m/A): 13 (given), 13 (given), 13 (given), 9 (given), "
+                              "9 (given), 9.5 (given)\n"));
+    CHECK_THAT(given.error,
+               Catch::Matchers::ContainsSubstring("note: --centred is ignored: model P does not read it\n"));
 }
 
 TEST_CASE("a replay of a recording with other outputs than the model's is refused") {

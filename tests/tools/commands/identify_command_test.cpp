@@ -43,10 +43,10 @@ Outcome identify(const TemporaryDirectory& directory, const std::string& argumen
 }
 
 /// 100 Hz, 20 s: each joint of the arm swings at two frequencies about the middle of its range.
-tools::Motion swinging(const tools::Robot& robot) {
+tools::RobotMotion swinging(const tools::Robot& robot) {
     const Eigen::Index rows = 2000;
-    tools::Motion motion{Eigen::MatrixXd(rows, 4), Eigen::MatrixXd::Zero(rows, 4),
-                         Eigen::MatrixXd::Zero(rows, 4)};
+    tools::RobotMotion motion{Eigen::MatrixXd(rows, 4), Eigen::MatrixXd::Zero(rows, 4),
+                              Eigen::MatrixXd::Zero(rows, 4)};
     for (Eigen::Index i = 0; i < 4; ++i) {
         const tools::RobotJoint& joint = robot.joints[static_cast<std::size_t>(i)];
         const double reach = 0.45 * (*joint.upper - *joint.lower);
@@ -67,7 +67,7 @@ tools::Motion swinging(const tools::Robot& robot) {
 /// What the sensor measures when the links are heavier by `factor`.
 std::string recording(double factor, bool with_derivatives) {
     const tools::Robot robot = dfdyn::tests::icub_right_arm();
-    const tools::Motion motion = swinging(robot);
+    const tools::RobotMotion motion = swinging(robot);
     const Eigen::MatrixXd wrench =
         tools::unstacked(tools::stacked_regressor(robot, tools::OutputKind::wrench, motion) * factor *
                              tools::nominal_parameters(robot, tools::OutputKind::wrench),

@@ -33,7 +33,7 @@ tools::Recording recording_of(const std::function<double(double)>& signal, int r
 TEST_CASE("zero-phase derivatives of a cubic are exact, whatever the times") {
     const auto cubic = [](double t) { return 2 - t + 0.5 * t * t - 0.25 * t * t * t; };
     const tools::Recording recording = recording_of(cubic, 60);
-    const tools::Derivatives derivatives =
+    const tools::SampledDerivatives derivatives =
         tools::zero_phase_derivatives(recording, recording.position, {7, 3});
     for (std::size_t row = 0; row < 60; ++row) {
         const bool inside = row >= 7 && row + 7 < 60;
@@ -49,7 +49,8 @@ TEST_CASE("zero-phase derivatives of a cubic are exact, whatever the times") {
 
 TEST_CASE("zero-phase derivatives of a sine do not lag") {
     const tools::Recording recording = recording_of([](double t) { return std::sin(3 * t); }, 400);
-    const tools::Derivatives derivatives = tools::zero_phase_derivatives(recording, recording.position, {});
+    const tools::SampledDerivatives derivatives =
+        tools::zero_phase_derivatives(recording, recording.position, {});
     double in_phase = 0;
     double quadrature = 0;
     for (std::size_t row = 50; row < 350; ++row) {

@@ -75,7 +75,7 @@ TEST_CASE("a base parameter is named by what it stands for") {
 
 TEST_CASE("random states keep within the limits, the same each time") {
     const tools::Robot robot = dfdyn::tests::icub_right_arm();
-    const tools::Motion motion = tools::random_motion(robot, 200, 3);
+    const tools::RobotMotion motion = tools::random_motion(robot, 200, 3);
     for (Eigen::Index i = 0; i < 4; ++i) {
         const tools::RobotJoint& joint = robot.joints[static_cast<std::size_t>(i)];
         CHECK(motion.position.col(i).minCoeff() >= *joint.lower);

@@ -97,7 +97,7 @@ TEST_CASE("correlated noise makes the deviations larger") {
 
 TEST_CASE("what the motion does not excite stays nominal and is not determined") {
     const tools::Robot robot = dfdyn::tests::planar_arm(9.81);
-    tools::Motion motion = tools::random_motion(robot, 200, 2);
+    tools::RobotMotion motion = tools::random_motion(robot, 200, 2);
     motion.velocity.setZero(); // at rest: gravity alone tells nothing of inertias
     motion.acceleration.setZero();
     const VectorXd nominal = tools::nominal_parameters(robot, OutputKind::joint_torque);

@@ -139,6 +139,28 @@ TEST_CASE("with physics, motion and kernel that all hang together the likelihood
     CHECK(value->minus_two_log_likelihood == Approx(expected).epsilon(1e-8));
 }
 
+// The paper's filters are cut after lag M, those of the physics keep ramps and parabolas exact: they agree up
+// to beta^(M-1), here 1.5e-8.
+TEST_CASE("DFR starts where DFSR ends also where its physics shares rows with the input") {
+    const std::string name = GENERATE("P", "SP", "SPK", "SPKD");
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    CAPTURE(name);
+    Problem problem(InputKind::DFR, false);
+    const tools::TrainingSetup setup(problem.data, problem.options);
+    const tools::FitModel model = model_of(setup, name);
+    const tools::FitProblem free(setup, InputKind::DFR, setup.rows.likelihood, model);
+    const tools::FitProblem structured(setup, InputKind::DFSR, setup.rows.likelihood, model);
+    VectorXd theta = structured.start(1);
+    theta += 0.3 * problem.random.matrix(theta.size(), 1);
+    theta.segment(name == "P" ? 2 : 4, 2).setConstant(-6);
+    const VectorXd from = free.start_from(structured, theta);
+    const tools::Bounds bounds = free.bounds();
+    CHECK((from.array() >= bounds.lower.array()).all());
+    CHECK((from.array() <= bounds.upper.array()).all());
+    CHECK(free.exact().evaluate(from)->minus_two_log_likelihood ==
+          Approx(structured.exact().evaluate(theta)->minus_two_log_likelihood).epsilon(1e-5));
+}
+
 TEST_CASE("DFR starts where DFSR ends: the same kernel, the same likelihood") {
     const std::string name = GENERATE("NP", "SPK");
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());

@@ -97,3 +97,19 @@ TEST_CASE("a covariance that cannot be factored has no finite error, and the bes
     const auto points = tools::hold_out_kernel(inputs, MatrixXd::Random(20, 1), 10);
     CHECK(std::isinf(tools::best_point(points).error));
 }
+
+TEST_CASE("a point lies at the edge of a grid in the coordinates that vary") {
+    std::vector<tools::HoldOutPoint> grid;
+    for (const double length_scale : {1.0, 2.0, 4.0}) {
+        for (const double noise_ratio : {0.1, 0.2, 0.3}) {
+            grid.push_back({length_scale, noise_ratio, 0, 1});
+        }
+    }
+    for (const tools::HoldOutPoint& point : grid) {
+        CHECK(tools::at_edge(point, grid) == (point.length_scale != 2 || point.noise_ratio != 0.2));
+    }
+    const std::vector<tools::HoldOutPoint> line{{0, 0, 1, 1}, {0, 0, 2, 1}, {0, 0, 3, 1}};
+    CHECK(tools::at_edge(line[0], line));
+    CHECK_FALSE(tools::at_edge(line[1], line));
+    CHECK(tools::at_edge(line[2], line));
+}

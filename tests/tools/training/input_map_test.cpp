@@ -32,8 +32,8 @@ struct Arm {
     tools::LagSpread spread() const { return {data.positions, rows, lags}; }
 
     std::unique_ptr<tools::InputMap> map(int kind) const {
-        if (kind == 4) {
-            return tools::derivative_input(data, rows, rows, spread());
+        if (kind >= 4) {
+            return tools::derivative_input(data, rows, rows, spread(), kind == 4);
         }
         std::array<std::unique_ptr<tools::RowFamily>, 4> families{
             tools::identity_rows(lags), tools::diagonal_rows(lags), tools::structured_rows(lags),
@@ -49,7 +49,7 @@ MatrixXd centred(const MatrixXd& matrix) { return matrix.rowwise() - matrix.colw
 
 TEST_CASE("stored inputs are the trained ones up to a constant") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
-    const int kind = GENERATE(0, 1, 2, 3, 4);
+    const int kind = GENERATE(0, 1, 2, 3, 4, 5);
     CAPTURE(kind);
     Arm arm;
     const auto map = arm.map(kind);
@@ -64,7 +64,7 @@ TEST_CASE("stored inputs are the trained ones up to a constant") {
 
 TEST_CASE("every input of a moving joint has its gain as standard deviation, the first one") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
-    const int kind = GENERATE(0, 1, 2, 3, 4);
+    const int kind = GENERATE(0, 1, 2, 3, 4, 5);
     CAPTURE(kind);
     Arm arm;
     const auto map = arm.map(kind);
@@ -112,4 +112,19 @@ TEST_CASE("stored DFW rows are the diagonal of the gains") {
         CHECK(model.rows[lag * (lags + 1) + lag] == Approx(std::exp(0.1 * static_cast<double>(lag))));
     }
     CHECK(model.rows[1] == 0);
+}
+
+TEST_CASE("STD without gains of its own has inputs of unit deviation and nothing to learn") {
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    Arm arm;
+    const auto map = arm.map(5);
+    const VectorXd parameters = map->start(5, arm.random);
+    CHECK(parameters.size() == 0);
+    CHECK(map->bounds().lower.size() == 0);
+    const MatrixXd inputs = centred(map->inputs(parameters));
+    const VectorXd deviations = (inputs.colwise().norm() / std::sqrt(inputs.rows())).transpose();
+    CHECK((deviations.head(6) - VectorXd::Ones(6)).norm() < 1e-9); // of the joints that move
+    CHECK(map->pull_back(parameters, inputs).size() == 0);
+    const MatrixXd gains = arm.map(4)->inputs(VectorXd{{std::log(2), std::log(3)}});
+    CHECK((gains.col(1) - 2 * map->inputs(parameters).col(1)).norm() < 1e-9);
 }

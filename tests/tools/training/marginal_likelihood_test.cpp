@@ -33,7 +33,7 @@ struct Problem {
         data.positions.col(1).setConstant(-0.4);
         const tools::RowList all = dfdyn::tests::rows_between(lags, 250);
         const tools::LagSpread spread(data.positions, all, lags);
-        input = kind == "STD" ? tools::derivative_input(data, rows, all, spread)
+        input = kind == "STD" ? tools::derivative_input(data, rows, all, spread, true)
                               : tools::lag_input(data.positions, rows, spread, family(kind, spread));
         outputs = data.outputs(rows, Eigen::all);
         outputs.rowwise() -= outputs.colwise().mean().eval();

@@ -32,7 +32,7 @@ struct Draw {
         data.positions += 3e-3 * random.matrix(700, 2);
         const tools::LagSpread spread(data.positions, rows, lags);
         input = structured ? tools::lag_input(data.positions, rows, spread, tools::structured_rows(lags))
-                           : tools::derivative_input(data, rows, rows, spread);
+                           : tools::derivative_input(data, rows, rows, spread, true);
     }
 
     /// Ten outputs of different size with covariance rho_k^2 (K + r I).

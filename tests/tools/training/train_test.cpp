@@ -164,6 +164,43 @@ TEST_CASE("rows at rest set neither scales nor offsets") {
     }
 }
 
+TEST_CASE("outputs that are not centred have offset 0; centring is the same as taking the mean away before") {
+    const auto hyper = GENERATE(tools::HyperMethod::ML, tools::HyperMethod::CV);
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    tools::TrainingData data = three_joints();
+    tools::TrainingOptions options = quick_options(InputKind::DFSR);
+    options.hyper = hyper;
+    const tools::TrainedModel centred = trained(data, options);
+    CHECK(std::abs(centred.outputs.offset[0]) > 0.1);
+    options.centred = false;
+    const tools::TrainedModel as_it_is = trained(data, options);
+    CHECK(as_it_is.outputs.offset == std::vector<double>{0, 0});
+    CHECK(std::abs(as_it_is.training.log_likelihood - centred.training.log_likelihood) > 0.1);
+    for (Index k = 0; k < 2; ++k) {
+        data.outputs.col(k).array() -= centred.outputs.offset[static_cast<std::size_t>(k)];
+    }
+    const tools::TrainedModel before = trained(data, options);
+    CHECK(before.training.log_likelihood == Approx(centred.training.log_likelihood).epsilon(1e-6));
+}
+
+TEST_CASE("STD without relevance scales every input to unit deviation") {
+    tools::TrainingOptions options = quick_options(InputKind::STD);
+    options.relevance = false;
+    const tools::TrainingData data = three_joints();
+    const tools::TrainedModel model = trained(data, options);
+    for (Index joint = 0; joint < 3; ++joint) { // all rows are in motion, the first five have no window
+        const auto deviation = [](const VectorXd& x) {
+            return std::sqrt((x.array() - x.mean()).square().mean());
+        };
+        const auto at = static_cast<std::size_t>(3 * joint);
+        CHECK(model.input.scale[at] * deviation(data.positions.col(joint).tail(595)) == Approx(1));
+        CHECK(model.input.scale[at + 1] * deviation(data.velocities.col(joint).tail(595)) == Approx(1));
+        CHECK(model.input.scale[at + 2] * deviation(data.accelerations.col(joint).tail(595)) == Approx(1));
+    }
+    options.relevance = true;
+    CHECK(trained(data, options).training.log_likelihood >= model.training.log_likelihood);
+}
+
 TEST_CASE("limits are ten times what training saw, at least two pi for positions") {
     tools::TrainingData data = three_joints();
     data.positions.col(1) *= 0.01;
@@ -176,19 +213,36 @@ TEST_CASE("limits are ten times what training saw, at least two pi for positions
 TEST_CASE("training reports every evaluation and every start") {
     const tools::TrainingOptions options = quick_options(InputKind::DFSR);
     int calls = 0;
+    int after_the_starts = 0;
+    std::size_t ended = 0;
     std::vector<double> ends(3);
     tools::TrainingProgress last;
     const auto model = trained(three_joints(), options, [&](const tools::TrainingProgress& progress) {
         ++calls;
         last = progress;
+        after_the_starts += ended == 3 ? 1 : 0;
         if (progress.end) {
             ends.at(static_cast<std::size_t>(progress.end->start)) = progress.end->log_likelihood.value();
+            ++ended;
         }
     });
     CHECK(calls == last.evaluations + 3);
     CHECK(last.evaluations <= last.evaluations_most);
-    CHECK(last.evaluations_most == 75);
+    CHECK(last.evaluations_most == 80); // three starts and the refinement
+    CHECK(after_the_starts > 0);
     CHECK(ends == model.training.all_starts);
+}
+
+TEST_CASE("cross validation reports every point of its grid") {
+    tools::TrainingOptions options = quick_options(InputKind::DF);
+    options.hyper = tools::HyperMethod::CV;
+    int calls = 0;
+    trained(three_joints(), options, [&](const tools::TrainingProgress& progress) {
+        CHECK(progress.evaluations == ++calls);
+        CHECK(progress.evaluations_most == 169);
+        CHECK_FALSE(progress.end);
+    });
+    CHECK(calls == 169);
 }
 
 TEST_CASE("an exception of the callback ends training") {

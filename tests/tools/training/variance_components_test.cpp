@@ -91,6 +91,23 @@ TEST_CASE("variances are recovered from outputs drawn with them") {
     CHECK(std::abs(std::log(best->prior_variance[0] / 4.0)) < 4 * std::sqrt(2.0 / LinearModel::columns));
 }
 
+TEST_CASE("what is returned is a minimum also where columns are nearly the same, or nothing is") {
+    const auto prior = GENERATE(PhysicsPrior::none, PhysicsPrior::shared, PhysicsPrior::diagonal);
+    const double difference = GENERATE(1e-3, 1e-5, 1e-6, 1e-7, 1e-8);
+    const std::uint64_t seed = dfdyn::tests::seed() + GENERATE(range(0U, 10U));
+    CAPTURE(static_cast<int>(prior), difference, seed);
+    LinearModel model(seed);
+    for (Index k = 0; k < LinearModel::outputs; ++k) {
+        model.psi.col(k * LinearModel::columns + 1) =
+            model.psi.col(k * LinearModel::columns) + difference * model.random.matrix(12, 1);
+    }
+    model.y *= 1e3;
+    const auto best = tools::best_variances(model.statistics(), prior);
+    if (best) { // the priors may be at their bounds
+        CHECK(best->at.gradient.head(LinearModel::outputs).cwiseAbs().maxCoeff() < 1e-6 * 12);
+    }
+}
+
 TEST_CASE("columns that are the same leave least squares without a solution, a prior does not") {
     LinearModel model(dfdyn::tests::seed());
     for (Index k = 0; k < LinearModel::outputs; ++k) {

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/commands/train_outcome.hpp"
+
+#include "tools/model/model_file.hpp"
+#include "tools/training/hold_out.hpp"
+
+#include <iostream>
+#include <map>
+#include <vector>
+
+namespace dfdyn::tools {
+
+namespace {
+
+void print_physics(const PhysicsModel& physics) {
+    std::cout << "physics: " << physics.selected.size() << " parameters that the recording can tell apart"
+              << (physics.prior_variance > 0 ? ", learned on" : ", fixed")
+              << "; each stands for the combination that the recording determines\n";
+    for (std::size_t i = 0; i < physics.selected.size(); ++i) {
+        std::cout << "  " << physics.parameter_names[i] << ' '
+                  << physics.column_scale[i] * physics.start.weights[i] << '\n';
+    }
+}
+
+void print_torque_constants(const std::vector<TorqueGain>& gains) {
+    const std::map<TorqueGain::Source, std::string> sources_of{
+        {TorqueGain::Source::given, "given"},
+        {TorqueGain::Source::estimated, "estimated"},
+        {TorqueGain::Source::median, "median of the others"}};
+    std::cout << "torque constants (N m/A):";
+    std::string separator = " ";
+    for (const TorqueGain& gain : gains) {
+        std::cout << separator << 1 / gain.gain << " (" << sources_of.at(gain.source) << ')';
+        separator = ", ";
+    }
+    std::cout << '\n';
+}
+
+void print_hold_out(const std::vector<HoldOutPoint>& points) {
+    const HoldOutPoint& best = best_point(points);
+    std::cout << "cross validation: least error " << best.error << " of the held-out variance, at ";
+    if (best.length_scale > 0) {
+        std::cout << "length scale " << best.length_scale << ", sigma^2/rho^2 " << best.noise_ratio;
+    } else {
+        std::cout << "gamma^2 " << best.prior_variance;
+    }
+    std::cout << (at_edge(best, points) ? ", at the edge of" : ", inside") << " a grid of " << points.size()
+              << " points\n";
+}
+
+void print_kernel(const TrainedModel& model) {
+    std::cout << "features: input " << to_string(model.input.kind) << ", length scale "
+              << model.features.length_scale << ", rho^2/sigma^2 " << model.outputs.prior_variance << '\n';
+}
+
+} // namespace
+
+void print_outcome(const ModelTrainingResult& result, const std::string& trained_on) {
+    const TrainedModel& model = result.model;
+    std::cout << "trained " << model.structure << " on " << trained_on << ", rows " << model.training.rows
+              << " (" << model.training.likelihood_rows << " in the exact kernel)\n";
+    if (!result.hold_out.empty()) {
+        print_hold_out(result.hold_out);
+    } else if (!model.training.all_starts.empty()) {
+        std::cout << "log likelihood per start:";
+        for (const double value : model.training.all_starts) {
+            std::cout << ' ' << value;
+        }
+        std::cout << '\n';
+    }
+    if (model.physics) {
+        print_physics(*model.physics);
+    }
+    if (!result.torque_gains.empty()) {
+        print_torque_constants(result.torque_gains);
+    }
+    if (has_features(model.structure)) {
+        print_kernel(model);
+    }
+    std::cout << "noise:";
+    for (std::size_t k = 0; k < model.outputs.names.size(); ++k) {
+        std::cout << ' ' << model.outputs.names[k] << ' ' << model.outputs.noise_std[k];
+    }
+    std::cout << '\n';
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/physics/model_training.hpp"
+
+#include <string>
+
+namespace dfdyn::tools {
+
+/// What `dfdyn train` says on stdout of a model trained on the recordings named `trained_on`.
+void print_outcome(const ModelTrainingResult& result, const std::string& trained_on);
+
+} // namespace dfdyn::tools

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// The entries in the order in which `matrix` stores them.
+template <class Derived>
+std::vector<double> to_vector(const Eigen::PlainObjectBase<Derived>& matrix) {
+    return {matrix.data(), matrix.data() + matrix.size()};
+}
+
+} // namespace dfdyn::tools
