@@ -36,6 +36,8 @@ ModelTraining training_of(const Case& one, const RobotChoice& robot, int threads
     options.rows_per_joint = one.rows_per_joint;
     options.feature_count = one.feature_count;
     options.orthogonal = one.orthogonal;
+    options.relevance = one.relevance;
+    options.centred = one.centred;
     options.forgetting_factor = one.forgetting_factor;
     options.likelihood_rows = one.likelihood_rows;
     options.starts = one.starts;
