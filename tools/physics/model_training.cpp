@@ -129,7 +129,8 @@ std::vector<double> motion_limits(const PhysicsModel& physics, const TrainingDat
     constexpr double least = 1e-3; // of a joint that was held still
     const RowList rows = usable_rows(data.gap_before, physics.motion.lags);
     const MatrixXd xi = stored_inputs(physics.motion, data, rows);
-    return to_vector((margin * xi.cwiseAbs().colwise().maxCoeff().transpose()).cwiseMax(least));
+    const VectorXd limits = (margin * xi.cwiseAbs().colwise().maxCoeff().transpose()).cwiseMax(least);
+    return to_vector(limits);
 }
 
 /// Input STD takes what the recording has, sample by sample, without a window.

@@ -68,6 +68,7 @@ void set_common(Constants& constants, const tools::Robot& robot, const std::vect
     }
     std::copy_n(robot.gravity.data(), 3, constants.chain.gravity);
     assign(constants.motion.scale, std::vector<double>(3 * joints, 1));
+    assign(constants.motion_limit, std::vector<double>(3 * joints, 1000));
     assign(constants.selected, selected);
     std::vector<double> scale(selected.size());
     std::iota(scale.begin(), scale.end(), 2);
@@ -228,7 +229,7 @@ TEST_CASE("nothing that is not finite is passed off as a row") {
     Measured::Map<float, Arm> map(constants, {});
     float psi[joints * 15];
     for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
-                            1e30F}) { // whose square is beyond the range
+                            1001.0F, -1001.0F}) { // beyond the limit
         auto sample = random_sample(engine);
         sample.velocity[1] = bad;
         map.push(sample);

@@ -143,6 +143,7 @@ void set_physics(typename Model::Constants& constants) {
         scale = 1;
     }
     constants.physics.output_gain = {{1, 1}};
+    std::ranges::fill(constants.physics.motion_limit, Scalar(1e6));
     if constexpr (requires { constants.learner.parameters_of_mean; }) {
         for (std::size_t c = 0; c < two_link_parameters.size(); ++c) {
             constants.learner.parameters_of_mean[static_cast<int>(c)] =

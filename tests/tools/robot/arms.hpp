@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tests/support/seed.hpp"
 #include "tools/robot/read_robot.hpp"
 
 #include <Eigen/Geometry>
-
-#include <random>
 
 namespace dfdyn::tests {
 
@@ -34,17 +31,6 @@ inline tools::Robot planar_arm(double gravity) {
     robot.joints[1].placement.translation() = Eigen::Vector3d::UnitX();
     robot.gravity = {0, -gravity, 0};
     return robot;
-}
-
-/// A body that can be: point masses around its frame.
-inline tools::InertialParameters random_body(std::mt19937_64& engine) {
-    std::normal_distribution<double> normal;
-    tools::InertialParameters body = tools::InertialParameters::Zero();
-    for (int i = 0; i < 6; ++i) {
-        const Eigen::Vector3d at(normal(engine), normal(engine), normal(engine));
-        body += tools::body_parameters(0.2 + std::abs(normal(engine)), 0.1 * at, Eigen::Matrix3d::Zero());
-    }
-    return body;
 }
 
 } // namespace dfdyn::tests

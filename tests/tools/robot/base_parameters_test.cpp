@@ -4,6 +4,7 @@
 #include "tools/robot/regressor.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
 #include "tests/tools/robot/arms.hpp"
 
 #include <limits>

@@ -5,6 +5,7 @@
 #include "tools/robot/regressor.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/random_robot.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/robot/arms.hpp"
 
@@ -29,7 +30,7 @@ Experiment experiment(const tools::Robot& robot, OutputKind outputs, Eigen::Inde
     result.data.nominal = tools::nominal_parameters(robot, outputs);
     result.truth = result.data.nominal;
     for (Eigen::Index first = 0; first < result.truth.size(); first += 10) {
-        result.truth.segment<10>(first) += 0.1 * dfdyn::tests::random_body(engine);
+        result.truth.segment<10>(first) += 0.1 * dfdyn::tests::random_body(engine).parameters();
     }
     const auto regressor = [&](Eigen::Index states, std::uint64_t seed) {
         return tools::stacked_regressor(robot, outputs, tools::random_motion(robot, states, seed));

@@ -2,6 +2,7 @@
 #include "tools/robot/log_cholesky.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/random_robot.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/robot/arms.hpp"
 
@@ -25,7 +26,7 @@ double smallest_eigenvalue(const tools::InertialParameters& parameters) {
 TEST_CASE("coordinates and parameters of a body convert into each other") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int i = 0; i < 20; ++i) {
-        const tools::InertialParameters body = dfdyn::tests::random_body(engine);
+        const tools::InertialParameters body = dfdyn::tests::random_body(engine).parameters();
         CHECK((tools::parameters_from(tools::coordinates_of(body)) - body).norm() < 1e-12 * body.norm());
         const tools::LogCholesky coordinates = random_coordinates(engine);
         const tools::LogCholesky back = tools::coordinates_of(tools::parameters_from(coordinates));
@@ -57,7 +58,7 @@ TEST_CASE("the slope of the parameters is that of differences") {
 
 TEST_CASE("bodies that cannot be are replaced by near ones, others kept") {
     DFDYN_SEEDED_ENGINE(engine);
-    const tools::InertialParameters body = dfdyn::tests::random_body(engine);
+    const tools::InertialParameters body = dfdyn::tests::random_body(engine).parameters();
     CHECK(tools::made_consistent(body, 0.1) == body);
     tools::InertialParameters negative = body;
     negative[0] = -1;

@@ -17,7 +17,7 @@ class CommonParameters {
     CommonParameters(const Constants& constants, Extent<p> parameters, Extent<m> outputs) noexcept
         : parameters_(parameters), outputs_(outputs), learner_(constants, parameters, {}, outputs),
           rows_(Rows::zeros(extent<product(m, p)>(outputs * parameters))), targets_(Targets::zeros(outputs)),
-          variances_(Targets::zeros(outputs)), next_(outputs) {}
+          variances_(Targets::zeros(outputs)), next_(2 * outputs) {}
 
     void reset() noexcept {
         learner_.reset();
@@ -28,7 +28,7 @@ class CommonParameters {
             targets_[k] = variances_[k] = 0;
         }
         noise_variance_ = 1;
-        next_ = outputs_;
+        next_ = 2 * outputs_;
     }
 
     /// h_k'π of `rows`, m × p.
@@ -47,7 +47,7 @@ class CommonParameters {
 
     [[nodiscard]] bool idle() const noexcept { return !sample_pending() && learner_.idle(); }
     [[nodiscard]] bool sample_pending() const noexcept {
-        return next_ < outputs_ || learner_.sample_pending();
+        return next_ < 2 * outputs_ || learner_.sample_pending();
     }
 
     /// Takes in the rows (m × p) and targets of an instant, all with this variance of noise. Only when idle.
@@ -59,26 +59,26 @@ class CommonParameters {
             targets_[k] = targets[k];
         }
         noise_variance_ = noise_variance;
-        next_ = -outputs_;
+        next_ = 0;
     }
 
     /// Works on the rows in hand as far as the budget goes; true when there is nothing left.
     bool advance(Budget& budget) noexcept {
         while (learner_.advance(budget)) {
-            if (next_ == outputs_) {
+            if (next_ == 2 * outputs_) {
                 return true;
             }
-            if (!budget.spend(next_ < 0 ? UdFactor<Scalar, p>::variance_cost(parameters_) : parameters_)) {
+            const bool variance = next_ < outputs_;
+            if (!budget.spend(variance ? UdFactor<Scalar, p>::variance_cost(parameters_) : parameters_)) {
                 return false;
             }
-            if (next_ < 0) {
-                const int k = next_ + outputs_;
-                variances_[k] = learner_.variance(rows_.data() + k * parameters_);
-                ++next_;
-                continue;
+            if (variance) {
+                variances_[next_] = learner_.variance(rows_.data() + next_ * parameters_);
+            } else {
+                const int k = next_ - outputs_;
+                learner_.begin_row(rows_.data() + k * parameters_, &targets_[k], noise_variance_,
+                                   k + 1 == outputs_);
             }
-            learner_.begin_row(rows_.data() + next_ * parameters_, &targets_[next_], noise_variance_,
-                               next_ + 1 == outputs_);
             ++next_;
         }
         return false;
@@ -104,7 +104,7 @@ class CommonParameters {
         visitor.array(self.targets_.data(), self.targets_.size());
         visitor.array(self.variances_.data(), self.variances_.size());
         visitor.positive_array(&self.noise_variance_, 1);
-        visitor.ranged(self.next_, -static_cast<int>(self.outputs_), static_cast<int>(self.outputs_));
+        visitor.ranged(self.next_, 0, 2 * self.outputs_);
     }
 
   private:
@@ -118,7 +118,7 @@ class CommonParameters {
     Targets targets_;
     Targets variances_;
     Scalar noise_variance_ = 1;
-    int next_; ///< row to fold in; below 0: variance to compute first, of row m + next; m: nothing
+    int next_; ///< first the variances 0 … m - 1, then the rows m … 2m - 1; 2m: nothing in hand
 };
 
 } // namespace dfdyn
