@@ -88,7 +88,8 @@ class Row {
   private:
     TrainedModel trained() const {
         TrainedModel model = train_model(prepare_training({&recordings_[0], 1}, training_), outputs_,
-                                         training_, [](const TrainingProgress&) {});
+                                         training_, [](const TrainingProgress&) {})
+                                 .model;
         model.limits.innovation = static_cast<double>(std::numeric_limits<float>::max()); // learn everything
         return model;
     }
