@@ -9,8 +9,8 @@
 namespace dfdyn::tools {
 
 /// The numbers of one column with as many decimals as give a typical one of them three digits; whole numbers
-/// with none; "∞" for infinity, "–" for what else is not finite. A column that spans more than five decades gets three digits in
-/// each number instead.
+/// with none; "∞" for infinity, "–" for what else is not finite. A column that spans more than five decades
+/// gets three digits in each number instead.
 std::vector<std::string> format_column(const std::vector<double>& numbers);
 
 /// The table as HTML. A column that holds a number is right-aligned. Every row is as long as `columns`.
