@@ -57,11 +57,24 @@ evaluate() {
 }
 
 introduction() {
-    echo "# The paper's findings, tried again"
-    echo
-    echo "Written by \`tools/reproduce.sh\`; every verdict follows from the numbers beside it by the rule stated below."
-    echo "The paper's own recordings are not public: the iCub data are simulated (\`dfdyn simulate\`), the UR5 data are measured."
-    echo
+    cat <<'TEXT'
+# The paper's findings, tried again
+
+Written by `tools/reproduce.sh`; every verdict follows from the numbers beside it by the rule stated below.
+
+What differs from the paper:
+
+- Its recordings are not public. The iCub's are simulated (`dfdyn simulate`, [what is known and what is guessed](../tests/data/scenarios/README.md)):
+  beyond the sensor the simulated arm is exactly rigid, so the rigid body is a better model of it than of the real one. The UR5's are measured.
+- Each output has a noise and a variance of its own, with a common ratio; the paper has one of each.
+- The physics learns the parameters that the recording can tell apart. With input DFR it sees rows 2 and 3, of length 1, times a factor each.
+- Hyperparameters are sought once per case; the draws differ in the random features. P has none: its draws are the same.
+- All cases are judged at the same ticks, those at which the longest lag window is full.
+- UR5: the outputs are motor currents, by torque constants estimated from the nominal robot; the start takes one of the motion's cycles (3,421
+  rows), T is one second (125 samples), the steady state begins after 10 s since the tests last 20 s, and ε is relative to the output's variance,
+  because a current that rests near zero makes the paper's index as large as one likes.
+
+TEXT
 }
 
 mkdir -p "$out/data" "$(dirname "$page")"

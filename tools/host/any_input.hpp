@@ -30,21 +30,20 @@ struct AnyInput {
       public:
         Map(const Constants<Scalar, n>& constants, Extent<n> joints, Extent<dynamic> lag_count,
             Extent<k> rows)
-            : map_(std::visit([&](const auto& own) { return make(own, joints, lag_count, rows); },
-                              constants)) {}
+            : map_(apply([&](const auto& own) { return make(own, joints, lag_count, rows); }, constants)) {}
 
-        void restart() {
-            std::visit([](auto& map) { map.restart(); }, map_);
+        void restart() noexcept {
+            apply([](auto& map) { map.restart(); }, map_);
         }
-        [[nodiscard]] bool ready() const {
-            return std::visit([](const auto& map) { return map.ready(); }, map_);
+        [[nodiscard]] bool ready() const noexcept {
+            return apply([](const auto& map) { return map.ready(); }, map_);
         }
         template <class AnySample>
-        void push(const AnySample& sample) {
-            std::visit([&](auto& map) { map.push(sample); }, map_);
+        void push(const AnySample& sample) noexcept {
+            apply([&](auto& map) { map.push(sample); }, map_);
         }
-        void evaluate(Scalar* xi) const {
-            std::visit([&](const auto& map) { map.evaluate(xi); }, map_);
+        void evaluate(Scalar* xi) const noexcept {
+            apply([&](const auto& map) { map.evaluate(xi); }, map_);
         }
 
         /// Not known before the kind is: `cost_of_input` has it.
@@ -53,6 +52,21 @@ struct AnyInput {
         }
 
       private:
+        /// std::visit without its exception: a variant of these types always has a value.
+        template <class Visitor, class Variant>
+        static auto apply(const Visitor& visitor, Variant& variant) noexcept {
+            if (auto* const first = std::get_if<0>(&variant)) {
+                return visitor(*first);
+            }
+            if (auto* const second = std::get_if<1>(&variant)) {
+                return visitor(*second);
+            }
+            if (auto* const third = std::get_if<2>(&variant)) {
+                return visitor(*third);
+            }
+            return visitor(*std::get_if<3>(&variant));
+        }
+
         template <class Input>
         using MapOf = typename Input::template Map<Scalar, n>;
         using AnyMap = std::variant<MapOf<Standard<dynamic>>, MapOf<StandardMeasured>,
@@ -63,19 +77,19 @@ struct AnyInput {
         using OfWindow = typename DerivativeFree<dynamic>::template Constants<Scalar, n>;
         using OfRows = typename DerivativeFreeReduced<dynamic, k>::template Constants<Scalar, n>;
 
-        static AnyMap make(const OfStandard& own, Extent<n> joints, Extent<dynamic> lags,
+        static AnyMap make(const OfStandard& own, Extent<n> joints, Extent<dynamic> lag_count,
                            Extent<k> /*rows*/) {
-            return MapOf<Standard<dynamic>>(own, joints, lags, {});
+            return MapOf<Standard<dynamic>>(own, joints, lag_count, {});
         }
-        static AnyMap make(const OfMeasured& own, Extent<n> joints, Extent<dynamic> /*lags*/,
+        static AnyMap make(const OfMeasured& own, Extent<n> joints, Extent<dynamic> /*lag_count*/,
                            Extent<k> /*rows*/) {
             return MapOf<StandardMeasured>(own, joints, {}, {});
         }
-        static AnyMap make(const OfWindow& own, Extent<n> joints, Extent<dynamic> lags, Extent<k> rows) {
-            return MapOf<DerivativeFree<dynamic>>(own, joints, lags, Extent<dynamic>{rows});
+        static AnyMap make(const OfWindow& own, Extent<n> joints, Extent<dynamic> lag_count, Extent<k> rows) {
+            return MapOf<DerivativeFree<dynamic>>(own, joints, lag_count, Extent<dynamic>{rows});
         }
-        static AnyMap make(const OfRows& own, Extent<n> joints, Extent<dynamic> lags, Extent<k> rows) {
-            return MapOf<DerivativeFreeReduced<dynamic, k>>(own, joints, lags, rows);
+        static AnyMap make(const OfRows& own, Extent<n> joints, Extent<dynamic> lag_count, Extent<k> rows) {
+            return MapOf<DerivativeFreeReduced<dynamic, k>>(own, joints, lag_count, rows);
         }
 
         AnyMap map_;

@@ -232,7 +232,7 @@ std::vector<double> firmware_weights(const TrainedModel& model) {
     if (model.structure != "SPK") {
         return model.start.weights;
     }
-    const auto columns = static_cast<std::ptrdiff_t>(2 * model.features.count);
+    const auto columns = 2 * static_cast<std::ptrdiff_t>(model.features.count);
     const auto coupled = columns * static_cast<std::ptrdiff_t>(model.physics->selected.size());
     std::vector<double> weights;
     for (std::ptrdiff_t k = 0; k < output_count(model); ++k) {

@@ -47,8 +47,8 @@ std::string model_type(const TrainedModel& model) {
     std::vector<std::string> parts{"float", arm, input_type(model.input),
                                    type("RandomFourier", {std::to_string(model.features.count)})};
     if (model.physics) {
-        parts.push_back(model.structure == "SPK" ? "dfdyn::SemiparametricKernel<Physics>"
-                                                 : "dfdyn::SemiparametricMean<Physics>");
+        parts.emplace_back(model.structure == "SPK" ? "dfdyn::SemiparametricKernel<Physics>"
+                                                    : "dfdyn::SemiparametricMean<Physics>");
     }
     return type("Model", parts);
 }

@@ -87,7 +87,7 @@ InputModel motion_model(const TrainedModel& model, const MatrixXd& rows) {
         motion.rows.assign(by_rows.data(), by_rows.data() + by_rows.size());
     }
     motion.rows_per_joint = 3;
-    motion.scale.assign(static_cast<std::size_t>(3 * model.joints), 1);
+    motion.scale.assign(3 * static_cast<std::size_t>(model.joints), 1);
     return motion;
 }
 

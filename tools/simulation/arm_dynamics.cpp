@@ -41,8 +41,8 @@ Eigen::Isometry3d moved(const RobotJoint& joint, double position) {
 
 } // namespace
 
-ArmDynamics::ArmDynamics(Robot robot, const JointVector& rotor_inertia)
-    : robot_(std::move(robot)), rotor_inertia_(rotor_inertia) {
+ArmDynamics::ArmDynamics(Robot robot, JointVector rotor_inertia)
+    : robot_(std::move(robot)), rotor_inertia_(std::move(rotor_inertia)) {
     check(robot_);
 }
 

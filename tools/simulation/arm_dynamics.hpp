@@ -16,7 +16,7 @@ class ArmDynamics {
   public:
     /// `rotor_inertia`: kg·m² (prismatic: kg), seen at the joint. Throws InputError when the chain is longer
     /// than the simulation holds, has no joint, or has a body with negative mass.
-    ArmDynamics(Robot robot, const JointVector& rotor_inertia);
+    ArmDynamics(Robot robot, JointVector rotor_inertia);
 
     int joint_count() const noexcept { return static_cast<int>(robot_.joints.size()); }
     const Robot& robot() const noexcept { return robot_; }

@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include <utility>
+
 namespace dfdyn::tools {
 
 class Multisine final : public Task {
@@ -21,7 +23,7 @@ class Multisine final : public Task {
 
 class PointToPoint final : public Task {
   public:
-    PointToPoint(const PointToPointTask& model, double period_s) : model_(model), period_s_(period_s) {}
+    PointToPoint(PointToPointTask model, double period_s) : model_(std::move(model)), period_s_(period_s) {}
     Reference next() override;
 
   private:

@@ -28,8 +28,8 @@ Wrench LowPass::filter(const Wrench& input) noexcept {
         past_input_[0] = past_input_[1] = past_output_[0] = past_output_[1] = input;
         started_ = true;
     }
-    const Wrench output = input_[0] * input + input_[1] * past_input_[0] + input_[2] * past_input_[1] -
-                          output_[0] * past_output_[0] - output_[1] * past_output_[1];
+    Wrench output = input_[0] * input + input_[1] * past_input_[0] + input_[2] * past_input_[1] -
+                    output_[0] * past_output_[0] - output_[1] * past_output_[1];
     past_input_[1] = past_input_[0];
     past_input_[0] = input;
     past_output_[1] = past_output_[0];

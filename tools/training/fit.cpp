@@ -71,7 +71,7 @@ class Search {
 
     /// Goes on from `theta` by the likelihood of the model that will run, over all usable rows.
     Found refined(const VectorXd& theta) {
-        const Found found{theta, *problem_.exact().evaluate(theta)};
+        Found found{theta, *problem_.exact().evaluate(theta)};
         if (setup_.options.refinement_evaluations == 0) {
             return found;
         }
