@@ -125,7 +125,8 @@ PhysicsModel physics_model(const TrainedModel& model, const TrainedPhysics& trai
 /// The largest position, velocity and acceleration of each joint that the physics saw in training, times
 /// `margin`.
 std::vector<double> motion_limits(const PhysicsModel& physics, const TrainingData& data) {
-    constexpr double margin = 5;
+    constexpr double margin =
+        10; // as of positions and outputs; derivatives of quantised positions have tails
     constexpr double least = 1e-3; // of a joint that was held still
     const RowList rows = usable_rows(data.gap_before, physics.motion.lags);
     const MatrixXd xi = stored_inputs(physics.motion, data, rows);
