@@ -123,10 +123,9 @@ PhysicsModel physics_model(const TrainedModel& model, const TrainedPhysics& trai
 }
 
 /// The largest position, velocity and acceleration of each joint that the physics saw in training, times
-/// `margin`.
+/// `margin`: as wide as the limits of positions and outputs, for differentiated counts have tails.
 std::vector<double> motion_limits(const PhysicsModel& physics, const TrainingData& data) {
-    constexpr double margin =
-        10; // as of positions and outputs; derivatives of quantised positions have tails
+    constexpr double margin = 10;
     constexpr double least = 1e-3; // of a joint that was held still
     const RowList rows = usable_rows(data.gap_before, physics.motion.lags);
     const MatrixXd xi = stored_inputs(physics.motion, data, rows);
