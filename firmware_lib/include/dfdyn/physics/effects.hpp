@@ -27,9 +27,12 @@ concept PhysicsEffect = requires(const typename E::template Constants<float>& co
     noexcept->std::same_as<float>;
 };
 
-/// `viscous_friction`: q̇; the parameter is N·m·s/rad.
-template <int count>
-struct ViscousFriction {
+namespace detail {
+
+/// An effect whose columns are one element of their joint's motion (0: q, 1: q̇, 2: q̈). `Effect` tells one
+/// such effect's constants from another's.
+template <template <int> class Effect, int count, int element>
+struct MotionColumns {
     static constexpr bool at_joint = true;
 
     template <class Scalar>
@@ -39,9 +42,15 @@ struct ViscousFriction {
 
     template <class Real, class Scalar>
     static Scalar value(const Constants<Real>& constants, int column, const Scalar* xi) noexcept {
-        return xi[3 * constants.row[column] + 1];
+        return xi[3 * constants.row[column] + element];
     }
 };
+
+} // namespace detail
+
+/// `viscous_friction`: q̇; the parameter is N·m·s/rad.
+template <int count>
+struct ViscousFriction : detail::MotionColumns<ViscousFriction, count, 1> {};
 
 /// `coulomb_friction`: tanh(q̇ / v), a sign without a step; the parameter is N·m.
 template <int count>
@@ -93,35 +102,11 @@ struct StribeckFriction {
 
 /// `rotor_inertia`: q̈; the parameter is the inertia seen at the joint (kg·m²).
 template <int count>
-struct RotorInertia {
-    static constexpr bool at_joint = true;
-
-    template <class Scalar>
-    struct Constants {
-        Storage<std::int32_t, count> row;
-    };
-
-    template <class Real, class Scalar>
-    static Scalar value(const Constants<Real>& constants, int column, const Scalar* xi) noexcept {
-        return xi[3 * constants.row[column] + 2];
-    }
-};
+struct RotorInertia : detail::MotionColumns<RotorInertia, count, 2> {};
 
 /// `joint_spring`: q; the parameter is its stiffness (N·m/rad). Where it rests is part of the row's offset.
 template <int count>
-struct JointSpring {
-    static constexpr bool at_joint = true;
-
-    template <class Scalar>
-    struct Constants {
-        Storage<std::int32_t, count> row;
-    };
-
-    template <class Real, class Scalar>
-    static Scalar value(const Constants<Real>& constants, int column, const Scalar* xi) noexcept {
-        return xi[3 * constants.row[column]];
-    }
-};
+struct JointSpring : detail::MotionColumns<JointSpring, count, 0> {};
 
 /// `torque_offset` or `ft_bias`: 1; the parameter is what is added to the output (N·m, N).
 template <int count>
