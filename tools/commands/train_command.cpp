@@ -176,7 +176,8 @@ int run(const TrainOptions& options) {
     note_ignored(options, outputs);
     ReadOptions columns;
     columns.outputs = outputs;
-    columns.velocity = columns.acceleration = training.derivatives != DerivativeSource::estimated;
+    columns.velocity = columns.acceleration =
+        sees_derivatives(training) && training.derivatives != DerivativeSource::estimated;
     const std::vector<Recording> recordings = options.recordings.read(columns);
     ModelTrainingResult result = train_model(prepare_training(recordings, training), outputs, training,
                                              progress_line(training.options.hyper));

@@ -181,9 +181,17 @@ int lags_of(const TrainedModel& model) {
 
 } // namespace
 
+bool sees_derivatives(const ModelTraining& training) {
+    return training.options.input == InputKind::STD ||
+           (training.physics && training.physics->torque_constants.empty());
+}
+
 PreparedTraining prepare_training(std::span<const Recording> recordings, const ModelTraining& training) {
     PreparedTraining prepared;
     prepared.data = gather_training_data(recordings);
+    if (!sees_derivatives(training)) {
+        return prepared;
+    }
     const bool measured = have_derivatives(recordings);
     if (training.derivatives == DerivativeSource::measured && !measured) {
         throw InputError(recordings.front().source +

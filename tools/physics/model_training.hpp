@@ -34,6 +34,9 @@ struct ModelTraining {
     DerivativeSource derivatives = DerivativeSource::automatic;
 };
 
+/// Whether the training looks at velocities and accelerations: with input STD, and to estimate torque constants.
+bool sees_derivatives(const ModelTraining& training);
+
 /// What is trained on, with the derivatives that the training needs.
 struct PreparedTraining {
     TrainingData data;
