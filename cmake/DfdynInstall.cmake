@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-# The config package: find_package(dfdyn) gives dfdyn::firmware, and dfdyn::tools where it was built.
+# The config package: find_package(dfdyn) gives dfdyn::firmware, dfdyn::hal, and dfdyn::tools where it was built.
 include(CMakePackageConfigHelpers)
 
 set(dfdyn_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/dfdyn")
 
-install(TARGETS dfdyn_firmware EXPORT dfdynFirmwareTargets)
-install(DIRECTORY firmware_lib/include/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+install(TARGETS dfdyn_firmware dfdyn_hal EXPORT dfdynFirmwareTargets)
+install(DIRECTORY firmware_lib/include/ hal/include/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(EXPORT dfdynFirmwareTargets NAMESPACE dfdyn:: DESTINATION "${dfdyn_package_dir}")
 
 if(DFDYN_BUILD_TOOLS)

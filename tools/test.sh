@@ -10,14 +10,14 @@ log_dir=build/logs
 
 # All but the headers that make_ur5_headers.sh writes.
 all_sources() {
-    find firmware_lib tools tests '(' -name '*.hpp' -o -name '*.cpp' ')' ! -name 'ur5_*.hpp' -print0
+    find firmware_lib hal tools tests '(' -name '*.hpp' -o -name '*.cpp' ')' ! -name 'ur5_*.hpp' -print0
 }
 
 install_packages() { tools/install_packages.sh test; }
 
 check_style() {
     all_sources | xargs -0 clang-format --dry-run --Werror
-    find .ci cmake tools tests firmware_lib '(' -name '*.sh' -o -path .ci/run ')' -print0 | xargs -0 shellcheck
+    find .ci cmake tools tests firmware_lib hal '(' -name '*.sh' -o -path .ci/run ')' -print0 | xargs -0 shellcheck
 }
 
 # build PRESET [TARGET...]
@@ -33,7 +33,7 @@ run_tests() {
 }
 
 build_release() { build release; }
-test_units() { run_tests release --label-regex '^(firmware|tools|embedding|truth|headers)$'; }
+test_units() { run_tests release --label-regex '^(firmware|hal|tools|embedding|truth|headers)$'; }
 test_promises() { run_tests release --label-regex '^acceptance$'; }
 test_elsewhere() { run_tests release --label-regex '^(consumer|cortex_m7)$' --verbose; }
 test_long() { ctest --test-dir build/release --label-regex '^long$' --parallel "$jobs" --output-on-failure --no-tests=error; }
@@ -59,7 +59,7 @@ analyse() {
     cmake --preset clang
     run-clang-tidy -quiet -p build/clang -j "$jobs" "$PWD/($1)/.*"
 }
-analyse_product() { analyse 'firmware_lib|tools'; }
+analyse_product() { analyse 'firmware_lib|hal|tools'; }
 analyse_tests() { analyse 'tests'; }
 
 steps=(

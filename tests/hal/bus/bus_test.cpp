@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/bus.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <type_traits>
+
+using dfdyn::hal::Frame;
+
+TEST_CASE("a frame is plain data, as large as its contract says") {
+    STATIC_REQUIRE(std::is_trivially_copyable_v<Frame>);
+    CHECK(sizeof(Frame) == 88);
+}
