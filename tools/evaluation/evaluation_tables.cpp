@@ -186,11 +186,12 @@ ReportTable step_error_table(const Plan& plan, std::span<const UnitResult> units
 ReportTable cost_table(const Plan& plan, std::span<const UnitResult> units) {
     ReportTable table;
     table.caption = "Cost";
-    table.columns = {"case", "columns", "multiply-adds per tick", "state, bytes", "µs per tick, median"};
+    table.columns = {"case",         "forgetting factor",  "columns", "multiply-adds per tick",
+                     "state, bytes", "µs per tick, median"};
     table.rows = rows_of_cases(plan, units, [](const std::vector<const UnitResult*>& draws) {
         return std::vector<ReportCell>{
-            static_cast<double>(draws.front()->columns), static_cast<double>(draws.front()->operations),
-            static_cast<double>(draws.front()->state_bytes),
+            number_text(draws.front()->forgetting_factor), static_cast<double>(draws.front()->columns),
+            static_cast<double>(draws.front()->operations), static_cast<double>(draws.front()->state_bytes),
             median_over(draws, [](const UnitResult& draw) { return draw.median_us; })};
     });
     table.note = "Times are of the machine that ran this, with other work beside it.";
@@ -249,7 +250,7 @@ void write_results_csv(std::ostream& out, const Plan& plan, std::span<const Unit
     for (const std::string& output : outputs) {
         out << ",nrmse_" << output;
     }
-    out << ",lost,median_us,operations,state_bytes,columns\n";
+    out << ",lost,median_us,operations,state_bytes,columns,forgetting\n";
     for (const UnitResult& unit : units) {
         for (std::size_t group = 0; group < plan.groups.size(); ++group) {
             out << unit.case_name << ',' << unit.seed << ',' << plan.groups[group].name;
@@ -260,7 +261,8 @@ void write_results_csv(std::ostream& out, const Plan& plan, std::span<const Unit
             }
             const UnitResult* const draw = &unit;
             out << ',' << number_text(lost_share({&draw, 1}, group)) << ',' << number_text(unit.median_us)
-                << ',' << unit.operations << ',' << unit.state_bytes << ',' << unit.columns << '\n';
+                << ',' << unit.operations << ',' << unit.state_bytes << ',' << unit.columns << ','
+                << number_text(unit.forgetting_factor) << '\n';
         }
     }
 }

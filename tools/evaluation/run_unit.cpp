@@ -105,8 +105,9 @@ void run_subsets(const Plan& plan, const PlanData& data, const TrainedModel& mod
 
 UnitResult run_unit(const Plan& plan, const PlanData& data, const Case& one, std::uint64_t seed,
                     CaseMemory& memory, int threads, const std::function<void(double)>& progress) {
-    const TrainedModel model = train_case(one, {plan.robot, plan.outputs, data.start, threads}, seed, memory,
-                                          [&](double share) { progress(share_of_training * share); });
+    const TrainedModel model =
+        train_case(one, {plan.robot, plan.outputs, data.start, data.online, threads}, seed, memory,
+                   [&](double share) { progress(share_of_training * share); });
     const auto estimator = make_estimator(model, false);
     TickProgress ticks(data, progress);
     replay(*estimator, model, data.online, 0, ticks.of_next());
@@ -115,6 +116,7 @@ UnitResult run_unit(const Plan& plan, const PlanData& data, const Case& one, std
     result.seed = seed;
     result.sample_period_s = model.sample_period_s;
     result.error.resize(plan.groups.size());
+    result.forgetting_factor = model.forgetting_factor;
     result.operations = estimator->cost().predict + estimator->cost().learn;
     result.state_bytes = estimator->state_bytes();
     result.columns =

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr const char* schema = "dfdyn.evaluated-unit/1";
+constexpr const char* schema = "dfdyn.evaluated-unit/2";
 
 ordered_json case_json(const Case& one) {
     return {{"name", one.name},
@@ -30,7 +30,7 @@ ordered_json case_json(const Case& one) {
             {"orthogonal", one.orthogonal},
             {"relevance", one.relevance},
             {"centred", one.centred},
-            {"forgetting", one.forgetting_factor},
+            {"forgetting", one.forgetting_factors},
             {"likelihood_rows", one.likelihood_rows},
             {"starts", one.starts}};
 }

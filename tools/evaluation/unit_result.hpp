@@ -20,6 +20,7 @@ struct UnitResult {
     std::vector<std::vector<std::vector<double>>> error;
     std::vector<double> normalised_error; ///< one-step nRMSE of each output over all subsets
     double median_us = 0;                 ///< of the ticks that learned
+    double forgetting_factor = 1;         ///< that was used
     std::int64_t operations = 0;          ///< multiply-adds of a tick that learns
     std::size_t state_bytes = 0;
     int columns = 0; ///< of the learner
