@@ -16,7 +16,7 @@ namespace {
 double step_error(const TrainedModel& model, const Recording& recording,
                   const std::function<void(std::size_t)>& on_tick) {
     const auto estimator = make_estimator(model, false);
-    const ReplayedRecording replayed = replay(*estimator, model, recording, 0, on_tick);
+    const ReplayedRecording replayed = replay(*estimator, {&model, 1}, recording, 0, on_tick);
     const std::size_t outputs = model.outputs.names.size();
     double sum = 0;
     for (std::size_t output = 0; output < outputs; ++output) {

@@ -56,6 +56,16 @@ std::vector<std::vector<ReportCell>> rows_of_cases(const Plan& plan, std::span<c
     return rows;
 }
 
+/// Of each model that the case combines: "1", "0.999 0.9995".
+std::string forgetting_text(const UnitResult& unit) {
+    std::string text;
+    for (const double factor : unit.forgetting_factors) {
+        text += number_text(factor) + ' ';
+    }
+    text.pop_back();
+    return text;
+}
+
 std::string claim_of(const Comparison& comparison) {
     const std::string phase = comparison.phase == Phase::transient ? "transient" : "steady state";
     if (comparison.gain == 0) {
@@ -190,7 +200,7 @@ ReportTable cost_table(const Plan& plan, std::span<const UnitResult> units) {
                      "state, bytes", "µs per tick, median"};
     table.rows = rows_of_cases(plan, units, [](const std::vector<const UnitResult*>& draws) {
         return std::vector<ReportCell>{
-            number_text(draws.front()->forgetting_factor), static_cast<double>(draws.front()->columns),
+            forgetting_text(*draws.front()), static_cast<double>(draws.front()->columns),
             static_cast<double>(draws.front()->operations), static_cast<double>(draws.front()->state_bytes),
             median_over(draws, [](const UnitResult& draw) { return draw.median_us; })};
     });
@@ -262,7 +272,7 @@ void write_results_csv(std::ostream& out, const Plan& plan, std::span<const Unit
             const UnitResult* const draw = &unit;
             out << ',' << number_text(lost_share({&draw, 1}, group)) << ',' << number_text(unit.median_us)
                 << ',' << unit.operations << ',' << unit.state_bytes << ',' << unit.columns << ','
-                << number_text(unit.forgetting_factor) << '\n';
+                << forgetting_text(unit) << '\n';
         }
     }
 }

@@ -21,6 +21,7 @@ constexpr std::array<std::string_view, 3> priors{"scaled", "unit", "diagonal"};
 constexpr std::array<std::string_view, 12> setting_names{
     "physics_input", "effects",         "prior",  "lags",           "features",  "orthogonal",
     "forgetting",    "likelihood_rows", "starts", "rows_per_joint", "relevance", "centred"};
+constexpr std::array<std::string_view, 2> combination_names{"combine", "name"};
 constexpr std::array<std::string_view, 16> entry_names{
     "model",  "input",          "hyper",     "suffix",     "physics_input", "effects",
     "prior",  "lags",           "features",  "orthogonal", "forgetting",    "likelihood_rows",
@@ -106,6 +107,16 @@ void read_settings(const JsonReader& entry, Case& one) {
     }
 }
 
+/// Of an entry with "combine".
+Case combination_of(const JsonReader& entry) {
+    entry.allow_only(combination_names);
+    Case one;
+    one.name = one.suffix = plain_name(entry, "name");
+    one.members = names_in(entry, "combine");
+    one.lags = 0; // its window is its members'
+    return one;
+}
+
 std::string case_name(const JsonReader& entry, const Case& one) {
     std::string name = one.model + "-" + one.hyper + "-" + to_string(one.input);
     if (entry.has("rows_per_joint") && entry.is_array("rows_per_joint")) {
@@ -127,6 +138,9 @@ Case read_defaults(const JsonReader& entry) {
 }
 
 std::vector<Case> expand_cases(const JsonReader& entry, const Case& defaults) {
+    if (entry.has("combine")) {
+        return {combination_of(entry)};
+    }
     entry.allow_only(entry_names);
     Case one = defaults;
     read_settings(entry, one);

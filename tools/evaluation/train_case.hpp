@@ -5,6 +5,7 @@
 #include "tools/recording/recording.hpp"
 
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 
@@ -16,6 +17,8 @@ struct CaseMemory {
     std::mutex tuning;                 ///< held while the hyperparameters are sought
     std::optional<TrainedModel> tuned; ///< with the features of some draw
 };
+
+using CaseMemories = std::map<std::string, CaseMemory>; ///< by the case's name
 
 /// What every case of a plan shares.
 struct CaseContext {
