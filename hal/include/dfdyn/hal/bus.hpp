@@ -27,6 +27,9 @@ struct BusCounters {
     std::uint64_t dropped = 0;             ///< frames the operating system dropped before they were read
     std::uint64_t controller_overruns = 0; ///< times the controller overwrote a frame that nobody had fetched
     std::uint64_t lost_arbitrations = 0;   ///< normal on a loaded bus; never a fault
+    std::uint64_t no_acknowledgements = 0; ///< sent frames that no other node acknowledged
+    std::uint64_t bus_errors = 0;          ///< bits, forms, checksums or levels that were wrong on the wire
+    std::uint64_t transmit_faults = 0;     ///< times the controller lost a frame it was to send, or gave up
     std::uint64_t error_frames = 0;        ///< of any class
     std::uint64_t bus_off = 0;             ///< times the controller went bus-off
     std::uint64_t restarted = 0;           ///< times it came back
@@ -36,9 +39,10 @@ struct BusCounters {
 };
 
 enum class SendResult : std::uint8_t {
-    sent,      ///< handed to the controller's queue
-    refused,   ///< no room now: dropped and counted
-    bus_closed ///< bus-off, or the interface is down
+    sent,       ///< handed to the controller's queue
+    refused,    ///< no room now: dropped and counted
+    bus_closed, ///< bus-off, or the interface is down
+    invalid     ///< not a frame that this bus carries: see `is_well_formed`; CAN FD on a classic interface
 };
 
 /// A CAN bus as the rest of the program sees it: real (`SocketCanBus`) or a recording (`ReplayBus`). No call
