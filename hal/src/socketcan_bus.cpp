@@ -90,16 +90,6 @@ bool set_options(int descriptor, std::span<const std::uint64_t> filters, bool re
            set_option(descriptor, SOL_SOCKET, SO_RXQ_OVFL, 1);
 }
 
-bool bind_to(int descriptor, const std::string& interface) noexcept {
-    sockaddr_can address{};
-    address.can_family = AF_CAN;
-    address.can_ifindex = static_cast<int>(::if_nametoindex(interface.c_str()));
-    if (address.can_ifindex == 0) {
-        return false; // 0 would mean every interface
-    }
-    return ::bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
-}
-
 /// Opens a socket on `options.interface`; -1 and `fault` where that fails.
 int open_socket(const SocketCanOptions& options, std::span<const std::uint64_t> filters,
                 OpenFault& fault) noexcept {
@@ -108,10 +98,15 @@ int open_socket(const SocketCanOptions& options, std::span<const std::uint64_t> 
         fault = {"a CAN socket", errno};
         return -1;
     }
+    sockaddr_can address{};
+    address.can_family = AF_CAN;
+    address.can_ifindex = static_cast<int>(::if_nametoindex(options.interface.c_str()));
     if (!set_options(descriptor, filters, options.receive_own)) {
         fault = {"a CAN socket with filters, error frames, CAN FD, stamps and drop counts", errno};
-    } else if (!bind_to(descriptor, options.interface)) {
+    } else if (address.can_ifindex == 0) { // bound to 0 it would receive from every interface
         fault = {"a CAN interface of this name", errno};
+    } else if (::bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
+        fault = {"a CAN interface", errno};
     } else {
         return descriptor;
     }
@@ -123,6 +118,8 @@ BusError open_error(const std::string& interface, const OpenFault& fault) {
     std::string found = std::system_category().message(fault.error_number);
     if (fault.error_number == EAFNOSUPPORT || fault.error_number == EPROTONOSUPPORT) {
         found = "a kernel without CAN (its modules: can, can-raw): " + found;
+    } else if (fault.error_number == ENODEV && ::if_nametoindex(interface.c_str()) != 0) {
+        found = "an interface of another kind";
     }
     return BusError(interface + ": expected " + fault.step + ", found: " + found);
 }

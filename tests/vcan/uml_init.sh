@@ -7,7 +7,7 @@ export PATH=/usr/sbin:/usr/bin:/sbin:/bin
     mount -t proc proc /proc
     mount -t sysfs sysfs /sys
     modules=/usr/lib/uml/modules/$(uname -r)/kernel
-    for module in net/can/can net/can/can-raw drivers/net/can/dev/can-dev drivers/net/can/vcan; do
+    for module in net/can/can net/can/can-raw drivers/net/can/dev/can-dev drivers/net/can/vcan net/sched/sch_netem; do
         insmod "$modules/$module.ko"
     done
     # The tests set the clock, which only a machine of their own may suffer.

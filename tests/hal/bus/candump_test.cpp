@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dfdyn/hal/candump.hpp"
 
-#include "tests/hal/bus/random_frame.hpp"
-#include "tests/hal/bus/same_frame.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/random_frame.hpp"
+#include "tests/support/same_frame.hpp"
 #include "tests/support/seed.hpp"
 
 #include <string>
