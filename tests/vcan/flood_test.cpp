@@ -60,7 +60,7 @@ TEST_CASE("frames that nobody read in time are counted, by the bus as by candump
     run("cansend vcan0 002#");
     const Logged logged = count(candump.output(waiting + 2));
     CHECK(logged.dropped > 0);
-    CHECK(logged.frames + logged.dropped >= flood);
+    CHECK(logged.frames + logged.dropped == flood + 2);
 }
 
 TEST_CASE("a drain ends at its bound while frames keep coming, and says that some were left") {

@@ -117,13 +117,13 @@ class Player {
 
 std::int64_t PlayTimes::due_ns(std::int64_t stamp_ns) {
     if (started_ && stamp_ns > last_stamp_ns_) {
-        due_ns_ += static_cast<long double>(stamp_ns - last_stamp_ns_) / rate_;
+        elapsed_ns_ += static_cast<double>(stamp_ns - last_stamp_ns_) / rate_;
     }
     backward_stamps_ += started_ && stamp_ns < last_stamp_ns_ ? 1 : 0;
     started_ = true;
     last_stamp_ns_ = stamp_ns;
-    constexpr long double end_of_time_ns = 9.2e18L;
-    return static_cast<std::int64_t>(std::min(due_ns_, end_of_time_ns));
+    constexpr double longest_ns = 9e18;
+    return start_ns_ + static_cast<std::int64_t>(std::min(elapsed_ns_, longest_ns));
 }
 
 void Lateness::add(std::int64_t lateness_us) {

@@ -32,8 +32,7 @@ struct PlayOutcome {
 /// starts the log's time anew at the frame before.
 class PlayTimes {
   public:
-    PlayTimes(std::int64_t start_ns, double rate)
-        : due_ns_(static_cast<long double>(start_ns)), rate_(rate) {}
+    PlayTimes(std::int64_t start_ns, double rate) : start_ns_(start_ns), rate_(rate) {}
 
     /// The first frame is due at the start.
     std::int64_t due_ns(std::int64_t stamp_ns);
@@ -41,8 +40,9 @@ class PlayTimes {
     std::uint64_t backward_stamps() const noexcept { return backward_stamps_; }
 
   private:
-    long double due_ns_;
+    std::int64_t start_ns_;
     double rate_;
+    double elapsed_ns_ = 0.0; ///< exact to 1 ns for 100 days
     std::int64_t last_stamp_ns_ = 0;
     std::uint64_t backward_stamps_ = 0;
     bool started_ = false;
