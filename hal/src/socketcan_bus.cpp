@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <ctime>
+#include <limits>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -47,6 +48,29 @@ std::int64_t clock_ns(clockid_t clock) noexcept {
     timespec time{};
     ::clock_gettime(clock, &time);
     return nanoseconds(time);
+}
+
+/// What both clocks show at one time.
+struct Clocks {
+    std::int64_t monotonic_ns = 0;
+    std::int64_t wall_ns = 0;
+};
+
+/// Reads both, again where the program was held up in between, and at most four times.
+Clocks read_clocks() noexcept {
+    constexpr std::int64_t close_ns = 50'000;
+    Clocks best;
+    std::int64_t least_gap_ns = std::numeric_limits<std::int64_t>::max();
+    for (int attempt = 0; attempt < 4 && least_gap_ns > close_ns; ++attempt) {
+        const std::int64_t before_ns = clock_ns(CLOCK_MONOTONIC);
+        const std::int64_t wall_ns = clock_ns(CLOCK_REALTIME);
+        const std::int64_t gap_ns = clock_ns(CLOCK_MONOTONIC) - before_ns;
+        if (gap_ns < least_gap_ns) {
+            best = {before_ns + gap_ns / 2, wall_ns};
+            least_gap_ns = gap_ns;
+        }
+    }
+    return best;
 }
 
 std::uint64_t kernel_filter(const IdFilter& filter) noexcept {
@@ -210,7 +234,7 @@ SocketCanBus::SocketCanBus(SocketCanOptions options) : options_(std::move(option
     if (descriptor_ < 0) {
         throw open_error(options_.interface, fault);
     }
-    wall_clock_.nothing_waiting(clock_ns(CLOCK_MONOTONIC), clock_ns(CLOCK_REALTIME));
+    nothing_waiting();
     if (!is_up(interface_flags(descriptor_, options_.interface))) {
         go_down();
     }
@@ -263,9 +287,14 @@ SocketCanBus::Reading SocketCanBus::read_frame(Frame& frame) noexcept {
     return Reading::frame;
 }
 
+void SocketCanBus::nothing_waiting() noexcept {
+    const Clocks now = read_clocks();
+    wall_clock_.nothing_waiting(now.monotonic_ns, now.wall_ns);
+}
+
 SocketCanBus::Reading SocketCanBus::no_frame(int error_number) noexcept {
     if (error_number == EAGAIN || error_number == EINTR) {
-        wall_clock_.nothing_waiting(clock_ns(CLOCK_MONOTONIC), clock_ns(CLOCK_REALTIME));
+        nothing_waiting();
         return Reading::nothing;
     }
     // ENETDOWN, ENODEV, or what no interface that works would say. It comes before frames that still wait.
@@ -278,17 +307,17 @@ void SocketCanBus::stamp(const msghdr& message, Frame& frame) noexcept {
     if (with.has_drops) {
         count_drops(with.drops);
     }
-    const std::int64_t arrival_ns = clock_ns(CLOCK_MONOTONIC);
+    const Clocks now = read_clocks();
     const auto [stamp_ns, plausible] =
-        wall_clock_.to_monotonic(with.software_ns, arrival_ns, clock_ns(CLOCK_REALTIME));
+        wall_clock_.to_monotonic(with.software_ns, now.monotonic_ns, now.wall_ns);
     if (with.hardware_ns != 0) {
-        frame.stamp_ns = hardware_clock_.to_monotonic(with.hardware_ns, arrival_ns);
+        frame.stamp_ns = hardware_clock_.to_monotonic(with.hardware_ns, now.monotonic_ns);
         frame.stamp_source = StampSource::hardware;
     } else if (with.software_ns != 0 && plausible) {
         frame.stamp_ns = stamp_ns;
         frame.stamp_source = StampSource::kernel;
     } else {
-        frame.stamp_ns = arrival_ns;
+        frame.stamp_ns = now.monotonic_ns;
         frame.stamp_source = StampSource::arrival;
     }
 }

@@ -35,7 +35,8 @@ struct SocketCanOptions {
 };
 
 /// A CAN interface of Linux (`Bus`), classic or FD. Opens in its constructor; from then on no call allocates,
-/// waits or throws, and each makes a bounded number of system calls: `drain` at most three per frame of room.
+/// waits or throws, and each makes a bounded number of system calls: `drain` one read per frame of room,
+/// beside readings of the clock.
 ///
 /// **Clock.** `now_ns` is CLOCK_MONOTONIC. The kernel stamps a frame at reception, in the interrupt, by the
 /// wall clock (CLOCK_REALTIME); on reading, the stamp moves by the difference that the two clocks have then,
@@ -74,6 +75,7 @@ class SocketCanBus {
 
     Reading read_frame(Frame& frame) noexcept;
     Reading no_frame(int error_number) noexcept;
+    void nothing_waiting() noexcept;
     void stamp(const msghdr& message, Frame& frame) noexcept;
     void count_drops(std::uint32_t total) noexcept;
     void go_down() noexcept;
