@@ -22,8 +22,8 @@ enum class BusState : std::uint8_t {
 struct BusCounters {
     std::uint64_t received = 0; ///< frames handed out, error frames included
     std::uint64_t sent = 0;     ///< frames accepted for sending
-    std::uint64_t send_refused =
-        0; ///< no room in the queue (ENOBUFS, EAGAIN): the frame was dropped, not waited for
+    /// Frames for which the queue had no room (ENOBUFS, EAGAIN): dropped, not waited for.
+    std::uint64_t send_refused = 0;
     std::uint64_t dropped = 0;             ///< frames the operating system dropped before they were read
     std::uint64_t controller_overruns = 0; ///< times the controller overwrote a frame that nobody had fetched
     std::uint64_t lost_arbitrations = 0;   ///< normal on a loaded bus; never a fault
@@ -47,9 +47,8 @@ enum class SendResult : std::uint8_t {
 
 /// A CAN bus as the rest of the program sees it: real (`SocketCanBus`) or a recording (`ReplayBus`). No call
 /// blocks, allocates or throws once the bus is open, and each ends after a bounded number of steps.
-/// - `drain(into)`: the frames that have arrived, in the order of arrival, at most `into.size()` of them; the
-/// returned
-///   part of `into` holds them. Error frames are among them, already counted and reflected in `state()`.
+/// - `drain(into)`: the frames that have arrived, in the order of arrival, at most `into.size()` of them, in
+///   the returned part of `into`. Error frames are among them, already counted and reflected in `state()`.
 /// - `send(frame)`: offers one frame.
 /// - `now_ns()`: the clock on which frames are stamped; it never runs backward.
 /// - `state()`, `counters()`: as of the last drain or send.
