@@ -85,11 +85,13 @@ class Player {
 
   private:
     static constexpr std::int64_t start_delay_ns = 10'000'000; ///< for what the first frames need
+    /// A signal that comes just before a sleep does not end it.
+    static constexpr std::int64_t longest_sleep_ns = 100'000'000;
 
     void play_frame(const hal::Frame& frame) {
         const std::int64_t due_ns = times_.due_ns(frame.stamp_ns);
         while (!stop_ && bus_.now_ns() < due_ns) {
-            sleep_until(due_ns);
+            sleep_until(std::min(due_ns, bus_.now_ns() + longest_sleep_ns));
         }
         if (stop_) {
             return;
