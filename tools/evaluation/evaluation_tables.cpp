@@ -2,6 +2,7 @@
 #include "tools/evaluation/evaluation_tables.hpp"
 
 #include "tools/common/number.hpp"
+#include "tools/common/quantile.hpp"
 #include "tools/common/text.hpp"
 #include "tools/evaluation/phase_error.hpp"
 
@@ -25,7 +26,7 @@ double median_over(const std::vector<const UnitResult*>& draws, const Value& val
     std::vector<double> values;
     std::ranges::transform(draws, std::back_inserter(values),
                            [&](const UnitResult* draw) { return static_cast<double>(value(*draw)); });
-    return median_of(std::move(values));
+    return median(std::move(values));
 }
 
 /// The middle half of the draws' values.
