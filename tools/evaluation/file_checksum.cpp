@@ -2,7 +2,7 @@
 #include "tools/evaluation/file_checksum.hpp"
 
 #include "dfdyn/snapshot.hpp"
-#include "tools/common/file_content.hpp"
+#include "tools/common/read_file.hpp"
 #include "tools/common/text.hpp"
 
 #include <array>
@@ -12,7 +12,7 @@
 namespace dfdyn::tools {
 
 std::string file_checksum(const std::filesystem::path& path) {
-    const std::string content = file_content(path);
+    const std::string content = read_file(path);
     std::array<char, 9> text{};
     std::snprintf(text.data(), text.size(), "%08x", crc32(std::as_bytes(std::span(content))));
     return std::string(text.data()) + ", " + std::to_string(content.size()) + " bytes";

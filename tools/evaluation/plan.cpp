@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/evaluation/plan.hpp"
 
-#include "tools/common/file_content.hpp"
+#include "tools/common/read_file.hpp"
 #include "tools/common/text.hpp"
 #include "tools/evaluation/plan_cases.hpp"
 #include "tools/evaluation/plan_claims.hpp"
@@ -206,12 +206,12 @@ std::string to_string(Phase phase) { return phase == Phase::transient ? "transie
 std::string to_string(ErrorScale scale) { return scale == ErrorScale::horizon ? "horizon" : "variance"; }
 
 Plan read_plan(const fs::path& path) {
-    nlohmann::json json = parse_json(file_content(path), shown(path));
+    nlohmann::json json = parse_json(read_file(path), shown(path));
     const JsonReader own(json, shown(path));
     const fs::path folder = path.parent_path();
     if (own.has("like")) {
         const fs::path other = folder / own.text("like");
-        const nlohmann::json fields = parse_json(file_content(other), shown(other));
+        const nlohmann::json fields = parse_json(read_file(other), shown(other));
         const JsonReader must_be_an_object(fields, shown(other));
         json.insert(fields.begin(), fields.end()); // only what is not there
     }

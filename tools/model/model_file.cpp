@@ -3,7 +3,7 @@
 
 #include "dfdyn/snapshot.hpp"
 #include "tools/common/error.hpp"
-#include "tools/common/file_content.hpp"
+#include "tools/common/read_file.hpp"
 #include "tools/common/text.hpp"
 #include "tools/model/json_reader.hpp"
 #include "tools/model/model_json.hpp"
@@ -159,7 +159,7 @@ TrainedModel model_from_json(const std::string& text, const std::string& source)
 }
 
 TrainedModel read_model(const std::filesystem::path& path) {
-    return model_from_json(file_content(path, "cannot be read as a model"), shown(path));
+    return model_from_json(read_file(path, "cannot be read as a model"), shown(path));
 }
 
 std::uint32_t model_identity(const TrainedModel& model) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/simulation/scenario.hpp"
 
-#include "tools/common/file_content.hpp"
 #include "tools/common/number.hpp"
+#include "tools/common/read_file.hpp"
 #include "tools/common/text.hpp"
 #include "tools/simulation/scenario_reader.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 constexpr std::string_view schema = "dfdyn.scenario/1";
 
 nlohmann::json load(const std::filesystem::path& path) {
-    return parse_json(file_content(path, "cannot be read as a scenario"), shown(path));
+    return parse_json(read_file(path, "cannot be read as a scenario"), shown(path));
 }
 
 std::vector<std::string> read_columns(const JsonReader& reader) {

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Models with a robot from the command line: simulate, train, replay.
 #include "tests/support/catch.hpp"
-#include "tests/support/temporary_directory.hpp"
-
-#include <nlohmann/json.hpp>
-#include <sys/wait.h>
+#include "tests/tools/commands/run_program.hpp"
 
 #include <algorithm>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -16,13 +14,9 @@ namespace {
 
 using Catch::Matchers::ContainsSubstring;
 using dfdyn::tests::file_content;
+using dfdyn::tests::Outcome;
+using dfdyn::tests::run_program;
 using dfdyn::tests::TemporaryDirectory;
-
-struct Outcome {
-    int status;
-    std::string out;
-    std::string error;
-};
 
 const std::string urdf = DFDYN_TEST_DATA_DIR "/robots/small_arm/small_arm.urdf";
 const std::string robot = " --robot " + urdf + " --tip tool ";
@@ -66,13 +60,7 @@ class Bench {
 
     std::string path(const std::string& name) const { return directory_.path() / name; }
 
-    Outcome call(const std::string& arguments) const {
-        const std::string command =
-            std::string(DFDYN_PROGRAM) + " " + arguments + " >" + path("out") + " 2>" + path("error");
-        const int status = std::system(command.c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_content(path("out")),
-                file_content(path("error"))};
-    }
+    Outcome call(const std::string& arguments) const { return run_program(directory_, arguments); }
 
     Outcome train(const std::string& arguments, const std::string& model = "model.json") const {
         return call("train --log " + path("run.csv") +

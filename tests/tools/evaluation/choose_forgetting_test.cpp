@@ -16,7 +16,7 @@ double chosen(std::size_t turn_at) {
     const TemporaryDirectory directory;
     const std::filesystem::path log = directory.write("run.csv", small_recording(2000, 2));
     ReadOptions options;
-    options.outputs = OutputKind::tau;
+    options.outputs = OutputKind::joint_torque;
     options.rows = {0, 150};
     const Recording start = read_recording(log, options);
     options.rows = {150, 2000};
@@ -32,7 +32,7 @@ double chosen(std::size_t turn_at) {
     one.forgetting_factors = {1, 0.99};
     CaseMemory memory;
     const RobotChoice no_robot;
-    return train_case(one, {no_robot, OutputKind::tau, start, online, 1}, 3, memory, [](double) {})
+    return train_case(one, {no_robot, OutputKind::joint_torque, start, online, 1}, 3, memory, [](double) {})
         .forgetting_factor;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/common/file_content.hpp"
+#include "tools/common/read_file.hpp"
 
 #include "tools/common/text.hpp"
 
@@ -9,7 +9,7 @@
 
 namespace dfdyn::tools {
 
-std::string file_content(const std::filesystem::path& path, std::string_view cannot) {
+std::string read_file(const std::filesystem::path& path, std::string_view cannot) {
     if (std::filesystem::is_directory(path)) {
         throw system_error(path, cannot, EISDIR);
     }
