@@ -26,24 +26,12 @@ class AtiNetcan {
         std::array<std::array<double, 6>, 6> matrix{}; ///< of this very sensor, one row per axis
         double counts_per_newton = 0;                  ///< 0: not known
         double counts_per_newton_metre = 0;
-        std::int32_t gauge_limit = 32767; ///< a gauge of this size or larger is saturated
     };
 
-    explicit constexpr AtiNetcan(const Config& config) noexcept : config_(config) {}
+    explicit AtiNetcan(const Config& config) noexcept : config_(config), calibration_(check(config)) {}
 
     /// Of the matrix and the counts: not known, cannot be, or ok.
-    [[nodiscard]] Reason calibration() const noexcept {
-        const std::array<double, 2> counts{config_.counts_per_newton, config_.counts_per_newton_metre};
-        if (counts[0] == 0 || counts[1] == 0) {
-            return Reason::waiting_for_full_scale;
-        }
-        const bool sound =
-            std::isfinite(counts[0]) && std::isfinite(counts[1]) && counts[0] > 0 && counts[1] > 0;
-        const double determinant = matrix().determinant();
-        return sound && matrix().allFinite() && std::isfinite(determinant) && determinant != 0
-                   ? Reason::ok
-                   : Reason::full_scale_implausible;
-    }
+    [[nodiscard]] constexpr Reason calibration() const noexcept { return calibration_; }
 
     [[nodiscard]] constexpr bool claims(std::uint32_t id) const noexcept {
         return id == first_id() || id == second_id();
@@ -61,11 +49,9 @@ class AtiNetcan {
 
     [[nodiscard]] WrenchReading wrench(const Frame& first, const Frame& second) const noexcept {
         WrenchReading reading;
-        bool at_limit = false;
         for (std::size_t i = 0; i < 6; ++i) {
             const Frame& frame = i % 2 == 0 ? first : second;
             reading.raw[i] = load_big<std::int16_t>(frame.data.data() + gauge_place(i));
-            at_limit = at_limit || std::abs(reading.raw[i]) >= config_.gauge_limit;
         }
         for (std::size_t axis = 0; axis < 6; ++axis) {
             double counts = 0;
@@ -77,9 +63,6 @@ class AtiNetcan {
         reading.reason = calibration();
         if (reading.reason == Reason::ok && (load_big<std::uint16_t>(first.data.data()) & fault_bits) != 0) {
             reading.reason = Reason::device_fault;
-        }
-        if (reading.reason == Reason::ok && at_limit) {
-            reading.reason = Reason::output_saturated;
         }
         return reading;
     }
@@ -99,7 +82,7 @@ class AtiNetcan {
         for (std::size_t axis = 0; axis < 6; ++axis) {
             counts[static_cast<int>(axis)] = value[axis] * counts_per_unit(axis);
         }
-        const Eigen::Matrix<double, 6, 1> gauges = matrix().partialPivLu().solve(counts);
+        const Eigen::Matrix<double, 6, 1> gauges = matrix(config_).partialPivLu().solve(counts);
         for (std::size_t i = 0; i < 6; ++i) {
             store_big(frames.frame[i % 2].data.data() + gauge_place(i),
                       saturated<std::int16_t>(gauges[static_cast<int>(i)]));
@@ -123,17 +106,30 @@ class AtiNetcan {
         return axis < 3 ? config_.counts_per_newton : config_.counts_per_newton_metre;
     }
 
-    [[nodiscard]] Eigen::Matrix<double, 6, 6> matrix() const noexcept {
+    [[nodiscard]] static Eigen::Matrix<double, 6, 6> matrix(const Config& config) noexcept {
         Eigen::Matrix<double, 6, 6> result;
         for (std::size_t row = 0; row < 6; ++row) {
             for (std::size_t column = 0; column < 6; ++column) {
-                result(static_cast<int>(row), static_cast<int>(column)) = config_.matrix[row][column];
+                result(static_cast<int>(row), static_cast<int>(column)) = config.matrix[row][column];
             }
         }
         return result;
     }
 
+    [[nodiscard]] static Reason check(const Config& config) noexcept {
+        const double force = config.counts_per_newton;
+        const double torque = config.counts_per_newton_metre;
+        if (force == 0 || torque == 0) {
+            return Reason::waiting_for_full_scale;
+        }
+        const double determinant = matrix(config).determinant(); // not a number if any element is none
+        const bool sound = force > 0 && torque > 0 && std::isfinite(force) && std::isfinite(torque);
+        return sound && std::isfinite(determinant) && determinant != 0 ? Reason::ok
+                                                                       : Reason::full_scale_implausible;
+    }
+
     Config config_;
+    Reason calibration_;
 };
 
 static_assert(WrenchSource<AtiNetcan>);

@@ -146,6 +146,7 @@ class Cia402Drive {
         const std::span<const std::uint8_t> data(frame.data.data(), frame.length);
         if (positions) {
             value.position_reason = encoder_fault_ ? Reason::encoder_fault : condition;
+            value.raw_zero = config_.position.extract_raw(data) == 0;
             value.position_rad = config_.position.extract(data);
         }
         if (has_effort() && frame.id == effort_id()) {

@@ -11,11 +11,14 @@
 namespace dfdyn::hal {
 
 /// What a device says about one joint. A value that is not `ok` is not to be used; its number means nothing.
+/// What a frame does not carry is `waiting_for_position` or `no_output`.
 struct JointValue {
     int joint = 0;             ///< of the arm, from base to tip, counted from 0
     std::int64_t stamp_ns = 0; ///< when it was measured, as far as the device's protocol tells
     Reason position_reason = Reason::waiting_for_position;
     double position_rad = 0;
+    bool raw_zero =
+        false; ///< the device sent a position of 0, before any zero or scale: perhaps it has none yet
     Reason effort_reason = Reason::no_output;
     double effort = 0; ///< torque (N·m) or motor current (A), whichever the device measures
 };
@@ -61,7 +64,7 @@ struct FrameList {
 /// A device (or board of a device) that reports joint positions, and perhaps efforts.
 /// - `joints`: how many at most.
 /// - `decode(frame)`: what the frame says. Any frame may be offered, also one that is not its own.
-/// - `claims(id)`: whether it reads frames of this standard identifier.
+/// - `claims(id)`: whether it is this device that sends the standard identifier; no other may.
 /// - `encode(values)`: the frames that the device sends for these values, one for each of its joints in its
 /// own
 ///   order, with its quantisation and saturation: what a simulated device sends.

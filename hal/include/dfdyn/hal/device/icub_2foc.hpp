@@ -84,6 +84,7 @@ class FocBoard {
         value.joint = config_.joint;
         value.stamp_ns = frame.stamp_ns;
         value.position_reason = encoder_fault_ ? Reason::encoder_fault : Reason::ok;
+        value.raw_zero = counts == 0;
         value.position_rad = counts * radians_per_count / config_.motor_per_joint + config_.zero_rad;
         value.effort_reason = device_fault_ ? Reason::device_fault : Reason::ok;
         value.effort = 1e-3 * load_little<std::int16_t>(frame.data.data());

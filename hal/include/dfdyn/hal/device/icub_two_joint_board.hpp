@@ -99,6 +99,7 @@ class TwoJointBoard {
             value.joint = scale_[i].joint;
             value.stamp_ns = frame.stamp_ns;
             value.position_reason = encoder_fault_[i] ? Reason::encoder_fault : Reason::ok;
+            value.raw_zero = ticks == 0;
             value.position_rad =
                 (ticks / scale_[i].ticks_per_degree - scale_[i].zero_deg) / degrees_per_radian;
         }

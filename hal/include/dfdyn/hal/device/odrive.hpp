@@ -82,6 +82,7 @@ class OdriveAxis {
         value.stamp_ns = frame.stamp_ns;
         value.position_reason =
             std::isfinite(turns) ? heartbeat_.reason(frame.stamp_ns) : Reason::position_out_of_range;
+        value.raw_zero = turns == 0;
         value.position_rad = turns * radians_per_turn / config_.motor_per_joint + config_.zero_rad;
         return decoded;
     }

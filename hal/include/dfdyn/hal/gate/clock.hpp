@@ -14,9 +14,10 @@ namespace dfdyn::hal {
 class ClockGate {
   public:
     struct Config {
-        std::int64_t tolerance_ns = 5'000'000;  ///< how far a stamp may lie ahead, or behind the latest
-        std::int64_t max_step_ns = 100'000'000; ///< between frames that go on from each other
-        int adopt_after = 20;                   ///< consistent frames, at least 1
+        std::int64_t tolerance_ns = 5'000'000; ///< how far a stamp may lie ahead, or behind the latest
+        std::int64_t max_step_ns =
+            100'000'000;      ///< between frames that go on from each other; of the first one's age
+        int adopt_after = 20; ///< consistent frames, at least 1
     };
 
     explicit constexpr ClockGate(const Config& config) noexcept : config_(config) {}
@@ -25,7 +26,9 @@ class ClockGate {
     constexpr std::optional<std::int64_t> accept(std::int64_t stamp_ns, std::int64_t now_ns) noexcept {
         const std::int64_t shifted_ns = shifted(stamp_ns, offset_ns_);
         const bool ahead = shifted_ns > shifted(now_ns, config_.tolerance_ns);
-        const bool behind = started_ && shifted_ns < shifted(latest_ns_, -config_.tolerance_ns);
+        const std::int64_t earliest_ns =
+            started_ ? shifted(latest_ns_, -config_.tolerance_ns) : shifted(now_ns, -config_.max_step_ns);
+        const bool behind = shifted_ns < earliest_ns;
         if (!ahead && !behind) {
             run_ = 0;
             return follow(std::min(shifted_ns, now_ns));
@@ -36,7 +39,7 @@ class ClockGate {
         }
         ++adopted_;
         run_ = 0;
-        offset_ns_ = shifted(now_ns, -stamp_ns);
+        offset_ns_ = difference(now_ns, stamp_ns);
         latest_ns_ = now_ns;
         return follow(now_ns);
     }
@@ -54,6 +57,10 @@ class ClockGate {
         return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
     }
 
+    [[nodiscard]] static constexpr std::int64_t difference(std::int64_t a, std::int64_t b) noexcept {
+        return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
+    }
+
     constexpr std::int64_t follow(std::int64_t stamp_ns) noexcept {
         latest_ns_ = started_ ? std::max(latest_ns_, stamp_ns) : stamp_ns;
         started_ = true;
@@ -62,7 +69,7 @@ class ClockGate {
 
     /// Whether this refused stamp ends a run that is long enough.
     constexpr bool consistent(std::int64_t stamp_ns) noexcept {
-        const std::int64_t step_ns = shifted(stamp_ns, -last_refused_ns_);
+        const std::int64_t step_ns = difference(stamp_ns, last_refused_ns_);
         const bool goes_on = run_ > 0 && step_ns >= -config_.tolerance_ns && step_ns <= config_.max_step_ns;
         run_ = goes_on ? run_ + 1 : 1;
         last_refused_ns_ = stamp_ns;
