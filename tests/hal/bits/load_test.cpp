@@ -16,8 +16,8 @@ TEST_CASE("numbers are loaded from bytes in either order") {
     CHECK(load_little<std::uint32_t>(odd) == 0x04830201);
     CHECK(load_big<std::uint32_t>(odd) == 0x01028304);
     CHECK(load_little<std::uint64_t>(odd) == 0x8807060504830201);
-    CHECK(load_big<std::int16_t>(bytes.data() + 3) == -31996);    // 0x8304
-    CHECK(load_little<std::int16_t>(bytes.data() + 2) == -0x7CFE);                   // 0x8302
+    CHECK(load_big<std::int16_t>(bytes.data() + 3) == -31996);     // 0x8304
+    CHECK(load_little<std::int16_t>(bytes.data() + 2) == -0x7CFE); // 0x8302
 }
 
 TEST_CASE("IEEE floats are loaded from bytes in either order") {
