@@ -40,6 +40,7 @@ constexpr std::pair<int, const char*> published_reasons[] = {
     {50, "interface_down"},
     {51, "wrong_length"},
     {52, "wrong_frame_type"},
+    {53, "id_collision"},
 };
 
 } // namespace

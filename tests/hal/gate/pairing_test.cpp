@@ -4,6 +4,7 @@
 #include "tests/hal/support/frames.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <vector>
 
 using namespace dfdyn::hal;
@@ -98,6 +99,28 @@ TEST_CASE("halves without stamps of their own are paired in their order") {
     gate.push(1, at_time(half(5, 1), 7 * us));
     CHECK(gate.push(0, at_time(half(6, 0), 7 * us)) == Result::orphaned);
     CHECK(gate.push(1, at_time(half(6, 1), 7 * us)) == Result::paired);
+}
+
+TEST_CASE("a second sender on the same identifiers is seen, and its halves are not mixed with the first's") {
+    for (const std::int64_t behind_us : {60, 300}) { // interleaved, and one wrench after the other
+        PairGate gate(window_ns);
+        for (int number = 0; number < 10; ++number) {
+            std::vector<Frame> frames{half(number, 0), half(number, 1)};
+            for (Frame frame : {half(number, 0), half(number, 1)}) {
+                frame.stamp_ns += behind_us * us;
+                frame.data[0] = 99;
+                frames.push_back(frame);
+            }
+            std::ranges::sort(frames, {}, &Frame::stamp_ns);
+            for (const Frame& frame : frames) {
+                if (gate.push(frame.id == 0x3DA ? 0 : 1, frame) == Result::paired) {
+                    CHECK(gate.first().data[0] == number);
+                    CHECK(gate.second().data[0] == number);
+                }
+            }
+        }
+        CHECK(gate.doubles() == 20);
+    }
 }
 
 TEST_CASE("the window's end still counts, and no more") {

@@ -72,10 +72,13 @@ enum class Reason : std::uint8_t {
     wrong_length = 51,
     /// A frame with one of our identifiers is a remote request or CAN FD.
     wrong_frame_type = 52,
+    /// Frames of one identifier come faster than one device sends them: two devices share it. Cure: give one
+    /// of them another.
+    id_collision = 53,
 };
 
 /// One past the largest number of a reason; sizes tables indexed by it.
-inline constexpr int reason_count = 53;
+inline constexpr int reason_count = 54;
 
 /// The reason's name as written in reports and logs ("ok" for none).
 constexpr const char* name(Reason reason) noexcept {
@@ -138,6 +141,8 @@ constexpr const char* name(Reason reason) noexcept {
         return "wrong_length";
     case Reason::wrong_frame_type:
         return "wrong_frame_type";
+    case Reason::id_collision:
+        return "id_collision";
     }
     return "unknown";
 }

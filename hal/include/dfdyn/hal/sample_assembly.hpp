@@ -65,7 +65,7 @@ class SampleAssembly {
 
     struct Config {
         std::array<Board, static_cast<std::size_t>(boards)> board; ///< joints they name must be < n
-        typename Track<1, capacity>::Config position;
+        TrackConfig position;
         std::array<Range, static_cast<std::size_t>(n)> position_range; ///< rad
         ClockGate::Config clock;
         int output_bus = 0; ///< 0, or 1 where the sensor has a bus for itself

@@ -15,7 +15,7 @@ class EffortOutput {
     static constexpr int outputs = n;
 
     struct Config {
-        typename Track<1, capacity>::Config track;
+        TrackConfig track;
         std::array<Range, static_cast<std::size_t>(n)> range;
     };
 

@@ -9,6 +9,12 @@
 
 namespace dfdyn::hal {
 
+struct TrackConfig {
+    std::int64_t max_age_ns; ///< for how long a value is held; neighbours further apart are a gap
+    std::int64_t latency_ns; ///< from the measurement to the stamp of its frame
+    QualificationGate::Config qualification;
+};
+
 /// What is missing or wrong is called differently for positions and outputs.
 struct TrackReasons {
     Reason waiting;
@@ -29,13 +35,7 @@ class Track {
     using Values = typename RangeGate<values>::Values;
     using Ranges = typename RangeGate<values>::Ranges;
 
-    struct Config {
-        std::int64_t max_age_ns; ///< for how long a value is held; neighbours further apart are a gap
-        std::int64_t latency_ns; ///< from the measurement to the stamp of its frame
-        QualificationGate::Config qualification;
-    };
-
-    constexpr Track(const Config& config, const Ranges& ranges, const TrackReasons& reasons) noexcept
+    constexpr Track(const TrackConfig& config, const Ranges& ranges, const TrackReasons& reasons) noexcept
         : latency_ns_(config.latency_ns), reasons_(reasons), staleness_(config.max_age_ns),
           gap_(config.max_age_ns), range_(ranges), qualification_(config.qualification) {}
 

@@ -18,7 +18,7 @@ class WrenchOutput {
     static constexpr int outputs = 6;
 
     struct Config {
-        typename Track<6, capacity>::Config track;
+        TrackConfig track;
         typename RangeGate<6>::Ranges range; ///< of the sensor
         std::int64_t pair_window_ns;         ///< of the two frames of a wrench, see PairGate
         int frozen_limit;                    ///< identical readings, see FrozenGate
@@ -34,11 +34,18 @@ class WrenchOutput {
         if (decoded.kind != Decoded::Kind::part) {
             return decoded;
         }
-        const PairGate::Result result = pairing_.push(decoded.part, frame);
-        if (result == PairGate::Result::paired) {
+        switch (pairing_.push(decoded.part, frame)) {
+        case PairGate::Result::waiting:
+            break;
+        case PairGate::Result::paired:
             push(source_.wrench(pairing_.first(), pairing_.second()));
-        } else if (result == PairGate::Result::orphaned) {
+            break;
+        case PairGate::Result::orphaned:
             track_.push(pairing_.orphan_ns(), Reason::output_incomplete, {}, false);
+            break;
+        case PairGate::Result::doubled:
+            track_.push(frame.stamp_ns, Reason::id_collision, {}, false);
+            break;
         }
         return decoded;
     }

@@ -19,14 +19,20 @@ class PairGate {
     explicit constexpr PairGate(std::int64_t window_ns) noexcept : window_ns_(window_ns) {}
 
     enum class Result : std::uint8_t {
-        waiting, ///< for the other half
-        paired,  ///< `first()` and `second()` are one wrench
-        orphaned ///< a half will never find its other one; it was stamped at `orphan_ns()`
+        waiting,  ///< for the other half
+        paired,   ///< `first()` and `second()` are one wrench
+        orphaned, ///< a half will never find its other one; it was stamped at `orphan_ns()`
+        doubled   ///< another sender uses the identifier; whatever was pending is forgotten
     };
 
     /// `part` is 0 or 1.
     constexpr Result push(int part, const Frame& frame) noexcept {
         const auto mine = static_cast<std::size_t>(part);
+        if (from_another_sender(mine, frame.stamp_ns)) {
+            reset();
+            ++doubles_;
+            return Result::doubled;
+        }
         const bool replaced = pending_[mine];
         if (replaced) {
             drop(mine);
@@ -52,7 +58,19 @@ class PairGate {
         return orphans_[static_cast<std::size_t>(part)];
     }
 
+    /// How often a second sender was seen.
+    [[nodiscard]] constexpr std::uint64_t doubles() const noexcept { return doubles_; }
+
   private:
+    /// Too soon after the last of its kind; frames without stamps of their own may share one.
+    constexpr bool from_another_sender(std::size_t part, std::int64_t stamp_ns) noexcept {
+        const std::int64_t since_ns = stamp_ns - last_ns_[part];
+        const bool doubled = seen_[part] && since_ns > 0 && since_ns <= window_ns_;
+        seen_[part] = true;
+        last_ns_[part] = stamp_ns;
+        return doubled;
+    }
+
     constexpr void drop(std::size_t part) noexcept {
         pending_[part] = false;
         orphan_ns_ = half_[part].stamp_ns;
@@ -74,9 +92,12 @@ class PairGate {
     std::int64_t window_ns_;
     std::array<Frame, 2> half_{};
     std::array<bool, 2> pending_{};
+    std::array<bool, 2> seen_{};
+    std::array<std::int64_t, 2> last_ns_{};
     std::int64_t orphan_ns_ = 0;
     std::uint64_t pairs_ = 0;
     std::array<std::uint64_t, 2> orphans_{};
+    std::uint64_t doubles_ = 0;
 };
 
 } // namespace dfdyn::hal
