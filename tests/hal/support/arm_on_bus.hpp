@@ -207,7 +207,7 @@ class ArmOnBus {
         const std::array<double, 2> q = true_position(seconds(sample.time_ns));
         const hal::Wrench wrench = true_wrench(seconds(sample.time_ns));
         for (std::size_t i = 0; i < 2; ++i) {
-            const double held_s =
+            const double off_s =
                 std::max(0.0, seconds(report.position_age_ns[i] - delay_ns)) + seconds(clock_error_ns);
             const double half_tick = 0.5 / 11.375 * std::numbers::pi / 180;
             CHECK(std::abs(sample.position[static_cast<int>(i)] - q[i]) <= 1.01 * half_tick + off_s);
@@ -217,7 +217,8 @@ class ArmOnBus {
             return;
         }
         for (std::size_t i = 0; i < 6; ++i) {
-            const double off_s = std::max(0.0, seconds(report.output_age_ns - delay_ns)) + seconds(clock_error_ns);
+            const double off_s =
+                std::max(0.0, seconds(report.output_age_ns - delay_ns)) + seconds(clock_error_ns);
             CHECK(std::abs(sample.output[static_cast<int>(i)] - wrench[i]) <=
                   3 * full_scales[i] / 32768 + 25 * off_s);
         }

@@ -269,12 +269,14 @@ class SampleAssembly {
         output_.take(value);
     }
 
+    /// Every drive tells of the same SYNC.
     constexpr Moment synchronised(std::int64_t stamp_ns) noexcept {
-        const std::int64_t before_ns = sync_ns_;
+        const bool again = synchronised_ && stamp_ns == sync_ns_;
         const bool first = !synchronised_;
+        const std::int64_t before_ns = sync_ns_;
         synchronised_ = true;
         sync_ns_ = stamp_ns;
-        return first ? Moment{} : Moment{Moment::Kind::sync, before_ns};
+        return first || again ? Moment{} : Moment{Moment::Kind::sync, before_ns};
     }
 
     constexpr Moment completed_set() noexcept {
