@@ -55,8 +55,8 @@ class Cia402Drive {
     }
 
     [[nodiscard]] constexpr bool claims(std::uint32_t id) const noexcept {
-        return id == position_id() || (has_effort() && id == effort_id()) || id == sync_id ||
-               id == emcy_id() || id == heartbeat_id();
+        return id == position_id() || (has_effort() && id == effort_id()) || id == emcy_id() ||
+               id == heartbeat_id();
     }
 
     constexpr Decoded decode(const Frame& frame) noexcept {
