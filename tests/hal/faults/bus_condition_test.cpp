@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults of the controller and its interface. What a socket makes of them is tested with the sockets; here:
-// what their state and counters mean for the samples.
+// Faults of the controller and its interface: what their state and counters mean for the samples. What only a
+// socket can show is tested with the sockets: that error frames are asked for (F1) and read in their own size
+// (F2), how bus-off, ENOBUFS, dropped frames and a lost interface become state and counters (F3, F6, F7, F9),
+// which clock stamps a frame and how the stamp is read (F17, F22), and how the flags of a frame become its
+// origin (F19).
 #include "tests/hal/support/arm_on_bus.hpp"
 
 namespace hal = dfdyn::hal;

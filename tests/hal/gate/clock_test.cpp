@@ -80,6 +80,9 @@ TEST_CASE("stamps that do not go on from each other are never adopted") {
         const std::int64_t wild = i % 2 == 0 ? 1 * second : 2 * second;
         CHECK_FALSE(gate.accept(wild, 100 * second + 11 * ms).has_value());
     }
+    for (std::int64_t i = 0; i < 1000; ++i) { // forward, in strides that are too long
+        CHECK_FALSE(gate.accept(i * 51 * ms, 100 * second + 11 * ms).has_value());
+    }
     CHECK(gate.adopted() == 0);
 }
 

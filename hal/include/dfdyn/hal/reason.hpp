@@ -80,69 +80,50 @@ enum class Reason : std::uint8_t {
 /// One past the largest number of a reason; sizes tables indexed by it.
 inline constexpr int reason_count = 54;
 
-/// The reason's name as written in reports and logs ("ok" for none).
+struct NamedReason {
+    Reason reason;
+    const char* name;
+};
+
+inline constexpr NamedReason reason_names[] = {
+    {Reason::ok, "ok"},
+    {Reason::waiting_for_position, "waiting_for_position"},
+    {Reason::waiting_for_output, "waiting_for_output"},
+    {Reason::qualifying, "qualifying"},
+    {Reason::waiting_for_full_scale, "waiting_for_full_scale"},
+    {Reason::history_too_short, "history_too_short"},
+    {Reason::output_not_new, "output_not_new"},
+    {Reason::no_output, "no_output"},
+    {Reason::position_stale, "position_stale"},
+    {Reason::output_stale, "output_stale"},
+    {Reason::position_gap, "position_gap"},
+    {Reason::output_gap, "output_gap"},
+    {Reason::output_incomplete, "output_incomplete"},
+    {Reason::output_saturated, "output_saturated"},
+    {Reason::output_frozen, "output_frozen"},
+    {Reason::position_out_of_range, "position_out_of_range"},
+    {Reason::output_out_of_range, "output_out_of_range"},
+    {Reason::full_scale_implausible, "full_scale_implausible"},
+    {Reason::encoder_fault, "encoder_fault"},
+    {Reason::device_fault, "device_fault"},
+    {Reason::device_not_operational, "device_not_operational"},
+    {Reason::heartbeat_missing, "heartbeat_missing"},
+    {Reason::clock_jumped, "clock_jumped"},
+    {Reason::time_not_increasing, "time_not_increasing"},
+    {Reason::frames_lost, "frames_lost"},
+    {Reason::bus_off, "bus_off"},
+    {Reason::interface_down, "interface_down"},
+    {Reason::wrong_length, "wrong_length"},
+    {Reason::wrong_frame_type, "wrong_frame_type"},
+    {Reason::id_collision, "id_collision"},
+};
+
+/// The reason's name as written in reports and logs ("ok" for none). O(number of reasons).
 constexpr const char* name(Reason reason) noexcept {
-    switch (reason) {
-    case Reason::ok:
-        return "ok";
-    case Reason::waiting_for_position:
-        return "waiting_for_position";
-    case Reason::waiting_for_output:
-        return "waiting_for_output";
-    case Reason::qualifying:
-        return "qualifying";
-    case Reason::waiting_for_full_scale:
-        return "waiting_for_full_scale";
-    case Reason::history_too_short:
-        return "history_too_short";
-    case Reason::output_not_new:
-        return "output_not_new";
-    case Reason::no_output:
-        return "no_output";
-    case Reason::position_stale:
-        return "position_stale";
-    case Reason::output_stale:
-        return "output_stale";
-    case Reason::position_gap:
-        return "position_gap";
-    case Reason::output_gap:
-        return "output_gap";
-    case Reason::output_incomplete:
-        return "output_incomplete";
-    case Reason::output_saturated:
-        return "output_saturated";
-    case Reason::output_frozen:
-        return "output_frozen";
-    case Reason::position_out_of_range:
-        return "position_out_of_range";
-    case Reason::output_out_of_range:
-        return "output_out_of_range";
-    case Reason::full_scale_implausible:
-        return "full_scale_implausible";
-    case Reason::encoder_fault:
-        return "encoder_fault";
-    case Reason::device_fault:
-        return "device_fault";
-    case Reason::device_not_operational:
-        return "device_not_operational";
-    case Reason::heartbeat_missing:
-        return "heartbeat_missing";
-    case Reason::clock_jumped:
-        return "clock_jumped";
-    case Reason::time_not_increasing:
-        return "time_not_increasing";
-    case Reason::frames_lost:
-        return "frames_lost";
-    case Reason::bus_off:
-        return "bus_off";
-    case Reason::interface_down:
-        return "interface_down";
-    case Reason::wrong_length:
-        return "wrong_length";
-    case Reason::wrong_frame_type:
-        return "wrong_frame_type";
-    case Reason::id_collision:
-        return "id_collision";
+    for (const NamedReason& named : reason_names) {
+        if (named.reason == reason) {
+            return named.name;
+        }
     }
     return "unknown";
 }

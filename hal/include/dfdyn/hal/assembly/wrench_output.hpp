@@ -63,7 +63,8 @@ class WrenchOutput {
     /// Frames were lost: a pending half is forgotten.
     constexpr void lost() noexcept { pairing_.reset(); }
 
-    [[nodiscard]] constexpr Source& source() noexcept { return source_; }
+    /// The sensor's decoder: what to send to the sensor, and what it has told, such as its full scales.
+    [[nodiscard]] constexpr const Source& source() const noexcept { return source_; }
     [[nodiscard]] constexpr const Track<6, capacity>& track() const noexcept { return track_; }
     [[nodiscard]] constexpr const PairGate& pairing() const noexcept { return pairing_; }
     [[nodiscard]] constexpr const SaturationGate& saturation() const noexcept { return saturation_; }
