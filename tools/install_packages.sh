@@ -32,6 +32,10 @@ test_packages=(
     "libnewlib-arm-none-eabi:no build for the Cortex-M7"
     "libstdc++-arm-none-eabi-newlib:no build for the Cortex-M7"
     "qemu-system-arm:no run on the Cortex-M7"
+    "can-utils:the CAN backend cannot be tested against other programs"
+    "iproute2:the CAN backend cannot be tested"
+    "kmod:the CAN backend cannot be tested where the kernel has no CAN"
+    "user-mode-linux:the CAN backend cannot be tested where the kernel has no CAN"
 )
 
 is_installed() {

@@ -23,7 +23,7 @@ options+=("$@")
 
 step() {
     echo
-    echo "[$1/5, ${SECONDS} s] $2"
+    echo "[$1/6, ${SECONDS} s] $2"
 }
 
 build_program() {
@@ -34,9 +34,9 @@ build_program() {
     cmake --build --preset release --parallel "$(nproc)" --target dfdyn
 }
 
-# simulate NAME: unless it is there from the same program, scenario and robot, whose checksums stand beside it.
+# simulate SCENARIO NAME: unless it is there from the same program, scenario and robot, whose checksums stand beside it.
 simulate() {
-    local scenario=tests/data/scenarios/$1.json csv=$out/data/$1.csv inputs
+    local scenario=$1 csv=$out/data/$2.csv inputs
     inputs=$(cksum "$dfdyn" "$scenario" "$robot")
     if [[ -s $csv && -s $csv.cksum && $(<"$csv.cksum") == "$inputs" ]]; then
         echo "$csv is there"
@@ -45,6 +45,14 @@ simulate() {
         "$dfdyn" simulate --robot "$robot" --scenario "$scenario" -o "$csv"
         echo "$inputs" >"$csv.cksum"
     fi
+}
+
+# with_fast_derivatives NAME: the scenario with velocity and acceleration estimated at the encoders' rate.
+with_fast_derivatives() {
+    local from=tests/data/scenarios/$1.json to=$out/data/$1_1khz.json slow='"derivatives": {"rate_hz": 100, '
+    grep -qF "$slow" "$from"
+    sed "s/$slow/\"derivatives\": {/" "$from" >"$to"
+    echo "$to"
 }
 
 # evaluate NAME: some cases may fail (status 1); the page then says which.
@@ -84,27 +92,32 @@ tools/install_packages.sh demo
 step 2 "build"
 build_program
 step 3 "simulate the iCub arm on circles in the XY and in the XZ plane"
-simulate icub_xy
-simulate icub_xz
+for task in icub_xy icub_xz; do
+    simulate "tests/data/scenarios/$task.json" "$task"
+    simulate "$(with_fast_derivatives "$task")" "${task}_1khz"
+done
 step 4 "evaluate on the simulated iCub arm"
 evaluate icub
-step 5 "evaluate on the measured UR5"
+step 5 "evaluate on the same arm with derivatives estimated at 1 kHz"
+evaluate icub_1khz
+step 6 "evaluate on the measured UR5"
 evaluate ur5
 
 {
     introduction
-    cat "$out/$kind/icub/findings.md"
-    echo
-    cat "$out/$kind/ur5/findings.md"
+    for plan in icub icub_1khz ur5; do
+        cat "$out/$kind/$plan/findings.md"
+        echo
+    done
 } >"$page.tmp"
 mv "$page.tmp" "$page"
 mkdir -p "$(dirname "$page")/pictures"
-rm -f "$(dirname "$page")"/pictures/{icub,ur5}_*.svg
-cp "$out/$kind"/{icub,ur5}/pictures/*.svg "$(dirname "$page")/pictures/"
+rm -f "$(dirname "$page")"/pictures/{icub,icub_1khz,ur5}_*.svg
+cp "$out/$kind"/{icub,icub_1khz,ur5}/pictures/*.svg "$(dirname "$page")/pictures/"
 
 echo
 echo "Done in $SECONDS s: $page"
-echo "  $out/$kind/icub/report.html, $out/$kind/ur5/report.html  the same as pages"
+echo "  $out/$kind/{icub,icub_1khz,ur5}/report.html  the same as pages"
 [[ $failed -eq 0 ]] || {
     echo "Some cases could not be done: see above." >&2
     exit 1

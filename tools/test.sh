@@ -35,13 +35,14 @@ run_tests() {
 build_release() { build release; }
 test_units() { run_tests release --label-regex '^(firmware|hal|tools|embedding|truth|headers)$'; }
 test_promises() { run_tests release --label-regex '^acceptance$'; }
+test_can() { run_tests release --label-regex '^vcan$'; }
 test_elsewhere() { run_tests release --label-regex '^(consumer|cortex_m7)$' --verbose; }
 test_long() { ctest --test-dir build/release --label-regex '^long$' --parallel "$jobs" --output-on-failure --no-tests=error; }
 
 # clang++ has the sanitizers: it builds them in about three quarters of the time that g++ takes, and is the second compiler.
 test_sanitized() {
-    build asan-ubsan dfdyn_embedding dfdyn_firmware_headers dfdyn_firmware_tests
-    run_tests asan-ubsan --label-regex '^(firmware|embedding|headers)$'
+    build asan-ubsan dfdyn_embedding dfdyn_firmware_headers dfdyn_firmware_tests dfdyn_hal_headers dfdyn_hal_tests
+    run_tests asan-ubsan --label-regex '^(firmware|hal|embedding|headers)$'
 }
 test_sanitized_tools() {
     build asan-ubsan dfdyn_tools_tests
@@ -50,8 +51,8 @@ test_sanitized_tools() {
 
 # Optimised, unlike the sanitized build.
 test_clang() {
-    build clang dfdyn_embedding dfdyn_firmware_tests
-    run_tests clang --label-regex '^(firmware|embedding)$'
+    build clang dfdyn_embedding dfdyn_firmware_tests dfdyn_hal_tests
+    run_tests clang --label-regex '^(firmware|hal|embedding)$'
 }
 
 # With the flags of the clang build.
@@ -68,8 +69,9 @@ steps=(
     "build_release:release build"
     "test_units:unit tests and firmware headers"
     "test_promises:promises on real recordings (the demo)"
+    "test_can:CAN backend and dfdyn play on a kernel's virtual CAN, against can-utils"
     "test_elsewhere:use by another project, and on a bare Cortex-M7 under QEMU"
-    "test_sanitized:firmware by clang++, address and undefined-behaviour sanitizers"
+    "test_sanitized:firmware and bus layer by clang++, address and undefined-behaviour sanitizers"
     "analyse_product:static analysis"
 )
 case ${1:-} in

@@ -16,5 +16,6 @@ void add_replay_command(CLI::App& app, Command& chosen);
 void add_identify_command(CLI::App& app, Command& chosen);
 void add_evaluate_command(CLI::App& app, Command& chosen);
 void add_simulate_command(CLI::App& app, Command& chosen);
+void add_play_command(CLI::App& app, Command& chosen);
 
 } // namespace dfdyn::tools

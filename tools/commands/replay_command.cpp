@@ -3,7 +3,9 @@
 #include "tools/commands/command.hpp"
 #include "tools/commands/options.hpp"
 #include "tools/common/atomic_file.hpp"
+#include "tools/common/error.hpp"
 #include "tools/common/progress.hpp"
+#include "tools/common/text.hpp"
 #include "tools/evaluation/replay.hpp"
 #include "tools/evaluation/replay_csv.hpp"
 #include "tools/evaluation/replay_report.hpp"
@@ -11,6 +13,7 @@
 #include "tools/model/model_file.hpp"
 #include "tools/report/report.hpp"
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -19,7 +22,7 @@ namespace dfdyn::tools {
 namespace {
 
 struct ReplayOptions {
-    std::filesystem::path model;
+    std::vector<std::filesystem::path> models; ///< several: combined
     RecordingOptions recordings;
     std::filesystem::path csv;
     std::filesystem::path report;
@@ -27,17 +30,33 @@ struct ReplayOptions {
     bool from_prior = false;
 };
 
-std::vector<ReplayedRecording> replay_all(const ReplayOptions& options, const TrainedModel& model,
+/// Models of the same joints and outputs.
+std::vector<TrainedModel> read_models(const std::vector<std::filesystem::path>& paths) {
+    std::vector<TrainedModel> models;
+    for (const std::filesystem::path& path : paths) {
+        models.push_back(read_model(path));
+        const TrainedModel& first = models.front();
+        const TrainedModel& last = models.back();
+        if (last.joints != first.joints || last.outputs.names != first.outputs.names) {
+            throw InputError(shown(path) + ": expected joints and outputs as in " + shown(paths.front()) +
+                             ", " + std::to_string(first.joints) + " and " + listed(first.outputs.names) +
+                             ", found " + std::to_string(last.joints) + " and " + listed(last.outputs.names));
+        }
+    }
+    return models;
+}
+
+std::vector<ReplayedRecording> replay_all(const ReplayOptions& options, std::span<const TrainedModel> models,
                                           HostEstimator& estimator) {
-    const OutputKind kind = kind_of_outputs(model.outputs.names, static_cast<std::size_t>(model.joints));
+    const auto joints = static_cast<std::size_t>(models.front().joints);
     ReadOptions columns;
-    columns.joint_count = static_cast<std::size_t>(model.joints);
-    columns.outputs = kind;
-    columns.velocity = columns.acceleration = needs_derivatives(model);
+    columns.joint_count = joints;
+    columns.outputs = kind_of_outputs(models.front().outputs.names, joints);
+    columns.velocity = columns.acceleration = std::ranges::any_of(models, needs_derivatives);
     std::vector<ReplayedRecording> replayed;
     for (const Recording& recording : options.recordings.read(columns)) {
         Progress progress("replaying " + recording.source, recording.row_count());
-        replayed.push_back(replay(estimator, model, recording, options.horizon,
+        replayed.push_back(replay(estimator, models, recording, options.horizon,
                                   [&progress](std::size_t done) { progress.update(done); }));
     }
     return replayed;
@@ -45,19 +64,19 @@ std::vector<ReplayedRecording> replay_all(const ReplayOptions& options, const Tr
 
 int run(const ReplayOptions& options) {
     std::vector<std::filesystem::path> inputs = options.recordings.logs;
-    inputs.push_back(options.model);
+    inputs.insert(inputs.end(), options.models.begin(), options.models.end());
     check_distinct({options.csv, options.report}, std::move(inputs));
-    const TrainedModel model = read_model(options.model);
-    const auto estimator = make_estimator(model, options.from_prior);
-    const std::vector<ReplayedRecording> replayed = replay_all(options, model, *estimator);
-    const ReplaySummary summary = summarise(model, *estimator, replayed, options.horizon);
+    const std::vector<TrainedModel> models = read_models(options.models);
+    const auto estimator = make_estimator(models, options.from_prior);
+    const std::vector<ReplayedRecording> replayed = replay_all(options, models, *estimator);
+    const ReplaySummary summary = summarise(models, *estimator, replayed, options.horizon);
     if (!options.csv.empty()) {
         AtomicFile file(options.csv);
-        write_replay_csv(file.stream(), model, replayed);
+        write_replay_csv(file.stream(), models.front(), replayed);
         file.commit();
     }
     if (!options.report.empty()) {
-        write_file(options.report, render_report(make_replay_report(model, replayed, summary)));
+        write_file(options.report, render_report(make_replay_report(models.front(), replayed, summary)));
     }
     print_summary(std::cout, summary);
     return 0;
@@ -69,9 +88,14 @@ void add_replay_command(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<ReplayOptions>();
     CLI::App* command =
         app.add_subcommand("replay", "Runs the embedded estimator, tick by tick, over recordings");
-    command->add_option("--model", options->model, "Model that `dfdyn train` wrote")
+    command
+        ->add_option(
+            "--model", options->models,
+            "Model that `dfdyn train` wrote; several: their predictions are combined, each weighted by how "
+            "well it predicted lately")
         ->required()
-        ->type_name("M.json");
+        ->delimiter(',')
+        ->type_name("M.json[,...]");
     options->recordings.add_to(*command);
     command
         ->add_option("-o,--output", options->csv,

@@ -18,7 +18,7 @@ std::vector<double> settled_innovations(const TrainedModel& model, std::span<con
     const auto estimator = make_estimator(model, true);
     std::vector<double> innovations;
     for (const Recording& recording : recordings) {
-        const ReplayedRecording replayed = replay(*estimator, model, recording, 0, [](std::size_t) {});
+        const ReplayedRecording replayed = replay(*estimator, {&model, 1}, recording, 0, [](std::size_t) {});
         std::ranges::copy_if(replayed.normalised_innovation_squared, std::back_inserter(innovations),
                              [](float value) { return !std::isnan(value); });
     }

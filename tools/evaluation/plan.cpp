@@ -180,6 +180,19 @@ class PlanReader {
         if (json_.has("more_cases")) {
             add_cases("more_cases", defaults);
         }
+        for (const Case& one : plan_.cases) {
+            check_members(one);
+        }
+    }
+
+    void check_members(const Case& one) const {
+        for (const std::string& name : one.members) {
+            const auto member = std::ranges::find(plan_.cases, name, &Case::name);
+            if (member == plan_.cases.end() || !member->members.empty()) {
+                throw json_.error("cases: " + in_quotes(one.name) + ": combine",
+                                  "names of cases that are no combinations", in_quotes(name));
+            }
+        }
     }
 
     void add_cases(const std::string& field, const Case& defaults) {
@@ -213,6 +226,10 @@ Plan read_plan(const fs::path& path) {
         json.insert(fields.begin(), fields.end()); // only what is not there
     }
     return PlanReader(JsonReader(json, shown(path)), folder).read();
+}
+
+const Case& case_named(const Plan& plan, const std::string& name) {
+    return *std::ranges::find(plan.cases, name, &Case::name);
 }
 
 Plan quick_plan(Plan plan) {

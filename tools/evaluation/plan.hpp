@@ -13,11 +13,13 @@
 
 namespace dfdyn::tools {
 
-/// One way to model the arm: a row of the table model × input × tuning. The values here are the defaults.
+/// One way to model the arm: a row of the table model × input × tuning, or a combination of such. The values
+/// here are the defaults.
 struct Case {
-    std::string name;         ///< unique in its plan, e.g. NP-ML-DFR
-    std::string suffix;       ///< the end of the name that the plan chose; empty: one of the paper's
-    std::string model = "NP"; ///< P, NP, SP, SP2, SPK
+    std::string name;                 ///< unique in its plan, e.g. NP-ML-DFR
+    std::vector<std::string> members; ///< the cases that it combines; then nothing else here counts
+    std::string suffix;               ///< the end of the name that the plan chose; empty: one of the paper's
+    std::string model = "NP";         ///< P, NP, SP, SP2, SPK
     InputKind input = InputKind::DFR;
     std::string hyper = "ML";           ///< ML, CV
     std::string physics_input = "same"; ///< what the physics sees: the features' input, or filters of its own
@@ -29,9 +31,9 @@ struct Case {
     bool orthogonal = true;             ///< orthogonal random features
     bool relevance = true;              ///< STD: velocity and acceleration have gains; false: as in the paper
     bool centred = true;                ///< NP: outputs less their mean; false: as in the paper
-    double forgetting_factor = 1;
-    int likelihood_rows = 1000; ///< samples in the exact kernel, at most
-    int starts = 6;             ///< local searches
+    std::vector<double> forgetting_factors{1}; ///< several: the rest of the training log chooses
+    int likelihood_rows = 1000;                ///< samples in the exact kernel, at most
+    int starts = 6;                            ///< local searches
 };
 
 /// Outputs whose errors are averaged, as the three forces of a wrench are.
@@ -110,6 +112,9 @@ std::string to_string(ErrorScale scale);
 /// those from the plan's folder. Throws InputError with the path of the field for anything missing, unknown
 /// or out of its range, for a name that is not there, and for one that is there twice.
 Plan read_plan(const std::filesystem::path& path);
+
+/// The case of that name, which must be there.
+const Case& case_named(const Plan& plan, const std::string& name);
 
 /// The same cases with one draw, few features, rows and starts: shows in seconds that all of them run, not
 /// how good they are.

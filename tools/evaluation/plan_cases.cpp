@@ -21,6 +21,7 @@ constexpr std::array<std::string_view, 3> priors{"scaled", "unit", "diagonal"};
 constexpr std::array<std::string_view, 12> setting_names{
     "physics_input", "effects",         "prior",  "lags",           "features",  "orthogonal",
     "forgetting",    "likelihood_rows", "starts", "rows_per_joint", "relevance", "centred"};
+constexpr std::array<std::string_view, 2> combination_names{"combine", "name"};
 constexpr std::array<std::string_view, 16> entry_names{
     "model",  "input",          "hyper",     "suffix",     "physics_input", "effects",
     "prior",  "lags",           "features",  "orthogonal", "forgetting",    "likelihood_rows",
@@ -46,6 +47,18 @@ std::vector<int> rows_per_joint(const JsonReader& entry, int fallback) {
     }
     return entry.is_array("rows_per_joint") ? entry.whole_numbers("rows_per_joint", 1, 1001)
                                             : std::vector{entry.whole_number("rows_per_joint", 1, 1001)};
+}
+
+std::vector<double> forgetting_factors(const JsonReader& entry) {
+    if (!entry.is_array("forgetting")) {
+        return {entry.number_within("forgetting", 0.5, 1)};
+    }
+    std::vector<double> factors = entry.numbers("forgetting");
+    if (factors.empty() ||
+        !std::ranges::all_of(factors, [](double factor) { return factor >= 0.5 && factor <= 1; })) {
+        throw entry.error("forgetting", "a number or numbers from 0.5 to 1", "none, or others");
+    }
+    return factors;
 }
 
 InputKind input_of(const JsonReader& entry, const std::string& text) {
@@ -81,7 +94,7 @@ void read_settings(const JsonReader& entry, Case& one) {
     flag("relevance", one.relevance);
     flag("centred", one.centred);
     if (entry.has("forgetting")) {
-        one.forgetting_factor = entry.number_within("forgetting", 0.5, 1);
+        one.forgetting_factors = forgetting_factors(entry);
     }
     if (entry.has("physics_input")) {
         one.physics_input = one_of(entry, "physics_input", entry.text("physics_input"), physics_inputs);
@@ -92,6 +105,16 @@ void read_settings(const JsonReader& entry, Case& one) {
     if (entry.has("effects")) {
         one.effects = effects_of(entry);
     }
+}
+
+/// Of an entry with "combine".
+Case combination_of(const JsonReader& entry) {
+    entry.allow_only(combination_names);
+    Case one;
+    one.name = one.suffix = plain_name(entry, "name");
+    one.members = names_in(entry, "combine");
+    one.lags = 0; // its window is its members'
+    return one;
 }
 
 std::string case_name(const JsonReader& entry, const Case& one) {
@@ -115,6 +138,9 @@ Case read_defaults(const JsonReader& entry) {
 }
 
 std::vector<Case> expand_cases(const JsonReader& entry, const Case& defaults) {
+    if (entry.has("combine")) {
+        return {combination_of(entry)};
+    }
     entry.allow_only(entry_names);
     Case one = defaults;
     read_settings(entry, one);

@@ -61,10 +61,13 @@ bool needs_derivatives(const TrainedModel& model) {
            (model.physics && measured(model.physics->motion));
 }
 
-ReplayedRecording replay(HostEstimator& estimator, const TrainedModel& model, const Recording& recording,
-                         std::size_t horizon, const std::function<void(std::size_t)>& on_tick) {
-    check_fit(model, recording);
-    const std::size_t outputs = model.outputs.names.size();
+ReplayedRecording replay(HostEstimator& estimator, std::span<const TrainedModel> models,
+                         const Recording& recording, std::size_t horizon,
+                         const std::function<void(std::size_t)>& on_tick) {
+    for (const TrainedModel& model : models) {
+        check_fit(model, recording);
+    }
+    const std::size_t outputs = recording.output.names.size();
     HorizonError errors(std::max<std::size_t>(horizon, 1), outputs, estimator.weight_count());
     ReplayedRecording replayed{
         recording.source, recording.time_s, recording.output.values, {}, {}, {}, {}, {}, {}};

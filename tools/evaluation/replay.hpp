@@ -30,10 +30,11 @@ struct ReplayedRecording {
 bool needs_derivatives(const TrainedModel& model);
 
 /// Runs `estimator` over `recording`, learning on throughout; what it has learned before stays. `on_tick` is
-/// told the number of ticks done. `horizon`: T of the index ε, 0 for none. Throws InputError when the
-/// recording has not the `joints` joints and `outputs` outputs of the estimator's model.
-ReplayedRecording replay(HostEstimator& estimator, const TrainedModel& model, const Recording& recording,
-                         std::size_t horizon, const std::function<void(std::size_t)>& on_tick);
+/// told the number of ticks done. `models`: those that `estimator` was made of. `horizon`: T of the index ε,
+/// 0 for none. Throws InputError when the recording has not the joints, outputs or derivatives of a model.
+ReplayedRecording replay(HostEstimator& estimator, std::span<const TrainedModel> models,
+                         const Recording& recording, std::size_t horizon,
+                         const std::function<void(std::size_t)>& on_tick);
 
 /// rms(measured - predicted) / std(measured) of one output over the predicted ticks in [first, last); NaN if
 /// there are none.

@@ -85,17 +85,19 @@ void print_values(std::ostream& out, const std::string& label, const std::vector
 
 } // namespace
 
-ReplaySummary summarise(const TrainedModel& model, const HostEstimator& estimator,
+ReplaySummary summarise(std::span<const TrainedModel> models, const HostEstimator& estimator,
                         std::span<const ReplayedRecording> replayed, std::size_t horizon) {
     ReplaySummary summary;
-    summary.outputs = model.outputs.names;
+    summary.outputs = models.front().outputs.names;
     summary.horizon = horizon;
-    summary.model = describe_model(model);
+    for (const TrainedModel& model : models) {
+        summary.model += (summary.model.empty() ? "" : "; ") + describe_model(model);
+    }
     summary.state_bytes = estimator.state_bytes();
     summary.operations = estimator.cost().predict + estimator.cost().learn;
     std::vector<double> durations;
     for (const ReplayedRecording& recording : replayed) {
-        summary.recordings.push_back(figures_of(recording, model));
+        summary.recordings.push_back(figures_of(recording, models.front()));
         for (std::size_t tick = 0; tick < recording.status.size(); ++tick) {
             if (recording.status[tick].learned()) {
                 durations.push_back(recording.duration_us[tick]);

@@ -27,7 +27,7 @@ struct ReplaySummary {
     std::vector<std::string> outputs;
     std::vector<RecordingFigures> recordings;
     std::size_t horizon = 0;
-    std::string model; ///< one line: structure, input, features
+    std::string model; ///< one line: structure, input, features, of each that is combined
     std::size_t state_bytes = 0;
     std::int64_t operations = 0;                      ///< multiply-adds per tick that learns
     double median_us = 0, p99_us = 0, longest_us = 0; ///< of the ticks that learned
@@ -36,8 +36,8 @@ struct ReplaySummary {
 /// The time after which the paper takes a model to have settled.
 inline constexpr double transient_s = 30;
 
-/// Gathers the figures of a replay.
-ReplaySummary summarise(const TrainedModel& model, const HostEstimator& estimator,
+/// Gathers the figures of a replay; `models`: those that `estimator` was made of.
+ReplaySummary summarise(std::span<const TrainedModel> models, const HostEstimator& estimator,
                         std::span<const ReplayedRecording> replayed, std::size_t horizon);
 
 /// Writes them as tables, with the compiler's flags beside the times.

@@ -22,12 +22,11 @@ namespace {
 
 /// One case with one draw, and what became of it.
 struct Unit {
-    Unit(const Case& its_case, std::uint64_t its_seed, CaseMemory& its_memory, std::filesystem::path its_path)
-        : one(its_case), seed(its_seed), memory(its_memory), path(std::move(its_path)) {}
+    Unit(const Case& its_case, std::uint64_t its_seed, std::filesystem::path its_path)
+        : one(its_case), seed(its_seed), path(std::move(its_path)) {}
 
     const Case& one;
     std::uint64_t seed;
-    CaseMemory& memory;
     std::filesystem::path path;
     std::optional<UnitResult> result;
     std::string failure;
@@ -43,9 +42,9 @@ class PlanRun {
         const int cores = static_cast<int>(std::thread::hardware_concurrency());
         threads_ = std::max(1, cores / options.jobs);
         for (const Case& one : plan.cases) {
-            CaseMemory& memory = memories_.emplace_back();
+            memories_.try_emplace(one.name);
             for (const std::uint64_t seed : plan.seeds) {
-                units_.emplace_back(one, seed, memory,
+                units_.emplace_back(one, seed,
                                     options.folder / "cases" / one.name / (std::to_string(seed) + ".json"));
             }
         }
@@ -112,7 +111,7 @@ class PlanRun {
         try {
             if (!unit.result) {
                 unit.result = write_unit(unit.path, inputs,
-                                         run_unit(plan_, data_, unit.one, unit.seed, unit.memory, threads_,
+                                         run_unit(plan_, data_, unit.one, unit.seed, memories_, threads_,
                                                   [&unit](double share) { unit.done = share; }));
             }
         } catch (const InputError& error) {
@@ -133,9 +132,9 @@ class PlanRun {
     const Plan& plan_;
     const PlanData& data_;
     const RunOptions& options_;
-    std::deque<CaseMemory> memories_; ///< one per case
-    std::deque<Unit> units_;          ///< case by case, draw by draw
-    int threads_ = 1;                 ///< of each training
+    CaseMemories memories_;  ///< its entries are there before the work begins
+    std::deque<Unit> units_; ///< case by case, draw by draw
+    int threads_ = 1;        ///< of each training
     std::atomic<std::size_t> next_ = 0;
     std::mutex mutex_;
     std::condition_variable finished_;

@@ -80,46 +80,74 @@ class TickProgress {
 };
 
 /// Each subset from the state `trained`.
-void run_subsets(const Plan& plan, const PlanData& data, const TrainedModel& model, HostEstimator& estimator,
-                 TickProgress& ticks, UnitResult& result) {
+void run_subsets(const Plan& plan, const PlanData& data, std::span<const TrainedModel> models,
+                 HostEstimator& estimator, TickProgress& ticks, UnitResult& result) {
     const std::vector<std::byte> trained = estimator.snapshot();
     ReplayedRecording all;
     for (const Recording& subset : data.subsets) {
         if (!estimator.restore(trained)) {
             throw std::logic_error("an estimator that does not take its own snapshot back");
         }
-        const ReplayedRecording replayed = replay(estimator, model, subset, plan.horizon, ticks.of_next());
+        const ReplayedRecording replayed = replay(estimator, models, subset, plan.horizon, ticks.of_next());
         for (std::size_t group = 0; group < plan.groups.size(); ++group) {
             result.error[group].push_back(group_error(replayed, data.group_outputs[group], plan, data));
         }
         append_ticks(replayed, all);
     }
-    const std::size_t outputs = model.outputs.names.size();
+    const std::size_t outputs = models.front().outputs.names.size();
     for (std::size_t output = 0; output < outputs; ++output) {
         result.normalised_error.push_back(normalised_error(all, outputs, output, 0, all.status.size()));
     }
     result.median_us = median_duration_us(all);
 }
 
+/// The models of the case, or of the cases that it combines.
+std::vector<TrainedModel> train_unit(const Plan& plan, const CaseContext& context, const Case& one,
+                                     std::uint64_t seed, CaseMemories& memories,
+                                     const std::function<void(double)>& progress) {
+    const std::vector<std::string> names = one.members.empty() ? std::vector{one.name} : one.members;
+    std::vector<TrainedModel> models;
+    for (const std::string& name : names) {
+        models.push_back(
+            train_case(case_named(plan, name), context, seed, memories.at(name), [&](double share) {
+                const auto before = static_cast<double>(models.size());
+                progress((before + share) / static_cast<double>(names.size()));
+            }));
+    }
+    return models;
+}
+
+int columns_of(std::span<const TrainedModel> models) {
+    int columns = 0;
+    for (const TrainedModel& model : models) {
+        columns +=
+            2 * model.features.count + (model.physics ? static_cast<int>(model.physics->selected.size()) : 0);
+    }
+    return columns;
+}
+
 } // namespace
 
 UnitResult run_unit(const Plan& plan, const PlanData& data, const Case& one, std::uint64_t seed,
-                    CaseMemory& memory, int threads, const std::function<void(double)>& progress) {
-    const TrainedModel model = train_case(one, {plan.robot, plan.outputs, data.start, threads}, seed, memory,
-                                          [&](double share) { progress(share_of_training * share); });
-    const auto estimator = make_estimator(model, false);
+                    CaseMemories& memories, int threads, const std::function<void(double)>& progress) {
+    const CaseContext context{plan.robot, plan.outputs, data.start, data.online, threads};
+    const std::vector<TrainedModel> models = train_unit(
+        plan, context, one, seed, memories, [&](double share) { progress(share_of_training * share); });
+    const auto estimator = make_estimator(models, false);
     TickProgress ticks(data, progress);
-    replay(*estimator, model, data.online, 0, ticks.of_next());
+    replay(*estimator, models, data.online, 0, ticks.of_next());
     UnitResult result;
     result.case_name = one.name;
     result.seed = seed;
-    result.sample_period_s = model.sample_period_s;
+    result.sample_period_s = models.front().sample_period_s;
     result.error.resize(plan.groups.size());
+    for (const TrainedModel& model : models) {
+        result.forgetting_factors.push_back(model.forgetting_factor);
+    }
     result.operations = estimator->cost().predict + estimator->cost().learn;
     result.state_bytes = estimator->state_bytes();
-    result.columns =
-        2 * model.features.count + (model.physics ? static_cast<int>(model.physics->selected.size()) : 0);
-    run_subsets(plan, data, model, *estimator, ticks, result);
+    result.columns = columns_of(models);
+    run_subsets(plan, data, models, *estimator, ticks, result);
     return result;
 }
 

@@ -11,9 +11,10 @@ namespace dfdyn::tools {
 
 /// The paper's protocol (section "Inverse Dynamics Learning on iCub") for one case and one draw: start from
 /// `data.start`, online over `data.online`, then each subset from the state at the end of that, learning on,
-/// with an empty window. `threads`: of the training, >= 1. `progress`: told the share that is done, 0 … 1.
+/// with an empty window. `memories`: one for each case of the plan. `threads`: of the training, >= 1.
+/// `progress`: told the share that is done, 0 … 1.
 /// Deterministic but for the times.
 UnitResult run_unit(const Plan& plan, const PlanData& data, const Case& one, std::uint64_t seed,
-                    CaseMemory& memory, int threads, const std::function<void(double)>& progress);
+                    CaseMemories& memories, int threads, const std::function<void(double)>& progress);
 
 } // namespace dfdyn::tools

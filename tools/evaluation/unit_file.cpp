@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr const char* schema = "dfdyn.evaluated-unit/1";
+constexpr const char* schema = "dfdyn.evaluated-unit/2";
 
 ordered_json case_json(const Case& one) {
     return {{"name", one.name},
@@ -30,9 +30,21 @@ ordered_json case_json(const Case& one) {
             {"orthogonal", one.orthogonal},
             {"relevance", one.relevance},
             {"centred", one.centred},
-            {"forgetting", one.forgetting_factor},
+            {"forgetting", one.forgetting_factors},
             {"likelihood_rows", one.likelihood_rows},
             {"starts", one.starts}};
+}
+
+/// Of the case, or of the cases that it combines.
+ordered_json cases_json(const Plan& plan, const Case& one) {
+    if (one.members.empty()) {
+        return case_json(one);
+    }
+    ordered_json json = ordered_json::array();
+    for (const std::string& name : one.members) {
+        json.push_back(case_json(case_named(plan, name)));
+    }
+    return json;
 }
 
 ordered_json protocol_json(const Plan& plan) {
@@ -64,7 +76,7 @@ const std::string& program() {
 } // namespace
 
 ordered_json unit_inputs(const Plan& plan, const PlanData& data, const Case& one, std::uint64_t seed) {
-    ordered_json inputs{{"case", case_json(one)},
+    ordered_json inputs{{"case", cases_json(plan, one)},
                         {"seed", seed},
                         {"protocol", protocol_json(plan)},
                         {"files", ordered_json::array()},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/host/host_estimator.hpp"
 
+#include "tools/host/combined_estimator.hpp"
 #include "tools/host/host_model.hpp"
 
 #include <algorithm>
@@ -134,6 +135,17 @@ std::unique_ptr<HostEstimator> make_estimator(const TrainedModel& model, bool fr
     }
     return model.physics->chain.sensor ? make_with_physics<WrenchArm>(model, from_prior)
                                        : make_with_physics<TorqueArm>(model, from_prior);
+}
+
+std::unique_ptr<HostEstimator> make_estimator(std::span<const TrainedModel> models, bool from_prior) {
+    if (models.size() == 1) {
+        return make_estimator(models.front(), from_prior);
+    }
+    std::vector<CombinationMember> members;
+    for (const TrainedModel& model : models) {
+        members.push_back({make_estimator(model, from_prior), model.limits.innovation});
+    }
+    return combine(std::move(members), models.front().outputs.names.size());
 }
 
 } // namespace dfdyn::tools

@@ -68,4 +68,8 @@ class HostEstimator {
 /// The estimator of `model`, from its trained start or from the prior. Keeps no reference to `model`.
 std::unique_ptr<HostEstimator> make_estimator(const TrainedModel& model, bool from_prior);
 
+/// The estimator of the models' combination (combined_estimator.hpp); of a single one, its own. `models`: at
+/// least one, of the same joints and outputs.
+std::unique_ptr<HostEstimator> make_estimator(std::span<const TrainedModel> models, bool from_prior);
+
 } // namespace dfdyn::tools

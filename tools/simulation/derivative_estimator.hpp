@@ -9,6 +9,7 @@ namespace dfdyn::tools {
 
 /// How the robot estimates velocity and acceleration from its encoders: see dfdyn::AdaptiveWindow.
 struct DerivativeModel {
+    double rate_hz = 1000;        ///< of the readings that it looks at
     int velocity_window = 16;     ///< readings, at most
     int acceleration_window = 25; ///< readings, at most
     double noise_bound = 0;       ///< rad: how far a fit may miss a reading

@@ -21,4 +21,7 @@ using PointJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 
 /// Force (N), then torque (N·m).
 using Wrench = Eigen::Matrix<double, 6, 1>;
 
+/// From wrench to wrench.
+using WrenchMatrix = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+
 } // namespace dfdyn::tools

@@ -144,9 +144,10 @@ EncoderModel read_encoders(const ScenarioReader& reader) {
     return model;
 }
 
-DerivativeModel read_derivatives(const ScenarioReader& reader) {
-    reader.allow_only({"velocity_window", "acceleration_window", "noise_bound_rad"});
+DerivativeModel read_derivatives(const ScenarioReader& reader, double encoder_rate_hz) {
+    reader.allow_only({"rate_hz", "velocity_window", "acceleration_window", "noise_bound_rad"});
     DerivativeModel model;
+    model.rate_hz = reader.within("rate_hz", 1, 1e5, encoder_rate_hz);
     model.velocity_window = reader.json().whole_number("velocity_window", 2, 1000);
     model.acceleration_window = reader.json().whole_number("acceleration_window", 3, 1000);
     model.noise_bound = reader.within("noise_bound_rad", 0, 1, 0);
@@ -155,8 +156,8 @@ DerivativeModel read_derivatives(const ScenarioReader& reader) {
 
 /// `robot`: for a message only.
 WrenchSensorModel read_force_torque(const ScenarioReader& reader, const Robot& robot) {
-    reader.allow_only(
-        {"rate_hz", "bits", "range", "noise", "bandwidth_hz", "order", "bias", "drift_per_s", "delay_s"});
+    reader.allow_only({"rate_hz", "bits", "range", "calibration", "noise", "bandwidth_hz", "order", "bias",
+                       "drift_per_s", "delay_s"});
     if (!robot.sensor) {
         throw reader.json().error("range", "a robot with a force/torque sensor",
                                   "none on the chain " + robot.base + " to " + robot.tip);
@@ -165,6 +166,9 @@ WrenchSensorModel read_force_torque(const ScenarioReader& reader, const Robot& r
     model.rate_hz = reader.within("rate_hz", 1, 1e5, model.rate_hz);
     model.bits = reader.json().has("bits") ? reader.json().whole_number("bits", 2, 40) : model.bits;
     model.range = Eigen::Map<const Wrench>(reader.json().positive_numbers("range", 6).data());
+    if (reader.json().has("calibration")) {
+        model.calibration = Eigen::Map<const WrenchMatrix>(reader.json().numbers("calibration", 36).data());
+    }
     model.noise = reader.six("noise");
     model.bandwidth_hz = reader.within("bandwidth_hz", 0, 1e5, 0);
     model.order = reader.json().has("order") ? reader.json().whole_number("order", 1, 2) : model.order;
@@ -174,19 +178,24 @@ WrenchSensorModel read_force_torque(const ScenarioReader& reader, const Robot& r
     return model;
 }
 
-void check_rate(const JsonReader& reader, const std::string& name, double rate_hz, double integration_hz) {
-    const double ratio = integration_hz / rate_hz;
+/// `of`: the name of the rate `whole_hz`, which must be a multiple of `rate_hz`.
+void check_rate(const JsonReader& reader, const std::string& name, double rate_hz, const std::string& of,
+                double whole_hz) {
+    const double ratio = whole_hz / rate_hz;
     if (!(ratio >= 1 && std::abs(ratio - std::round(ratio)) < 1e-9 * ratio)) {
-        throw reader.error(name, "integration_rate_hz to be a multiple of it", number_text(rate_hz));
+        throw reader.error(name, of + " to be a multiple of it", number_text(rate_hz));
     }
 }
 
 void check_rates(const JsonReader& reader, const Scenario& scenario) {
     const double rate = scenario.integration_rate_hz;
-    check_rate(reader, "controller.rate_hz", scenario.controller.rate_hz, rate);
-    check_rate(reader, "encoders.rate_hz", scenario.encoders.rate_hz, rate);
+    const std::string name = "integration_rate_hz";
+    check_rate(reader, "controller.rate_hz", scenario.controller.rate_hz, name, rate);
+    check_rate(reader, "encoders.rate_hz", scenario.encoders.rate_hz, name, rate);
+    check_rate(reader, "derivatives.rate_hz", scenario.derivatives.rate_hz, "encoders.rate_hz",
+               scenario.encoders.rate_hz);
     if (scenario.force_torque) {
-        check_rate(reader, "force_torque.rate_hz", scenario.force_torque->rate_hz, rate);
+        check_rate(reader, "force_torque.rate_hz", scenario.force_torque->rate_hz, name, rate);
         if (!(scenario.force_torque->bandwidth_hz < rate / 2)) {
             throw reader.error("force_torque.bandwidth_hz", "less than half of integration_rate_hz",
                                number_text(scenario.force_torque->bandwidth_hz));
@@ -254,7 +263,7 @@ Scenario read_scenario(const std::filesystem::path& path, const Robot& robot) {
     scenario.actuators = read_actuators(reader.object("actuators"));
     scenario.torque_sensor = read_torque_sensor(reader.object("actuators"));
     scenario.encoders = read_encoders(reader.object("encoders"));
-    scenario.derivatives = read_derivatives(reader.object("derivatives"));
+    scenario.derivatives = read_derivatives(reader.object("derivatives"), scenario.encoders.rate_hz);
     if (reader.json().has("force_torque")) {
         scenario.force_torque = read_force_torque(reader.object("force_torque"), robot);
     }

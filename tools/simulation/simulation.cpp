@@ -33,13 +33,16 @@ std::optional<WrenchSensor> wrench_sensor(const Scenario& scenario) {
 Simulation::Simulation(const Robot& robot, const Scenario& scenario)
     : robot_(robot), scenario_(scenario), period_s_(1 / scenario.integration_rate_hz),
       encoder_steps_(std::llround(scenario.integration_rate_hz / scenario.encoders.rate_hz)),
+      derivative_steps_(std::llround(scenario.integration_rate_hz / scenario.derivatives.rate_hz)),
       control_steps_(std::llround(scenario.integration_rate_hz / scenario.controller.rate_hz)),
       task_(make_task(scenario.task, robot, 1 / scenario.controller.rate_hz, scenario.seed)),
       reference_(task_->next()), arm_(robot, scenario.actuators, reference_.position),
       controller_(robot, scenario.actuators.rotor_inertia, scenario.controller, scenario.seed),
       encoders_(scenario.encoders, prismatic(robot), scenario.seed),
+      control_derivatives_(scenario.derivatives, static_cast<int>(robot.joints.size()),
+                           1 / scenario.encoders.rate_hz),
       derivatives_(scenario.derivatives, static_cast<int>(robot.joints.size()),
-                   1 / scenario.encoders.rate_hz),
+                   1 / scenario.derivatives.rate_hz),
       wrench_sensor_(wrench_sensor(scenario)), torque_noise_(scenario.seed, stream::torque_noise),
       jitter_(scenario.seed, stream::clock_jitter) {
     observe();
@@ -52,7 +55,7 @@ void Simulation::control() {
         throw InputError(where + "expected the arm to stay under control, found it running away: gains, "
                                  "friction or integration_rate_hz do not fit");
     }
-    arm_.apply(controller_.torque(reference_, encoders_.reading(), derivatives_.velocity()));
+    arm_.apply(controller_.torque(reference_, encoders_.reading(), control_derivatives_.velocity()));
     reference_ = task_->next();
 }
 
@@ -60,6 +63,9 @@ void Simulation::control() {
 void Simulation::observe() {
     if (step_ % encoder_steps_ == 0) {
         encoders_.observe(arm_.state().position);
+        control_derivatives_.observe(encoders_.reading());
+    }
+    if (step_ % derivative_steps_ == 0) {
         derivatives_.observe(encoders_.reading());
     }
     if (step_ % control_steps_ == 0) {

@@ -46,13 +46,14 @@ class Simulation {
     Robot robot_;
     Scenario scenario_;
     double period_s_;
-    std::int64_t encoder_steps_, control_steps_;
+    std::int64_t encoder_steps_, derivative_steps_, control_steps_;
     std::unique_ptr<Task> task_;
     Reference reference_;
     SimulatedArm arm_;
     Controller controller_;
     Encoders encoders_;
-    DerivativeEstimator derivatives_;
+    DerivativeEstimator control_derivatives_; ///< the controller's own, at the encoders' rate
+    DerivativeEstimator derivatives_;         ///< recorded
     std::optional<WrenchSensor> wrench_sensor_;
     NormalSource torque_noise_, jitter_;
     std::int64_t step_ = 0; ///< of the state at hand

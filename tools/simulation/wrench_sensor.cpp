@@ -41,8 +41,9 @@ void WrenchSensor::observe(double time_s, const Wrench& wrench) {
     }
     next_ = steps_per_reading_ - 1;
     const Wrench size = step();
+    const Wrench calibrated = model_.calibration * seen;
     for (Eigen::Index axis = 0; axis < 6; ++axis) {
-        const double value = seen[axis] + model_.bias[axis] + model_.drift_per_s[axis] * time_s +
+        const double value = calibrated[axis] + model_.bias[axis] + model_.drift_per_s[axis] * time_s +
                              model_.noise[axis] * noise_.next();
         const double held = std::clamp(value, -model_.range[axis], model_.range[axis] - size[axis]);
         reading_[axis] = size[axis] * std::round(held / size[axis]);

@@ -11,19 +11,20 @@ namespace dfdyn::tools {
 /// What stands between the wrench and the reading. Six numbers: force in N, then torque in N·m.
 struct WrenchSensorModel {
     double rate_hz = 1000;
-    Wrench range = Wrench::Zero();       ///< full scale to both sides; beyond it the reading saturates
-    int bits = 16;                       ///< of the whole range, both signs
-    Wrench noise = Wrench::Zero();       ///< standard deviation of a reading
-    double bandwidth_hz = 0;             ///< -3 dB; 0: no filter
-    int order = 2;                       ///< of the filter
-    Wrench bias = Wrench::Zero();        ///< at t = 0
-    Wrench drift_per_s = Wrench::Zero(); ///< of the bias
-    double delay_s = 0;                  ///< on top of the filter's
+    Wrench range = Wrench::Zero(); ///< full scale to both sides; beyond it the reading saturates
+    int bits = 16;                 ///< of the whole range, both signs
+    WrenchMatrix calibration = WrenchMatrix::Identity(); ///< times the true wrench: gains and crosstalk
+    Wrench noise = Wrench::Zero();                       ///< standard deviation of a reading
+    double bandwidth_hz = 0;                             ///< -3 dB; 0: no filter
+    int order = 2;                                       ///< of the filter
+    Wrench bias = Wrench::Zero();                        ///< at t = 0
+    Wrench drift_per_s = Wrench::Zero();                 ///< of the bias
+    double delay_s = 0;                                  ///< on top of the filter's
 };
 
-/// The chain of a six-axis sensor: low pass, delay (fractions of a step by linear interpolation), bias and
-/// drift, noise, saturation, quantiser (to the nearest of 2^bits steps of the range), hold until the next
-/// reading.
+/// The chain of a six-axis sensor: low pass, delay (fractions of a step by linear interpolation), error of
+/// calibration, bias and drift, noise, saturation, quantiser (to the nearest of 2^bits steps of the range),
+/// hold until the next reading.
 class WrenchSensor {
   public:
     /// `period_s`: of the simulation's steps, of which the sensor's period must be a multiple.

@@ -4,6 +4,7 @@
 // Everything an embedding needs; each header also stands alone.
 #include "dfdyn/estimator.hpp"
 #include "dfdyn/features/random_fourier.hpp"
+#include "dfdyn/forecast_combination.hpp"
 #include "dfdyn/input/derivative_free.hpp"
 #include "dfdyn/input/derivative_free_reduced.hpp"
 #include "dfdyn/input/derivative_free_structured.hpp"

@@ -53,7 +53,7 @@ TEST_CASE("help and version end with status 0, and every subcommand shows an exa
     const TemporaryDirectory directory;
     CHECK(run(directory, "--help").status == 0);
     CHECK_THAT(run(directory, "--version").out, Catch::Matchers::StartsWith("dfdyn "));
-    for (const std::string command : {"train", "replay", "identify", "simulate", "evaluate"}) {
+    for (const std::string command : {"train", "replay", "identify", "simulate", "evaluate", "play"}) {
         const Outcome outcome = run(directory, command + " --help");
         CHECK(outcome.status == 0);
         CHECK_THAT(outcome.out, Catch::Matchers::ContainsSubstring("Example:"));
@@ -82,6 +82,9 @@ TEST_CASE("bad usage and bad input end with status 2 and one line") {
         "simulate --scenario none.json -o " + in + "/x.json",
         "simulate --robot none.urdf --scenario " + in + "/bad.json -o " + in + "/x.json",
         "replay --model none.json --log " + log_file,
+        "play --log none.log --can no_such_can",
+        "play --log " + log_file + " --can no_such_can",
+        "play --log " + log_file + " --can no_such_can --rate 0",
     };
     for (const std::string& arguments : cases) {
         CAPTURE(arguments);

@@ -185,7 +185,19 @@ TEST_CASE("a mistake in a plan is named by its field") {
          "comparisons[0].worse: expected one of"},
         {[](json& j) { j["cases"].push_back(j["cases"][0]); }, "\"NP-ML-STD\" twice"},
         {[](json& j) { j["defaults"]["features"] = 0; }, "defaults.features: expected a whole number from 1"},
+        {[](json& j) {
+             j["cases"].push_back({{"combine", {"NP-ML-STD", "no"}}, {"name", "c"}});
+         },
+         "cases: \"c\": combine: expected names of cases that are no combinations, found \"no\""},
+        {[](json& j) {
+             j["cases"].push_back({{"combine", {"NP-ML-STD"}}, {"name", "c"}, {"lags", 3}});
+         },
+         "lags"},
         {[](json& j) { j["defaults"]["forgetting"] = 2; }, "defaults.forgetting: expected a number from 0.5"},
+        {[](json& j) {
+             j["defaults"]["forgetting"] = {1, 0.4};
+         },
+         "defaults.forgetting: expected a number or numbers from 0.5"},
         {[](json& j) {
              j["figures"] = {{{"title", "f"}, {"cases", {"NP-ML-DF"}}}};
          },

@@ -36,7 +36,7 @@ Recording moving_arm(std::size_t rows) {
 
 ReplayedRecording replay_of(const TrainedModel& model, const Recording& recording, std::size_t horizon) {
     const auto estimator = make_estimator(model, true);
-    return replay(*estimator, model, recording, horizon, [](std::size_t) {});
+    return replay(*estimator, {&model, 1}, recording, horizon, [](std::size_t) {});
 }
 
 ReplayedRecording with_innovations(const std::vector<float>& innovations) {

@@ -30,6 +30,14 @@ EvaluationResults run(const TemporaryDirectory& directory, int jobs = 1) {
     return run_plan(plan, data, {directory.path() / "out", jobs, false}, ignore);
 }
 
+CaseMemories empty_memories(const Plan& plan) {
+    CaseMemories memories;
+    for (const Case& one : plan.cases) {
+        memories.try_emplace(one.name);
+    }
+    return memories;
+}
+
 /// Everything but the times.
 json without_times(const EvaluationResults& results) {
     json all = json::array();
@@ -210,18 +218,18 @@ TEST_CASE("a unit is the protocol, written out") {
     const TemporaryDirectory directory;
     const Plan plan = read_plan(write_small_experiment(directory));
     const PlanData data = load_plan_data(plan);
-    CaseMemory memory;
-    const UnitResult unit = run_unit(plan, data, plan.cases[1], 7, memory, 2, ignore);
+    CaseMemories memories = empty_memories(plan);
+    const UnitResult unit = run_unit(plan, data, plan.cases[1], 7, memories, 2, ignore);
 
     CaseMemory other;
     const TrainedModel model =
-        train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 7, other, ignore);
+        train_case(plan.cases[1], {plan.robot, plan.outputs, data.start, data.online}, 7, other, ignore);
     for (std::size_t subset = 0; subset < 2; ++subset) {
         const auto estimator = make_estimator(model, false);
-        replay(*estimator, model, data.online, 0, [](std::size_t) {});
+        replay(*estimator, {&model, 1}, data.online, 0, [](std::size_t) {});
         estimator->begin_recording();
         const ReplayedRecording replayed =
-            replay(*estimator, model, data.subsets[subset], plan.horizon, [](std::size_t) {});
+            replay(*estimator, {&model, 1}, data.subsets[subset], plan.horizon, [](std::size_t) {});
         REQUIRE(replayed.horizon.size() == 100 - 4 - 5);
         CHECK(std::isnan(unit.error[1][subset][3])); // the window is filling
         for (const HorizonIndex& index : replayed.horizon) {
@@ -238,9 +246,9 @@ TEST_CASE("relative to the variance, the error is the horizon's squared error ov
     content["error_scale"] = "variance";
     const Plan plan = read_plan(write_small_experiment(directory, content));
     const PlanData data = load_plan_data(plan);
-    CaseMemory memory;
-    const UnitResult by_horizon = run_unit(relative, data, plan.cases[1], 1, memory, 2, ignore);
-    const UnitResult by_variance = run_unit(plan, data, plan.cases[1], 1, memory, 2, ignore);
+    CaseMemories memories = empty_memories(plan);
+    const UnitResult by_horizon = run_unit(relative, data, plan.cases[1], 1, memories, 2, ignore);
+    const UnitResult by_variance = run_unit(plan, data, plan.cases[1], 1, memories, 2, ignore);
     const Recording& subset = data.subsets[1];
     for (std::size_t tick = 4; tick < 90; ++tick) {
         double square = 0;
@@ -258,11 +266,40 @@ TEST_CASE("which draw tunes the hyperparameters does not matter") {
     const PlanData data = load_plan_data(plan);
     CaseMemory fresh;
     CaseMemory used;
-    train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 1, used, ignore);
+    train_case(plan.cases[1], {plan.robot, plan.outputs, data.start, data.online}, 1, used, ignore);
     const TrainedModel a =
-        train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 2, fresh, ignore);
-    const TrainedModel b = train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 2, used, ignore);
+        train_case(plan.cases[1], {plan.robot, plan.outputs, data.start, data.online}, 2, fresh, ignore);
+    const TrainedModel b =
+        train_case(plan.cases[1], {plan.robot, plan.outputs, data.start, data.online}, 2, used, ignore);
     CHECK(a.features.omega == b.features.omega);
     CHECK(a.input.rows == b.input.rows);
     CHECK(a.start.weights == b.start.weights);
+}
+
+TEST_CASE("a combination of cases is the combination of their models, and runs again when a member changes") {
+    const TemporaryDirectory directory;
+    json plan = small_plan();
+    plan["cases"].push_back({{"combine", {"NP-ML-STD", "NP-ML-DFR"}}, {"name", "both-of-them"}});
+    write_small_experiment(directory, plan);
+    const EvaluationResults results = run(directory);
+    REQUIRE(results.units.size() == 6);
+    const UnitResult& combined = results.units[4];
+    CHECK(combined.case_name == "both-of-them");
+    CHECK(combined.columns == 40);
+    CHECK(combined.forgetting_factors == std::vector<double>{1, 1});
+    for (const std::size_t group : {0U, 1U}) { // of two members the error of the mean is below the mean's
+        const auto sum_of = [group](const UnitResult& unit) {
+            double sum = 0;
+            for (const double error : unit.error[group][0]) {
+                sum += std::isfinite(error) ? error : 0;
+            }
+            return sum;
+        };
+        CHECK(sum_of(combined) < std::max(sum_of(results.units[0]), sum_of(results.units[2])));
+        CHECK(sum_of(combined) > 0);
+    }
+    CHECK(run(directory).reused == 6);
+    plan["defaults"]["lags"] = 5; // of every case
+    directory.write("plan.json", plan.dump());
+    CHECK(run(directory).reused == 0);
 }

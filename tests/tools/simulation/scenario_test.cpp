@@ -80,6 +80,8 @@ TEST_CASE("a bad scenario is refused with the path of the field, what was expect
                StartsWith("controller.rate_hz: expected integration_rate_hz to be a multiple of it"));
     CHECK_THAT(error_with("/encoders/rate_hz", 16000),
                StartsWith("encoders.rate_hz: expected integration_rate_hz"));
+    CHECK_THAT(error_with("/derivatives/rate_hz", 300),
+               StartsWith("derivatives.rate_hz: expected encoders.rate_hz to be a multiple of it"));
     CHECK_THAT(error_with("/recording/columns", {"q", "q"}),
                StartsWith("recording.columns: expected some of"));
     CHECK_THAT(error_with("/recording/columns", {"wrench"}),

@@ -83,6 +83,27 @@ TEST_CASE("perfect sensors show what is so, and the torque is inverse dynamics p
     }
 }
 
+TEST_CASE("derivatives estimated at a lower rate lag more, and do not change how the arm moves") {
+    Scenario scenario = quiet_scenario(1);
+    scenario.recording.first_at_s = 2;
+    scenario.recording.rate_hz = 50;
+    scenario.recording.samples = 200;
+    Scenario slow = scenario;
+    slow.derivatives.rate_hz = scenario.encoders.rate_hz / 20;
+    Simulation fast_simulation(pendulum(1, 0.5), scenario);
+    Simulation slow_simulation(pendulum(1, 0.5), slow);
+    double fast_error = 0;
+    double slow_error = 0;
+    for (std::size_t i = 0; i < scenario.recording.samples; ++i) {
+        const SimulatedSample with_fast = fast_simulation.next();
+        const SimulatedSample with_slow = slow_simulation.next();
+        REQUIRE(with_fast.truth.position[0] == with_slow.truth.position[0]);
+        fast_error += std::abs(with_fast.velocity[0] - with_fast.truth.velocity[0]);
+        slow_error += std::abs(with_slow.velocity[0] - with_slow.truth.velocity[0]);
+    }
+    CHECK(slow_error > 3 * fast_error);
+}
+
 TEST_CASE("the true acceleration is the derivative of the true velocity between the controller's steps") {
     Scenario scenario = quiet_scenario(1);
     scenario.recording.rate_hz = 4000; // every second step

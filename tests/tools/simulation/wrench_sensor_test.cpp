@@ -100,6 +100,20 @@ TEST_CASE("the F/T sensor has bias, drift, noise, 16 bits of its range, and satu
     CHECK(mean_late == Approx(4 + 0.5 * 15).epsilon(0.01));
 }
 
+TEST_CASE("an error of calibration mixes what the F/T sensor reads, and leaves its bias alone") {
+    WrenchSensorModel model = fine();
+    model.calibration(0, 0) = 1.02;
+    model.calibration(4, 2) = -0.001;
+    model.bias[0] = 5;
+    WrenchSensor sensor(model, period_s, 1);
+    Wrench wrench;
+    wrench << 10, 20, 30, 1, 2, 3;
+    sensor.observe(0, wrench);
+    Wrench expected;
+    expected << 15.2, 20, 30, 1, 1.97, 3;
+    CHECK((sensor.reading() - expected).cwiseAbs().maxCoeff() < 1e-6);
+}
+
 TEST_CASE("the F/T sensor holds its reading until the next") {
     WrenchSensor sensor(fine(), period_s, 1); // 1 kHz: every eighth step
     for (int i = 0; i < 32; ++i) {

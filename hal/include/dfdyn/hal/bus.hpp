@@ -22,11 +22,14 @@ enum class BusState : std::uint8_t {
 struct BusCounters {
     std::uint64_t received = 0; ///< frames handed out, error frames included
     std::uint64_t sent = 0;     ///< frames accepted for sending
-    std::uint64_t send_refused =
-        0; ///< no room in the queue (ENOBUFS, EAGAIN): the frame was dropped, not waited for
+    /// Frames for which the queue had no room (ENOBUFS, EAGAIN): dropped, not waited for.
+    std::uint64_t send_refused = 0;
     std::uint64_t dropped = 0;             ///< frames the operating system dropped before they were read
     std::uint64_t controller_overruns = 0; ///< times the controller overwrote a frame that nobody had fetched
     std::uint64_t lost_arbitrations = 0;   ///< normal on a loaded bus; never a fault
+    std::uint64_t no_acknowledgements = 0; ///< sent frames that no other node acknowledged
+    std::uint64_t bus_errors = 0;          ///< bits, forms, checksums or levels that were wrong on the wire
+    std::uint64_t transmit_faults = 0;     ///< times the controller lost a frame it was to send, or gave up
     std::uint64_t error_frames = 0;        ///< of any class
     std::uint64_t bus_off = 0;             ///< times the controller went bus-off
     std::uint64_t restarted = 0;           ///< times it came back
@@ -36,16 +39,16 @@ struct BusCounters {
 };
 
 enum class SendResult : std::uint8_t {
-    sent,      ///< handed to the controller's queue
-    refused,   ///< no room now: dropped and counted
-    bus_closed ///< bus-off, or the interface is down
+    sent,       ///< handed to the controller's queue
+    refused,    ///< no room now: dropped and counted
+    bus_closed, ///< bus-off, or the interface is down
+    invalid     ///< not a frame that this bus carries: see `is_well_formed`; CAN FD on a classic interface
 };
 
 /// A CAN bus as the rest of the program sees it: real (`SocketCanBus`) or a recording (`ReplayBus`). No call
 /// blocks, allocates or throws once the bus is open, and each ends after a bounded number of steps.
-/// - `drain(into)`: the frames that have arrived, in the order of arrival, at most `into.size()` of them; the
-/// returned
-///   part of `into` holds them. Error frames are among them, already counted and reflected in `state()`.
+/// - `drain(into)`: the frames that have arrived, in the order of arrival, at most `into.size()` of them, in
+///   the returned part of `into`. Error frames are among them, already counted and reflected in `state()`.
 /// - `send(frame)`: offers one frame.
 /// - `now_ns()`: the clock on which frames are stamped; it never runs backward.
 /// - `state()`, `counters()`: as of the last drain or send.

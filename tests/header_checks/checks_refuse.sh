@@ -25,7 +25,7 @@ done
 expect() {
     printf '#pragma once\n%s\n' "$2" >"$scratch/include/sample.hpp"
     local outcome=refuses
-    if "$here/check_text.sh" "$scratch/include" >"$scratch/log" 2>&1; then
+    if "$here/check_text.sh" "$scratch/include" sample.hpp >"$scratch/log" 2>&1; then
         outcome=accepts
     fi
     if [[ $outcome != "$1" ]]; then

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/bus.hpp"
+#include "dfdyn/hal/bus_event.hpp"
+#include "dfdyn/hal/frame.hpp"
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace dfdyn::hal {
+
+/// A frame of a recording.
+struct ReplayEntry {
+    Frame frame{};
+    std::uint64_t dropped_before = 0; ///< frames that the recorder lost since the one before
+};
+
+/// Gives the frames of a recording in the recording's order. `next(entry)` fills `entry` and returns true; at
+/// the end, or where the recording becomes unreadable, it returns false, with only `dropped_before` filled.
+template <class S>
+concept ReplaySource = requires(S source, ReplayEntry& entry) {
+    { source.next(entry) }
+    noexcept->std::same_as<bool>;
+};
+
+/// A recording as a bus (`Bus`), on the recording's own clock, which moves only when told to: the same calls
+/// give the same frames. O(1) memory, and O(1) per frame beyond what `Source::next` costs.
+///
+///     ReplayBus bus(source);
+///     while (!bus.ended()) {
+///         bus.advance_to(bus.next_stamp_ns());
+///         decode(bus.drain(frames));
+///     }
+///
+/// Frames are handed out in the recording's order with the stamps they have there; one whose stamp runs
+/// backward is due at once. Error frames move `state()`, frames that the recorder lost count as `dropped`.
+template <ReplaySource Source>
+class ReplayBus {
+  public:
+    /// Frames sent and not yet taken that it keeps; further ones are refused.
+    static constexpr std::size_t sent_capacity = 64;
+
+    /// Starts at the stamp of the first frame. `source` has to outlive the bus.
+    explicit ReplayBus(Source& source) noexcept : source_(source) {
+        fetch();
+        now_ns_ = next_.frame.stamp_ns;
+    }
+
+    /// Moves the clock to `time_ns`; a time that has passed leaves it where it is.
+    void advance_to(std::int64_t time_ns) noexcept { now_ns_ = std::max(now_ns_, time_ns); }
+
+    /// When the next frame is due: now, or later. Now when the recording has ended.
+    std::int64_t next_stamp_ns() const noexcept {
+        return ended_ ? now_ns_ : std::max(now_ns_, next_.frame.stamp_ns);
+    }
+
+    /// Whether all frames were handed out.
+    bool ended() const noexcept { return ended_; }
+
+    std::span<const Frame> drain(std::span<Frame> into) noexcept {
+        std::size_t count = 0;
+        while (count < into.size() && is_due()) {
+            into[count] = next_.frame;
+            ++count;
+            ++counters_.received;
+            counters_.dropped += next_.dropped_before;
+            note_error_frame(next_.frame, state_, counters_);
+            fetch();
+        }
+        counters_.saturated_drains += count == into.size() && is_due() ? 1 : 0;
+        return into.first(count);
+    }
+
+    /// Keeps `frame` for `take_sent`, stamped with the time.
+    SendResult send(const Frame& frame) noexcept {
+        if (!is_well_formed(frame) || frame.error) {
+            return SendResult::invalid;
+        }
+        if (state_ == BusState::off) {
+            return SendResult::bus_closed;
+        }
+        if (counters_.sent - taken_ == sent_capacity) {
+            ++counters_.send_refused;
+            return SendResult::refused;
+        }
+        Frame& kept = sent_[counters_.sent % sent_capacity];
+        kept = frame;
+        kept.stamp_ns = now_ns_;
+        kept.stamp_source = StampSource::log;
+        kept.origin = Origin::this_socket;
+        ++counters_.sent;
+        return SendResult::sent;
+    }
+
+    /// The frames sent and not yet taken, in order, at most `into.size()` of them: what a simulated plant, or
+    /// a test, would see on the wire.
+    std::span<const Frame> take_sent(std::span<Frame> into) noexcept {
+        std::size_t count = 0;
+        while (count < into.size() && taken_ < counters_.sent) {
+            into[count] = sent_[taken_ % sent_capacity];
+            ++count;
+            ++taken_;
+        }
+        return into.first(count);
+    }
+
+    std::int64_t now_ns() const noexcept { return now_ns_; }
+    BusState state() const noexcept { return state_; }
+    const BusCounters& counters() const noexcept { return counters_; }
+
+  private:
+    bool is_due() const noexcept { return !ended_ && next_.frame.stamp_ns <= now_ns_; }
+
+    /// Looks one frame ahead. What was lost before a frame counts when that frame is handed out.
+    void fetch() noexcept {
+        next_ = {};
+        ended_ = !source_.next(next_);
+        if (ended_) {
+            counters_.dropped += next_.dropped_before;
+        }
+    }
+
+    Source& source_;
+    ReplayEntry next_{};
+    bool ended_ = false;
+    std::int64_t now_ns_ = 0;
+    BusState state_ = BusState::active;
+    BusCounters counters_{};
+    std::array<Frame, sent_capacity> sent_{};
+    std::uint64_t taken_ = 0; ///< of all that were sent
+};
+
+} // namespace dfdyn::hal

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/forecast_combination.hpp"
+
+#include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace {
+
+using dfdyn::Extent;
+using dfdyn::SnapshotResult;
+
+constexpr int members = 3;
+constexpr int outputs = 2;
+
+template <class Scalar>
+using Combination = dfdyn::ForecastCombination<Scalar, members, outputs>;
+
+template <class Scalar>
+using Values = std::array<Scalar, static_cast<std::size_t>(members) * outputs>;
+
+template <class Scalar>
+Combination<Scalar> combination(Scalar memory) {
+    return {Extent<members>{}, Extent<outputs>{}, memory};
+}
+
+/// Predictions of an output 0 whose error has the deviations 1, 2, 4 (first output) and 3, 3, 0.3 (second).
+template <class Scalar>
+Values<Scalar> predictions(std::mt19937_64& engine) {
+    constexpr std::array deviation{1.0, 3.0, 2.0, 3.0, 4.0, 0.3};
+    std::normal_distribution<double> normal;
+    Values<Scalar> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] = static_cast<Scalar>(deviation[i] * normal(engine));
+    }
+    return values;
+}
+
+/// The weights from all errors at once, in double: what the recursion must come to while its memory is not
+/// full.
+template <class Scalar>
+std::vector<double> batch_weights(const std::vector<Values<Scalar>>& errors) {
+    std::vector<double> weights(static_cast<std::size_t>(members) * outputs);
+    for (std::size_t k = 0; k < outputs; ++k) {
+        double sum = 0;
+        for (std::size_t j = 0; j < members; ++j) {
+            double square = 0;
+            for (const Values<Scalar>& error : errors) {
+                const auto e = static_cast<double>(error[j * outputs + k]);
+                square += e * e / static_cast<double>(errors.size());
+            }
+            sum += weights[j * outputs + k] = 1 / (square * square);
+        }
+        for (std::size_t j = 0; j < members; ++j) {
+            weights[j * outputs + k] /= sum;
+        }
+    }
+    return weights;
+}
+
+} // namespace
+
+TEMPLATE_TEST_CASE("members weigh alike until they have been seen to predict", "", float, double) {
+    const Combination<TestType> combined = combination<TestType>(100);
+    const Values<TestType> from{1, 10, 2, 20, 6, 60};
+    std::array<TestType, outputs> to{};
+    combined.combine(from.data(), to.data());
+    CHECK(to[0] == Approx(3));
+    CHECK(to[1] == Approx(30));
+}
+
+TEMPLATE_TEST_CASE("weights are in inverse proportion to the square of the mean square error", "", float,
+                   double) {
+    DFDYN_SEEDED_ENGINE(engine);
+    Combination<TestType> combined = combination<TestType>(500);
+    const std::array<TestType, outputs> measured{};
+    std::vector<Values<TestType>> errors;
+    for (int t = 0; t < 500; ++t) {
+        errors.push_back(predictions<TestType>(engine));
+        combined.learn(errors.back().data(), measured.data());
+    }
+    const std::vector<double> expected = batch_weights(errors);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        CHECK(static_cast<double>(combined.weights()[i]) == Approx(expected[i]).epsilon(1e-4));
+    }
+    CHECK(combined.weights()[0] > TestType(0.85)); // 1 against 1/16 and 1/256
+}
+
+TEST_CASE("when the members change places, the weights follow within the memory") {
+    Combination<double> combined = combination<double>(50);
+    const std::array<double, outputs> measured{};
+    const Values<double> first_good{0.1, 0.1, 1, 1, 5, 5};
+    const Values<double> last_good{5, 5, 1, 1, 0.1, 0.1};
+    for (int t = 0; t < 1000; ++t) {
+        combined.learn(first_good.data(), measured.data());
+    }
+    CHECK(combined.weights()[0] > 0.999);
+    for (int t = 0; t < 300; ++t) { // six memories, as the old error was 2500 times the new one
+        combined.learn(last_good.data(), measured.data());
+    }
+    CHECK(combined.weights()[4] > 0.98);
+    combined.restart();
+    CHECK(combined.weights()[0] == Approx(1.0 / 3));
+}
+
+TEMPLATE_TEST_CASE("whatever it has seen, the combination lies among its members", "", float, double) {
+    DFDYN_SEEDED_ENGINE(engine);
+    constexpr TestType infinite = std::numeric_limits<TestType>::infinity();
+    const std::array<TestType, 6> odd{0,
+                                      std::numeric_limits<TestType>::denorm_min(),
+                                      std::numeric_limits<TestType>::max(),
+                                      -std::numeric_limits<TestType>::max(),
+                                      infinite,
+                                      std::numeric_limits<TestType>::quiet_NaN()};
+    std::uniform_int_distribution<std::size_t> pick(0, 2 * odd.size());
+    Combination<TestType> combined = combination<TestType>(7);
+    std::array<TestType, outputs> to{};
+    for (int t = 0; t < 10'000; ++t) {
+        Values<TestType> from = predictions<TestType>(engine);
+        std::array<TestType, outputs> measured{};
+        for (TestType& value : from) {
+            const std::size_t choice = pick(engine);
+            value = choice < odd.size() ? odd[choice] : value;
+        }
+        measured[0] = odd[pick(engine) % odd.size()];
+        combined.learn(from.data(), measured.data());
+        from = predictions<TestType>(engine);
+        combined.combine(from.data(), to.data());
+        for (std::size_t k = 0; k < outputs; ++k) {
+            const auto [low, high] = std::minmax({from[k], from[outputs + k], from[2 * outputs + k]});
+            const TestType rounding = 8 * std::numeric_limits<TestType>::epsilon() * (high - low);
+            REQUIRE(to[k] >= low - rounding);
+            REQUIRE(to[k] <= high + rounding);
+        }
+    }
+}
+
+TEST_CASE("a combination goes on from its snapshot, and takes no other") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Combination<float> combined = combination<float>(100);
+    const std::array<float, outputs> measured{};
+    for (int t = 0; t < 30; ++t) {
+        combined.learn(predictions<float>(engine).data(), measured.data());
+    }
+    std::vector<std::byte> bytes(combined.snapshot_bytes());
+    REQUIRE(combined.snapshot(bytes) == SnapshotResult::ok);
+    Combination<float> other = combination<float>(100);
+    REQUIRE(other.restore(bytes) == SnapshotResult::ok);
+    const Values<float> next = predictions<float>(engine);
+    combined.learn(next.data(), measured.data());
+    other.learn(next.data(), measured.data());
+    for (int i = 0; i < members * outputs; ++i) {
+        CHECK(other.weights()[i] == combined.weights()[i]);
+    }
+    dfdyn::ForecastCombination<float, 2, 3> turned(Extent<2>{}, Extent<3>{}, 100);
+    CHECK(turned.restore(bytes) == SnapshotResult::wrong_model);
+    bytes.back() ^= std::byte{1};
+    CHECK(other.restore(bytes) == SnapshotResult::corrupted);
+}
+
+TEST_CASE("a combination does not allocate") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Combination<float> combined = combination<float>(100);
+    const Values<float> from = predictions<float>(engine);
+    std::array<float, outputs> to{};
+    std::array<std::byte, 256> bytes{};
+    const dfdyn::tests::AllocationGuard guard;
+    combined.learn(from.data(), to.data());
+    combined.combine(from.data(), to.data());
+    const SnapshotResult written = combined.snapshot(bytes);
+    const SnapshotResult read = combined.restore(bytes);
+    combined.restart();
+    const dfdyn::tests::HeapCalls calls = guard.calls();
+    CHECK(calls.allocations == 0);
+    CHECK(written == SnapshotResult::ok);
+    CHECK(read == SnapshotResult::ok);
+}

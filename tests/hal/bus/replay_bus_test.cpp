@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/replay_bus.hpp"
+
+#include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/random_frame.hpp"
+#include "tests/support/same_frame.hpp"
+#include "tests/support/seed.hpp"
+
+#include <array>
+#include <vector>
+
+namespace {
+
+using dfdyn::hal::BusState;
+using dfdyn::hal::Frame;
+using dfdyn::hal::Origin;
+using dfdyn::hal::ReplayBus;
+using dfdyn::hal::ReplayEntry;
+using dfdyn::hal::SendResult;
+using dfdyn::tests::same;
+
+/// A recording in memory.
+class Entries {
+  public:
+    explicit Entries(std::vector<ReplayEntry> entries, std::uint64_t dropped_at_end = 0)
+        : entries_(std::move(entries)), dropped_at_end_(dropped_at_end) {}
+
+    bool next(ReplayEntry& entry) noexcept {
+        if (at_ == entries_.size()) {
+            entry.dropped_before = std::exchange(dropped_at_end_, 0);
+            return false;
+        }
+        entry = entries_[at_];
+        ++at_;
+        return true;
+    }
+
+  private:
+    std::vector<ReplayEntry> entries_;
+    std::uint64_t dropped_at_end_;
+    std::size_t at_ = 0;
+};
+static_assert(dfdyn::hal::Bus<ReplayBus<Entries>>);
+
+ReplayEntry entry(std::int64_t stamp_ns, std::uint32_t id, std::uint64_t dropped_before = 0) {
+    ReplayEntry out;
+    out.frame.stamp_ns = stamp_ns;
+    out.frame.id = id;
+    out.dropped_before = dropped_before;
+    return out;
+}
+
+template <class AnyBus>
+std::vector<std::uint32_t> drained_ids(AnyBus& bus, std::size_t room = 16) {
+    std::vector<Frame> frames(room);
+    std::vector<std::uint32_t> ids;
+    for (const Frame& frame : bus.drain(frames)) {
+        ids.push_back(frame.id);
+    }
+    return ids;
+}
+
+using Ids = std::vector<std::uint32_t>;
+
+} // namespace
+
+TEST_CASE("a replay hands a frame out when its clock has come to the frame's stamp") {
+    Entries entries({entry(1000, 1), entry(1000, 2), entry(2000, 3), entry(5000, 4)});
+    ReplayBus bus(entries);
+    CHECK(bus.now_ns() == 1000);
+    CHECK(drained_ids(bus) == Ids{1, 2});
+    CHECK(drained_ids(bus).empty());
+    CHECK(bus.next_stamp_ns() == 2000);
+    bus.advance_to(1999);
+    CHECK(drained_ids(bus).empty());
+    bus.advance_to(2000);
+    CHECK(drained_ids(bus) == Ids{3});
+    bus.advance_to(100);
+    CHECK(bus.now_ns() == 2000);
+    CHECK_FALSE(bus.ended());
+    bus.advance_to(9000);
+    CHECK(bus.next_stamp_ns() == 9000);
+    CHECK(drained_ids(bus) == Ids{4});
+    CHECK(bus.ended());
+    CHECK(bus.next_stamp_ns() == 9000);
+    CHECK(drained_ids(bus).empty());
+    CHECK(bus.counters().received == 4);
+    CHECK(bus.counters().saturated_drains == 0);
+}
+
+TEST_CASE("a replay of nothing has ended") {
+    Entries entries({}, 5);
+    ReplayBus bus(entries);
+    CHECK(bus.ended());
+    CHECK(drained_ids(bus).empty());
+    CHECK(bus.counters().dropped == 5);
+}
+
+TEST_CASE("a replay drains no more than there is room for, and says that frames are left") {
+    Entries entries({entry(0, 1), entry(0, 2), entry(0, 3), entry(0, 4)});
+    ReplayBus bus(entries);
+    CHECK(drained_ids(bus, 3) == Ids{1, 2, 3});
+    CHECK(bus.counters().saturated_drains == 1);
+    CHECK(drained_ids(bus, 1) == Ids{4});
+    CHECK(bus.counters().saturated_drains == 1);
+}
+
+TEST_CASE("a replay keeps the recording's order and stamps where they run backward, and its clock does not") {
+    Entries entries({entry(5000, 1), entry(2000, 2), entry(3000, 3), entry(6000, 4)});
+    ReplayBus bus(entries);
+    std::array<Frame, 8> room;
+    const auto frames = bus.drain(room);
+    REQUIRE(frames.size() == 3);
+    CHECK(frames[1].stamp_ns == 2000);
+    CHECK(frames[2].stamp_ns == 3000);
+    CHECK(bus.now_ns() == 5000);
+    CHECK(bus.next_stamp_ns() == 6000);
+}
+
+TEST_CASE("a replay counts what the recorder lost when it hands out the frame after the loss") {
+    Entries entries({entry(1000, 1), entry(2000, 2, 7)}, 2);
+    ReplayBus bus(entries);
+    CHECK(drained_ids(bus) == Ids{1});
+    CHECK(bus.counters().dropped == 0);
+    bus.advance_to(2000);
+    CHECK(drained_ids(bus) == Ids{2});
+    CHECK(bus.counters().dropped == 9);
+}
+
+TEST_CASE("error frames of a recording move the state of the bus, and close it for sending") {
+    ReplayEntry off = entry(2000, 0x40);
+    off.frame.error = true;
+    ReplayEntry restarted = entry(3000, 0x100);
+    restarted.frame.error = true;
+    Entries entries({entry(1000, 0x40), off, restarted});
+    ReplayBus bus(entries);
+    drained_ids(bus);
+    CHECK(bus.state() == BusState::active);
+    CHECK(bus.send(Frame{}) == SendResult::sent);
+    bus.advance_to(2000);
+    CHECK(drained_ids(bus) == Ids{0x40});
+    CHECK(bus.state() == BusState::off);
+    CHECK(bus.send(Frame{}) == SendResult::bus_closed);
+    bus.advance_to(3000);
+    drained_ids(bus);
+    CHECK(bus.state() == BusState::active);
+    CHECK(bus.counters().error_frames == 2);
+    CHECK(bus.counters().sent == 1);
+}
+
+TEST_CASE("what is sent to a replay can be fetched in order, and a full queue refuses") {
+    using AnyBus = ReplayBus<Entries>;
+    Entries entries({entry(1000, 1)});
+    AnyBus bus(entries);
+    bus.advance_to(1500);
+    Frame frame;
+    for (std::uint32_t id = 0; id < AnyBus::sent_capacity; ++id) {
+        frame.id = id;
+        REQUIRE(bus.send(frame) == SendResult::sent);
+    }
+    CHECK(bus.send(frame) == SendResult::refused);
+    CHECK(bus.counters().send_refused == 1);
+    std::array<Frame, 40> room;
+    const auto first = bus.take_sent(room);
+    REQUIRE(first.size() == 40);
+    CHECK(first[39].id == 39);
+    CHECK(first[39].stamp_ns == 1500);
+    CHECK(first[39].origin == Origin::this_socket);
+    frame.id = 0x7ff;
+    CHECK(bus.send(frame) == SendResult::sent);
+    const auto second = bus.take_sent(room);
+    REQUIRE(second.size() == 25);
+    CHECK(second[0].id == 40);
+    CHECK(second[24].id == 0x7ff);
+    CHECK(bus.take_sent(room).empty());
+    frame.id = 0x800;
+    CHECK(bus.send(frame) == SendResult::invalid);
+    CHECK(bus.counters().sent == 65);
+}
+
+TEST_CASE("a replay gives random recordings back whole, whatever the steps of its clock, without the heap") {
+    DFDYN_SEEDED_ENGINE(engine);
+    for (int round = 0; round < 50; ++round) {
+        std::vector<ReplayEntry> recording(200);
+        for (ReplayEntry& recorded : recording) {
+            recorded.frame = dfdyn::tests::random_frame(engine);
+            recorded.frame.stamp_ns %= 10'000;
+        }
+        Entries entries(recording);
+        ReplayBus bus(entries);
+        std::array<Frame, 7> room;
+        std::size_t got = 0;
+        std::size_t differing = 0;
+        const dfdyn::tests::AllocationGuard guard;
+        while (!bus.ended()) {
+            const std::int64_t before_ns = bus.now_ns();
+            bus.advance_to(bus.now_ns() + static_cast<std::int64_t>(engine() % 300));
+            for (const Frame& frame : bus.drain(room)) {
+                differing += same(frame, recording.at(got).frame) ? 0 : 1;
+                ++got;
+            }
+            bus.send(Frame{});
+            bus.take_sent(room);
+            differing += bus.now_ns() < before_ns ? 1 : 0;
+        }
+        const auto calls = guard.calls();
+        REQUIRE(calls.allocations == 0);
+        REQUIRE(got == recording.size());
+        REQUIRE(differing == 0);
+    }
+}

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/wall_clock.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <random>
+
+namespace {
+
+using dfdyn::hal::HardwareClock;
+using dfdyn::hal::WallClock;
+
+constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr std::int64_t boot_ns = 1'700'000'000 * second_ns; ///< the wall clock when the monotonic one was 0
+
+} // namespace
+
+TEST_CASE("stamps of a wall clock land on the monotonic clock") {
+    WallClock clock;
+    clock.nothing_waiting(5 * second_ns, boot_ns + 5 * second_ns);
+    const auto [stamp_ns, plausible] =
+        clock.to_monotonic(boot_ns + 6 * second_ns, 7 * second_ns, boot_ns + 7 * second_ns);
+    CHECK(plausible);
+    CHECK(stamp_ns == 6 * second_ns);
+}
+
+TEST_CASE("a wall clock that is set moves no stamp, whether it waited meanwhile or came later") {
+    const std::int64_t step_ns = GENERATE(3600 * second_ns, -3600 * second_ns, second_ns, -second_ns);
+    CAPTURE(step_ns);
+    WallClock clock;
+    clock.nothing_waiting(5 * second_ns, boot_ns + 5 * second_ns);
+    // Stamped at 5.2, 5.4 and 5.6 s, all read at 5.8 s; the clock was set at 5.5 s.
+    const std::int64_t now_ns = 58 * second_ns / 10;
+    for (const std::int64_t taken_ns : {52 * second_ns / 10, 54 * second_ns / 10, 56 * second_ns / 10}) {
+        const std::int64_t set_ns = taken_ns > 55 * second_ns / 10 ? step_ns : 0;
+        const auto [stamp_ns, plausible] =
+            clock.to_monotonic(boot_ns + taken_ns + set_ns, now_ns, boot_ns + now_ns + step_ns);
+        CHECK(plausible);
+        CHECK(stamp_ns == taken_ns);
+    }
+    clock.nothing_waiting(now_ns, boot_ns + now_ns + step_ns);
+    CHECK(
+        clock
+            .to_monotonic(boot_ns + 6 * second_ns + step_ns, 7 * second_ns, boot_ns + 7 * second_ns + step_ns)
+            .stamp_ns == 6 * second_ns);
+}
+
+TEST_CASE("a stamp that no difference of the clocks explains is the time of reading") {
+    WallClock clock;
+    clock.nothing_waiting(5 * second_ns, boot_ns + 5 * second_ns);
+    const auto [stamp_ns, plausible] =
+        clock.to_monotonic(boot_ns + 9 * second_ns, 7 * second_ns, boot_ns + 7 * second_ns);
+    CHECK_FALSE(plausible);
+    CHECK(stamp_ns == 7 * second_ns);
+}
+
+TEST_CASE("stamps of a controller's clock that drifts land near the truth, and never after the reading") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const double speed = GENERATE(1.0, 1.0 + 1e-4, 1.0 - 1e-4);
+    CAPTURE(speed);
+    std::exponential_distribution<double> delay_ns(1.0 / 50'000.0);
+    HardwareClock clock;
+    std::int64_t worst_ns = 0;
+    for (int sample = 0; sample < 60'000; ++sample) {
+        const double taken_ns = 1e6 * sample;
+        const auto read_ns = static_cast<std::int64_t>(taken_ns + 20'000.0 + delay_ns(engine));
+        const std::int64_t stamp_ns =
+            clock.to_monotonic(static_cast<std::int64_t>(123e9 + speed * taken_ns), read_ns);
+        REQUIRE(stamp_ns <= read_ns);
+        const std::int64_t late_ns = stamp_ns - static_cast<std::int64_t>(taken_ns);
+        if (sample >= 1'000) {
+            worst_ns = std::max(worst_ns, std::abs(late_ns));
+        }
+    }
+    // The least delay is 20 us; in the some 200 ms from one small delay to the next, 100 or 200 ppm make 40
+    // us.
+    CHECK(worst_ns < 80'000);
+    CHECK(worst_ns > 10'000);
+}
+
+TEST_CASE("a controller's clock that starts anew is followed") {
+    HardwareClock clock;
+    CHECK(clock.to_monotonic(500 * second_ns, 10 * second_ns) == 10 * second_ns);
+    CHECK(clock.to_monotonic(0, 11 * second_ns) == 11 * second_ns);
+    CHECK(clock.to_monotonic(second_ns, 12 * second_ns) == 12 * second_ns);
+}

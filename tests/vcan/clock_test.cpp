@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/socketcan_bus.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/vcan/peer.hpp"
+
+#include <array>
+#include <cstdlib>
+#include <ctime>
+
+namespace {
+
+using dfdyn::hal::Frame;
+using dfdyn::hal::SocketCanBus;
+using dfdyn::hal::StampSource;
+using dfdyn::tests::on_vcan0;
+
+void set_wall_clock_by(std::int64_t seconds) {
+    timespec time{};
+    REQUIRE(::clock_gettime(CLOCK_REALTIME, &time) == 0);
+    time.tv_sec += seconds;
+    REQUIRE(::clock_settime(CLOCK_REALTIME, &time) == 0);
+}
+
+} // namespace
+
+TEST_CASE("a wall clock that is set does not move the stamps") {
+    if (std::getenv("DFDYN_VCAN_OWN_MACHINE") == nullptr) {
+        WARN("not run: the clock of this machine is not ours to set");
+        return;
+    }
+    const std::int64_t step_s = GENERATE(3600, -3600, -2, 2);
+    CAPTURE(step_s);
+    SocketCanBus bus(on_vcan0());
+    SocketCanBus peer(on_vcan0());
+    std::array<Frame, 8> room;
+    bus.drain(room);
+    std::array<std::int64_t, 4> sent_ns{}; // before and after each of the frames
+    sent_ns[0] = bus.now_ns();
+    peer.send(Frame{});
+    sent_ns[1] = bus.now_ns();
+    set_wall_clock_by(step_s);
+    sent_ns[2] = bus.now_ns();
+    peer.send(Frame{});
+    sent_ns[3] = bus.now_ns();
+    const auto frames = bus.drain(room);
+    REQUIRE(frames.size() == 2);
+    // Both clocks are read one after the other, so a stamp is off by the time between.
+    constexpr std::int64_t between_ns = 1'000'000;
+    for (std::size_t index = 0; index < 2; ++index) {
+        CHECK(frames[index].stamp_source == StampSource::kernel);
+        CHECK(frames[index].stamp_ns > sent_ns.at(2 * index) - between_ns);
+        CHECK(frames[index].stamp_ns < sent_ns.at(2 * index + 1) + between_ns);
+    }
+    set_wall_clock_by(-step_s);
+}

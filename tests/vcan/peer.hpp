@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/socketcan_bus.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace dfdyn::tests {
+
+/// Runs a shell command to its end and returns what it printed, standard error included. Throws
+/// std::runtime_error with that when its status is not 0.
+std::string run(const std::string& command);
+
+/// A program that runs beside the test, such as candump, with its output in a file.
+class Background {
+  public:
+    enum class Ready { at_once, when_it_receives };
+
+    /// `command` without shell syntax but for quotes. Returns at once, or when the program receives from a
+    /// CAN interface or has ended; throws std::runtime_error when neither happens.
+    explicit Background(const std::string& command, Ready ready = Ready::when_it_receives);
+    /// Ends it by SIGTERM.
+    ~Background();
+    Background(const Background&) = delete;
+    Background& operator=(const Background&) = delete;
+
+    void signal(int number) const;
+    /// Its output so far, once that has `lines` lines, or what there is after some seconds.
+    std::string output(std::size_t lines) const;
+
+  private:
+    TemporaryDirectory directory_;
+    pid_t pid_;
+};
+
+/// A raw socket with none of our code between it and the kernel.
+class RawSocket {
+  public:
+    explicit RawSocket(const std::string& interface);
+    ~RawSocket();
+    RawSocket(const RawSocket&) = delete;
+    RawSocket& operator=(const RawSocket&) = delete;
+
+    /// Sends a classic frame of 8 bytes with these 32 bits as identifier and flags. Whether the kernel took
+    /// it.
+    bool send(std::uint32_t can_id, const std::array<std::uint8_t, 8>& data) const;
+
+  private:
+    int descriptor_;
+};
+
+/// What `bus` drains until `count` frames came, or for some seconds.
+std::vector<hal::Frame> receive(hal::SocketCanBus& bus, std::size_t count);
+
+/// Drains and drops what waits.
+void empty(hal::SocketCanBus& bus);
+
+/// A bus on vcan0.
+hal::SocketCanOptions on_vcan0();
+
+} // namespace dfdyn::tests

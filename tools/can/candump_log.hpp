@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/replay_bus.hpp"
+#include "tools/common/line_reader.hpp"
+
+#include <exception>
+#include <filesystem>
+#include <string>
+
+namespace dfdyn::tools {
+
+/// A candump log, read line by line in bounded memory: the source of a ReplayBus (`ReplaySource`), or of any
+/// loop over its frames. A bus is one interface: where the log has several, one has to be chosen.
+///
+///     CandumpLog log(path);
+///     hal::ReplayBus bus(log);
+///     while (!bus.ended()) { … }
+///     log.check();
+class CandumpLog {
+  public:
+    /// `interface`: the one whose frames to give; empty for a log that has only one. Throws InputError when
+    /// the file cannot be opened.
+    explicit CandumpLog(const std::filesystem::path& path, std::string interface = {});
+
+    /// The next frame; false at the end, and for good where the log becomes unreadable.
+    bool next(hal::ReplayEntry& entry) noexcept;
+
+    /// Throws the InputError, with line and column, that ended the reading early, if one did.
+    void check() const;
+
+  private:
+    bool read(hal::ReplayEntry& entry);
+    bool is_chosen(std::string_view interface);
+    std::string place() const;
+
+    std::filesystem::path path_;
+    std::string interface_;
+    bool is_only_one_; ///< the log may not have another interface
+    LineReader lines_;
+    std::exception_ptr fault_;
+};
+
+} // namespace dfdyn::tools

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/can/play.hpp"
+#include "tools/commands/command.hpp"
+
+#include <csignal>
+#include <iostream>
+#include <memory>
+
+namespace dfdyn::tools {
+namespace {
+
+std::atomic<bool> stop = false; // a signal handler reaches nothing else
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
+
+extern "C" void stop_playing(int /*signal*/) { stop = true; }
+
+/// Without SA_RESTART: the signal is to end the sleep.
+void stop_on_signals() {
+    struct sigaction action {};
+    action.sa_handler = stop_playing;
+    for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) {
+        ::sigaction(signal_number, &action, nullptr);
+    }
+}
+
+void print(const PlayOutcome& outcome) {
+    std::cout << outcome.sent << " frames sent, " << outcome.refused << " refused; lateness median "
+              << outcome.median_lateness_us << " us, worst " << outcome.worst_lateness_us << " us\n";
+    if (outcome.error_frames > 0) {
+        std::cout << outcome.error_frames << " error frames left out: only a controller can send them\n";
+    }
+    if (outcome.backward_stamps > 0) {
+        std::cout << outcome.backward_stamps << " stamps ran backward: those frames went at once\n";
+    }
+    if (outcome.stopped) {
+        std::cout << "stopped before the end of the log\n";
+    }
+}
+
+int run(const PlayOptions& options) {
+    stop_on_signals();
+    const PlayOutcome outcome = play(options, stop);
+    if (!outcome.not_real_time.empty()) {
+        std::cerr << "note: the timing is that of an ordinary program (" << outcome.not_real_time << ")\n";
+    }
+    print(outcome);
+    return outcome.stopped || outcome.refused > 0 ? 1 : 0;
+}
+
+} // namespace
+
+void add_play_command(CLI::App& app, Command& chosen) {
+    const auto options = std::make_shared<PlayOptions>();
+    CLI::App* command =
+        app.add_subcommand("play", "Puts a recorded candump log on a CAN interface with its own timing");
+    command->add_option("--log", options->log, "The recording, as of candump -L")
+        ->required()
+        ->type_name("L.log");
+    command->add_option("--can", options->interface, "Where to")->required()->type_name("IFACE");
+    command
+        ->add_option("--from", options->log_interface,
+                     "The interface in the log whose frames to play, where there are several")
+        ->type_name("IFACE");
+    command->add_option("--rate", options->rate, "Times the log's own speed")
+        ->type_name("X")
+        ->check(CLI::Range(0.001, 1000.0))
+        ->capture_default_str();
+    command->footer("Example:\n  dfdyn play --log run.log --can vcan0\n"
+                    "Exit status: 0 done, 1 stopped by Ctrl-C or frames were refused, 2 bad usage or input.");
+    command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+}
+
+} // namespace dfdyn::tools
