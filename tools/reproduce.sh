@@ -11,6 +11,7 @@ out=build/reproduction
 dfdyn=build/release/tools/dfdyn
 robot=tests/data/robots/icub_right_arm/icub_right_arm.urdf
 page=docs/reproduction.md
+plans=(icub icub_1khz icub_swapped ur5 ur5_swapped)
 options=(--jobs "$(nproc)")
 kind=full
 if [[ ${1:-} == --quick ]]; then
@@ -23,7 +24,7 @@ options+=("$@")
 
 step() {
     echo
-    echo "[$1/6, ${SECONDS} s] $2"
+    echo "[$1/4, ${SECONDS} s] $2"
 }
 
 build_program() {
@@ -96,28 +97,28 @@ for task in icub_xy icub_xz; do
     simulate "tests/data/scenarios/$task.json" "$task"
     simulate "$(with_fast_derivatives "$task")" "${task}_1khz"
 done
-step 4 "evaluate on the simulated iCub arm"
-evaluate icub
-step 5 "evaluate on the same arm with derivatives estimated at 1 kHz"
-evaluate icub_1khz
-step 6 "evaluate on the measured UR5"
-evaluate ur5
+for plan in "${plans[@]}"; do
+    step 4 "evaluate: plan $plan"
+    evaluate "$plan"
+done
 
 {
     introduction
-    for plan in icub icub_1khz ur5; do
+    for plan in "${plans[@]}"; do
         cat "$out/$kind/$plan/findings.md"
         echo
     done
 } >"$page.tmp"
 mv "$page.tmp" "$page"
 mkdir -p "$(dirname "$page")/pictures"
-rm -f "$(dirname "$page")"/pictures/{icub,icub_1khz,ur5}_*.svg
-cp "$out/$kind"/{icub,icub_1khz,ur5}/pictures/*.svg "$(dirname "$page")/pictures/"
+rm -f "$(dirname "$page")"/pictures/{icub,ur5}_*.svg
+for plan in "${plans[@]}"; do
+    cp "$out/$kind/$plan"/pictures/*.svg "$(dirname "$page")/pictures/"
+done
 
 echo
 echo "Done in $SECONDS s: $page"
-echo "  $out/$kind/{icub,icub_1khz,ur5}/report.html  the same as pages"
+echo "  $out/$kind/PLAN/report.html  the same as pages, PLAN: ${plans[*]}"
 [[ $failed -eq 0 ]] || {
     echo "Some cases could not be done: see above." >&2
     exit 1

@@ -6,11 +6,12 @@
 #include <cerrno>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 
 namespace dfdyn::tools {
 
 std::string read_file(const std::filesystem::path& path, std::string_view cannot) {
-    if (std::filesystem::is_directory(path)) {
+    if (std::error_code ignored; std::filesystem::is_directory(path, ignored)) {
         throw system_error(path, cannot, EISDIR);
     }
     errno = 0;

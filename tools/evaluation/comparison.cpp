@@ -147,7 +147,7 @@ FindingVerdict verdict_of(std::span<const ComparisonOutcome> comparisons) {
     if (count(Verdict::holds) == std::ssize(comparisons)) {
         return FindingVerdict::reproduced;
     }
-    if (count(Verdict::holds) > 0) {
+    if (count(Verdict::holds) > count(Verdict::contradicted)) {
         return FindingVerdict::partly;
     }
     return count(Verdict::contradicted) > 0 ? FindingVerdict::not_reproduced : FindingVerdict::undecided;
