@@ -37,6 +37,8 @@ test_units() { run_tests release --label-regex '^(firmware|hal|tools|embedding|t
 test_promises() { run_tests release --label-regex '^acceptance$'; }
 test_can() { run_tests release --label-regex '^vcan$'; }
 test_elsewhere() { run_tests release --label-regex '^(consumer|cortex_m7)$' --verbose; }
+# Every plan of the experiment, with one draw and few rows.
+test_experiment() { tools/reproduce.sh --quick; }
 test_long() { ctest --test-dir build/release --label-regex '^long$' --parallel "$jobs" --output-on-failure --no-tests=error; }
 
 # clang++ has the sanitizers: it builds them in about three quarters of the time that g++ takes, and is the second compiler.
@@ -80,6 +82,7 @@ case ${1:-} in
     steps+=(
         "test_sanitized_tools:host tools by clang++, address and undefined-behaviour sanitizers"
         "test_long:long tests"
+        "test_experiment:the experiment's plans, quickly"
         "test_clang:optimised clang++ build of the firmware"
         "analyse_tests:static analysis of the tests"
     )

@@ -197,3 +197,27 @@ TEST_CASE("a replay of a recording that the model with a robot does not fit is r
     REQUIRE(bench.train(robot + "--outputs tau --model SP --input STD --derivatives estimated").status == 0);
     CHECK(bench.replay(bench.path("positions.csv")).status == 0);
 }
+
+TEST_CASE("several models are replayed as one, if they are of the same arm") {
+    const Bench bench;
+    const std::string start = robot + "--outputs tau --input DFR ";
+    REQUIRE(bench.train(start + "--model NP").status == 0);
+    REQUIRE(bench.train(start + "--model P --effects viscous_friction", "other.json").status == 0);
+    const std::string both = bench.path("model.json") + "," + bench.path("other.json");
+    const std::string on_log = " --log " + bench.path("run.csv") + " --rows 300:";
+    const Outcome combined = bench.call("replay --model " + both + on_log);
+    REQUIRE(combined.status == 0);
+    CHECK_THAT(combined.out, ContainsSubstring("model: NP, input DFR") && ContainsSubstring("; P, input "));
+    const double error = largest_figure(combined.out, "nRMSE, second half");
+    for (const char* const name : {"model.json", "other.json"}) {
+        const Outcome one = bench.call("replay --model " + bench.path(name) + on_log);
+        CHECK(error < 1.2 * largest_figure(one.out, "nRMSE, second half"));
+    }
+    check_refused(
+        bench.call("replay --model " + bench.path("model.json") + "," + bench.path("none.json") + on_log),
+        "cannot be read as a model");
+    REQUIRE(bench.train("--outputs wrench --model NP", "wrench.json").status == 0);
+    check_refused(
+        bench.call("replay --model " + bench.path("model.json") + "," + bench.path("wrench.json") + on_log),
+        "expected joints and outputs as in ");
+}
