@@ -62,8 +62,9 @@ analyse() {
     cmake --preset clang
     run-clang-tidy -quiet -p build/clang -j "$jobs" "$PWD/($1)/.*"
 }
-analyse_product() { analyse 'firmware_lib|hal|tools'; }
-analyse_tests() { analyse 'tests'; }
+# tools/host has all of the firmware's headers.
+analyse_firmware() { analyse 'firmware_lib|hal|tools/host'; }
+analyse_others() { analyse 'tools|tests'; }
 
 steps=(
     "install_packages:Debian packages"
@@ -74,7 +75,7 @@ steps=(
     "test_can:CAN backend and dfdyn play on a kernel's virtual CAN, against can-utils"
     "test_elsewhere:use by another project, and on a bare Cortex-M7 under QEMU"
     "test_sanitized:firmware and bus layer by clang++, address and undefined-behaviour sanitizers"
-    "analyse_product:static analysis"
+    "analyse_firmware:static analysis of the firmware and the bus layer"
 )
 case ${1:-} in
 "") ;;
@@ -84,7 +85,7 @@ case ${1:-} in
         "test_long:long tests"
         "test_experiment:the experiment's plans, quickly"
         "test_clang:optimised clang++ build of the firmware"
-        "analyse_tests:static analysis of the tests"
+        "analyse_others:static analysis of the host tools and the tests"
     )
     ;;
 *)
