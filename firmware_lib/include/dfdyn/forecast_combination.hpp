@@ -19,8 +19,8 @@ namespace dfdyn {
 /// After J. M. Bates and C. W. J. Granger, "The combination of forecasts" (1969), whose weights are in
 /// inverse proportion to the mean square error itself; its square, and a memory of 100 samples, were chosen
 /// by trial on a measured and a simulated arm. Weights are in [0, 1] and sum to 1, so that the combination of
-/// finite predictions lies among them. An error counts for at most a hundred times the best member's: an
-/// absurd one is forgotten within five memories.
+/// finite predictions lies among them. Once the memory is full an error counts for at most a hundred
+/// times the best member's: an absurd one is forgotten within five memories.
 ///
 ///     for each member j: estimate[j] = estimator[j].tick(sample, budget);   // predictions into one table
 ///     combination.combine(predictions, prediction);
@@ -59,9 +59,10 @@ class ForecastCombination {
 
     /// Takes in how the members' predictions of a sample that they learned compare with its m outputs.
     constexpr void learn(const Scalar* predictions, const Scalar* measured) noexcept {
+        const bool remembers = samples_ >= memory_; // enough to say what is absurd
         samples_ = samples_ < memory_ ? samples_ + 1 : memory_;
         for (int k = 0; k < outputs_; ++k) {
-            const Scalar most = samples_ > 1 ? std::min(outlier * best_of(k), largest) : largest;
+            const Scalar most = remembers ? std::min(outlier * best_of(k), largest) : largest;
             for (int j = 0; j < members_; ++j) {
                 Scalar& mean = mean_square_[at(j, k)];
                 const Scalar now = square(predictions[at(j, k)] - measured[k], most);
