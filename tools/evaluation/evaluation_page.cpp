@@ -137,14 +137,11 @@ class EvaluationPage {
 
     static std::string rule_sentence() {
         return "A comparison pairs the draws of two cases and averages over the subsets: the mean of ε in "
-               "the "
-               "transient, its median in the steady state. It holds if the exact one-sided signed-rank test "
-               "over the draws gives p < 0.05 and most subsets agree; it is contradicted if the test says "
-               "the "
-               "opposite with p < 0.05; else it is undecided, as it always is with fewer than five draws. A "
-               "finding is reproduced if all its comparisons hold, partly if some do; it is not reproduced "
-               "if "
-               "none holds and one is contradicted, and undecided otherwise.";
+               "the transient, its median in the steady state. It holds if the exact one-sided signed-rank "
+               "test over the draws gives p < 0.05 and most subsets agree; it is contradicted if the test "
+               "says the opposite with p < 0.05; else it is undecided, as it always is with fewer than five "
+               "draws. A finding is reproduced if all its comparisons hold, partly if more hold than are "
+               "contradicted, undecided if none holds and none is contradicted, and not reproduced otherwise.";
     }
 
     std::vector<ReportTable> tables() const {
