@@ -141,7 +141,8 @@ class EvaluationPage {
                "test over the draws gives p < 0.05 and most subsets agree; it is contradicted if the test "
                "says the opposite with p < 0.05; else it is undecided, as it always is with fewer than five "
                "draws. A finding is reproduced if all its comparisons hold, partly if more hold than are "
-               "contradicted, undecided if none holds and none is contradicted, and not reproduced otherwise.";
+               "contradicted, undecided if none holds and none is contradicted, and not reproduced "
+               "otherwise.";
     }
 
     std::vector<ReportTable> tables() const {
