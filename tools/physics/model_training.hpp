@@ -34,7 +34,8 @@ struct ModelTraining {
     DerivativeSource derivatives = DerivativeSource::automatic;
 };
 
-/// Whether the training looks at velocities and accelerations: with input STD, and to estimate torque constants.
+/// Whether the training looks at velocities and accelerations: with input STD, and to estimate torque
+/// constants.
 bool sees_derivatives(const ModelTraining& training);
 
 /// What is trained on, with the derivatives that the training needs.
