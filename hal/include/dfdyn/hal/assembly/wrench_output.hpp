@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/assembly/track.hpp"
+#include "dfdyn/hal/device/decoded.hpp"
+#include "dfdyn/hal/gate/frozen.hpp"
+#include "dfdyn/hal/gate/pairing.hpp"
+#include "dfdyn/hal/gate/saturation.hpp"
+
+#include <algorithm>
+
+namespace dfdyn::hal {
+
+/// An arm's output that a force/torque sensor measures: from its frames to gated wrenches.
+template <WrenchSource Source, int capacity>
+class WrenchOutput {
+  public:
+    static constexpr int outputs = 6;
+
+    struct Config {
+        TrackConfig track;
+        typename RangeGate<6>::Ranges range; ///< of the sensor
+        std::int64_t pair_window_ns;         ///< of the two frames of a wrench, see PairGate
+        int frozen_limit;                    ///< identical readings, see FrozenGate
+    };
+
+    constexpr WrenchOutput(const Source& source, const Config& config) noexcept
+        : source_(source), pairing_(config.pair_window_ns), frozen_(config.frozen_limit),
+          track_(config.track, config.range, output_reasons) {}
+
+    /// Decodes a frame and takes it; a wrench may come with it.
+    constexpr Decoded take(const Frame& frame) noexcept {
+        const Decoded decoded = source_.decode(frame);
+        if (decoded.kind != Decoded::Kind::part) {
+            return decoded;
+        }
+        switch (pairing_.push(decoded.part, frame)) {
+        case PairGate::Result::waiting:
+            break;
+        case PairGate::Result::paired:
+            push(source_.wrench(pairing_.first(), pairing_.second()));
+            break;
+        case PairGate::Result::orphaned:
+            track_.push(pairing_.orphan_ns(), Reason::output_incomplete, {}, false);
+            break;
+        case PairGate::Result::doubled:
+            track_.push(frame.stamp_ns, Reason::id_collision, {}, false);
+            break;
+        }
+        return decoded;
+    }
+
+    /// Joints say nothing about a wrench.
+    constexpr void take(const JointValue& /*value*/) noexcept {}
+
+    [[nodiscard]] constexpr bool claims(std::uint32_t id) const noexcept { return source_.claims(id); }
+
+    /// See Track.
+    constexpr Measurement<6> at(std::int64_t instant_ns) noexcept { return track_.at(instant_ns); }
+    [[nodiscard]] constexpr bool heard() const noexcept { return track_.heard(); }
+    [[nodiscard]] constexpr std::int64_t newest_ns() const noexcept { return track_.newest_ns(); }
+
+    /// Frames were lost: a pending half is forgotten.
+    constexpr void lost() noexcept { pairing_.reset(); }
+
+    /// The sensor's decoder: what to send to the sensor, and what it has told, such as its full scales.
+    [[nodiscard]] constexpr const Source& source() const noexcept { return source_; }
+    [[nodiscard]] constexpr const Track<6, capacity>& track() const noexcept { return track_; }
+    [[nodiscard]] constexpr const PairGate& pairing() const noexcept { return pairing_; }
+    [[nodiscard]] constexpr const SaturationGate& saturation() const noexcept { return saturation_; }
+    [[nodiscard]] constexpr const FrozenGate<6>& frozen() const noexcept { return frozen_; }
+
+  private:
+    /// The gates see every reading of the sensor; the first that objects is the reason.
+    constexpr void push(const WrenchReading& reading) noexcept {
+        const bool zero = std::ranges::all_of(reading.raw, [](std::int32_t raw) { return raw == 0; });
+        const bool flagged = reading.reason == Reason::output_saturated;
+        const bool saturated = saturation_.saturated(flagged, reading.raw);
+        const bool frozen = frozen_.frozen(reading.raw);
+        Reason reason = reading.reason;
+        if (reason == Reason::ok && saturated) {
+            reason = Reason::output_saturated;
+        }
+        if (reason == Reason::ok && frozen) {
+            reason = Reason::output_frozen;
+        }
+        track_.push(pairing_.first().stamp_ns, reason, reading.value, zero);
+    }
+
+    Source source_;
+    PairGate pairing_;
+    SaturationGate saturation_;
+    FrozenGate<6> frozen_;
+    Track<6, capacity> track_;
+};
+
+} // namespace dfdyn::hal

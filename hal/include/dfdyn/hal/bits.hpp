@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <type_traits>
+
+namespace dfdyn::hal {
+
+/// The unsigned integer that holds a number's bytes.
+template <class T>
+using BytesOf = std::conditional_t<sizeof(T) == 2, std::uint16_t,
+                                   std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>;
+
+/// Numbers that frames carry: integers and IEEE floats of 2, 4 or 8 bytes.
+template <class T>
+concept Loadable = (std::integral<T> || std::floating_point<T>)&&(sizeof(T) == 2 || sizeof(T) == 4 ||
+                                                                  sizeof(T) == 8);
+
+/// The number whose bytes are at `bytes`, lowest first; any alignment, any host.
+template <Loadable T>
+[[nodiscard]] constexpr T load_little(const std::uint8_t* bytes) noexcept {
+    std::uint64_t value = 0;
+    for (std::size_t i = sizeof(T); i > 0; --i) {
+        value = value << 8 | bytes[i - 1];
+    }
+    return std::bit_cast<T>(static_cast<BytesOf<T>>(value));
+}
+
+/// The number whose bytes are at `bytes`, highest first.
+template <Loadable T>
+[[nodiscard]] constexpr T load_big(const std::uint8_t* bytes) noexcept {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < sizeof(T); ++i) {
+        value = value << 8 | bytes[i];
+    }
+    return std::bit_cast<T>(static_cast<BytesOf<T>>(value));
+}
+
+template <Loadable T>
+constexpr void store_little(std::uint8_t* bytes, T number) noexcept {
+    const std::uint64_t value = std::bit_cast<BytesOf<T>>(number);
+    for (std::size_t i = 0; i < sizeof(T); ++i) {
+        bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));
+    }
+}
+
+template <Loadable T>
+constexpr void store_big(std::uint8_t* bytes, T number) noexcept {
+    const std::uint64_t value = std::bit_cast<BytesOf<T>>(number);
+    for (std::size_t i = 0; i < sizeof(T); ++i) {
+        bytes[sizeof(T) - 1 - i] = static_cast<std::uint8_t>(value >> (8 * i));
+    }
+}
+
+/// The integer nearest to `value`, at the end of T's range if it is beyond; 0 for NaN. What an
+/// analog-to-digital converter does.
+template <std::integral T>
+requires(sizeof(T) <= 4) [[nodiscard]] inline T saturated(double value) noexcept {
+    constexpr auto lowest = static_cast<double>(std::numeric_limits<T>::min());
+    constexpr auto highest = static_cast<double>(std::numeric_limits<T>::max());
+    return std::isnan(value) ? T{} : static_cast<T>(std::clamp(std::round(value), lowest, highest));
+}
+
+enum class ByteOrder : std::uint8_t {
+    intel,   ///< `@1` in a DBC: the start bit is the lowest, the number goes on to higher bits and bytes
+    motorola ///< `@0` in a DBC: the start bit is the highest, the number goes on to lower bits and higher
+             ///< bytes
+};
+
+enum class Encoding : std::uint8_t {
+    unsigned_integer, ///< `+`
+    signed_integer,   ///< `-`, two's complement
+    float32,          ///< SIG_VALTYPE_ 1; 32 bits
+    float64           ///< SIG_VALTYPE_ 2; 64 bits
+};
+
+/// A number somewhere in a frame's data, as a DBC file describes it. Bit b is bit b % 8 (0 the lowest) of
+/// byte b / 8.
+struct Signal {
+    int start_bit = 0;
+    int length = 8; ///< bits, 1 … 64
+    ByteOrder byte_order = ByteOrder::intel;
+    Encoding encoding = Encoding::unsigned_integer;
+    double factor = 1; ///< physical = factor * raw + offset
+    double offset = 0;
+
+    /// Whether it is well-formed and lies wholly within `bytes` bytes of data.
+    [[nodiscard]] constexpr bool fits(int bytes) const noexcept {
+        const bool whole = length >= 1 && length <= 64 && start_bit >= 0 && start_bit / 8 < bytes;
+        const bool sized = (encoding != Encoding::float32 || length == 32) &&
+                           (encoding != Encoding::float64 || length == 64);
+        return whole && sized && last_byte() < bytes;
+    }
+
+    /// The bits as they are, unsigned. Requires `fits(data.size())`. O(length / 8).
+    [[nodiscard]] constexpr std::uint64_t extract_raw(std::span<const std::uint8_t> data) const noexcept {
+        std::uint64_t raw = 0;
+        for_each_piece([&](std::size_t byte, int shift, int width, int place) {
+            raw |= (data[byte] >> shift & mask(width)) << place;
+        });
+        return raw;
+    }
+
+    /// Sets the signal's bits to the lowest of `raw`, and no others. Requires `fits(data.size())`.
+    constexpr void insert_raw(std::span<std::uint8_t> data, std::uint64_t raw) const noexcept {
+        for_each_piece([&](std::size_t byte, int shift, int width, int place) {
+            const std::uint64_t bits = (raw >> place & mask(width)) << shift;
+            data[byte] = static_cast<std::uint8_t>((data[byte] & ~(mask(width) << shift)) | bits);
+        });
+    }
+
+    /// The physical value. Integers beyond 53 bits are rounded to a double. Requires `fits(data.size())`.
+    [[nodiscard]] constexpr double extract(std::span<const std::uint8_t> data) const noexcept {
+        return factor * number(extract_raw(data)) + offset;
+    }
+
+    /// Sets the physical value, rounded to the nearest that the signal can show and clamped to its range; NaN
+    /// gives 0 where the signal is an integer. Requires `fits(data.size())` and a factor that is not 0.
+    void insert(std::span<std::uint8_t> data, double physical) const noexcept {
+        insert_raw(data, raw_of((physical - offset) / factor));
+    }
+
+  private:
+    [[nodiscard]] static constexpr std::uint64_t mask(int width) noexcept {
+        return width >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << width) - 1;
+    }
+
+    [[nodiscard]] constexpr int last_byte() const noexcept {
+        const int bits_before = byte_order == ByteOrder::intel ? start_bit % 8 : 7 - start_bit % 8;
+        return start_bit / 8 + (bits_before + length - 1) / 8;
+    }
+
+    /// Calls use(byte, shift in the byte, width, place in the number) for the signal's bits in each byte.
+    template <class Use>
+    constexpr void for_each_piece(Use use) const noexcept {
+        int bit = start_bit;
+        for (int done = 0; done < length;) {
+            const bool intel = byte_order == ByteOrder::intel;
+            const int room = intel ? 8 - bit % 8 : bit % 8 + 1;
+            const int width = std::min(room, length - done);
+            const int shift = intel ? bit % 8 : room - width;
+            const int place = intel ? done : length - done - width;
+            use(static_cast<std::size_t>(bit / 8), shift, width, place);
+            done += width;
+            bit = bit / 8 * 8 + (intel ? 8 : 15);
+        }
+    }
+
+    [[nodiscard]] constexpr double number(std::uint64_t raw) const noexcept {
+        switch (encoding) {
+        case Encoding::float32:
+            return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(raw)));
+        case Encoding::float64:
+            return std::bit_cast<double>(raw);
+        case Encoding::signed_integer: {
+            const std::uint64_t sign = std::uint64_t{1} << (length - 1);
+            return static_cast<double>(std::bit_cast<std::int64_t>((raw ^ sign) - sign));
+        }
+        case Encoding::unsigned_integer:
+            break;
+        }
+        return static_cast<double>(raw);
+    }
+
+    [[nodiscard]] std::uint64_t raw_of(double value) const noexcept {
+        if (encoding == Encoding::float32) {
+            constexpr auto highest = static_cast<double>(std::numeric_limits<float>::max());
+            const double inside = std::isfinite(value) ? std::clamp(value, -highest, highest) : value;
+            return std::bit_cast<std::uint32_t>(static_cast<float>(inside));
+        }
+        if (encoding == Encoding::float64) {
+            return std::bit_cast<std::uint64_t>(value);
+        }
+        return std::isnan(value) ? 0 : integer_of(std::round(value));
+    }
+
+    /// Clamped; the ends are compared as powers of two, which doubles hold exactly.
+    [[nodiscard]] std::uint64_t integer_of(double value) const noexcept {
+        if (encoding == Encoding::unsigned_integer) {
+            const bool above = value >= std::ldexp(1.0, length);
+            return above ? mask(length) : value <= 0 ? 0 : static_cast<std::uint64_t>(value);
+        }
+        const double end = std::ldexp(1.0, length - 1);
+        const std::uint64_t sign = std::uint64_t{1} << (length - 1);
+        const bool inside = value > -end && value < end;
+        return inside ? std::bit_cast<std::uint64_t>(static_cast<std::int64_t>(value))
+                      : (value > 0 ? sign - 1 : sign);
+    }
+};
+
+} // namespace dfdyn::hal

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/bits.hpp"
+#include "dfdyn/hal/device/decoded.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+namespace dfdyn::hal {
+
+/// An ATI force/torque sensor behind a NETCANOEM or NetCAN board. It sends strain gauges, not a wrench:
+///
+/// | id (B: base) | length | content, big-endian |
+/// | --- | --- | --- |
+/// | 16 B | 0 | a poll, from the host |
+/// | 16 B | 8 | status u16, gauges 0, 2, 4 (int16) |
+/// | 16 B + 1 | 6 | gauges 1, 3, 5 |
+///
+/// wrench = matrix * gauges / counts per unit. A gauge at the end of its numbers is saturated, which the
+/// sensor leaves to the receiver to see; it takes part in all six values.
+class AtiNetcan {
+  public:
+    struct Config {
+        std::uint32_t base = 0x20;
+        std::array<std::array<double, 6>, 6> matrix{}; ///< of this very sensor, one row per axis
+        double counts_per_newton = 0;                  ///< 0: not known
+        double counts_per_newton_metre = 0;
+    };
+
+    explicit AtiNetcan(const Config& config) noexcept : config_(config), calibration_(check(config)) {}
+
+    /// Of the matrix and the counts: not known, cannot be, or ok.
+    [[nodiscard]] constexpr Reason calibration() const noexcept { return calibration_; }
+
+    [[nodiscard]] constexpr bool claims(std::uint32_t id) const noexcept {
+        return id == first_id() || id == second_id();
+    }
+
+    [[nodiscard]] constexpr Decoded decode(const Frame& frame) const noexcept {
+        const bool first = has_id(frame, first_id());
+        const bool poll = first && frame.length == 0;
+        if (poll || (!first && !has_id(frame, second_id()))) {
+            return {};
+        }
+        const Reason fault = check_form(frame, first ? 8 : 6);
+        return fault != Reason::ok ? rejected(fault) : wrench_part(first ? 0 : 1);
+    }
+
+    [[nodiscard]] WrenchReading wrench(const Frame& first, const Frame& second) const noexcept {
+        WrenchReading reading;
+        for (std::size_t i = 0; i < 6; ++i) {
+            const Frame& frame = i % 2 == 0 ? first : second;
+            reading.raw[i] = load_big<std::int16_t>(frame.data.data() + gauge_place(i));
+        }
+        for (std::size_t axis = 0; axis < 6; ++axis) {
+            double counts = 0;
+            for (std::size_t i = 0; i < 6; ++i) {
+                counts += config_.matrix[axis][i] * reading.raw[i];
+            }
+            reading.value[axis] = counts / counts_per_unit(axis);
+        }
+        reading.reason = calibration();
+        if (reading.reason == Reason::ok && (load_big<std::uint16_t>(first.data.data()) & fault_bits) != 0) {
+            reading.reason = Reason::device_fault;
+        }
+        return reading;
+    }
+
+    /// Asks for one wrench.
+    [[nodiscard]] constexpr Frame poll() const noexcept { return make_frame(first_id(), 0); }
+
+    /// All gauges 0 without a calibration. Gauges saturate as the converter does.
+    [[nodiscard]] FrameList encode(const Wrench& value) const noexcept {
+        FrameList frames;
+        frames.count = 2;
+        frames.frame = {make_frame(first_id(), 8), make_frame(second_id(), 6)};
+        if (calibration() != Reason::ok) {
+            return frames;
+        }
+        Eigen::Matrix<double, 6, 1> counts;
+        for (std::size_t axis = 0; axis < 6; ++axis) {
+            counts[static_cast<int>(axis)] = value[axis] * counts_per_unit(axis);
+        }
+        const Eigen::Matrix<double, 6, 1> gauges = matrix(config_).partialPivLu().solve(counts);
+        for (std::size_t i = 0; i < 6; ++i) {
+            store_big(frames.frame[i % 2].data.data() + gauge_place(i),
+                      saturated<std::int16_t>(gauges[static_cast<int>(i)]));
+        }
+        return frames;
+    }
+
+  private:
+    /// Bit 15 any error, 14 CAN error, 12 and 11 temperature, 7 … 3 critical.
+    static constexpr unsigned fault_bits = 0xD8F8;
+
+    /// Where a frame has the gauge: even ones follow the status word, odd ones have a frame for themselves.
+    [[nodiscard]] static constexpr std::size_t gauge_place(std::size_t gauge) noexcept {
+        return gauge % 2 == 0 ? 2 + gauge : gauge - 1;
+    }
+
+    [[nodiscard]] constexpr std::uint32_t first_id() const noexcept { return config_.base << 4; }
+    [[nodiscard]] constexpr std::uint32_t second_id() const noexcept { return config_.base << 4 | 1; }
+
+    [[nodiscard]] constexpr double counts_per_unit(std::size_t axis) const noexcept {
+        return axis < 3 ? config_.counts_per_newton : config_.counts_per_newton_metre;
+    }
+
+    [[nodiscard]] static Eigen::Matrix<double, 6, 6> matrix(const Config& config) noexcept {
+        Eigen::Matrix<double, 6, 6> result;
+        for (std::size_t row = 0; row < 6; ++row) {
+            for (std::size_t column = 0; column < 6; ++column) {
+                result(static_cast<int>(row), static_cast<int>(column)) = config.matrix[row][column];
+            }
+        }
+        return result;
+    }
+
+    [[nodiscard]] static Reason check(const Config& config) noexcept {
+        const double force = config.counts_per_newton;
+        const double torque = config.counts_per_newton_metre;
+        if (force == 0 || torque == 0) {
+            return Reason::waiting_for_full_scale;
+        }
+        const double determinant = matrix(config).determinant(); // not a number if any element is none
+        const bool sound = force > 0 && torque > 0 && std::isfinite(force) && std::isfinite(torque);
+        return sound && std::isfinite(determinant) && determinant != 0 ? Reason::ok
+                                                                       : Reason::full_scale_implausible;
+    }
+
+    Config config_;
+    Reason calibration_;
+};
+
+static_assert(WrenchSource<AtiNetcan>);
+
+} // namespace dfdyn::hal

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/bits.hpp"
+#include "dfdyn/hal/device/decoded.hpp"
+#include "dfdyn/hal/device/heartbeat.hpp"
+
+namespace dfdyn::hal {
+
+/// A CANopen drive with the CiA 402 profile, as its TPDOs are mapped.
+///
+/// | id (N: node) | length | content, little-endian |
+/// | --- | --- | --- |
+/// | 0x080 | 0 or 1 | SYNC |
+/// | 0x080 + N | 8 | EMCY: error code u16 (0: no error any more), error register, 5 bytes of the maker |
+/// | `position_pdo` + N | as mapped | position actual value (0x6064) and what else is mapped |
+/// | `effort_pdo` + N | as mapped | torque actual value (0x6077), perhaps in the same PDO |
+/// | 0x700 + N | 1 | heartbeat: 0 boot-up, 4 stopped, 5 operational, 127 pre-operational |
+///
+/// Scaling is per axis and arbitrary: it is in the signals. Values carry `device_not_operational` after a
+/// heartbeat of another state; positions carry `encoder_fault` after an EMCY of a sensor (0x73xx), efforts
+/// `device_fault` after any EMCY; to the EMCY 0.
+class Cia402Drive {
+  public:
+    static constexpr int joints = 1;
+
+    struct Config {
+        int node = 1;  ///< 1 … 127
+        int joint = 0; ///< of the arm, from 0
+        std::uint32_t position_pdo = 0x280;
+        int position_length = 8; ///< of the whole PDO, bytes
+        Signal position{
+            .start_bit = 0, .length = 32, .encoding = Encoding::signed_integer, .factor = 1e-3}; ///< rad
+        std::uint32_t effort_pdo = 0; ///< 0: efforts are not mapped; may be `position_pdo`
+        int effort_length = 8;
+        Signal effort{
+            .start_bit = 0, .length = 16, .encoding = Encoding::signed_integer, .factor = 1e-3}; ///< N·m
+        bool synchronous = true;               ///< measured at the SYNC before; else when the PDO came
+        std::int64_t heartbeat_timeout_ns = 0; ///< 0: the drive sends none (the default of CANopen)
+    };
+
+    explicit constexpr Cia402Drive(const Config& config) noexcept
+        : config_(config), heartbeat_(config.heartbeat_timeout_ns) {}
+
+    /// Whether identifiers, lengths and signals can be: no PDO on an identifier that CANopen restricts.
+    [[nodiscard]] constexpr bool config_is_valid() const noexcept {
+        const bool effort =
+            !has_effort() ||
+            (config_.effort.fits(config_.effort_length) && config_.effort_length <= 8 &&
+             config_.effort.factor != 0 && !restricted(effort_id()) &&
+             (effort_id() != position_id() || config_.effort_length == config_.position_length));
+        return config_.node >= 1 && config_.node <= 127 && config_.position_length <= 8 &&
+               config_.position.fits(config_.position_length) && config_.position.factor != 0 &&
+               !restricted(position_id()) && effort;
+    }
+
+    [[nodiscard]] constexpr bool claims(std::uint32_t id) const noexcept {
+        return id == position_id() || (has_effort() && id == effort_id()) || id == emcy_id() ||
+               id == heartbeat_id();
+    }
+
+    constexpr Decoded decode(const Frame& frame) noexcept {
+        if (has_id(frame, position_id()) || (has_effort() && has_id(frame, effort_id()))) {
+            return decode_pdo(frame);
+        }
+        if (has_id(frame, sync_id)) {
+            return decode_sync(frame);
+        }
+        if (has_id(frame, heartbeat_id())) {
+            return decode_heartbeat(frame);
+        }
+        return has_id(frame, emcy_id()) ? decode_emcy(frame) : Decoded{};
+    }
+
+    [[nodiscard]] FrameList encode(const std::array<JointValue, 1>& values) const noexcept {
+        FrameList frames;
+        frames.count = has_effort() && effort_id() != position_id() ? 2 : 1;
+        frames.frame[0] = make_frame(position_id(), config_.position_length);
+        config_.position.insert(data_of(frames.frame[0]), values[0].position_rad);
+        if (has_effort()) {
+            Frame& frame = frames.frame[static_cast<std::size_t>(frames.count - 1)];
+            if (frames.count == 2) {
+                frame = make_frame(effort_id(), config_.effort_length);
+            }
+            config_.effort.insert(data_of(frame), values[0].effort);
+        }
+        return frames;
+    }
+
+    enum class State : std::uint8_t { boot_up = 0, stopped = 4, operational = 5, pre_operational = 127 };
+
+    [[nodiscard]] constexpr Frame encode_heartbeat(State state) const noexcept {
+        Frame frame = make_frame(heartbeat_id(), 1);
+        frame.data[0] = static_cast<std::uint8_t>(state);
+        return frame;
+    }
+
+    [[nodiscard]] constexpr Frame encode_emcy(std::uint16_t error_code) const noexcept {
+        Frame frame = make_frame(emcy_id(), 8);
+        store_little(frame.data.data(), error_code);
+        return frame;
+    }
+
+    [[nodiscard]] static constexpr Frame encode_sync() noexcept { return make_frame(sync_id, 0); }
+
+  private:
+    static constexpr std::uint32_t sync_id = 0x080;
+
+    [[nodiscard]] static constexpr bool restricted(std::uint32_t id) noexcept {
+        const auto within = [id](std::uint32_t first, std::uint32_t last) {
+            return id >= first && id <= last;
+        };
+        return id <= 0x80 || within(0x101, 0x180) || within(0x581, 0x5FF) || within(0x601, 0x67F) ||
+               within(0x6E0, 0x6FF) || id >= 0x701;
+    }
+
+    [[nodiscard]] static constexpr std::span<std::uint8_t> data_of(Frame& frame) noexcept {
+        return {frame.data.data(), frame.length};
+    }
+
+    [[nodiscard]] constexpr std::uint32_t node() const noexcept {
+        return static_cast<std::uint32_t>(config_.node);
+    }
+    [[nodiscard]] constexpr bool has_effort() const noexcept { return config_.effort_pdo != 0; }
+    [[nodiscard]] constexpr std::uint32_t position_id() const noexcept {
+        return config_.position_pdo + node();
+    }
+    [[nodiscard]] constexpr std::uint32_t effort_id() const noexcept { return config_.effort_pdo + node(); }
+    [[nodiscard]] constexpr std::uint32_t emcy_id() const noexcept { return 0x080 + node(); }
+    [[nodiscard]] constexpr std::uint32_t heartbeat_id() const noexcept { return 0x700 + node(); }
+
+    [[nodiscard]] constexpr Decoded decode_pdo(const Frame& frame) const noexcept {
+        const bool positions = frame.id == position_id();
+        if (const Reason fault =
+                check_form(frame, positions ? config_.position_length : config_.effort_length);
+            fault != Reason::ok) {
+            return rejected(fault);
+        }
+        Decoded decoded;
+        decoded.kind = Decoded::Kind::values;
+        decoded.joints = 1;
+        JointValue& value = decoded.joint[0];
+        value.joint = config_.joint;
+        value.stamp_ns = config_.synchronous && synchronised_ ? sync_ns_ : frame.stamp_ns;
+        const Reason condition = heartbeat_.reason(frame.stamp_ns);
+        const std::span<const std::uint8_t> data(frame.data.data(), frame.length);
+        if (positions) {
+            value.position_reason = encoder_fault_ ? Reason::encoder_fault : condition;
+            value.raw_zero = config_.position.extract_raw(data) == 0;
+            value.position_rad = config_.position.extract(data);
+        }
+        if (has_effort() && frame.id == effort_id()) {
+            value.effort_reason = device_fault_ ? Reason::device_fault : condition;
+            value.effort = config_.effort.extract(data);
+        }
+        return decoded;
+    }
+
+    constexpr Decoded decode_sync(const Frame& frame) noexcept {
+        if (frame.remote || frame.fd) {
+            return rejected(Reason::wrong_frame_type);
+        }
+        if (frame.length > 1) { // one byte: the counter that some masters send
+            return rejected(Reason::wrong_length);
+        }
+        synchronised_ = true;
+        sync_ns_ = frame.stamp_ns;
+        Decoded decoded;
+        decoded.kind = Decoded::Kind::sync;
+        return decoded;
+    }
+
+    constexpr Decoded decode_heartbeat(const Frame& frame) noexcept {
+        if (const Reason fault = check_form(frame, 1); fault != Reason::ok) {
+            return rejected(fault);
+        }
+        const bool operational = (frame.data[0] & 0x7F) == static_cast<std::uint8_t>(State::operational);
+        const Reason condition = operational ? Reason::ok : Reason::device_not_operational;
+        heartbeat_.heard(frame.stamp_ns, condition);
+        return status(condition);
+    }
+
+    constexpr Decoded decode_emcy(const Frame& frame) noexcept {
+        if (const Reason fault = check_form(frame, 8); fault != Reason::ok) {
+            return rejected(fault);
+        }
+        const auto code = load_little<std::uint16_t>(frame.data.data());
+        device_fault_ = code != 0;
+        encoder_fault_ = code != 0 && (encoder_fault_ || code >> 8 == 0x73);
+        return status(encoder_fault_  ? Reason::encoder_fault
+                      : device_fault_ ? Reason::device_fault
+                                      : Reason::ok);
+    }
+
+    Config config_;
+    Heartbeat heartbeat_;
+    std::int64_t sync_ns_ = 0;
+    bool synchronised_ = false;
+    bool encoder_fault_ = false;
+    bool device_fault_ = false;
+};
+
+static_assert(JointSource<Cia402Drive>);
+
+} // namespace dfdyn::hal

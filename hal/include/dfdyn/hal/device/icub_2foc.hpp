@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/bits.hpp"
+#include "dfdyn/hal/device/decoded.hpp"
+#include "dfdyn/hal/device/icub_id.hpp"
+
+#include <numbers>
+
+namespace dfdyn::hal::icub {
+
+/// An iCub motor board of the 2FOC/AMC family: one motor a board; its current is the effort.
+///
+/// | id (A: address) | length | content, little-endian |
+/// | --- | --- | --- |
+/// | 0x100 + 16 A | 8 | current (mA) int16, velocity int16, position int32 in 1/65536 of a turn |
+/// | 0x103 + 16 A STATUS | 8 | mode, encoder errors, PWM (2 bytes), fault word (4 bytes) |
+///
+/// From a STATUS with encoder errors on, positions carry `encoder_fault`; from one with a fault word that is
+/// not 0, currents carry `device_fault`; to the next without.
+class FocBoard {
+  public:
+    static constexpr int joints = 1;
+
+    struct Config {
+        int address = 1;
+        int joint = 0; ///< of the arm, from 0
+        double motor_per_joint =
+            1;               ///< transmission: turns of the encoder per turn of the joint, with its sign
+        double zero_rad = 0; ///< of the joint where the encoder shows 0
+    };
+
+    explicit constexpr FocBoard(const Config& config) noexcept : config_(config) {}
+
+    [[nodiscard]] constexpr bool claims(std::uint32_t id) const noexcept {
+        return id == id_of(motion_type) || id == id_of(status_type);
+    }
+
+    constexpr Decoded decode(const Frame& frame) noexcept {
+        if (has_id(frame, id_of(motion_type))) {
+            return decode_motion(frame);
+        }
+        return has_id(frame, id_of(status_type)) ? decode_status(frame) : Decoded{};
+    }
+
+    [[nodiscard]] FrameList encode(const std::array<JointValue, 1>& values) const noexcept {
+        FrameList frames;
+        frames.count = 1;
+        Frame& frame = frames.frame[0];
+        frame = make_frame(id_of(motion_type), 8);
+        const double motor_rad = (values[0].position_rad - config_.zero_rad) * config_.motor_per_joint;
+        store_little(frame.data.data(), saturated<std::int16_t>(1000 * values[0].effort));
+        store_little(frame.data.data() + 4, saturated<std::int32_t>(motor_rad / radians_per_count));
+        return frames;
+    }
+
+    /// The STATUS that the board sends with these errors.
+    [[nodiscard]] constexpr Frame encode_status(std::uint8_t encoder_errors,
+                                                std::uint32_t faults) const noexcept {
+        Frame frame = make_frame(id_of(status_type), 8);
+        frame.data[1] = encoder_errors;
+        store_little(frame.data.data() + 4, faults);
+        return frame;
+    }
+
+  private:
+    static constexpr std::uint32_t motion_type = 0x0;
+    static constexpr std::uint32_t status_type = 0x3;
+    static constexpr double radians_per_count = 2 * std::numbers::pi / 65536;
+
+    [[nodiscard]] constexpr std::uint32_t id_of(std::uint32_t type) const noexcept {
+        return identifier(periodic_motor_class, config_.address, type);
+    }
+
+    [[nodiscard]] constexpr Decoded decode_motion(const Frame& frame) const noexcept {
+        if (const Reason fault = check_form(frame, 8); fault != Reason::ok) {
+            return rejected(fault);
+        }
+        const auto counts = static_cast<double>(load_little<std::int32_t>(frame.data.data() + 4));
+        Decoded decoded;
+        decoded.kind = Decoded::Kind::values;
+        decoded.joints = 1;
+        JointValue& value = decoded.joint[0];
+        value.joint = config_.joint;
+        value.stamp_ns = frame.stamp_ns;
+        value.position_reason = encoder_fault_ ? Reason::encoder_fault : Reason::ok;
+        value.raw_zero = counts == 0;
+        value.position_rad = counts * radians_per_count / config_.motor_per_joint + config_.zero_rad;
+        value.effort_reason = device_fault_ ? Reason::device_fault : Reason::ok;
+        value.effort = 1e-3 * load_little<std::int16_t>(frame.data.data());
+        return decoded;
+    }
+
+    constexpr Decoded decode_status(const Frame& frame) noexcept {
+        if (const Reason fault = check_form(frame, 8); fault != Reason::ok) {
+            return rejected(fault);
+        }
+        encoder_fault_ = frame.data[1] != 0;
+        device_fault_ = load_little<std::uint32_t>(frame.data.data() + 4) != 0;
+        return status(encoder_fault_  ? Reason::encoder_fault
+                      : device_fault_ ? Reason::device_fault
+                                      : Reason::ok);
+    }
+
+    Config config_;
+    bool encoder_fault_ = false;
+    bool device_fault_ = false;
+};
+
+static_assert(JointSource<FocBoard>);
+
+} // namespace dfdyn::hal::icub

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/bits.hpp"
+#include "dfdyn/hal/device/decoded.hpp"
+#include "dfdyn/hal/device/icub_id.hpp"
+#include "dfdyn/hal/gate/full_scale.hpp"
+
+namespace dfdyn::hal::icub {
+
+/// The iCub's force/torque board: strain and strain2.
+///
+/// | id (A: address) | length | content |
+/// | --- | --- | --- |
+/// | 0x30A + 16 A | 6 or 7 | force x y z: u16 little-endian, offset binary (0x8000 is 0) |
+/// | 0x30B + 16 A | 6 or 7 | torque x y z, likewise |
+/// | 0x200 + A, to the board | 2 | 0x18, channel: asks for a full scale |
+/// | 0x200 + 16 A, from it | 4 | 0x18, channel (low nibble), full scale (N, N·m) u16 big-endian |
+///
+/// The seventh byte comes only while a strain gauge is saturated; the board then sends its last good wrench
+/// once more, so that such a frame is old whatever its time. A gauge takes part in all six values. No wrench
+/// before all six full scales are known: ask for them with `request_full_scale` until `full_scale().reason()`
+/// is ok.
+class StrainBoard {
+  public:
+    using FullScale = FullScaleGate<6>;
+
+    /// Full scales that a sensor of an arm can have. The board's own default, 32767, is none.
+    static constexpr FullScale::Ranges plausible_ranges{
+        {{10, 10000}, {10, 10000}, {10, 10000}, {0.5, 1000}, {0.5, 1000}, {0.5, 1000}}};
+
+    explicit constexpr StrainBoard(int address,
+                                   const FullScale::Ranges& plausible = plausible_ranges) noexcept
+        : address_(address), full_scale_(plausible) {}
+
+    [[nodiscard]] constexpr bool claims(std::uint32_t id) const noexcept {
+        return id == force_id() || id == torque_id() || id == reply_id();
+    }
+
+    constexpr Decoded decode(const Frame& frame) noexcept {
+        if (has_id(frame, force_id()) || has_id(frame, torque_id())) {
+            const Reason fault = check_form(frame, frame.length == 7 ? 7 : 6);
+            return fault != Reason::ok ? rejected(fault) : wrench_part(frame.id == force_id() ? 0 : 1);
+        }
+        return has_id(frame, reply_id()) ? decode_reply(frame) : Decoded{};
+    }
+
+    [[nodiscard]] constexpr WrenchReading wrench(const Frame& force, const Frame& torque) const noexcept {
+        WrenchReading reading;
+        for (std::size_t i = 0; i < 6; ++i) {
+            const std::uint8_t* bytes = (i < 3 ? force : torque).data.data() + 2 * (i % 3);
+            reading.raw[i] = load_little<std::uint16_t>(bytes) - half_range;
+            reading.value[i] = reading.raw[i] * full_scale_[i] / half_range;
+        }
+        const bool saturated = force.length == 7 || torque.length == 7;
+        reading.reason = full_scale_.reason();
+        if (reading.reason == Reason::ok && saturated) {
+            reading.reason = Reason::output_saturated;
+        }
+        return reading;
+    }
+
+    /// Asks the board for the full scale of a channel, 0 … 5.
+    [[nodiscard]] constexpr Frame request_full_scale(int channel) const noexcept {
+        Frame frame = make_frame(polling_analog_class | (static_cast<std::uint32_t>(address_) & 0xFU), 2);
+        frame.data[0] = get_full_scale;
+        frame.data[1] = static_cast<std::uint8_t>(channel);
+        return frame;
+    }
+
+    [[nodiscard]] constexpr const FullScale& full_scale() const noexcept { return full_scale_; }
+
+    /// The board's answer to such a request.
+    [[nodiscard]] Frame encode_full_scale(int channel, double full_scale) const noexcept {
+        Frame frame = make_frame(reply_id(), 4);
+        frame.data[0] = get_full_scale;
+        frame.data[1] = static_cast<std::uint8_t>(channel);
+        store_big(frame.data.data() + 2, hal::saturated<std::uint16_t>(full_scale));
+        return frame;
+    }
+
+    /// With the full scales that it knows; all zero before. Beyond them: at the end of the range, as
+    /// saturated.
+    [[nodiscard]] FrameList encode(const Wrench& value) const noexcept {
+        bool beyond = false;
+        for (std::size_t i = 0; i < 6; ++i) {
+            beyond = beyond || std::abs(value[i]) >= full_scale_[i];
+        }
+        return encode(value, beyond && full_scale_.reason() == Reason::ok);
+    }
+
+    /// What a saturated board sends: pass it the last good wrench.
+    [[nodiscard]] FrameList encode(const Wrench& value, bool saturated) const noexcept {
+        FrameList frames;
+        frames.count = 2;
+        const int length = saturated ? 7 : 6;
+        frames.frame = {make_frame(force_id(), length), make_frame(torque_id(), length)};
+        for (std::size_t i = 0; i < 6; ++i) {
+            const bool known = full_scale_.reason() == Reason::ok;
+            const double steps = known ? value[i] / full_scale_[i] * half_range : 0;
+            store_little(frames.frame[i / 3].data.data() + 2 * (i % 3),
+                         hal::saturated<std::uint16_t>(steps + half_range));
+        }
+        for (Frame& frame : frames.frame) {
+            frame.data[6] = saturated ? one_channel_high : 0;
+        }
+        return frames;
+    }
+
+  private:
+    static constexpr std::uint8_t get_full_scale = 0x18;
+    static constexpr std::uint8_t one_channel_high =
+        0b0000'1010; // some channel: high; the frame's first: high
+    static constexpr int half_range = 0x8000;
+
+    [[nodiscard]] constexpr std::uint32_t force_id() const noexcept {
+        return identifier(periodic_analog_class, address_, 0xA);
+    }
+    [[nodiscard]] constexpr std::uint32_t torque_id() const noexcept {
+        return identifier(periodic_analog_class, address_, 0xB);
+    }
+    [[nodiscard]] constexpr std::uint32_t reply_id() const noexcept {
+        return identifier(polling_analog_class, address_, 0);
+    }
+
+    /// The board answers other requests on this identifier as well.
+    constexpr Decoded decode_reply(const Frame& frame) noexcept {
+        if (frame.length == 0 || frame.data[0] != get_full_scale) {
+            return {};
+        }
+        if (const Reason fault = check_form(frame, 4); fault != Reason::ok) {
+            return rejected(fault);
+        }
+        full_scale_.report(frame.data[1] & 0x0F, load_big<std::uint16_t>(frame.data.data() + 2));
+        return status(full_scale_.reason());
+    }
+
+    int address_;
+    FullScale full_scale_;
+};
+
+static_assert(WrenchSource<StrainBoard>);
+
+} // namespace dfdyn::hal::icub

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/bus.hpp"
+#include "dfdyn/hal/reason.hpp"
+
+#include <cstdint>
+
+namespace dfdyn::hal {
+
+/// What a bus' own state and counters mean for the samples. Lost arbitration is normal; an error-passive
+/// controller is degraded, yet what it receives is good.
+class BusHealth {
+  public:
+    /// As of the last drain. The first counters are the start: what was lost before is nobody's loss here.
+    constexpr void update(BusState state, const BusCounters& counters) noexcept {
+        const std::uint64_t lost = counters.dropped + counters.controller_overruns;
+        if (started_ && lost != lost_) {
+            losses_ += lost - lost_;
+            loss_pending_ = true;
+        }
+        started_ = true;
+        lost_ = lost;
+        state_ = state;
+    }
+
+    /// Nothing is received: `bus_off`, `interface_down`, or ok.
+    [[nodiscard]] constexpr Reason reason() const noexcept {
+        switch (state_) {
+        case BusState::off:
+            return Reason::bus_off;
+        case BusState::interface_down:
+            return Reason::interface_down;
+        case BusState::active:
+        case BusState::warning:
+        case BusState::passive:
+            break;
+        }
+        return Reason::ok;
+    }
+
+    [[nodiscard]] constexpr bool degraded() const noexcept {
+        return state_ == BusState::warning || state_ == BusState::passive;
+    }
+
+    /// Whether frames were lost since the last call.
+    constexpr bool take_loss() noexcept {
+        const bool loss = loss_pending_;
+        loss_pending_ = false;
+        return loss;
+    }
+
+    /// A device says that it lost messages.
+    constexpr void device_lost() noexcept {
+        ++losses_;
+        loss_pending_ = true;
+    }
+
+    /// Frames lost since the first update, each loss that a device reported counted as one.
+    [[nodiscard]] constexpr std::uint64_t losses() const noexcept { return losses_; }
+
+  private:
+    BusState state_ = BusState::active;
+    std::uint64_t lost_ = 0;
+    std::uint64_t losses_ = 0;
+    bool started_ = false;
+    bool loss_pending_ = false;
+};
+
+} // namespace dfdyn::hal

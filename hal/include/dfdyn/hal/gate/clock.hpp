@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+namespace dfdyn::hal {
+
+/// Holds the stamps of one bus to the time at which they are read. A stamp that lies ahead of that time, or
+/// behind the latest by more than frames overtake each other, is refused; after several in a row that go on
+/// from each other their clock is adopted: from then on its stamps are shifted so that they continue the old
+/// ones. What comes out never runs backward by more than `tolerance`, nor ahead.
+class ClockGate {
+  public:
+    struct Config {
+        std::int64_t tolerance_ns = 5'000'000; ///< how far a stamp may lie ahead, or behind the latest
+        std::int64_t max_step_ns =
+            100'000'000;      ///< between frames that go on from each other; of the first one's age
+        int adopt_after = 20; ///< consistent frames, at least 1
+    };
+
+    explicit constexpr ClockGate(const Config& config) noexcept : config_(config) {}
+
+    /// The stamp on the time base of `now_ns`, or nothing where it is not to be believed.
+    constexpr std::optional<std::int64_t> accept(std::int64_t stamp_ns, std::int64_t now_ns) noexcept {
+        const std::int64_t shifted_ns = shifted(stamp_ns, offset_ns_);
+        const bool ahead = shifted_ns > shifted(now_ns, config_.tolerance_ns);
+        const std::int64_t earliest_ns =
+            started_ ? shifted(latest_ns_, -config_.tolerance_ns) : shifted(now_ns, -config_.max_step_ns);
+        const bool behind = shifted_ns < earliest_ns;
+        if (!ahead && !behind) {
+            run_ = 0;
+            return follow(std::min(shifted_ns, now_ns));
+        }
+        ++refused_;
+        if (!consistent(stamp_ns)) {
+            return std::nullopt;
+        }
+        ++adopted_;
+        run_ = 0;
+        offset_ns_ = difference(now_ns, stamp_ns);
+        latest_ns_ = now_ns;
+        return follow(now_ns);
+    }
+
+    /// Whether the last frame was refused.
+    [[nodiscard]] constexpr bool doubtful() const noexcept { return run_ > 0; }
+    [[nodiscard]] constexpr std::uint64_t refused() const noexcept { return refused_; }
+
+    /// How often another clock was adopted.
+    [[nodiscard]] constexpr std::uint64_t adopted() const noexcept { return adopted_; }
+
+  private:
+    /// Sums of stamps wrap instead of overflowing, whatever a stamp is.
+    [[nodiscard]] static constexpr std::int64_t shifted(std::int64_t a, std::int64_t b) noexcept {
+        return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+    }
+
+    [[nodiscard]] static constexpr std::int64_t difference(std::int64_t a, std::int64_t b) noexcept {
+        return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
+    }
+
+    constexpr std::int64_t follow(std::int64_t stamp_ns) noexcept {
+        latest_ns_ = started_ ? std::max(latest_ns_, stamp_ns) : stamp_ns;
+        started_ = true;
+        return stamp_ns;
+    }
+
+    /// Whether this refused stamp ends a run that is long enough.
+    constexpr bool consistent(std::int64_t stamp_ns) noexcept {
+        const std::int64_t step_ns = difference(stamp_ns, last_refused_ns_);
+        const bool goes_on = run_ > 0 && step_ns >= -config_.tolerance_ns && step_ns <= config_.max_step_ns;
+        run_ = goes_on ? run_ + 1 : 1;
+        last_refused_ns_ = stamp_ns;
+        return run_ >= config_.adopt_after;
+    }
+
+    Config config_;
+    std::int64_t offset_ns_ = 0;
+    std::int64_t latest_ns_ = 0;
+    std::int64_t last_refused_ns_ = 0;
+    bool started_ = false;
+    int run_ = 0;
+    std::uint64_t refused_ = 0;
+    std::uint64_t adopted_ = 0;
+};
+
+} // namespace dfdyn::hal

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/frame.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace dfdyn::hal {
+
+/// Joins the two frames of one wrench, which carry no counter: they belong together when the second was
+/// stamped at most `window` after the first. The window must be shorter than the sensor's period less the
+/// time between the two, or halves of different wrenches would match. Frames that overtook each other on the
+/// way, but are stamped in order, are joined. Frames that share one stamp (`StampSource::arrival`) are joined
+/// in their order; a loss among them cannot be seen.
+class PairGate {
+  public:
+    explicit constexpr PairGate(std::int64_t window_ns) noexcept : window_ns_(window_ns) {}
+
+    enum class Result : std::uint8_t {
+        waiting,  ///< for the other half
+        paired,   ///< `first()` and `second()` are one wrench
+        orphaned, ///< a half will never find its other one; it was stamped at `orphan_ns()`
+        doubled   ///< another sender uses the identifier; whatever was pending is forgotten
+    };
+
+    /// `part` is 0 or 1.
+    constexpr Result push(int part, const Frame& frame) noexcept {
+        const auto mine = static_cast<std::size_t>(part);
+        if (from_another_sender(mine, frame.stamp_ns)) {
+            reset();
+            ++doubles_;
+            return Result::doubled;
+        }
+        const bool replaced = pending_[mine];
+        if (replaced) {
+            drop(mine);
+        }
+        half_[mine] = frame;
+        pending_[mine] = true;
+        if (!pending_[1 - mine]) {
+            return replaced ? Result::orphaned : Result::waiting;
+        }
+        return match(mine);
+    }
+
+    /// Forgets a pending half: frames were lost, and what comes next may belong to another wrench.
+    constexpr void reset() noexcept { pending_ = {}; }
+
+    [[nodiscard]] constexpr const Frame& first() const noexcept { return half_[0]; }
+    [[nodiscard]] constexpr const Frame& second() const noexcept { return half_[1]; }
+    [[nodiscard]] constexpr std::int64_t orphan_ns() const noexcept { return orphan_ns_; }
+    [[nodiscard]] constexpr std::uint64_t pairs() const noexcept { return pairs_; }
+
+    /// How many first (0) or second (1) halves never found the other.
+    [[nodiscard]] constexpr std::uint64_t orphans(int part) const noexcept {
+        return orphans_[static_cast<std::size_t>(part)];
+    }
+
+    /// How often a second sender was seen.
+    [[nodiscard]] constexpr std::uint64_t doubles() const noexcept { return doubles_; }
+
+  private:
+    /// Too soon after the last of its kind; frames without stamps of their own may share one.
+    constexpr bool from_another_sender(std::size_t part, std::int64_t stamp_ns) noexcept {
+        const std::int64_t since_ns = stamp_ns - last_ns_[part];
+        const bool doubled = seen_[part] && since_ns > 0 && since_ns <= window_ns_;
+        seen_[part] = true;
+        last_ns_[part] = stamp_ns;
+        return doubled;
+    }
+
+    constexpr void drop(std::size_t part) noexcept {
+        pending_[part] = false;
+        orphan_ns_ = half_[part].stamp_ns;
+        ++orphans_[part];
+    }
+
+    constexpr Result match(std::size_t newest) noexcept {
+        const std::int64_t apart_ns = half_[1].stamp_ns - half_[0].stamp_ns;
+        const bool in_order = newest == 1 ? apart_ns >= 0 : apart_ns > 0;
+        if (!in_order || apart_ns > window_ns_) {
+            drop(in_order ? 0 : 1); // the earlier one
+            return Result::orphaned;
+        }
+        pending_ = {};
+        ++pairs_;
+        return Result::paired;
+    }
+
+    std::int64_t window_ns_;
+    std::array<Frame, 2> half_{};
+    std::array<bool, 2> pending_{};
+    std::array<bool, 2> seen_{};
+    std::array<std::int64_t, 2> last_ns_{};
+    std::int64_t orphan_ns_ = 0;
+    std::uint64_t pairs_ = 0;
+    std::array<std::uint64_t, 2> orphans_{};
+    std::uint64_t doubles_ = 0;
+};
+
+} // namespace dfdyn::hal

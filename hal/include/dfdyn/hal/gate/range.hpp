@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace dfdyn::hal {
+
+/// Values that a joint or a sensor's channel can have, ends included.
+struct Range {
+    double lowest;
+    double highest;
+};
+
+/// Refuses values beyond what the sensor can measure, and what is not a number.
+template <int values>
+class RangeGate {
+  public:
+    using Ranges = std::array<Range, static_cast<std::size_t>(values)>;
+    using Values = std::array<double, static_cast<std::size_t>(values)>;
+
+    explicit constexpr RangeGate(const Ranges& ranges) noexcept : ranges_(ranges) {}
+
+    /// Whether all are within; a set that is not is counted.
+    constexpr bool within(const Values& value) noexcept {
+        bool all = true;
+        for (std::size_t i = 0; i < value.size(); ++i) {
+            all = all && value[i] >= ranges_[i].lowest && value[i] <= ranges_[i].highest;
+        }
+        beyond_ += all ? 0U : 1U;
+        return all;
+    }
+
+    [[nodiscard]] constexpr std::uint64_t count() const noexcept { return beyond_; }
+
+  private:
+    Ranges ranges_;
+    std::uint64_t beyond_ = 0;
+};
+
+} // namespace dfdyn::hal

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace dfdyn::hal {
+
+/// Sees readings that are not those of the moment because the sensor is at the end of its range: the device
+/// says so, or a raw value is at an end of 16 bits, which some devices leave to the receiver to see.
+class SaturationGate {
+  public:
+    /// `flagged`: the device says it.
+    constexpr bool saturated(bool flagged, std::span<const std::int32_t> raw) noexcept {
+        bool now = flagged;
+        for (const std::int32_t value : raw) {
+            now = now || value >= rail || value <= -rail;
+        }
+        readings_ += now ? 1U : 0U;
+        episodes_ += now && !before_ ? 1U : 0U;
+        before_ = now;
+        return now;
+    }
+
+    /// How many readings were saturated, and in how many runs.
+    [[nodiscard]] constexpr std::uint64_t count() const noexcept { return readings_; }
+    [[nodiscard]] constexpr std::uint64_t episodes() const noexcept { return episodes_; }
+
+  private:
+    static constexpr std::int32_t rail = 32767;
+
+    bool before_ = false;
+    std::uint64_t readings_ = 0;
+    std::uint64_t episodes_ = 0;
+};
+
+} // namespace dfdyn::hal

@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/assembly/bus_watch.hpp"
+#include "dfdyn/hal/assembly/effort_output.hpp"
+#include "dfdyn/hal/assembly/wrench_output.hpp"
+#include "dfdyn/hal/bus.hpp"
+#include "dfdyn/sample.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace dfdyn::hal {
+
+/// Why a sample is as it is.
+template <int n>
+struct SampleReport {
+    Reason position = Reason::ok; ///< ok: there is a sample
+    int joint = unused_joint;     ///< the first joint that `position` is about, if it is about one
+    Reason output = Reason::ok;   ///< ok: its output is valid
+    /// Time since the newest position of each joint, and the newest output, were measured; the largest number
+    /// where there is none.
+    std::array<std::int64_t, static_cast<std::size_t>(n)> position_age_ns{};
+    std::int64_t output_age_ns = 0;
+};
+
+/// How often each reason occurred; never decreases.
+struct AssemblyCounters {
+    std::uint64_t calls = 0;
+    std::uint64_t samples = 0;                                   ///< of them: with positions
+    std::uint64_t outputs = 0;                                   ///< of them: with a valid output
+    std::array<std::uint64_t, reason_count> positions_refused{}; ///< by the reason's number
+    std::array<std::uint64_t, reason_count> outputs_refused{};   ///< of calls with positions
+};
+
+/// Makes samples of what is on one or two buses: all joints and the output, at one instant.
+///
+/// Frames go in as they come (`take`, or `drain` for all that a bus has); at a moment of the caller's choice
+/// `assemble(instant, now)` gives the sample of an instant in the recent past. Every value is brought to it:
+/// linearly between the measurements before and after, or held from the last one if there is none after. So
+/// the stamps have the steady period that a lag window needs, if the instants have it, whatever the devices'
+/// phases and jitter:
+/// - by SYNC: `Moment::sync`, its instant is the SYNC at which the values that are complete now were
+/// measured;
+/// - by a timer: `now - delay`. With a delay of the output's latency and one period of the slowest source
+/// everything
+///   is interpolated; with a shorter one predictions are fresher and values held;
+/// - by the last frame of a set: `Moment::set`, its instant is the output's measurement, taken as it is.
+/// A latency from the measurement to the frame is taken off each stamp first. An output is valid at most
+/// once: not again until one of its measurements is new.
+///
+/// Positions that are bad: no sample. An output that is bad: a sample with output_valid = false.
+///
+/// `Board` is the JointSource of each of `boards` boards; `Output` a WrenchOutput or EffortOutput. Positions
+/// are on bus 0. `take`: O(boards + n). `assemble`: O(capacity (n + outputs)).
+template <class Scalar, int n, JointSource Board, int boards, class Output, int capacity = 16>
+class SampleAssembly {
+  public:
+    using Sample = dfdyn::Sample<Scalar, n, Output::outputs>;
+    using Report = SampleReport<n>;
+    static constexpr int buses = 2;
+
+    struct Config {
+        std::array<Board, static_cast<std::size_t>(boards)> board; ///< joints they name must be < n
+        TrackConfig position;
+        std::array<Range, static_cast<std::size_t>(n)> position_range; ///< rad
+        ClockGate::Config clock;
+        int output_bus = 0; ///< 0, or 1 where the sensor has a bus for itself
+    };
+
+    constexpr SampleAssembly(const Config& config, const Output& output) noexcept
+        : SampleAssembly(config, output, std::make_index_sequence<static_cast<std::size_t>(n)>{}) {}
+
+    /// A moment at which a sample may be assembled.
+    struct Moment {
+        enum class Kind : std::uint8_t {
+            none,
+            sync, ///< a SYNC came: the values measured at the one before are complete
+            set   ///< every joint and the output have new measurements since the last set
+        };
+        Kind kind = Kind::none;
+        std::int64_t instant_ns = 0;
+    };
+
+    /// Takes a frame of bus 0 or 1, read at `now_ns`.
+    constexpr Moment take(const Frame& frame, std::int64_t now_ns, int bus = 0) noexcept {
+        BusWatch& watch = watch_[static_cast<std::size_t>(bus)];
+        if (frame.error) {
+            return {}; // the bus has counted it and has it in its state
+        }
+        if (frame.origin == Origin::this_socket) {
+            ++watch.own;
+            return {};
+        }
+        watch.from_host += frame.origin == Origin::this_host ? 1U : 0U;
+        const auto stamp_ns = watch.clock.accept(frame.stamp_ns, now_ns);
+        if (!stamp_ns) {
+            return {};
+        }
+        Frame timed = frame;
+        timed.stamp_ns = *stamp_ns;
+        return offer(timed, bus);
+    }
+
+    /// Takes all that a bus has, in at most `rounds` drains, and its state. `on_moment` gets the moments
+    /// other than none, as they come.
+    template <Bus B, class OnMoment>
+    constexpr void drain(B& bus, std::span<Frame> buffer, OnMoment on_moment, int index = 0) noexcept {
+        for (int round = 0; round < rounds; ++round) {
+            const std::span<const Frame> frames = bus.drain(buffer);
+            update(bus.state(), bus.counters(), index);
+            for (const Frame& frame : frames) {
+                if (const Moment moment = take(frame, bus.now_ns(), index);
+                    moment.kind != Moment::Kind::none) {
+                    on_moment(moment);
+                }
+            }
+            if (frames.size() < buffer.size()) {
+                return;
+            }
+        }
+    }
+    template <Bus B>
+    constexpr void drain(B& bus, std::span<Frame> buffer, int index = 0) noexcept {
+        drain(
+            bus, buffer, [](const Moment& /*moment*/) {}, index);
+    }
+
+    /// State and counters of a bus after a drain; `drain` does it.
+    constexpr void update(BusState state, const BusCounters& counters, int bus = 0) noexcept {
+        BusHealth& health = watch_[static_cast<std::size_t>(bus)].health;
+        const std::uint64_t before = health.losses();
+        health.update(state, counters);
+        if (health.losses() != before && bus == output_bus_) {
+            output_.lost();
+        }
+    }
+
+    struct Assembled {
+        Sample sample;
+        Report report;
+        [[nodiscard]] constexpr bool valid() const noexcept { return report.position == Reason::ok; }
+    };
+
+    /// The sample of an instant not later than `now_ns`, both on the clock of the buses. Without `valid()`
+    /// its positions are 0, and without output_valid its outputs.
+    constexpr Assembled assemble(std::int64_t instant_ns, std::int64_t now_ns) noexcept {
+        Assembled result{};
+        result.sample.time_ns = instant_ns;
+        fill_ages(result.report, now_ns);
+        result.report.position = fill_positions(result.sample, result.report.joint);
+        const bool loss = take_losses();
+        if (result.valid()) {
+            last_instant_ns_ = instant_ns;
+            result.report.output = fill_output(result.sample, loss);
+        } else {
+            result.sample.position = {};
+            result.report.output = output_condition(output_.at(instant_ns), loss);
+        }
+        result.sample.output_valid = result.valid() && result.report.output == Reason::ok;
+        count(result);
+        return result;
+    }
+
+    /// A standard identifier that two devices of one bus would send; none if all is well. O(2048 (boards +
+    /// 1)); for the start.
+    [[nodiscard]] constexpr std::optional<std::uint32_t> colliding_id() const noexcept {
+        for (std::uint32_t id = 0; id <= 0x7FF; ++id) {
+            int senders = output_bus_ == 0 && output_.claims(id) ? 1 : 0;
+            for (const Board& board : board_) {
+                senders += board.claims(id) ? 1 : 0;
+            }
+            if (senders > 1) {
+                return id;
+            }
+        }
+        return std::nullopt;
+    }
+
+    [[nodiscard]] constexpr const AssemblyCounters& counters() const noexcept { return counters_; }
+    [[nodiscard]] constexpr const BusWatch& bus(int index) const noexcept {
+        return watch_[static_cast<std::size_t>(index)];
+    }
+    [[nodiscard]] constexpr const Track<1, capacity>& position(int joint) const noexcept {
+        return position_[static_cast<std::size_t>(joint)];
+    }
+    [[nodiscard]] constexpr const Output& output() const noexcept { return output_; }
+
+  private:
+    static constexpr int rounds = 8;
+    static constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::max();
+
+    template <std::size_t... i>
+    constexpr SampleAssembly(const Config& config, const Output& output,
+                             std::index_sequence<i...> /*joints*/) noexcept
+        : board_(config.board), position_{Track<1, capacity>(config.position, {config.position_range[i]},
+                                                             position_reasons)...},
+          output_(output),
+          output_bus_(config.output_bus), watch_{BusWatch(config.clock), BusWatch(config.clock)} {}
+
+    /// To the boards and the sensor that are on this bus.
+    constexpr Moment offer(const Frame& frame, int bus) noexcept {
+        bool known = false;
+        Moment moment;
+        if (bus == 0) {
+            for (Board& board : board_) {
+                const Decoded decoded = board.decode(frame);
+                known = known || decoded.kind != Decoded::Kind::nothing || claims(board, frame);
+                moment = take_decoded(decoded, frame, bus, moment);
+            }
+        }
+        if (bus == output_bus_) {
+            const Decoded decoded = output_.take(frame);
+            known = known || decoded.kind != Decoded::Kind::nothing || claims(output_, frame);
+            moment = take_decoded(decoded, frame, bus, moment);
+        }
+        if (!known) {
+            watch_[static_cast<std::size_t>(bus)].unknown.add(frame, Reason::ok);
+        }
+        return moment.kind == Moment::Kind::none ? completed_set() : moment;
+    }
+
+    template <class Device>
+    [[nodiscard]] static constexpr bool claims(const Device& device, const Frame& frame) noexcept {
+        return !frame.extended && device.claims(frame.id);
+    }
+
+    constexpr Moment take_decoded(const Decoded& decoded, const Frame& frame, int bus,
+                                  const Moment& moment) noexcept {
+        BusWatch& watch = watch_[static_cast<std::size_t>(bus)];
+        switch (decoded.kind) {
+        case Decoded::Kind::values:
+            for (int i = 0; i < decoded.joints; ++i) {
+                take_joint(decoded.joint[static_cast<std::size_t>(i)]);
+            }
+            break;
+        case Decoded::Kind::rejected:
+            watch.rejected.add(frame, decoded.reason);
+            break;
+        case Decoded::Kind::lost:
+            watch.health.device_lost();
+            break;
+        case Decoded::Kind::sync:
+            return moment.kind == Moment::Kind::none ? synchronised(frame.stamp_ns) : moment;
+        case Decoded::Kind::nothing:
+        case Decoded::Kind::part:
+        case Decoded::Kind::status:
+            break;
+        }
+        return moment;
+    }
+
+    constexpr void take_joint(const JointValue& value) noexcept {
+        if (value.joint < 0 || value.joint >= n) {
+            return;
+        }
+        const auto joint = static_cast<std::size_t>(value.joint);
+        if (value.position_reason != Reason::waiting_for_position) {
+            if (value.position_reason != Reason::ok) {
+                position_[joint].disqualify();
+            }
+            position_[joint].push(value.stamp_ns, value.position_reason, {value.position_rad},
+                                  value.raw_zero);
+            seen_[joint] = true;
+        }
+        output_.take(value);
+    }
+
+    /// Every drive tells of the same SYNC.
+    constexpr Moment synchronised(std::int64_t stamp_ns) noexcept {
+        const bool again = synchronised_ && stamp_ns == sync_ns_;
+        const bool first = !synchronised_;
+        const std::int64_t before_ns = sync_ns_;
+        synchronised_ = true;
+        sync_ns_ = stamp_ns;
+        return first || again ? Moment{} : Moment{Moment::Kind::sync, before_ns};
+    }
+
+    constexpr Moment completed_set() noexcept {
+        const bool joints = std::ranges::all_of(seen_, [](bool seen) { return seen; });
+        if (!joints || !output_.heard() || output_.newest_ns() <= set_ns_) {
+            return {};
+        }
+        seen_ = {};
+        set_ns_ = output_.newest_ns();
+        return {Moment::Kind::set, set_ns_};
+    }
+
+    constexpr void fill_ages(Report& report, std::int64_t now_ns) const noexcept {
+        for (std::size_t i = 0; i < position_.size(); ++i) {
+            report.position_age_ns[i] = position_[i].heard() ? now_ns - position_[i].newest_ns() : never_ns;
+        }
+        report.output_age_ns = output_.heard() ? now_ns - output_.newest_ns() : never_ns;
+    }
+
+    constexpr Reason fill_positions(Sample& sample, int& joint) noexcept {
+        if (const Reason down = watch_[0].health.reason(); down != Reason::ok) {
+            return down;
+        }
+        for (std::size_t i = 0; i < position_.size(); ++i) {
+            const Measurement<1> measured = position_[i].at(sample.time_ns);
+            if (measured.reason != Reason::ok) {
+                joint = static_cast<int>(i);
+                return explain(measured.reason, 0);
+            }
+            sample.position[static_cast<int>(i)] = static_cast<Scalar>(measured.value[0]);
+        }
+        return sample.time_ns > last_instant_ns_ ? Reason::ok : Reason::time_not_increasing;
+    }
+
+    constexpr Reason fill_output(Sample& sample, bool loss) noexcept {
+        const Measurement<Output::outputs> measured = output_.at(sample.time_ns);
+        const Reason reason = output_condition(measured, loss);
+        if (reason != Reason::ok) {
+            return reason;
+        }
+        last_output_ns_ = measured.stamp_ns;
+        for (int k = 0; k < Output::outputs; ++k) {
+            sample.output[k] = static_cast<Scalar>(measured.value[static_cast<std::size_t>(k)]);
+        }
+        return Reason::ok;
+    }
+
+    constexpr Reason output_condition(const Measurement<Output::outputs>& measured,
+                                      bool loss) const noexcept {
+        if (const Reason down = watch_[static_cast<std::size_t>(output_bus_)].health.reason();
+            down != Reason::ok) {
+            return down;
+        }
+        if (measured.reason != Reason::ok) {
+            return explain(measured.reason, output_bus_);
+        }
+        if (loss) {
+            return Reason::frames_lost;
+        }
+        return measured.stamp_ns > last_output_ns_ ? Reason::ok : Reason::output_not_new;
+    }
+
+    /// A source that is missing because its bus' stamps are not believed.
+    [[nodiscard]] constexpr Reason explain(Reason reason, int bus) const noexcept {
+        const bool missing = reason == Reason::position_stale || reason == Reason::output_stale ||
+                             reason == Reason::waiting_for_position || reason == Reason::waiting_for_output;
+        const bool doubtful = watch_[static_cast<std::size_t>(bus)].clock.doubtful();
+        return missing && doubtful ? Reason::clock_jumped : reason;
+    }
+
+    /// Whether frames of the output's bus were lost since the last sample.
+    constexpr bool take_losses() noexcept {
+        return watch_[static_cast<std::size_t>(output_bus_)].health.take_loss();
+    }
+
+    constexpr void count(const Assembled& result) noexcept {
+        ++counters_.calls;
+        counters_.samples += result.valid() ? 1U : 0U;
+        counters_.outputs += result.sample.output_valid ? 1U : 0U;
+        if (!result.valid()) {
+            ++counters_.positions_refused[static_cast<std::size_t>(result.report.position)];
+        } else if (!result.sample.output_valid) {
+            ++counters_.outputs_refused[static_cast<std::size_t>(result.report.output)];
+        }
+    }
+
+    std::array<Board, static_cast<std::size_t>(boards)> board_;
+    std::array<Track<1, capacity>, static_cast<std::size_t>(n)> position_;
+    Output output_;
+    int output_bus_;
+    std::array<BusWatch, buses> watch_;
+    std::array<bool, static_cast<std::size_t>(n)> seen_{};
+    bool synchronised_ = false;
+    std::int64_t sync_ns_ = 0;
+    std::int64_t set_ns_ = std::numeric_limits<std::int64_t>::min(); ///< instant of the last set
+    std::int64_t last_instant_ns_ = std::numeric_limits<std::int64_t>::min();
+    std::int64_t last_output_ns_ = std::numeric_limits<std::int64_t>::min();
+    AssemblyCounters counters_;
+};
+
+} // namespace dfdyn::hal

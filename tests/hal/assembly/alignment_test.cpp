@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// Values of one instant from devices with their own phases, rates and latencies.
+#include "dfdyn/hal/device/icub_2foc.hpp"
+#include "dfdyn/hal/device/odrive.hpp"
+#include "dfdyn/hal/device/robotous_rft.hpp"
+#include "dfdyn/hal/sample_assembly.hpp"
+
+#include "tests/hal/support/frames.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <cmath>
+#include <vector>
+
+using namespace dfdyn::hal;
+using namespace dfdyn::tests;
+
+namespace {
+
+constexpr std::int64_t us = 1000;
+constexpr std::int64_t ms = 1000 * us;
+
+using Arm = SampleAssembly<float, 2, OdriveAxis, 2, WrenchOutput<RobotousRft, 16>>;
+
+double angle(double time_s) { return std::sin(3 * time_s); }
+double force(double time_s) { return 100 * angle(time_s); } // so that a wrong instant shows
+double difference(float a, double b) { return std::abs(static_cast<double>(a) - b); }
+double seconds(std::int64_t time_ns) { return 1e-9 * static_cast<double>(time_ns); }
+
+constexpr QualificationGate::Config at_once{.readings = 1, .zero_readings = 1};
+constexpr std::int64_t force_latency_ns = 1200 * us;
+
+Arm make_arm(int output_bus) {
+    const Range wide{-1000, 1000};
+    const Arm::Config config{.board = {OdriveAxis({.node = 1, .joint = 0, .heartbeat_timeout_ns = 0}),
+                                       OdriveAxis({.node = 2, .joint = 1, .heartbeat_timeout_ns = 0})},
+                             .position = {.max_age_ns = 3 * ms, .latency_ns = 0, .qualification = at_once},
+                             .position_range = {Range{-3, 3}, Range{-3, 3}},
+                             .clock = {},
+                             .output_bus = output_bus};
+    return {config,
+            {RobotousRft({.first_id = 0xF9, .second_id = 0xFA}),
+             {.track = {.max_age_ns = 3 * ms, .latency_ns = force_latency_ns, .qualification = at_once},
+              .range = {wide, wide, wide, wide, wide, wide},
+              .pair_window_ns = 400 * us,
+              .frozen_limit = 50}}}; // these forces have no noise, and stand at their peaks
+}
+
+/// What the devices send between 0 and `end_ns`, by their stamps: joint 1 each 1 ms, joint 2 each 0.97 ms
+/// with jitter, the force each 1.03 ms, stamped after its latency.
+std::vector<Frame> traffic(std::int64_t end_ns, std::mt19937_64& engine) {
+    std::vector<Frame> frames;
+    std::array<OdriveAxis, 2> axes{OdriveAxis({.node = 1}), OdriveAxis({.node = 2})};
+    const RobotousRft sensor({.first_id = 0xF9, .second_id = 0xFA});
+    std::uniform_int_distribution<std::int64_t> jitter(0, 100 * us);
+    for (std::size_t joint = 0; joint < 2; ++joint) {
+        const std::int64_t period = joint == 0 ? 1000 * us : 970 * us;
+        for (std::int64_t time = 130 * us; time < end_ns; time += period) {
+            const std::int64_t stamp = time + jitter(engine);
+            std::array<JointValue, 1> value{};
+            value[0].position_rad = angle(seconds(stamp));
+            frames.push_back(at_time(axes[joint].encode(value).frame[0], stamp));
+        }
+    }
+    for (std::int64_t time = 0; time < end_ns; time += 1030 * us) {
+        const double fx = force(seconds(time));
+        const FrameList halves = sensor.encode({fx, fx / 2, -fx, 0.1, 0.2, 0.3});
+        frames.push_back(at_time(halves.frame[0], time + force_latency_ns));
+        frames.push_back(at_time(halves.frame[1], time + force_latency_ns + 130 * us));
+    }
+    std::ranges::stable_sort(frames, {}, &Frame::stamp_ns);
+    return frames;
+}
+
+} // namespace
+
+TEST_CASE("a timer's samples are steady and true, whatever the phases, rates and latencies") {
+    DFDYN_SEEDED_ENGINE(engine);
+    for (const int output_bus : {0, 1}) {
+        Arm arm = make_arm(output_bus);
+        const std::vector<Frame> frames = traffic(1000 * ms, engine);
+        std::size_t next = 0;
+        int outputs = 0;
+        for (std::int64_t now = 10 * ms; now < 1000 * ms; now += ms) {
+            for (; next < frames.size() && frames[next].stamp_ns <= now; ++next) {
+                const bool wrench = frames[next].id == 0xF9 || frames[next].id == 0xFA;
+                arm.take(frames[next], now, wrench ? output_bus : 0);
+            }
+            const std::int64_t instant = now - force_latency_ns - 1300 * us;
+            const auto [sample, report] = arm.assemble(instant, now);
+            REQUIRE(report.position == Reason::ok);
+            REQUIRE(sample.time_ns == instant);
+            // Between points 1 ms apart a chord of 3 rad/s, 9 rad/s² misses by a few µrad; the force by a
+            // step too.
+            REQUIRE(difference(sample.position[0], angle(seconds(instant))) < 3e-6);
+            REQUIRE(difference(sample.position[1], angle(seconds(instant))) < 3e-6);
+            if (sample.output_valid) {
+                ++outputs;
+                REQUIRE(difference(sample.output[0], force(seconds(instant))) < 0.011);
+            } else {
+                REQUIRE(report.output ==
+                        Reason::output_not_new); // the sensor is a little slower than the timer
+            }
+        }
+        CHECK(outputs > 950);
+        CHECK(outputs < 970); // 990 ms / 1.03 ms
+    }
+}
+
+TEST_CASE("on its own bus a sensor's faults are its own") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Arm arm = make_arm(1);
+    arm.update(BusState::active, {}, 0);
+    arm.update(BusState::active, {}, 1);
+    for (const Frame& frame : traffic(20 * ms, engine)) {
+        arm.take(frame, frame.stamp_ns, frame.id >= 0xF9 && frame.id <= 0xFA ? 1 : 0);
+    }
+    arm.update(BusState::off, {}, 1);
+    const auto blind = arm.assemble(15 * ms, 20 * ms);
+    CHECK(blind.report.position == Reason::ok);
+    CHECK(blind.report.output == Reason::bus_off);
+    BusCounters lost;
+    lost.dropped = 1;
+    arm.update(BusState::active, lost, 1);
+    CHECK(arm.assemble(16 * ms, 20 * ms).report.output == Reason::frames_lost);
+    arm.update(BusState::active, lost, 0);
+    CHECK(arm.assemble(17 * ms, 20 * ms).report.output == Reason::ok);
+    arm.update(BusState::off, {}, 0);
+    CHECK(arm.assemble(18 * ms, 20 * ms).report.position == Reason::bus_off);
+    // A frame of the sensor on the joints' bus is nobody's.
+    arm.take(at_time(frame_of(0xF9, {0x0B, 0, 0, 0, 0, 0, 0, 0}), 21 * ms), 21 * ms, 0);
+    CHECK(arm.bus(0).unknown.count() == 1);
+}
+
+TEST_CASE("nothing was heard yet, and nothing is pretended") {
+    Arm arm = make_arm(0);
+    const auto [sample, report] = arm.assemble(0, 0);
+    CHECK(report.position == Reason::waiting_for_position);
+    CHECK(report.joint == 0);
+    CHECK(report.output == Reason::waiting_for_output);
+    CHECK(report.position_age_ns[0] == std::numeric_limits<std::int64_t>::max());
+    CHECK_FALSE(sample.output_valid);
+}
+
+TEST_CASE("an arm whose joints measure their currents has one output per joint") {
+    using CurrentArm = SampleAssembly<double, 2, icub::FocBoard, 2, EffortOutput<2, 8>>;
+    const std::array<icub::FocBoard, 2> boards{icub::FocBoard({.address = 1, .joint = 1}),
+                                               icub::FocBoard({.address = 2, .joint = 0})};
+    const TrackConfig track{.max_age_ns = 3 * ms, .latency_ns = 0, .qualification = at_once};
+    CurrentArm arm({.board = boards,
+                    .position = track,
+                    .position_range = {Range{-3, 3}, Range{-3, 3}},
+                    .clock = {},
+                    .output_bus = 0},
+                   EffortOutput<2, 8>({.track = track, .range = {Range{-10, 10}, Range{-5, 5}}}));
+    const auto send = [&](std::size_t board, double position_rad, double current_A, std::int64_t stamp) {
+        std::array<JointValue, 1> value{};
+        value[0].position_rad = position_rad;
+        value[0].effort = current_A;
+        return arm.take(at_time(boards[board].encode(value).frame[0], stamp), stamp);
+    };
+    using Kind = CurrentArm::Moment::Kind;
+    CHECK(send(0, 0.5, 2, ms).kind == Kind::none);
+    const auto set = send(1, -0.5, -3, ms + 100 * us);
+    CHECK(set.kind == Kind::set);
+    CHECK(set.instant_ns == ms);
+    send(0, 0.7, 4, 2 * ms);
+    send(1, -0.7, -5, 2 * ms + 100 * us);
+    const auto [sample, report] = arm.assemble(2 * ms, 3 * ms);
+    CHECK(report.position == Reason::ok);
+    REQUIRE(sample.output_valid);
+    CHECK(sample.position[0] == Approx(-0.68).margin(1e-4)); // nine tenths of the way
+    CHECK(sample.position[1] == Approx(0.7).margin(1e-4));
+    CHECK(sample.output[0] == Approx(-4.8).margin(1e-9));
+    CHECK(sample.output[1] == Approx(4).margin(1e-9));
+    // One joint's current is beyond its range: predicted only.
+    send(0, 0.7, 5.5, 3 * ms);
+    send(1, -0.7, -5, 3 * ms + 100 * us);
+    CHECK(arm.assemble(3 * ms, 4 * ms).report.output == Reason::output_out_of_range);
+    CHECK_FALSE(arm.colliding_id().has_value());
+}

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/sample_assembly.hpp"
+
+#include "tests/hal/support/arm_on_bus.hpp"
+
+namespace hal = dfdyn::hal;
+using namespace dfdyn::tests;
+
+TEST_CASE("an arm on a bus is learned from, tick by tick, once it has qualified") {
+    DFDYN_SEEDED_ENGINE(engine);
+    ArmOnBus arm(engine);
+    CHECK(arm.tick().position() == hal::Reason::history_too_short);
+    for (int tick = 1; tick < ArmOnBus::qualification_ticks; ++tick) {
+        CHECK(arm.tick().position() == hal::Reason::qualifying);
+    }
+    CHECK(arm.ticks_to_recover() == ArmOnBus::lags);
+    CHECK(arm.run(500));
+    const hal::AssemblyCounters& counters = arm.assembly.counters();
+    CHECK(counters.calls == 511 + ArmOnBus::lags);
+    CHECK(counters.samples == counters.outputs);
+    CHECK(counters.positions_refused[static_cast<int>(hal::Reason::qualifying)] == 9);
+    CHECK(arm.assembly.bus(0).unknown.count() == 0);
+    CHECK(arm.assembly.bus(0).rejected.count() == 0);
+    CHECK_FALSE(arm.assembly.colliding_id().has_value());
+}

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/assembly/track.hpp"
+
+#include "tests/support/catch.hpp"
+
+using namespace dfdyn::hal;
+
+namespace {
+
+using Joint = Track<1, 4>;
+
+/// Values are held for 15 ns; frames come 2 ns after the measurement; three readings qualify.
+Joint make_joint() { return {{15, 2, {3, 10}}, {{{-1, 1}}}, position_reasons}; }
+
+/// Qualified, with 0.1 at 10, 0.2 at 20, 0.3 at 30 and 0.4 at 40.
+Joint ready_joint() {
+    Joint joint = make_joint();
+    for (int i = -2; i <= 4; ++i) {
+        joint.push(10 * i + 2, Reason::ok, {0.1 * i}, false);
+    }
+    return joint;
+}
+
+} // namespace
+
+TEST_CASE("a value is that of the instant: measured, interpolated, or held") {
+    Joint joint = ready_joint();
+    CHECK(joint.at(30).value[0] == Approx(0.3));
+    CHECK(joint.at(30).stamp_ns == 30);
+    CHECK(joint.at(35).value[0] == Approx(0.35));
+    CHECK(joint.at(35).stamp_ns == 40);
+    CHECK(joint.at(55).value[0] == Approx(0.4));
+    CHECK(joint.at(55).stamp_ns == 40);
+    CHECK(joint.at(55).reason == Reason::ok);
+    CHECK(joint.newest_ns() == 40);
+}
+
+TEST_CASE("a value that is not there has a reason") {
+    CHECK(make_joint().at(0).reason == Reason::waiting_for_position);
+    Joint joint = ready_joint();
+    CHECK(joint.at(9).reason == Reason::history_too_short);
+    CHECK(joint.at(56).reason == Reason::position_stale);
+    CHECK(joint.staleness().count() == 1);
+    joint.push(62, Reason::ok, {0.6}, false);
+    CHECK(joint.at(50).reason == Reason::position_gap);
+    CHECK(joint.gap().count() == 1);
+    CHECK(joint.at(40).reason == Reason::ok);
+}
+
+TEST_CASE("a bad reading spoils the instants next to it and no others") {
+    Joint joint = ready_joint();
+    joint.push(52, Reason::encoder_fault, {0.5}, false);
+    joint.push(62, Reason::ok, {0.6}, false);
+    joint.push(72, Reason::ok, {0.7}, false);
+    CHECK(joint.at(40).reason == Reason::ok);
+    for (const int instant : {41, 50, 59}) {
+        CHECK(joint.at(instant).reason == Reason::encoder_fault);
+    }
+    CHECK(joint.at(60).reason == Reason::ok);
+    CHECK(joint.at(65).reason == Reason::ok);
+}
+
+TEST_CASE("a reading beyond the range is refused") {
+    Joint joint = ready_joint();
+    joint.push(52, Reason::ok, {1.001}, false);
+    CHECK(joint.at(50).reason == Reason::position_out_of_range);
+    CHECK(joint.range().count() == 1);
+}
+
+TEST_CASE("a joint qualifies, and does so anew after a silence or a fault") {
+    Joint joint = make_joint();
+    joint.push(12, Reason::ok, {0}, false);
+    joint.push(22, Reason::ok, {0}, false);
+    CHECK(joint.at(20).reason == Reason::qualifying);
+    joint.push(32, Reason::ok, {0}, false);
+    CHECK(joint.at(30).reason == Reason::ok);
+    CHECK(joint.at(25).reason == Reason::qualifying);
+    joint.push(52, Reason::ok, {0}, false); // a silence of 20
+    CHECK(joint.at(50).reason == Reason::qualifying);
+    joint.push(62, Reason::ok, {0}, false);
+    joint.push(72, Reason::ok, {0}, false);
+    CHECK(joint.at(70).reason == Reason::ok);
+    joint.disqualify();
+    joint.push(82, Reason::ok, {0}, false);
+    CHECK(joint.at(80).reason == Reason::qualifying);
+}
+
+TEST_CASE("a reading that is not later than the last is counted and changes nothing") {
+    Joint joint = ready_joint();
+    joint.push(42, Reason::ok, {0.9}, false);
+    joint.push(32, Reason::encoder_fault, {0.9}, false);
+    CHECK(joint.not_later() == 2);
+    CHECK(joint.at(40).value[0] == Approx(0.4));
+}
+
+TEST_CASE("outputs have their own reasons") {
+    Track<1, 4> output({15, 0, {1, 10}}, {{{-1, 1}}}, output_reasons);
+    CHECK(output.at(0).reason == Reason::waiting_for_output);
+    output.push(0, Reason::ok, {5}, false);
+    CHECK(output.at(0).reason == Reason::output_out_of_range);
+    output.push(10, Reason::ok, {0}, false);
+    CHECK(output.at(26).reason == Reason::output_stale);
+    output.push(30, Reason::ok, {0}, false);
+    CHECK(output.at(20).reason == Reason::output_gap);
+}

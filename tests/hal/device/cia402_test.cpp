@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/device/cia402.hpp"
+
+#include "tests/hal/support/frames.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <cmath>
+
+using namespace dfdyn::hal;
+using namespace dfdyn::tests;
+using Kind = Decoded::Kind;
+
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+
+/// Node 5, TPDO2 with position and velocity; 0.001 rad per unit, zero at 0.25 rad; torque in a TPDO4 of 2
+/// bytes.
+Cia402Drive::Config elbow_config() {
+    return {.node = 5,
+            .joint = 3,
+            .position_pdo = 0x280,
+            .position_length = 8,
+            .position = {.length = 32, .encoding = Encoding::signed_integer, .factor = 0.001, .offset = 0.25},
+            .effort_pdo = 0x480,
+            .effort_length = 2,
+            .effort = {.length = 16, .encoding = Encoding::signed_integer, .factor = 0.02}};
+}
+
+const Frame minus_two = frame_of(0x285, {0x30, 0xF8, 0xFF, 0xFF, 0x11, 0x22, 0x33, 0x44}, 7 * ms); // -2000
+
+} // namespace
+
+TEST_CASE("a CiA 402 drive's PDOs are read as they are mapped") {
+    Cia402Drive drive(elbow_config());
+    const Decoded decoded = drive.decode(minus_two);
+    REQUIRE(decoded.kind == Kind::values);
+    CHECK(decoded.joint[0].joint == 3);
+    CHECK(decoded.joint[0].stamp_ns == 7 * ms);
+    CHECK(decoded.joint[0].position_reason == Reason::ok);
+    CHECK(decoded.joint[0].position_rad == Approx(-1.75));
+    CHECK(decoded.joint[0].effort_reason == Reason::no_output);
+    const Decoded torque = drive.decode(frame_of(0x485, {0x9C, 0xFF})); // -100
+    CHECK(torque.joint[0].position_reason == Reason::waiting_for_position);
+    CHECK(torque.joint[0].effort_reason == Reason::ok);
+    CHECK(torque.joint[0].effort == Approx(-2));
+}
+
+TEST_CASE("a synchronous drive measures at the SYNC before") {
+    Cia402Drive drive(elbow_config());
+    CHECK(drive.decode(frame_of(0x080, {}, 5 * ms)).kind == Kind::sync);
+    CHECK(drive.decode(minus_two).joint[0].stamp_ns == 5 * ms);
+    CHECK(drive.decode(frame_of(0x080, {0x17}, 6 * ms)).kind == Kind::sync); // with a counter
+    CHECK(drive.decode(minus_two).joint[0].stamp_ns == 6 * ms);
+    Cia402Drive::Config config = elbow_config();
+    config.synchronous = false;
+    Cia402Drive free_running(config);
+    free_running.decode(frame_of(0x080, {}, 5 * ms));
+    CHECK(free_running.decode(minus_two).joint[0].stamp_ns == 7 * ms);
+}
+
+TEST_CASE("a drive that is not operational has no values") {
+    Cia402Drive drive(elbow_config());
+    for (const std::uint8_t state :
+         {std::uint8_t{0}, std::uint8_t{4}, std::uint8_t{127}}) { // boot-up, stopped, pre-operational
+        CHECK(drive.decode(frame_of(0x705, {state})).reason == Reason::device_not_operational);
+        CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::device_not_operational);
+        CHECK(drive.decode(frame_of(0x485, {0, 0})).joint[0].effort_reason == Reason::device_not_operational);
+        CHECK(drive.decode(frame_of(0x705, {5})).reason == Reason::ok);
+        CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::ok);
+    }
+}
+
+TEST_CASE("a drive whose heartbeat is expected is believed only while it beats") {
+    Cia402Drive::Config config = elbow_config();
+    config.heartbeat_timeout_ns = 3 * ms;
+    Cia402Drive drive(config);
+    CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::heartbeat_missing);
+    drive.decode(frame_of(0x705, {5}, 4 * ms));
+    CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::ok);
+    CHECK(drive.decode(at_time(minus_two, 7 * ms + 1)).joint[0].position_reason == Reason::heartbeat_missing);
+}
+
+TEST_CASE("an emergency refuses what it concerns until it is over") {
+    Cia402Drive drive(elbow_config());
+    const Frame torque = frame_of(0x485, {1, 0});
+    // heartbeat error 0x8130 of the trace in ros_canopen's issue: not the sensor
+    CHECK(drive.decode(frame_of(0x085, {0x30, 0x81, 0x11, 0, 0, 0, 0, 0})).reason == Reason::device_fault);
+    CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::ok);
+    CHECK(drive.decode(torque).joint[0].effort_reason == Reason::device_fault);
+    CHECK(drive.decode(frame_of(0x085, {0x05, 0x73, 0, 0, 0, 0, 0, 0})).reason == Reason::encoder_fault);
+    CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::encoder_fault);
+    drive.decode(frame_of(0x085, {0x30, 0x81, 0, 0, 0, 0, 0, 0})); // another one does not end the first
+    CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::encoder_fault);
+    CHECK(drive.decode(frame_of(0x085, {0, 0, 0, 0, 0, 0, 0, 0})).reason == Reason::ok);
+    CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::ok);
+    CHECK(drive.decode(torque).joint[0].effort_reason == Reason::ok);
+}
+
+TEST_CASE("a drive's frames have exactly their lengths") {
+    const Cia402Drive drive(elbow_config());
+    CHECK(rejects_malformed(drive, minus_two, {8}));
+    CHECK(rejects_malformed(drive, frame_of(0x485, {1, 2}), {2}));
+    CHECK(rejects_malformed(drive, frame_of(0x705, {5}), {1}));
+    CHECK(rejects_malformed(drive, frame_of(0x085, {0, 0, 0, 0, 0, 0, 0, 0}), {8}));
+    CHECK(rejects_malformed(drive, frame_of(0x080, {}), {0, 1}));
+    for (const std::uint32_t id : {0x284U, 0x185U, 0x084U, 0x704U, 0x385U}) {
+        CHECK(Cia402Drive(drive).decode(frame_of(id, {0, 0, 0, 0, 0, 0, 0, 0})).kind == Kind::nothing);
+    }
+}
+
+TEST_CASE("mappings that cannot be are seen before the start") {
+    CHECK(Cia402Drive(elbow_config()).config_is_valid());
+    const auto invalid = [](auto change) {
+        Cia402Drive::Config config = elbow_config();
+        change(config);
+        return !Cia402Drive(config).config_is_valid();
+    };
+    CHECK(invalid([](auto& config) { config.node = 0; }));
+    CHECK(invalid([](auto& config) { config.node = 128; }));
+    CHECK(invalid([](auto& config) { config.position.start_bit = 33; })); // runs out of the PDO
+    CHECK(invalid([](auto& config) { config.position.factor = 0; }));
+    CHECK(invalid([](auto& config) { config.position_pdo = 0x100; })); // 0x105: reserved
+    CHECK(invalid([](auto& config) { config.position_pdo = 0x580; })); // SDO
+    CHECK(invalid([](auto& config) { config.effort_length = 1; }));
+    CHECK(invalid([](auto& config) { config.effort_pdo = 0x600; }));
+    CHECK(invalid([](auto& config) { config.effort_pdo = config.position_pdo; })); // of two lengths
+}
+
+TEST_CASE("what a simulated drive sends decodes to within half a unit, in one PDO or two") {
+    DFDYN_SEEDED_ENGINE(engine);
+    std::uniform_real_distribution<double> angle(-3, 3);
+    for (const bool shared : {false, true}) {
+        Cia402Drive::Config config = elbow_config();
+        if (shared) {
+            config.effort_pdo = config.position_pdo;
+            config.effort_length = config.position_length;
+            config.effort.start_bit = 32;
+        }
+        Cia402Drive drive(config);
+        for (int i = 0; i < 500; ++i) {
+            std::array<JointValue, 1> values{};
+            values[0].position_rad = angle(engine);
+            values[0].effort = 10 * angle(engine);
+            const FrameList sent = drive.encode(values);
+            REQUIRE(sent.count == (shared ? 1 : 2));
+            const Decoded position = drive.decode(sent.frame[0]);
+            const Decoded effort = drive.decode(sent.frame[shared ? 0 : 1]);
+            REQUIRE(std::abs(position.joint[0].position_rad - values[0].position_rad) <= 0.50001e-3);
+            REQUIRE(std::abs(effort.joint[0].effort - values[0].effort) <= 0.010001);
+        }
+    }
+    Cia402Drive drive(elbow_config());
+    CHECK(drive.decode(Cia402Drive::encode_sync()).kind == Kind::sync);
+    CHECK(drive.decode(drive.encode_heartbeat(Cia402Drive::State::stopped)).reason ==
+          Reason::device_not_operational);
+    CHECK(drive.decode(drive.encode_emcy(0x7300)).reason == Reason::encoder_fault);
+}

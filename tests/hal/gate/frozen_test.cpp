@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/gate/frozen.hpp"
+
+#include "tests/support/catch.hpp"
+
+using Gate = dfdyn::hal::FrozenGate<3>;
+
+TEST_CASE("a sensor that repeats itself is frozen from the limit on, until it moves") {
+    Gate gate(4);
+    const Gate::Raw stuck{7, -3, 0};
+    for (int reading = 1; reading <= 10; ++reading) {
+        CHECK(gate.frozen(stuck) == (reading >= 4));
+    }
+    CHECK(gate.count() == 1);
+    CHECK_FALSE(gate.frozen({7, -3, 1})); // one step of one channel
+    for (int reading = 1; reading <= 10; ++reading) {
+        CHECK(gate.frozen(stuck) == (reading >= 4));
+    }
+    CHECK(gate.count() == 2);
+}
+
+TEST_CASE("a sensor that now and then repeats a reading is not frozen") {
+    Gate gate(4);
+    for (int reading = 0; reading < 1000; ++reading) {
+        CHECK_FALSE(gate.frozen({reading / 3, 0, 0}));
+    }
+    CHECK(gate.count() == 0);
+}
+
+TEST_CASE("zeros freeze as any other value does") {
+    Gate gate(2);
+    CHECK_FALSE(gate.frozen({0, 0, 0}));
+    CHECK(gate.frozen({0, 0, 0}));
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/gate/qualification.hpp"
+
+#include "tests/support/catch.hpp"
+
+using dfdyn::hal::QualificationGate;
+
+namespace {
+
+constexpr QualificationGate::Config quick{.readings = 3, .zero_readings = 20};
+
+} // namespace
+
+TEST_CASE("a source qualifies with a few readings") {
+    QualificationGate gate(quick);
+    CHECK_FALSE(gate.qualified(false));
+    CHECK_FALSE(gate.qualified(false));
+    CHECK(gate.qualified(false));
+    CHECK(gate.qualified(true)); // a zero is as good as any from now on
+}
+
+TEST_CASE("zeros after power-on do not count") {
+    QualificationGate gate(quick);
+    for (int i = 0; i < 19; ++i) {
+        CHECK_FALSE(gate.qualified(true));
+    }
+    CHECK_FALSE(gate.qualified(false));
+    CHECK_FALSE(gate.qualified(false));
+    CHECK(gate.qualified(false));
+}
+
+TEST_CASE("very many zeros in a row are believed") {
+    QualificationGate gate(quick);
+    for (int i = 1; i < 20; ++i) {
+        CHECK_FALSE(gate.qualified(true));
+    }
+    CHECK(gate.qualified(true));
+    CHECK(gate.qualified(false));
+}
+
+TEST_CASE("a source that was away qualifies anew") {
+    QualificationGate gate(quick);
+    gate.restart(); // nothing to lose
+    CHECK(gate.restarts() == 0);
+    for (int i = 0; i < 3; ++i) {
+        gate.qualified(false);
+    }
+    gate.restart();
+    CHECK(gate.restarts() == 1);
+    CHECK_FALSE(gate.qualified(false));
+    CHECK_FALSE(gate.qualified(true));
+    CHECK_FALSE(gate.qualified(false));
+    CHECK(gate.qualified(false));
+}

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/gate/staleness.hpp"
+
+#include "tests/support/catch.hpp"
+
+TEST_CASE("a value stands for as long as its limit, then it is stale") {
+    dfdyn::hal::StalenessGate gate(10);
+    CHECK_FALSE(gate.stale(100, 100));
+    CHECK_FALSE(gate.stale(100, 110));
+    CHECK(gate.count() == 0);
+    CHECK(gate.stale(100, 111));
+    CHECK(gate.stale(100, 1000000));
+    CHECK(gate.count() == 2);
+    CHECK_FALSE(gate.stale(115, 111)); // measured after the instant
+}
