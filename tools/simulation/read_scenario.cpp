@@ -6,10 +6,7 @@
 #include "tools/simulation/scenario_reader.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 namespace dfdyn::tools {
 
@@ -17,18 +14,7 @@ namespace {
 
 constexpr std::string_view schema = "dfdyn.scenario/1";
 
-nlohmann::json load(const std::filesystem::path& path) {
-    if (std::filesystem::is_directory(path)) {
-        throw system_error(path, "cannot be read as a scenario", EISDIR);
-    }
-    errno = 0;
-    std::ifstream file(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    if (!file || text.empty()) {
-        throw system_error(path, "cannot be read as a scenario", errno != 0 ? errno : ENODATA);
-    }
-    return parse_json(text, shown(path));
-}
+nlohmann::json load(const std::filesystem::path& path) { return read_json(path, "a scenario"); }
 
 std::vector<std::string> read_columns(const JsonReader& reader) {
     static constexpr std::string_view known[] = {"q", "qd", "qdd", "tau", "i", "wrench"};
