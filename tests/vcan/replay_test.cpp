@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/catch.hpp"
+#include "tests/tools/can/bus_support.hpp"
+#include "tests/vcan/peer.hpp"
+#include "tools/evaluation/replay_interface.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <thread>
+
+namespace {
+
+using namespace dfdyn::tools;
+using dfdyn::tests::bus_folder;
+using dfdyn::tests::IcubLog;
+
+bool same_bits(const std::vector<float>& one, const std::vector<float>& other, std::size_t count) {
+    return std::equal(one.begin(), one.begin() + static_cast<std::ptrdiff_t>(count), other.begin(),
+                      [](float a, float b) { return std::bit_cast<int>(a) == std::bit_cast<int>(b); });
+}
+
+} // namespace
+
+TEST_CASE("what is predicted on a live bus, its recording replayed in-process predicts bit for bit") {
+    const IcubLog log;
+    const BusDescription bus = read_bus_description(bus_folder + "icub_arm_strain.json");
+    const auto recorded = log.directory.path() / "recorded.log";
+    const std::atomic<bool> stop = false;
+    std::thread player([&] {
+        dfdyn::tests::run(std::string(DFDYN_PROGRAM) + " play --log " + log.path.string() + " --can vcan0");
+    });
+    const auto live_estimator = make_estimator(log.model, true);
+    const ReplayedRecording live =
+        replay_interface(*live_estimator, {&log.model, 1}, bus, {"vcan0", 3, recorded}, 0, stop).replayed;
+    player.join();
+    const auto estimator = make_estimator(log.model, true);
+    const ReplayedBus again = replay_log(*estimator, {&log.model, 1}, bus, recorded, "", 0);
+    const ReplayedRecording& replayed = again.replayed;
+
+    CHECK(again.bus.frames == 4 * 500 + 6 * 5); // and the sensor's full scales
+    const std::size_t ticks = replayed.status.size();
+    REQUIRE(ticks > 400);
+    REQUIRE(live.status.size() >= ticks); // the silence after the last frame is not in the recording
+    CHECK(std::ranges::count_if(live.status, [](const auto& status) { return status.learned(); }) > 100);
+    CHECK(std::equal(replayed.time_s.begin(), replayed.time_s.end(), live.time_s.begin()));
+    CHECK(std::equal(replayed.bus_reason.begin(), replayed.bus_reason.end(), live.bus_reason.begin()));
+    CHECK(same_bits(replayed.predicted, live.predicted, 6 * ticks));
+    CHECK(same_bits(replayed.standard_deviation, live.standard_deviation, 6 * ticks));
+}
