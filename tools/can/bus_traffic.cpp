@@ -41,14 +41,18 @@ BusTraffic::BusTraffic(const BusDescription& description, const TrafficOptions& 
       next_output_ns_(long_ago_ns), next_heartbeat_ns_(long_ago_ns) {}
 
 void BusTraffic::add(std::int64_t time_ns, std::span<const double> position, std::span<const double> output) {
-    first_ns_ = rows_ == 0 ? time_ns : first_ns_;
+    if (rows_ == 0) {
+        first_ns_ = time_ns;
+        offer(frames_.full_scales(), time_ns);
+        offer(frames_.heartbeats(), time_ns);
+        next_heartbeat_ns_ = time_ns + DeviceFrames::heartbeat_period_ns;
+    }
     last_ns_ = time_ns;
     ++rows_;
+    time_ns += lead_ns;
     wire_.send_before(time_ns);
     if (due(time_ns, DeviceFrames::heartbeat_period_ns, next_heartbeat_ns_)) {
-        for (const hal::Frame& frame : frames_.heartbeats()) {
-            wire_.offer(frame, time_ns);
-        }
+        offer(frames_.heartbeats(), time_ns);
     }
     if (due(time_ns, joint_period_ns_, next_joints_ns_)) {
         if (const auto sync = frames_.sync()) {
@@ -61,10 +65,7 @@ void BusTraffic::add(std::int64_t time_ns, std::span<const double> position, std
         }
     }
     if (due(time_ns, output_period_ns_, next_output_ns_)) {
-        const std::int64_t ready_ns = time_ns + jitter_ns();
-        for (const hal::Frame& frame : frames_.wrench(output)) {
-            wire_.offer(frame, ready_ns);
-        }
+        offer(frames_.wrench(output), time_ns + jitter_ns());
     }
 }
 
@@ -86,6 +87,12 @@ void BusTraffic::finish() {
 /// Not by std::uniform_real_distribution, which differs between standard libraries.
 std::int64_t BusTraffic::jitter_ns() {
     return std::llround(largest_jitter_ns_ * std::ldexp(static_cast<double>(engine_() >> 11U), -53));
+}
+
+void BusTraffic::offer(const std::vector<hal::Frame>& frames, std::int64_t ready_ns) {
+    for (const hal::Frame& frame : frames) {
+        wire_.offer(frame, ready_ns);
+    }
 }
 
 double BusTraffic::mean_period_s() const {

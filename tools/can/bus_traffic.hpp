@@ -20,6 +20,10 @@ struct TrafficOptions {
 /// options give the same frames.
 class BusTraffic {
   public:
+    /// The devices come up, and tell what they are asked once, before the first row: stamps are the rows'
+    /// times and this.
+    static constexpr std::int64_t lead_ns = 10'000'000;
+
     /// Throws as DeviceFrames.
     BusTraffic(const BusDescription& description, const TrafficOptions& options, BusWire::OnFrame on_frame);
 
@@ -35,6 +39,7 @@ class BusTraffic {
     double load() const noexcept { return load_; }
 
   private:
+    void offer(const std::vector<hal::Frame>& frames, std::int64_t ready_ns);
     std::int64_t jitter_ns();
     double mean_period_s() const;
 

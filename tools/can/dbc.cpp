@@ -29,6 +29,12 @@ class Cursor {
 
     void skip_blanks() { skip(std::min(rest_.find_first_not_of(blanks), rest_.size())); }
 
+    /// Where the next piece begins.
+    Cursor here() {
+        skip_blanks();
+        return *this;
+    }
+
     /// To the begin of the next line; texts in quotes may go over lines.
     void skip_line() {
         for (bool quoted = false; !at_end();) {
@@ -154,7 +160,7 @@ class Parser {
     /// `BO_ 641 NAME: 8 SENDER`
     void message() {
         DbcMessage message;
-        const Cursor at_id = cursor_;
+        const Cursor at_id = cursor_.here();
         message.id = static_cast<std::uint32_t>(cursor_.whole("an identifier", 0xFFFFFFFF));
         message.name = cursor_.name("a message's name");
         message.extended = (message.id & extended_bit) != 0;
@@ -183,7 +189,7 @@ class Parser {
             cursor_.refuse("a message before its signals");
         }
         DbcMessage& message = dbc_.messages.back();
-        const Cursor at_name = cursor_;
+        const Cursor at_name = cursor_.here();
         DbcSignal read;
         read.name = cursor_.name("a signal's name");
         if (message.find(read.name) != nullptr) {
@@ -208,7 +214,7 @@ class Parser {
     }
 
     void layout(const DbcMessage& message, hal::Signal& signal) {
-        const Cursor at_layout = cursor_;
+        const Cursor at_layout = cursor_.here();
         signal.start_bit = static_cast<int>(cursor_.whole("a start bit", 511));
         cursor_.expect("|");
         signal.length = static_cast<int>(cursor_.whole("a number of bits", 64));
@@ -227,7 +233,7 @@ class Parser {
 
     void scaling(DbcSignal& read) {
         cursor_.expect("(");
-        const Cursor at_factor = cursor_;
+        const Cursor at_factor = cursor_.here();
         read.signal.factor = cursor_.number("a factor");
         if (read.signal.factor == 0) {
             at_factor.refuse("a factor that is not 0");
@@ -250,7 +256,7 @@ class Parser {
         if (cursor_.at_line_end()) {
             return;
         }
-        const Cursor at_id = cursor_;
+        const Cursor at_id = cursor_.here();
         const auto id = static_cast<std::uint32_t>(cursor_.whole("an identifier", 0xFFFFFFFF));
         const std::string name = cursor_.name("a signal's name");
         cursor_.accept(":");

@@ -24,6 +24,15 @@ hal::Reason calibration_of(const AnySensor& sensor) {
     return ati != nullptr ? ati->calibration() : hal::Reason::ok;
 }
 
+/// Null for another sensor, or none.
+const StrainBoard* strain_board(const std::optional<AnySensor>& sensor) {
+    return sensor ? std::get_if<StrainBoard>(&sensor->device()) : nullptr;
+}
+
+Frame full_scale_of(const StrainBoard& board, int channel) {
+    return board.encode_full_scale(channel, board.full_scale()[static_cast<std::size_t>(channel)]);
+}
+
 bool same_message(const Frame& one, const Frame& other) {
     return one.id == other.id && !one.extended && one.length == other.length && one.data == other.data;
 }
@@ -89,24 +98,26 @@ std::vector<Frame> DeviceFrames::heartbeats() const {
             frames.push_back(*frame);
         }
     }
-    if (const auto* strain = sensor_ ? std::get_if<StrainBoard>(&sensor_->device()) : nullptr) {
-        for (int channel = 0; channel < 6; ++channel) {
-            frames.push_back(
-                strain->encode_full_scale(channel, strain->full_scale()[static_cast<std::size_t>(channel)]));
-        }
-    }
     return frames;
 }
 
 std::optional<Frame> DeviceFrames::answer(const Frame& request) const {
-    const auto* strain = sensor_ ? std::get_if<StrainBoard>(&sensor_->device()) : nullptr;
+    const auto* strain = strain_board(sensor_);
     for (int channel = 0; strain != nullptr && channel < 6; ++channel) {
         if (same_message(request, strain->request_full_scale(channel))) {
-            return strain->encode_full_scale(channel,
-                                             strain->full_scale()[static_cast<std::size_t>(channel)]);
+            return full_scale_of(*strain, channel);
         }
     }
     return std::nullopt;
+}
+
+std::vector<Frame> DeviceFrames::full_scales() const {
+    std::vector<Frame> frames;
+    const auto* strain = strain_board(sensor_);
+    for (int channel = 0; strain != nullptr && channel < 6; ++channel) {
+        frames.push_back(full_scale_of(*strain, channel));
+    }
+    return frames;
 }
 
 } // namespace dfdyn::tools

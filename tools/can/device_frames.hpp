@@ -27,13 +27,15 @@ class DeviceFrames {
     /// That synchronous drives are to measure; none if no drive does.
     std::optional<hal::Frame> sync() const;
 
-    /// What devices send unasked now and then, at least every `heartbeat_period_ns`, to say that they are
-    /// well. Once before anything else; full scales are among it.
+    /// What devices send unasked, every `heartbeat_period_ns`, to say that they are well.
     std::vector<hal::Frame> heartbeats() const;
     static constexpr std::int64_t heartbeat_period_ns = 100'000'000;
 
     /// The answer to a request of the host, as of BusArm::requests.
     std::optional<hal::Frame> answer(const hal::Frame& request) const;
+
+    /// The answers to all of them.
+    std::vector<hal::Frame> full_scales() const;
 
   private:
     std::vector<BusBoard> boards_;

@@ -73,7 +73,7 @@ TEST_CASE("what a bus description cannot be is refused by field, expectation and
          "joints.boards: expected devices that do not share identifiers, found two that send 0x85"},
         {"ur5_cia402.json", "\"counts_per_turn\": 1048576", "\"counts_per_turn\": 0",
          "joints.boards[0].counts_per_turn: expected a number that is not 0, found 0.000000"},
-        {"ur5_cia402.json", "\"0x280\"", "\"0x680\"",
+        {"ur5_cia402.json", "\"0x280\"", "\"0x580\"",
          "joints.boards[0].node: expected PDOs with identifiers that CANopen leaves to them, and signals "
          "that "
          "fit, found others"},

@@ -104,7 +104,7 @@ TEST_CASE("rows that become frames and then samples are the rows, to half a coun
         if (!samples[k].output_valid()) {
             continue;
         }
-        CHECK(samples[k].time_ns == rows[k].time_ns + 55'000); // end of the SYNC
+        CHECK(samples[k].time_ns == rows[k].time_ns + BusTraffic::lead_ns + 55'000); // end of the SYNC
         for (std::size_t i = 0; i < 6; ++i) {
             CHECK(std::abs(samples[k].position[i] - rows[k].position[i]) <=
                   std::numbers::pi / 1048576 + 1e-12);
@@ -126,7 +126,7 @@ TEST_CASE("rows that become frames and then samples are the rows, to half a coun
         if (!sample.output_valid()) {
             continue;
         }
-        while (rows[row].time_ns + 1'000'000 <= sample.time_ns) {
+        while (rows[row].time_ns + BusTraffic::lead_ns + 1'000'000 <= sample.time_ns) {
             ++row;
         }
         CAPTURE(row);

@@ -168,7 +168,7 @@ TEST_CASE("a sensor that falls silent ends the learning, not the prediction") {
     for (std::string line; std::getline(lines, line);) {
         const bool sensor =
             line.find(" 3DA#") != std::string::npos || line.find(" 3DB#") != std::string::npos;
-        text += sensor && line > "(0000000000.250000000)" ? "" : line + "\n";
+        text += sensor && line > "(0000000000.260000000)" ? "" : line + "\n";
     }
     const BusDescription bus = read_bus_description(bus_folder + "icub_arm_strain.json");
     const ReplayedRecording replayed =
