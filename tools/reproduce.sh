@@ -11,6 +11,7 @@ out=build/reproduction
 dfdyn=build/release/tools/dfdyn
 robot=tests/data/robots/icub_right_arm/icub_right_arm.urdf
 page=docs/reproduction.md
+plans=(icub icub_1khz icub_swapped ur5 ur5_swapped)
 options=(--jobs "$(nproc)")
 kind=full
 if [[ ${1:-} == --quick ]]; then
@@ -23,7 +24,7 @@ options+=("$@")
 
 step() {
     echo
-    echo "[$1/6, ${SECONDS} s] $2"
+    echo "[$1/4, ${SECONDS} s] $2"
 }
 
 build_program() {
@@ -73,14 +74,21 @@ Written by `tools/reproduce.sh`; every verdict follows from the numbers beside i
 What differs from the paper:
 
 - Its recordings are not public. The iCub's are simulated (`dfdyn simulate`, [what is known and what is guessed](../tests/data/scenarios/README.md)):
-  beyond the sensor the simulated arm is exactly rigid, so the rigid body is a better model of it than of the real one. The UR5's are measured.
+  beyond the sensor the simulated arm is exactly rigid, but its encoders are eccentric and its sensor's calibration is wrong. The UR5's are measured.
+- How good numerical derivatives are decides some findings. Those of the first chapter are estimated from readings every 10 ms, as they reach a program
+  on the robot's computer in the iCub's configuration; the second chapter has the same arm with derivatives estimated at 1 kHz.
 - Each output has a noise and a variance of its own, with a common ratio; the paper has one of each.
 - The physics learns the parameters that the recording can tell apart. With input DFR it sees rows 2 and 3, of length 1, times a factor each.
-- Hyperparameters are sought once per case; the draws differ in the random features. P has none: its draws are the same.
+- Hyperparameters are sought once per case, from four starts; the draws differ in the random features. P has none: its draws are the same.
+- P, SP, SP2 and SPK are not tried with full windows (DF, DFW), and cross validation with the inputs that a grid can serve.
 - All cases are judged at the same ticks, those at which the longest lag window is full.
-- UR5: the outputs are motor currents, by torque constants estimated from the nominal robot; the start takes one of the motion's cycles (3,421
-  rows), T is one second (125 samples), the steady state begins after 10 s since the tests last 20 s, and ε is relative to the output's variance,
-  because a current that rests near zero makes the paper's index as large as one likes.
+- UR5: 20 lags; 800 rows in the exact kernel; the outputs are motor currents, by torque constants estimated from the nominal robot; the start takes one of
+  the motion's cycles (3,421 rows), T is one second (125 samples), the steady state begins after 10 s since the tests last 20 s, and ε is relative to the
+  output's variance, because a current that rests near zero makes the paper's index as large as one likes.
+
+What we chose with these tests in sight, and so what the p-values do not account for: the four models that "Beyond the paper" combines, the memory of 100
+samples and the square in their weights, the filters of the physics' own motion, the named effects, and a forgetting factor of two samples per column. The
+chapters in which the motions exchange their roles were run after all of this was fixed, and changed nothing of it.
 
 TEXT
 }
@@ -96,28 +104,28 @@ for task in icub_xy icub_xz; do
     simulate "tests/data/scenarios/$task.json" "$task"
     simulate "$(with_fast_derivatives "$task")" "${task}_1khz"
 done
-step 4 "evaluate on the simulated iCub arm"
-evaluate icub
-step 5 "evaluate on the same arm with derivatives estimated at 1 kHz"
-evaluate icub_1khz
-step 6 "evaluate on the measured UR5"
-evaluate ur5
+for plan in "${plans[@]}"; do
+    step 4 "evaluate: plan $plan"
+    evaluate "$plan"
+done
 
 {
     introduction
-    for plan in icub icub_1khz ur5; do
+    for plan in "${plans[@]}"; do
         cat "$out/$kind/$plan/findings.md"
         echo
     done
 } >"$page.tmp"
 mv "$page.tmp" "$page"
 mkdir -p "$(dirname "$page")/pictures"
-rm -f "$(dirname "$page")"/pictures/{icub,icub_1khz,ur5}_*.svg
-cp "$out/$kind"/{icub,icub_1khz,ur5}/pictures/*.svg "$(dirname "$page")/pictures/"
+rm -f "$(dirname "$page")"/pictures/{icub,ur5}_*.svg
+for plan in "${plans[@]}"; do
+    cp "$out/$kind/$plan"/pictures/*.svg "$(dirname "$page")/pictures/"
+done
 
 echo
 echo "Done in $SECONDS s: $page"
-echo "  $out/$kind/{icub,icub_1khz,ur5}/report.html  the same as pages"
+echo "  $out/$kind/PLAN/report.html  the same as pages, PLAN: ${plans[*]}"
 [[ $failed -eq 0 ]] || {
     echo "Some cases could not be done: see above." >&2
     exit 1

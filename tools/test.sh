@@ -37,6 +37,8 @@ test_units() { run_tests release --label-regex '^(firmware|hal|tools|embedding|t
 test_promises() { run_tests release --label-regex '^acceptance$'; }
 test_can() { run_tests release --label-regex '^vcan$'; }
 test_elsewhere() { run_tests release --label-regex '^(consumer|cortex_m7)$' --verbose; }
+# Every plan of the experiment, with one draw and few rows.
+test_experiment() { tools/reproduce.sh --quick; }
 test_long() { ctest --test-dir build/release --label-regex '^long$' --parallel "$jobs" --output-on-failure --no-tests=error; }
 
 # clang++ has the sanitizers: it builds them in about three quarters of the time that g++ takes, and is the second compiler.
@@ -60,8 +62,9 @@ analyse() {
     cmake --preset clang
     run-clang-tidy -quiet -p build/clang -j "$jobs" "$PWD/($1)/.*"
 }
-analyse_product() { analyse 'firmware_lib|hal|tools'; }
-analyse_tests() { analyse 'tests'; }
+# tools/host has all of the firmware's headers.
+analyse_firmware() { analyse 'firmware_lib|hal|tools/host'; }
+analyse_others() { analyse 'tools|tests'; }
 
 steps=(
     "install_packages:Debian packages"
@@ -72,7 +75,7 @@ steps=(
     "test_can:CAN backend and dfdyn play on a kernel's virtual CAN, against can-utils"
     "test_elsewhere:use by another project, and on a bare Cortex-M7 under QEMU"
     "test_sanitized:firmware and bus layer by clang++, address and undefined-behaviour sanitizers"
-    "analyse_product:static analysis"
+    "analyse_firmware:static analysis of the firmware and the bus layer"
 )
 case ${1:-} in
 "") ;;
@@ -80,8 +83,9 @@ case ${1:-} in
     steps+=(
         "test_sanitized_tools:host tools by clang++, address and undefined-behaviour sanitizers"
         "test_long:long tests"
+        "test_experiment:the experiment's plans, quickly"
         "test_clang:optimised clang++ build of the firmware"
-        "analyse_tests:static analysis of the tests"
+        "analyse_others:static analysis of the host tools and the tests"
     )
     ;;
 *)

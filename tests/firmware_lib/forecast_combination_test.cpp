@@ -140,6 +140,24 @@ TEMPLATE_TEST_CASE("whatever it has seen, the combination lies among its members
     }
 }
 
+TEMPLATE_TEST_CASE("an absurd error is forgotten within five memories", "", float, double) {
+    Combination<TestType> combined = combination<TestType>(50);
+    const std::array<TestType, outputs> measured{};
+    const Values<TestType> good{1, 1, TestType(0.1), TestType(0.1), 2, 2};
+    Values<TestType> absurd = good;
+    absurd[outputs] = std::numeric_limits<TestType>::quiet_NaN();
+    for (int t = 0; t < 500; ++t) {
+        combined.learn(good.data(), measured.data());
+    }
+    CHECK(combined.weights()[outputs] > TestType(0.99));
+    combined.learn(absurd.data(), measured.data());
+    CHECK(combined.weights()[outputs] < TestType(0.5));
+    for (int t = 0; t < 250; ++t) {
+        combined.learn(good.data(), measured.data());
+    }
+    CHECK(combined.weights()[outputs] > TestType(0.99));
+}
+
 TEST_CASE("a combination goes on from its snapshot, and takes no other") {
     DFDYN_SEEDED_ENGINE(engine);
     Combination<float> combined = combination<float>(100);
@@ -157,6 +175,10 @@ TEST_CASE("a combination goes on from its snapshot, and takes no other") {
     for (int i = 0; i < members * outputs; ++i) {
         CHECK(other.weights()[i] == combined.weights()[i]);
     }
+    std::vector<std::byte> fresh(bytes.size());
+    REQUIRE(combination<float>(100).snapshot(fresh) == SnapshotResult::ok);
+    REQUIRE(other.restore(fresh) == SnapshotResult::ok);
+    CHECK(other.weights()[0] == Approx(1.0 / 3));
     dfdyn::ForecastCombination<float, 2, 3> turned(Extent<2>{}, Extent<3>{}, 100);
     CHECK(turned.restore(bytes) == SnapshotResult::wrong_model);
     bytes.back() ^= std::byte{1};

@@ -3,6 +3,8 @@
 
 #include "tools/can/bus_arm.hpp"
 #include "tools/can/bus_fields.hpp"
+#include "tools/common/read_file.hpp"
+#include "tools/common/text.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -140,7 +142,7 @@ BusDescription parse(const JsonReader& reader, const std::string& source) {
 } // namespace
 
 BusDescription read_bus_description(const std::filesystem::path& path) {
-    const nlohmann::json json = read_json(path, "a bus description");
+    const nlohmann::json json = parse_json(read_file(path, "cannot be read as a bus description"), shown(path));
     return parse(JsonReader(json, shown(path)), shown(path));
 }
 

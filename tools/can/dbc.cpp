@@ -3,13 +3,11 @@
 
 #include "tools/common/error.hpp"
 #include "tools/common/number.hpp"
+#include "tools/common/read_file.hpp"
 #include "tools/common/text.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -312,16 +310,7 @@ const DbcMessage* Dbc::find(std::string_view message) const { return find_named(
 Dbc parse_dbc(std::string_view text, const std::string& source) { return Parser(text, source).run(); }
 
 Dbc read_dbc(const std::filesystem::path& path) {
-    if (std::filesystem::is_directory(path)) {
-        throw system_error(path, "cannot be read as a DBC file", EISDIR);
-    }
-    errno = 0;
-    std::ifstream file(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    if (!file) {
-        throw system_error(path, "cannot be read as a DBC file", errno != 0 ? errno : EIO);
-    }
-    return parse_dbc(text, shown(path));
+    return parse_dbc(read_file(path, "cannot be read as a DBC file"), shown(path));
 }
 
 } // namespace dfdyn::tools

@@ -17,13 +17,6 @@ struct Box {
 /// Of `values` without the NaN; an infinite one counts like any other. O(n log n).
 Box box_of(std::vector<double> values);
 
-/// The quantile at `share` (0 … 1) of ascending values, interpolated linearly between order statistics, of
-/// which the first stands at 0 and the last at 1; NaN without values.
-double interpolated_quantile(std::span<const double> ascending, double share);
-
-/// The middle one of `values`, or the mean of the two in the middle; NaN without values.
-double median_of(std::vector<double> values);
-
 /// NaN without values.
 double mean_of(std::span<const double> values);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/evaluation/comparison.hpp"
 
+#include "tools/common/quantile.hpp"
 #include "tools/evaluation/phase_error.hpp"
 #include "tools/evaluation/wilcoxon.hpp"
 
@@ -130,7 +131,7 @@ ComparisonOutcome compare(const Comparison& comparison, const Plan& plan, std::s
     outcome.upper_ratio = box.upper_quartile;
     outcome.subsets = pairs.empty() ? 0 : errors.subset_count(pairs.front());
     for (std::size_t subset = 0; subset < outcome.subsets; ++subset) {
-        outcome.subsets_agree += median_of(differences_in(pairs, errors, subset, threshold)) < 0 ? 1 : 0;
+        outcome.subsets_agree += median(differences_in(pairs, errors, subset, threshold)) < 0 ? 1 : 0;
     }
     const SignedRankTest test = signed_rank_test(differences);
     outcome.p_holds = test.p_negative;
@@ -146,7 +147,7 @@ FindingVerdict verdict_of(std::span<const ComparisonOutcome> comparisons) {
     if (count(Verdict::holds) == std::ssize(comparisons)) {
         return FindingVerdict::reproduced;
     }
-    if (count(Verdict::holds) > 0) {
+    if (count(Verdict::holds) > count(Verdict::contradicted)) {
         return FindingVerdict::partly;
     }
     return count(Verdict::contradicted) > 0 ? FindingVerdict::not_reproduced : FindingVerdict::undecided;

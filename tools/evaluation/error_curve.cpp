@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/evaluation/error_curve.hpp"
 
+#include "tools/common/quantile.hpp"
 #include "tools/evaluation/box.hpp"
 
 #include <algorithm>
@@ -43,8 +44,8 @@ ErrorCurve error_curve(std::span<const UnitResult* const> draws, std::size_t gro
         std::ranges::sort(means);
         curve.time_s.push_back(static_cast<double>(tick) * draws.front()->sample_period_s);
         curve.mean.push_back(mean_of(means));
-        curve.low.push_back(interpolated_quantile(means, 0.25));
-        curve.high.push_back(interpolated_quantile(means, 0.75));
+        curve.low.push_back(quantile_of_sorted(means, 0.25));
+        curve.high.push_back(quantile_of_sorted(means, 0.75));
     }
     return curve;
 }

@@ -2,6 +2,7 @@
 #include "tools/evaluation/evaluation_tables.hpp"
 
 #include "tools/common/number.hpp"
+#include "tools/common/quantile.hpp"
 #include "tools/common/text.hpp"
 #include "tools/evaluation/phase_error.hpp"
 
@@ -25,7 +26,7 @@ double median_over(const std::vector<const UnitResult*>& draws, const Value& val
     std::vector<double> values;
     std::ranges::transform(draws, std::back_inserter(values),
                            [&](const UnitResult* draw) { return static_cast<double>(value(*draw)); });
-    return median_of(std::move(values));
+    return median(std::move(values));
 }
 
 /// The middle half of the draws' values.
@@ -54,16 +55,6 @@ std::vector<std::vector<ReportCell>> rows_of_cases(const Plan& plan, std::span<c
         }
     }
     return rows;
-}
-
-/// Of each model that the case combines: "1", "0.999 0.9995".
-std::string forgetting_text(const UnitResult& unit) {
-    std::string text;
-    for (const double factor : unit.forgetting_factors) {
-        text += number_text(factor) + ' ';
-    }
-    text.pop_back();
-    return text;
 }
 
 std::string claim_of(const Comparison& comparison) {
@@ -196,12 +187,11 @@ ReportTable step_error_table(const Plan& plan, std::span<const UnitResult> units
 ReportTable cost_table(const Plan& plan, std::span<const UnitResult> units) {
     ReportTable table;
     table.caption = "Cost";
-    table.columns = {"case",         "forgetting factor",  "columns", "multiply-adds per tick",
-                     "state, bytes", "µs per tick, median"};
+    table.columns = {"case", "columns", "multiply-adds per tick", "state, bytes", "µs per tick, median"};
     table.rows = rows_of_cases(plan, units, [](const std::vector<const UnitResult*>& draws) {
         return std::vector<ReportCell>{
-            forgetting_text(*draws.front()), static_cast<double>(draws.front()->columns),
-            static_cast<double>(draws.front()->operations), static_cast<double>(draws.front()->state_bytes),
+            static_cast<double>(draws.front()->columns), static_cast<double>(draws.front()->operations),
+            static_cast<double>(draws.front()->state_bytes),
             median_over(draws, [](const UnitResult& draw) { return draw.median_us; })};
     });
     table.note = "Times are of the machine that ran this, with other work beside it.";
@@ -260,7 +250,7 @@ void write_results_csv(std::ostream& out, const Plan& plan, std::span<const Unit
     for (const std::string& output : outputs) {
         out << ",nrmse_" << output;
     }
-    out << ",lost,median_us,operations,state_bytes,columns,forgetting\n";
+    out << ",lost,median_us,operations,state_bytes,columns\n";
     for (const UnitResult& unit : units) {
         for (std::size_t group = 0; group < plan.groups.size(); ++group) {
             out << unit.case_name << ',' << unit.seed << ',' << plan.groups[group].name;
@@ -271,8 +261,7 @@ void write_results_csv(std::ostream& out, const Plan& plan, std::span<const Unit
             }
             const UnitResult* const draw = &unit;
             out << ',' << number_text(lost_share({&draw, 1}, group)) << ',' << number_text(unit.median_us)
-                << ',' << unit.operations << ',' << unit.state_bytes << ',' << unit.columns << ','
-                << forgetting_text(unit) << '\n';
+                << ',' << unit.operations << ',' << unit.state_bytes << ',' << unit.columns << '\n';
         }
     }
 }

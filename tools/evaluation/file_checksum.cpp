@@ -2,23 +2,17 @@
 #include "tools/evaluation/file_checksum.hpp"
 
 #include "dfdyn/snapshot.hpp"
+#include "tools/common/read_file.hpp"
 #include "tools/common/text.hpp"
 
 #include <array>
-#include <cerrno>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <span>
 
 namespace dfdyn::tools {
 
 std::string file_checksum(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) {
-        throw system_error(path, "cannot read", errno);
-    }
-    const std::string content{std::istreambuf_iterator<char>(file), {}};
+    const std::string content = read_file(path);
     std::array<char, 9> text{};
     std::snprintf(text.data(), text.size(), "%08x", crc32(std::as_bytes(std::span(content))));
     return std::string(text.data()) + ", " + std::to_string(content.size()) + " bytes";

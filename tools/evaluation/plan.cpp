@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/evaluation/plan.hpp"
 
+#include "tools/common/read_file.hpp"
 #include "tools/common/text.hpp"
 #include "tools/evaluation/plan_cases.hpp"
 #include "tools/evaluation/plan_claims.hpp"
@@ -9,9 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 namespace dfdyn::tools {
@@ -34,14 +32,6 @@ constexpr std::array<std::string_view, 7> robot_names{
 constexpr std::array<std::string_view, 3> training_names{"log", "start_rows", "rows"};
 constexpr std::array<std::string_view, 4> test_names{"log", "first", "rows", "count"};
 constexpr std::array<std::string_view, 2> group_names{"name", "outputs"};
-
-std::string content_of(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) {
-        throw system_error(path, "cannot read", errno);
-    }
-    return {std::istreambuf_iterator<char>(file), {}};
-}
 
 std::string text_or(const JsonReader& reader, const std::string& name, const std::string& fallback) {
     return reader.has(name) ? reader.text(name) : fallback;
@@ -216,12 +206,12 @@ std::string to_string(Phase phase) { return phase == Phase::transient ? "transie
 std::string to_string(ErrorScale scale) { return scale == ErrorScale::horizon ? "horizon" : "variance"; }
 
 Plan read_plan(const fs::path& path) {
-    nlohmann::json json = parse_json(content_of(path), shown(path));
+    nlohmann::json json = parse_json(read_file(path), shown(path));
     const JsonReader own(json, shown(path));
     const fs::path folder = path.parent_path();
     if (own.has("like")) {
         const fs::path other = folder / own.text("like");
-        const nlohmann::json fields = parse_json(content_of(other), shown(other));
+        const nlohmann::json fields = parse_json(read_file(other), shown(other));
         const JsonReader must_be_an_object(fields, shown(other));
         json.insert(fields.begin(), fields.end()); // only what is not there
     }

@@ -31,9 +31,9 @@ struct Case {
     bool orthogonal = true;             ///< orthogonal random features
     bool relevance = true;              ///< STD: velocity and acceleration have gains; false: as in the paper
     bool centred = true;                ///< NP: outputs less their mean; false: as in the paper
-    std::vector<double> forgetting_factors{1}; ///< several: the rest of the training log chooses
-    int likelihood_rows = 1000;                ///< samples in the exact kernel, at most
-    int starts = 6;                            ///< local searches
+    double forgetting_factor = 1;
+    int likelihood_rows = 1000; ///< samples in the exact kernel, at most
+    int starts = 6;             ///< local searches
 };
 
 /// Outputs whose errors are averaged, as the three forces of a wrench are.

@@ -49,18 +49,6 @@ std::vector<int> rows_per_joint(const JsonReader& entry, int fallback) {
                                             : std::vector{entry.whole_number("rows_per_joint", 1, 1001)};
 }
 
-std::vector<double> forgetting_factors(const JsonReader& entry) {
-    if (!entry.is_array("forgetting")) {
-        return {entry.number_within("forgetting", 0.5, 1)};
-    }
-    std::vector<double> factors = entry.numbers("forgetting");
-    if (factors.empty() ||
-        !std::ranges::all_of(factors, [](double factor) { return factor >= 0.5 && factor <= 1; })) {
-        throw entry.error("forgetting", "a number or numbers from 0.5 to 1", "none, or others");
-    }
-    return factors;
-}
-
 InputKind input_of(const JsonReader& entry, const std::string& text) {
     try {
         return parse_input_kind(text);
@@ -94,7 +82,7 @@ void read_settings(const JsonReader& entry, Case& one) {
     flag("relevance", one.relevance);
     flag("centred", one.centred);
     if (entry.has("forgetting")) {
-        one.forgetting_factors = forgetting_factors(entry);
+        one.forgetting_factor = entry.number_within("forgetting", 0.5, 1);
     }
     if (entry.has("physics_input")) {
         one.physics_input = one_of(entry, "physics_input", entry.text("physics_input"), physics_inputs);

@@ -130,7 +130,7 @@ int columns_of(std::span<const TrainedModel> models) {
 
 UnitResult run_unit(const Plan& plan, const PlanData& data, const Case& one, std::uint64_t seed,
                     CaseMemories& memories, int threads, const std::function<void(double)>& progress) {
-    const CaseContext context{plan.robot, plan.outputs, data.start, data.online, threads};
+    const CaseContext context{plan.robot, plan.outputs, data.start, threads};
     const std::vector<TrainedModel> models = train_unit(
         plan, context, one, seed, memories, [&](double share) { progress(share_of_training * share); });
     const auto estimator = make_estimator(models, false);
@@ -141,9 +141,6 @@ UnitResult run_unit(const Plan& plan, const PlanData& data, const Case& one, std
     result.seed = seed;
     result.sample_period_s = models.front().sample_period_s;
     result.error.resize(plan.groups.size());
-    for (const TrainedModel& model : models) {
-        result.forgetting_factors.push_back(model.forgetting_factor);
-    }
     result.operations = estimator->cost().predict + estimator->cost().learn;
     result.state_bytes = estimator->state_bytes();
     result.columns = columns_of(models);

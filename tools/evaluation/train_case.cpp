@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/evaluation/train_case.hpp"
 
-#include "tools/evaluation/choose_forgetting.hpp"
 #include "tools/model/model_file.hpp"
 #include "tools/physics/model_training.hpp"
 #include "tools/robot/read_robot.hpp"
@@ -39,7 +38,7 @@ ModelTraining training_of(const Case& one, const RobotChoice& robot, int threads
     options.orthogonal = one.orthogonal;
     options.relevance = one.relevance;
     options.centred = one.centred;
-    options.forgetting_factor = one.forgetting_factors.front();
+    options.forgetting_factor = one.forgetting_factor;
     options.likelihood_rows = one.likelihood_rows;
     options.starts = one.starts;
     options.refinement_evaluations = 0; // it would depend on the draw
@@ -57,20 +56,14 @@ ModelTraining training_of(const Case& one, const RobotChoice& robot, int threads
     return training;
 }
 
-constexpr double share_of_search = 0.8; ///< of the progress, where a forgetting factor is chosen too
-
 /// What does not depend on the draw.
-TrainedModel tune(const Case& one, const CaseContext& context, const ModelTraining& training,
-                  const PreparedTraining& prepared, const std::function<void(double)>& progress) {
-    const double search = one.forgetting_factors.size() == 1 ? 1 : share_of_search;
-    TrainedModel model = train_model(prepared, context.outputs, training, [&](const TrainingProgress& done) {
-                             progress(search * static_cast<double>(done.evaluations) /
-                                      static_cast<double>(done.evaluations_most));
-                         }).model;
+TrainedModel tune(const CaseContext& context, const ModelTraining& training, const PreparedTraining& prepared,
+                  const std::function<void(double)>& progress) {
+    TrainedModel model =
+        train_model(prepared, context.outputs, training, [&progress](const TrainingProgress& done) {
+            progress(static_cast<double>(done.evaluations) / static_cast<double>(done.evaluations_most));
+        }).model;
     model.limits.innovation = static_cast<double>(std::numeric_limits<float>::max());
-    model.forgetting_factor =
-        choose_forgetting(model, one.forgetting_factors, context.online,
-                          [&](double share) { progress(search + (1 - search) * share); });
     return model;
 }
 
@@ -84,7 +77,7 @@ TrainedModel train_case(const Case& one, const CaseContext& context, std::uint64
     {
         const std::lock_guard lock(memory.tuning);
         if (!memory.tuned) {
-            memory.tuned = tune(one, context, training, prepared, progress);
+            memory.tuned = tune(context, training, prepared, progress);
         }
         model = *memory.tuned;
     }

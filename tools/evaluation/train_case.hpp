@@ -24,14 +24,12 @@ using CaseMemories = std::map<std::string, CaseMemory>; ///< by the case's name
 struct CaseContext {
     const RobotChoice& robot;
     OutputKind outputs;
-    const Recording& start;  ///< hyperparameters and start come from it
-    const Recording& online; ///< chooses among several forgetting factors
-    int threads = 1;         ///< >= 1, of each training; does not change its result
+    const Recording& start; ///< hyperparameters and start come from it
+    int threads = 1;        ///< >= 1, of each training; does not change its result
 };
 
 /// Trains `one` for the draw of random features `seed`: hyperparameters from `context.start`, unless `memory`
-/// has them already, the forgetting factor by what comes after it (choose_forgetting; with
-/// one draw's features for all), then the batch solution over it as the start. No sample is refused for its
+/// has them already, then the batch solution over it as the start. No sample is refused for its
 /// innovation: the paper's protocol learns from all. `progress`: told the share that is done, 0 … 1. The same
 /// for the same case, seed and data, whatever was trained before. Throws InputError as `train` does, and for
 /// a case that is not available.

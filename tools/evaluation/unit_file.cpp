@@ -30,7 +30,7 @@ ordered_json case_json(const Case& one) {
             {"orthogonal", one.orthogonal},
             {"relevance", one.relevance},
             {"centred", one.centred},
-            {"forgetting", one.forgetting_factors},
+            {"forgetting", one.forgetting_factor},
             {"likelihood_rows", one.likelihood_rows},
             {"starts", one.starts}};
 }

@@ -67,7 +67,6 @@ ordered_json unit_to_json(const UnitResult& result) {
             {"sample_period_s", result.sample_period_s},
             {"nrmse", numbers_to_json(result.normalised_error)},
             {"median_us", number_to_json(result.median_us)},
-            {"forgetting", result.forgetting_factors},
             {"operations", result.operations},
             {"state_bytes", result.state_bytes},
             {"columns", result.columns},
@@ -81,7 +80,6 @@ UnitResult unit_from_json(const ordered_json& json) {
     json.at("sample_period_s").get_to(result.sample_period_s);
     result.normalised_error = numbers_from_json(json.at("nrmse"));
     result.median_us = number_from_json(json.at("median_us"));
-    json.at("forgetting").get_to(result.forgetting_factors);
     json.at("operations").get_to(result.operations);
     json.at("state_bytes").get_to(result.state_bytes);
     json.at("columns").get_to(result.columns);

@@ -18,10 +18,9 @@ struct UnitResult {
     /// outputs. In a unit's file: NaN where there is none, infinite where an output rests at 0 and is the
     /// scale. Once the units are compared: as `keep_common_ticks` says.
     std::vector<std::vector<std::vector<double>>> error;
-    std::vector<double> normalised_error;   ///< one-step nRMSE of each output over all subsets
-    double median_us = 0;                   ///< of the ticks that learned
-    std::vector<double> forgetting_factors; ///< that was used, of each model that the case combines
-    std::int64_t operations = 0;            ///< multiply-adds of a tick that learns
+    std::vector<double> normalised_error; ///< one-step nRMSE of each output over all subsets
+    double median_us = 0;                 ///< of the ticks that learned
+    std::int64_t operations = 0;          ///< multiply-adds of a tick that learns
     std::size_t state_bytes = 0;
     int columns = 0; ///< of the learner
 };

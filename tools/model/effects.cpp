@@ -22,8 +22,6 @@ constexpr std::array<EffectKind, 7> kinds{
 
 } // namespace
 
-std::span<const EffectKind> effect_kinds() { return kinds; }
-
 std::string effect_names() {
     std::string names;
     for (const EffectKind& kind : kinds) {

@@ -3,7 +3,6 @@
 
 #include "tools/model/model.hpp"
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -18,10 +17,7 @@ struct EffectKind {
     bool at_joint; ///< acts on a joint: the outputs must be torques
 };
 
-/// All of them, in the order of the columns.
-std::span<const EffectKind> effect_kinds();
-
-/// Their names, for a message.
+/// The names of all of them, in the order of the columns, for a message.
 std::string effect_names();
 
 /// Null for a name that is none of them.

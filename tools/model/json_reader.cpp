@@ -5,10 +5,7 @@
 #include "tools/common/text.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -37,20 +34,6 @@ nlohmann::json parse_json(const std::string& text, const std::string& source) {
     } catch (const nlohmann::json::out_of_range&) {
         throw InputError(source + ": expected numbers that a double holds, found a larger one");
     }
-}
-
-nlohmann::json read_json(const std::filesystem::path& path, std::string_view what) {
-    const std::string cannot = "cannot be read as " + std::string(what);
-    if (std::filesystem::is_directory(path)) {
-        throw system_error(path, cannot, EISDIR);
-    }
-    errno = 0;
-    std::ifstream file(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    if (!file || text.empty()) {
-        throw system_error(path, cannot, errno != 0 ? errno : ENODATA);
-    }
-    return parse_json(text, shown(path));
 }
 
 JsonReader::JsonReader(const nlohmann::json& json, std::string source)

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,10 +15,6 @@ namespace dfdyn::tools {
 
 /// The JSON in `text`; throws InputError with source and position in one line.
 nlohmann::json parse_json(const std::string& text, const std::string& source);
-
-/// The JSON in a file; also throws InputError `PATH: cannot be read as WHAT: reason` when there is no text to
-/// read. `what`: such as "a model".
-nlohmann::json read_json(const std::filesystem::path& path, std::string_view what);
 
 /// Reads the fields of one JSON object. Every method throws InputError `SOURCE: path.to.field: expected …,
 /// found …` when the field is missing, of another type, of another size or out of its range; all numbers must

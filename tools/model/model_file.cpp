@@ -3,6 +3,7 @@
 
 #include "dfdyn/snapshot.hpp"
 #include "tools/common/error.hpp"
+#include "tools/common/read_file.hpp"
 #include "tools/common/text.hpp"
 #include "tools/model/json_reader.hpp"
 #include "tools/model/model_json.hpp"
@@ -10,10 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
-#include <cerrno>
 #include <charconv>
-#include <fstream>
-#include <iterator>
 #include <span>
 #include <utility>
 
@@ -161,16 +159,7 @@ TrainedModel model_from_json(const std::string& text, const std::string& source)
 }
 
 TrainedModel read_model(const std::filesystem::path& path) {
-    if (std::filesystem::is_directory(path)) {
-        throw system_error(path, "cannot be read as a model", EISDIR);
-    }
-    errno = 0;
-    std::ifstream file(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    if (!file || text.empty()) {
-        throw system_error(path, "cannot be read as a model", errno != 0 ? errno : ENODATA);
-    }
-    return model_from_json(text, shown(path));
+    return model_from_json(read_file(path, "cannot be read as a model"), shown(path));
 }
 
 std::uint32_t model_identity(const TrainedModel& model) {

@@ -16,7 +16,7 @@ namespace dfdyn::tools {
 /// The robot behind models P, SP, SP2 and SPK.
 struct RobotPhysics {
     Robot robot;
-    std::vector<std::string> effects;     ///< beside the rigid body, as effect_kinds() names them
+    std::vector<std::string> effects;     ///< beside the rigid body, as find_effect_kind() knows them
     double sign_velocity = 0.05;          ///< v of Coulomb's tanh(qd / v), rad/s
     std::vector<double> torque_constants; ///< N·m/A of each joint, for currents; empty: estimated
 };

@@ -2,11 +2,13 @@
 #include "tools/simulation/scenario.hpp"
 
 #include "tools/common/number.hpp"
+#include "tools/common/read_file.hpp"
 #include "tools/common/text.hpp"
 #include "tools/simulation/scenario_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace dfdyn::tools {
 
@@ -14,7 +16,9 @@ namespace {
 
 constexpr std::string_view schema = "dfdyn.scenario/1";
 
-nlohmann::json load(const std::filesystem::path& path) { return read_json(path, "a scenario"); }
+nlohmann::json load(const std::filesystem::path& path) {
+    return parse_json(read_file(path, "cannot be read as a scenario"), shown(path));
+}
 
 std::vector<std::string> read_columns(const JsonReader& reader) {
     static constexpr std::string_view known[] = {"q", "qd", "qdd", "tau", "i", "wrench"};

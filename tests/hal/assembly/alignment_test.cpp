@@ -173,9 +173,14 @@ TEST_CASE("an arm whose joints measure their currents has one output per joint")
     CHECK(sample.position[1] == Approx(0.7).margin(1e-4));
     CHECK(sample.output[0] == Approx(-4.8).margin(1e-9));
     CHECK(sample.output[1] == Approx(4).margin(1e-9));
-    // One joint's current is beyond its range: predicted only.
+    // The current of either joint is beyond its range: predicted only.
     send(0, 0.7, 5.5, 3 * ms);
     send(1, -0.7, -5, 3 * ms + 100 * us);
     CHECK(arm.assemble(3 * ms, 4 * ms).report.output == Reason::output_out_of_range);
+    for (int cycle = 4; cycle < 6; ++cycle) { // both neighbours of the next instant
+        send(0, 0.7, 4, cycle * ms);
+        send(1, -0.7, cycle == 4 ? -5 : -11, cycle * ms + 100 * us);
+    }
+    CHECK(arm.assemble(5 * ms, 6 * ms).report.output == Reason::output_out_of_range);
     CHECK_FALSE(arm.colliding_id().has_value());
 }

@@ -33,14 +33,21 @@ TEST_CASE("F7, F8: frames dropped by the kernel or the controller cost the outpu
     CHECK(arm.assembly.bus(0).health.losses() == 6);
 }
 
-TEST_CASE("F7: halves of a wrench on both sides of a loss are not paired") {
+TEST_CASE("F7: halves of a wrench on both sides of a loss are not paired, however near their stamps are") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
     const std::uint64_t pairs = arm.assembly.output().pairing().pairs();
-    arm.tick(without(torque_frame));
+    arm.tick([](Frames& frames) {
+        without(torque_frame)(frames);
+        frames[force_frame].stamp_ns += 700 * us;
+    });
     arm.bus.condition.dropped += 2; // the torque, and the force of the next
-    CHECK_FALSE(arm.tick(without(force_frame)).learned);
+    const auto lossy = arm.tick([](Frames& frames) {
+        without(force_frame)(frames);
+        frames[1].stamp_ns -= 200 * us; // the torque, 230 µs after that force
+    });
+    CHECK_FALSE(lossy.learned);
     CHECK(arm.assembly.output().pairing().pairs() == pairs);
     CHECK(arm.ticks_to_recover() <= 3);
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.hpp"
-#include "tests/support/temporary_directory.hpp"
-
-#include <sys/wait.h>
+#include "tests/tools/commands/run_program.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -12,22 +10,9 @@
 namespace {
 
 using dfdyn::tests::file_content;
+using dfdyn::tests::Outcome;
+using dfdyn::tests::run_program;
 using dfdyn::tests::TemporaryDirectory;
-
-struct Outcome {
-    int status;
-    std::string out;
-    std::string error;
-};
-
-/// Runs the program with standard error and output in files, as a script would.
-Outcome run(const TemporaryDirectory& directory, const std::string& arguments) {
-    const std::string out = directory.path() / "out";
-    const std::string error = directory.path() / "error";
-    const std::string command = std::string(DFDYN_PROGRAM) + " " + arguments + " >" + out + " 2>" + error;
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_content(out), file_content(error)};
-}
 
 long line_count(const std::string& text) { return std::ranges::count(text, '\n'); }
 
@@ -51,10 +36,10 @@ const std::string quick =
 
 TEST_CASE("help and version end with status 0, and every subcommand shows an example") {
     const TemporaryDirectory directory;
-    CHECK(run(directory, "--help").status == 0);
-    CHECK_THAT(run(directory, "--version").out, Catch::Matchers::StartsWith("dfdyn "));
+    CHECK(run_program(directory, "--help").status == 0);
+    CHECK_THAT(run_program(directory, "--version").out, Catch::Matchers::StartsWith("dfdyn "));
     for (const std::string command : {"train", "replay", "identify", "simulate", "evaluate", "play"}) {
-        const Outcome outcome = run(directory, command + " --help");
+        const Outcome outcome = run_program(directory, command + " --help");
         CHECK(outcome.status == 0);
         CHECK_THAT(outcome.out, Catch::Matchers::ContainsSubstring("Example:"));
     }
@@ -88,7 +73,7 @@ TEST_CASE("bad usage and bad input end with status 2 and one line") {
     };
     for (const std::string& arguments : cases) {
         CAPTURE(arguments);
-        const Outcome outcome = run(directory, arguments);
+        const Outcome outcome = run_program(directory, arguments);
         CHECK(outcome.status == 2);
         CHECK(outcome.out.empty());
         CHECK_THAT(outcome.error, Catch::Matchers::ContainsSubstring("dfdyn: "));
@@ -105,16 +90,16 @@ TEST_CASE("train and replay work together for every input, twice with the same b
         CAPTURE(input);
         std::string train = "train --log ";
         train.append(log_file).append(quick).append("--input ").append(input).append(" -o ").append(in);
-        const Outcome trained = run(directory, train + model_and_header);
+        const Outcome trained = run_program(directory, train + model_and_header);
         CAPTURE(trained.error);
         REQUIRE(trained.status == 0);
-        REQUIRE(run(directory, train + "/b.json").status == 0);
+        REQUIRE(run_program(directory, train + "/b.json").status == 0);
         CHECK(file_content(directory.path() / "a.json") == file_content(directory.path() / "b.json"));
         CHECK_FALSE(file_content(directory.path() / "a.hpp").empty());
         std::string replay = "replay --model ";
         replay.append(in).append("/a.json --log ").append(log_file).append(" --rows 1200: -o ").append(in);
         replay.append("/r.csv --report ").append(in).append("/r.html");
-        const Outcome replayed = run(directory, replay);
+        const Outcome replayed = run_program(directory, replay);
         CAPTURE(replayed.error);
         REQUIRE(replayed.status == 0);
         CHECK_THAT(replayed.out, Catch::Matchers::ContainsSubstring("nRMSE, second half"));
@@ -127,10 +112,10 @@ TEST_CASE("train says which options it ignores, and goes on") {
     const TemporaryDirectory directory;
     const std::string in = directory.path().string();
     const std::string train = "train --log " + log_file + quick + "-o " + in + "/m.json ";
-    CHECK(notes(run(directory, train).error).empty());
+    CHECK(notes(run_program(directory, train).error).empty());
     const Outcome nonparametric =
-        run(directory, train + "--effects viscous_friction --prior unit --own-motion "
-                               "--torque-constants 1,1,1,1,1,1 --no-relevance");
+        run_program(directory, train + "--effects viscous_friction --prior unit --own-motion "
+                                       "--torque-constants 1,1,1,1,1,1 --no-relevance");
     CHECK(nonparametric.status == 0);
     CHECK(line_count(notes(nonparametric.error)) == 5);
     for (const std::string option : {"--effects", "--prior", "--own-motion", "--torque-constants"}) {
@@ -139,7 +124,8 @@ TEST_CASE("train says which options it ignores, and goes on") {
     }
     CHECK_THAT(nonparametric.error,
                Catch::Matchers::ContainsSubstring("--relevance is ignored: input DFR does not read it\n"));
-    const Outcome on_a_grid = run(directory, train + "--refinement 3 --input STD --hyper CV --not-centred");
+    const Outcome on_a_grid =
+        run_program(directory, train + "--refinement 3 --input STD --hyper CV --not-centred");
     CHECK(on_a_grid.status == 0);
     CHECK(notes(on_a_grid.error) == "note: --starts is ignored: --hyper CV does not read it\n"
                                     "note: --refinement is ignored: --hyper CV does not read it\n");
@@ -153,13 +139,13 @@ TEST_CASE("train prints what its physics found") {
     const std::string train = "train --log " + log_file + quick + "--model P --input STD --robot " +
                               DFDYN_TEST_DATA_DIR "/robots/ur5/ur5_robot.urdf --tip ee_link -o " + in +
                               "/m.json ";
-    const Outcome estimated = run(directory, train);
+    const Outcome estimated = run_program(directory, train);
     CAPTURE(estimated.error);
     REQUIRE(estimated.status == 0);
     CHECK_THAT(estimated.out, Catch::Matchers::ContainsSubstring(
                                   "; each stands for the combination that the recording determines\n"));
     CHECK_THAT(estimated.out, Catch::Matchers::ContainsSubstring(" (estimated)"));
-    const Outcome given = run(directory, train + "--torque-constants 13,13,13,9,9,9.5 --centred");
+    const Outcome given = run_program(directory, train + "--torque-constants 13,13,13,9,9,9.5 --centred");
     CHECK_THAT(given.out, Catch::Matchers::ContainsSubstring(
                               "torque constants (N m/A): 13 (given), 13 (given), 13 (given), 9 (given), "
                               "9 (given), 9.5 (given)\n"));
@@ -170,9 +156,10 @@ TEST_CASE("train prints what its physics found") {
 TEST_CASE("a replay of a recording with other outputs than the model's is refused") {
     const TemporaryDirectory directory;
     const std::string in = directory.path().string();
-    REQUIRE(run(directory, "train --log " + log_file + quick + "-o " + in + "/m.json").status == 0);
+    REQUIRE(run_program(directory, "train --log " + log_file + quick + "-o " + in + "/m.json").status == 0);
     directory.write("torques.csv", "t,q1,q2,q3,q4,q5,q6,tau1\n0,1,1,1,1,1,1,1\n0.008,1,1,1,1,1,1,1\n");
-    const Outcome outcome = run(directory, "replay --model " + in + "/m.json --log " + in + "/torques.csv");
+    const Outcome outcome =
+        run_program(directory, "replay --model " + in + "/m.json --log " + in + "/torques.csv");
     CHECK(outcome.status == 2);
     CHECK(line_count(outcome.error) == 1);
 }
@@ -188,19 +175,19 @@ TEST_CASE("simulate writes a recording and the truth, or nothing at all") {
     const std::string call = "simulate --robot " + data +
                              "/robots/icub_right_arm/icub_right_arm.urdf --scenario " + in +
                              "/short.json -o " + in + "/run.csv";
-    CHECK(run(directory, call + " --truth " + in + "/truth.csv").status == 0);
+    CHECK(run_program(directory, call + " --truth " + in + "/truth.csv").status == 0);
     const std::string recording = file_content(directory.path() / "run.csv");
     CHECK(line_count(recording) == 26);
     CHECK(line_count(file_content(directory.path() / "truth.csv")) == 26);
     CHECK_THAT(recording, Catch::Matchers::StartsWith("t,q1,q2,q3,q4,qd1,") &&
                               Catch::Matchers::ContainsSubstring("qdd4,fx,fy,fz,mx,my,mz\n"));
-    CHECK(run(directory, call + " --seed 3").status == 0);
+    CHECK(run_program(directory, call + " --seed 3").status == 0);
     CHECK(file_content(directory.path() / "run.csv") != recording);
 
     scenario.replace(scenario.find("\"radius_m\": 0.1"), 15, "\"radius_m\": 0.9");
     directory.write("short.json", scenario);
     std::filesystem::remove(directory.path() / "run.csv");
-    const Outcome outcome = run(directory, call);
+    const Outcome outcome = run_program(directory, call);
     CHECK(outcome.status == 2);
     CHECK_THAT(outcome.error, Catch::Matchers::ContainsSubstring(" mm away from where it can go"));
     CHECK_FALSE(std::filesystem::exists(directory.path() / "run.csv"));

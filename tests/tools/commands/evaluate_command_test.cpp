@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.hpp"
-#include "tests/support/temporary_directory.hpp"
+#include "tests/tools/commands/run_program.hpp"
 #include "tests/tools/evaluation/small_experiment.hpp"
-
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -14,25 +12,17 @@ namespace {
 
 using Catch::Matchers::ContainsSubstring;
 using dfdyn::tests::file_content;
+using dfdyn::tests::Outcome;
+using dfdyn::tests::run_program;
 using dfdyn::tests::small_plan;
 using dfdyn::tests::TemporaryDirectory;
 using dfdyn::tests::write_small_experiment;
 using nlohmann::json;
 
-struct Outcome {
-    int status;
-    std::string out;
-    std::string error;
-};
-
 /// Runs the plan of `directory` into its folder `out`.
 Outcome evaluate(const TemporaryDirectory& directory, const std::string& options) {
     const std::string in = directory.path().string();
-    const std::string command = std::string(DFDYN_PROGRAM) + " evaluate --plan " + in + "/plan.json -o " +
-                                in + "/out " + options + " >" + in + "/stdout 2>" + in + "/stderr";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_content(directory.path() / "stdout"),
-            file_content(directory.path() / "stderr")};
+    return run_program(directory, "evaluate --plan " + in + "/plan.json -o " + in + "/out " + options);
 }
 
 /// The files of the units, all of which must be whole.

@@ -4,15 +4,13 @@
 #include "tools/robot/regressor.hpp"
 
 #include "tests/support/catch.hpp"
-#include "tests/support/temporary_directory.hpp"
+#include "tests/tools/commands/run_program.hpp"
 #include "tests/tools/robot/arms.hpp"
-
-#include <nlohmann/json.hpp>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
@@ -22,24 +20,15 @@ namespace {
 
 using Catch::Matchers::ContainsSubstring;
 using dfdyn::tests::file_content;
+using dfdyn::tests::Outcome;
+using dfdyn::tests::run_program;
 using dfdyn::tests::TemporaryDirectory;
-
-struct Outcome {
-    int status;
-    std::string out;
-    std::string error;
-};
 
 const std::string arm =
     " --robot " DFDYN_TEST_DATA_DIR "/robots/icub_right_arm/icub_right_arm.urdf --base chest --tip r_hand ";
 
 Outcome identify(const TemporaryDirectory& directory, const std::string& arguments) {
-    const std::string out = directory.path() / "out";
-    const std::string error = directory.path() / "error";
-    const std::string command =
-        std::string(DFDYN_PROGRAM) + " identify " + arguments + " >" + out + " 2>" + error;
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_content(out), file_content(error)};
+    return run_program(directory, "identify " + arguments);
 }
 
 /// 100 Hz, 20 s: each joint of the arm swings at two frequencies about the middle of its range.

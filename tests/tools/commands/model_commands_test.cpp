@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Models with a robot from the command line: simulate, train, replay.
 #include "tests/support/catch.hpp"
-#include "tests/support/temporary_directory.hpp"
-
-#include <nlohmann/json.hpp>
-#include <sys/wait.h>
+#include "tests/tools/commands/run_program.hpp"
 
 #include <algorithm>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -16,13 +14,9 @@ namespace {
 
 using Catch::Matchers::ContainsSubstring;
 using dfdyn::tests::file_content;
+using dfdyn::tests::Outcome;
+using dfdyn::tests::run_program;
 using dfdyn::tests::TemporaryDirectory;
-
-struct Outcome {
-    int status;
-    std::string out;
-    std::string error;
-};
 
 const std::string urdf = DFDYN_TEST_DATA_DIR "/robots/small_arm/small_arm.urdf";
 const std::string robot = " --robot " + urdf + " --tip tool ";
@@ -66,13 +60,7 @@ class Bench {
 
     std::string path(const std::string& name) const { return directory_.path() / name; }
 
-    Outcome call(const std::string& arguments) const {
-        const std::string command =
-            std::string(DFDYN_PROGRAM) + " " + arguments + " >" + path("out") + " 2>" + path("error");
-        const int status = std::system(command.c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_content(path("out")),
-                file_content(path("error"))};
-    }
+    Outcome call(const std::string& arguments) const { return run_program(directory_, arguments); }
 
     Outcome train(const std::string& arguments, const std::string& model = "model.json") const {
         return call("train --log " + path("run.csv") +
@@ -208,4 +196,28 @@ TEST_CASE("a replay of a recording that the model with a robot does not fit is r
         "expected 2 joint positions, as the chain has joints, found 6");
     REQUIRE(bench.train(robot + "--outputs tau --model SP --input STD --derivatives estimated").status == 0);
     CHECK(bench.replay(bench.path("positions.csv")).status == 0);
+}
+
+TEST_CASE("several models are replayed as one, if they are of the same arm") {
+    const Bench bench;
+    const std::string start = robot + "--outputs tau --input DFR ";
+    REQUIRE(bench.train(start + "--model NP").status == 0);
+    REQUIRE(bench.train(start + "--model P --effects viscous_friction", "other.json").status == 0);
+    const std::string both = bench.path("model.json") + "," + bench.path("other.json");
+    const std::string on_log = " --log " + bench.path("run.csv") + " --rows 300:";
+    const Outcome combined = bench.call("replay --model " + both + on_log);
+    REQUIRE(combined.status == 0);
+    CHECK_THAT(combined.out, ContainsSubstring("model: NP, input DFR") && ContainsSubstring("; P, input "));
+    const double error = largest_figure(combined.out, "nRMSE, second half");
+    for (const char* const name : {"model.json", "other.json"}) {
+        const Outcome one = bench.call("replay --model " + bench.path(name) + on_log);
+        CHECK(error < 1.2 * largest_figure(one.out, "nRMSE, second half"));
+    }
+    check_refused(
+        bench.call("replay --model " + bench.path("model.json") + "," + bench.path("none.json") + on_log),
+        "cannot be read as a model");
+    REQUIRE(bench.train("--outputs wrench --model NP", "wrench.json").status == 0);
+    check_refused(
+        bench.call("replay --model " + bench.path("model.json") + "," + bench.path("wrench.json") + on_log),
+        "expected joints and outputs as in ");
 }

@@ -2,6 +2,7 @@
 #include "tools/evaluation/box.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tools/common/quantile.hpp"
 
 #include <cmath>
 #include <limits>
@@ -26,13 +27,13 @@ TEST_CASE("a box has the quantiles of its values, whatever their order") {
 
 TEST_CASE("quantiles are interpolated between order statistics") {
     const std::vector<double> values{1, 2, 4, 8};
-    CHECK(tools::interpolated_quantile(values, 0) == 1);
-    CHECK(tools::interpolated_quantile(values, 0.25) == Approx(1.75));
-    CHECK(tools::interpolated_quantile(values, 0.5) == Approx(3));
-    CHECK(tools::interpolated_quantile(values, 0.75) == Approx(5));
-    CHECK(tools::interpolated_quantile(values, 1) == 8);
-    CHECK(tools::median_of({5, 1, 3}) == 3);
-    CHECK(tools::median_of({4, 1}) == Approx(2.5));
+    CHECK(tools::quantile_of_sorted(values, 0) == 1);
+    CHECK(tools::quantile_of_sorted(values, 0.25) == Approx(1.75));
+    CHECK(tools::quantile_of_sorted(values, 0.5) == Approx(3));
+    CHECK(tools::quantile_of_sorted(values, 0.75) == Approx(5));
+    CHECK(tools::quantile_of_sorted(values, 1) == 8);
+    CHECK(tools::median({5, 1, 3}) == 3);
+    CHECK(tools::median({4, 1}) == Approx(2.5));
 }
 
 TEST_CASE("NaN do not count, infinite values do") {
@@ -49,5 +50,5 @@ TEST_CASE("NaN do not count, infinite values do") {
     CHECK(lost.high == infinite);           // between two infinities
     CHECK(lost.mean == infinite);
     CHECK(tools::box_of({infinite}).median == infinite);
-    CHECK(std::isnan(tools::median_of({})));
+    CHECK(std::isnan(tools::median({})));
 }

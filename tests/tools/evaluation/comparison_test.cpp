@@ -178,7 +178,8 @@ TEST_CASE("the verdict on a finding follows from its comparisons") {
     const Verdict contradicted = Verdict::contradicted;
     const Verdict undecided = Verdict::undecided;
     CHECK(verdict({holds, holds}) == FindingVerdict::reproduced);
-    CHECK(verdict({holds, contradicted}) == FindingVerdict::partly);
+    CHECK(verdict({holds, holds, contradicted}) == FindingVerdict::partly);
+    CHECK(verdict({holds, contradicted}) == FindingVerdict::not_reproduced);
     CHECK(verdict({holds, undecided}) == FindingVerdict::partly);
     CHECK(verdict({contradicted, undecided}) == FindingVerdict::not_reproduced);
     CHECK(verdict({contradicted}) == FindingVerdict::not_reproduced);

@@ -4,6 +4,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/evaluation/synthetic_units.hpp"
+#include "tools/common/quantile.hpp"
 #include "tools/evaluation/phase_error.hpp"
 
 #include <algorithm>
@@ -109,7 +110,7 @@ TEST_CASE("the phases part at the settling time") {
     CHECK(transient.size() == 18); // ticks 2 … 19
     CHECK(steady.size() == 40);
     CHECK(steady.front() == draw.error[1][0][20]);
-    CHECK(phase_error(draw, 1, 0, Phase::steady, 2) == Approx(median_of(steady)));
+    CHECK(phase_error(draw, 1, 0, Phase::steady, 2) == Approx(median(steady)));
     CHECK(phase_error(draw, 1, 0, Phase::transient, 2) == infinite);
     CHECK(phase_error(draw, 1, 1, Phase::transient, 2) ==
           Approx(mean_of(errors_of_phase(draw, 1, 1, Phase::transient, 2))));

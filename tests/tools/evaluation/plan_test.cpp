@@ -195,10 +195,6 @@ TEST_CASE("a mistake in a plan is named by its field") {
          "lags"},
         {[](json& j) { j["defaults"]["forgetting"] = 2; }, "defaults.forgetting: expected a number from 0.5"},
         {[](json& j) {
-             j["defaults"]["forgetting"] = {1, 0.4};
-         },
-         "defaults.forgetting: expected a number or numbers from 0.5"},
-        {[](json& j) {
              j["figures"] = {{{"title", "f"}, {"cases", {"NP-ML-DF"}}}};
          },
          "figures[0].cases: expected one of NP-ML-STD, NP-ML-DFR, found \"NP-ML-DF\""},

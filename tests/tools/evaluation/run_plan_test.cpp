@@ -223,7 +223,7 @@ TEST_CASE("a unit is the protocol, written out") {
 
     CaseMemory other;
     const TrainedModel model =
-        train_case(plan.cases[1], {plan.robot, plan.outputs, data.start, data.online}, 7, other, ignore);
+        train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 7, other, ignore);
     for (std::size_t subset = 0; subset < 2; ++subset) {
         const auto estimator = make_estimator(model, false);
         replay(*estimator, {&model, 1}, data.online, 0, [](std::size_t) {});
@@ -266,11 +266,10 @@ TEST_CASE("which draw tunes the hyperparameters does not matter") {
     const PlanData data = load_plan_data(plan);
     CaseMemory fresh;
     CaseMemory used;
-    train_case(plan.cases[1], {plan.robot, plan.outputs, data.start, data.online}, 1, used, ignore);
+    train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 1, used, ignore);
     const TrainedModel a =
-        train_case(plan.cases[1], {plan.robot, plan.outputs, data.start, data.online}, 2, fresh, ignore);
-    const TrainedModel b =
-        train_case(plan.cases[1], {plan.robot, plan.outputs, data.start, data.online}, 2, used, ignore);
+        train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 2, fresh, ignore);
+    const TrainedModel b = train_case(plan.cases[1], {plan.robot, plan.outputs, data.start}, 2, used, ignore);
     CHECK(a.features.omega == b.features.omega);
     CHECK(a.input.rows == b.input.rows);
     CHECK(a.start.weights == b.start.weights);
@@ -286,7 +285,6 @@ TEST_CASE("a combination of cases is the combination of their models, and runs a
     const UnitResult& combined = results.units[4];
     CHECK(combined.case_name == "both-of-them");
     CHECK(combined.columns == 40);
-    CHECK(combined.forgetting_factors == std::vector<double>{1, 1});
     for (const std::size_t group : {0U, 1U}) { // of two members the error of the mean is below the mean's
         const auto sum_of = [group](const UnitResult& unit) {
             double sum = 0;

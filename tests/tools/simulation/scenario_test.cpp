@@ -6,6 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <numeric>
+#include <vector>
+
 namespace {
 
 using namespace dfdyn::tools;
@@ -102,6 +105,20 @@ TEST_CASE("a bad scenario is refused with the path of the field, what was expect
     json missing = minimal();
     missing.erase("controller");
     CHECK_THROWS_WITH(read(missing), ContainsSubstring("controller: expected this field, found none"));
+}
+
+TEST_CASE("the F/T sensor's calibration is read row by row") {
+    json scenario = minimal();
+    std::vector<double> numbers(36);
+    std::iota(numbers.begin(), numbers.end(), 0.0);
+    scenario["force_torque"] = {{"range", {1, 1, 1, 1, 1, 1}}, {"calibration", numbers}};
+    Robot robot = pendulum(1, 1);
+    robot.sensor.emplace();
+    CHECK(read(scenario, robot).force_torque->calibration(1, 0) == 6);
+    numbers.pop_back();
+    scenario["force_torque"]["calibration"] = numbers;
+    CHECK_THROWS_WITH(read(scenario, robot),
+                      Catch::Matchers::ContainsSubstring("force_torque.calibration: expected 36 numbers"));
 }
 
 TEST_CASE("a file that is no scenario is refused") {

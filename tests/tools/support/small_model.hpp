@@ -10,17 +10,19 @@
 
 namespace dfdyn::tests {
 
+template <class Distribution>
+std::vector<double> numbers(std::mt19937_64& engine, std::size_t count, Distribution& distribution) {
+    std::vector<double> values(count);
+    for (double& value : values) {
+        value = distribution(engine);
+    }
+    return values;
+}
+
 /// A model of two joints and a wrench with random content that is valid throughout; 2d = 6 columns.
 inline tools::TrainedModel small_model(std::mt19937_64& engine, tools::InputKind kind) {
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> positive(0.5, 2);
-    const auto numbers = [&](std::size_t count, auto& distribution) {
-        std::vector<double> values(count);
-        for (double& value : values) {
-            value = distribution(engine);
-        }
-        return values;
-    };
     const bool full = kind == tools::InputKind::DF || kind == tools::InputKind::DFW;
     tools::TrainedModel model;
     model.joints = 2;
@@ -30,20 +32,21 @@ inline tools::TrainedModel small_model(std::mt19937_64& engine, tools::InputKind
     model.input.lags = 4;
     model.input.rows_per_joint = full ? 5 : 3;
     const auto rows = static_cast<std::size_t>(model.input.rows_per_joint);
-    model.input.scale = numbers(2 * rows, positive);
+    model.input.scale = numbers(engine, 2 * rows, positive);
     if (kind == tools::InputKind::STD) {
         model.input.position_noise_bound = 1e-3;
     } else {
-        model.input.rows = numbers(rows * 5, normal);
+        model.input.rows = numbers(engine, rows * 5, normal);
     }
     if (kind == tools::InputKind::DFSR) {
         model.input.alpha = {250, 62500};
         model.input.beta = {0.5, 0.7};
     }
-    model.features = {true, 3, 7, numbers(3 * 2 * rows, normal), 1.5};
-    model.outputs = {{"fx", "fy", "fz", "mx", "my", "mz"}, numbers(6, normal), numbers(6, positive), 100};
+    model.features = {true, 3, 7, numbers(engine, 3 * 2 * rows, normal), 1.5};
+    model.outputs = {
+        {"fx", "fy", "fz", "mx", "my", "mz"}, numbers(engine, 6, normal), numbers(engine, 6, positive), 100};
     model.limits = {{10, 10}, {100, 100, 100, 100, 100, 100}, 1e6, 250};
-    model.start = {numbers(36, normal), numbers(15, normal), numbers(6, positive)};
+    model.start = {numbers(engine, 36, normal), numbers(engine, 15, normal), numbers(engine, 6, positive)};
     model.training = {{"run.csv"}, "0:100", "ML", 7, 100, -12.5, {-12.5, -13}};
     return model;
 }
@@ -55,13 +58,6 @@ inline tools::TrainedModel small_physics_model(std::mt19937_64& engine, const st
     tools::TrainedModel model = small_model(engine, kind);
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> positive(0.5, 2);
-    const auto numbers = [&](std::size_t count, auto& distribution) {
-        std::vector<double> values(count);
-        for (double& value : values) {
-            value = distribution(engine);
-        }
-        return values;
-    };
     if (kind == tools::InputKind::STD) {
         model.input.derivatives = tools::Derivatives::measured;
         model.input.lags = 0;
@@ -91,22 +87,22 @@ inline tools::TrainedModel small_physics_model(std::mt19937_64& engine, const st
         physics.motion.kind = tools::InputKind::DFR;
         physics.motion.lags = 4;
         physics.motion.rows_per_joint = 3;
-        physics.motion.rows = numbers(15, normal);
+        physics.motion.rows = numbers(engine, 15, normal);
     }
     physics.motion.scale = {1, 1, 1, 1, 1, 1};
     physics.motion_limit = {10, 50, 100, 10, 50, 100};
     const std::size_t columns = physics.selected.size();
     physics.parameter_names.assign(columns, "parameter");
-    physics.column_scale = numbers(columns, positive);
-    physics.output_gain = numbers(outputs, positive);
-    physics.start.weights = numbers(columns, normal);
+    physics.column_scale = numbers(engine, columns, positive);
+    physics.output_gain = numbers(engine, outputs, positive);
+    physics.start.weights = numbers(engine, columns, normal);
     if (structure == "P" || structure == "SPK") {
         physics.prior_variance = 3;
-        physics.start.unit_upper = numbers(columns * (columns - 1) / 2, normal);
-        physics.start.diagonal = numbers(columns, positive);
+        physics.start.unit_upper = numbers(engine, columns * (columns - 1) / 2, normal);
+        physics.start.diagonal = numbers(engine, columns, positive);
     }
     if (structure == "SPK") {
-        physics.coupling = numbers(outputs * columns * 6, normal);
+        physics.coupling = numbers(engine, outputs * columns * 6, normal);
     }
     model.structure = structure;
     if (!wrench) {

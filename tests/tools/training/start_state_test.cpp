@@ -11,6 +11,7 @@
 #include <Eigen/QR>
 
 #include <cmath>
+#include <limits>
 
 namespace tools = dfdyn::tools;
 using Eigen::Index;
@@ -120,4 +121,14 @@ TEST_CASE("the start stays finite when forgetting leaves nothing of the prior") 
     CHECK(diagonal.allFinite());
     CHECK(diagonal.minCoeff() > 0);
     CHECK(diagonal.maxCoeff() <= 1.001e6 * 50); // the prior's variance over the weight it keeps
+}
+
+TEST_CASE("a start whose information is singular is refused, with the prior that does not help") {
+    Problem problem(1);
+    problem.model.outputs.prior_variance = std::numeric_limits<double>::infinity(); // none
+    problem.rows.resize(features); // for twice as many weights
+    CHECK_THROWS_WITH(
+        tools::batch_start(problem.model, problem.data, problem.rows),
+        Catch::Matchers::ContainsSubstring("information matrix of the start state is not positive "
+                                           "definite, expected a regular one (prior variance inf"));
 }

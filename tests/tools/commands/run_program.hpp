@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tests/support/temporary_directory.hpp"
+
+#include <string>
+
+namespace dfdyn::tests {
+
+/// What became of a call of the program.
+struct Outcome {
+    int status; ///< -1: it did not exit by itself
+    std::string out;
+    std::string error;
+};
+
+/// Runs `dfdyn ARGUMENTS` as a script would, its standard output and error in files of `directory`.
+Outcome run_program(const TemporaryDirectory& directory, const std::string& arguments);
+
+} // namespace dfdyn::tests

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace dfdyn::tools {
+
+/// All bytes of a file. Throws InputError "PATH: CANNOT: the system's reason" when it cannot be read or is
+/// empty; `cannot`: e.g. "cannot be read as a model".
+std::string read_file(const std::filesystem::path& path, std::string_view cannot = "cannot read");
+
+} // namespace dfdyn::tools
