@@ -142,7 +142,8 @@ BusDescription parse(const JsonReader& reader, const std::string& source) {
 } // namespace
 
 BusDescription read_bus_description(const std::filesystem::path& path) {
-    const nlohmann::json json = parse_json(read_file(path, "cannot be read as a bus description"), shown(path));
+    const nlohmann::json json =
+        parse_json(read_file(path, "cannot be read as a bus description"), shown(path));
     return parse(JsonReader(json, shown(path)), shown(path));
 }
 
