@@ -42,23 +42,33 @@ inline tools::TrainedModel unlearned_model(std::mt19937_64& engine, int joints, 
     return model;
 }
 
-/// A log of the iCub's arm under a wrench, 0.5 s at 1 kHz.
+/// The description of the iCub's arm, sampled at another rate.
+inline std::string icub_arm_at(int rate_hz) {
+    std::string text = file_content(bus_folder + "icub_arm_strain.json");
+    const std::string rate = "\"sample_rate_hz\": 1000";
+    return text.replace(text.find(rate), rate.size(), "\"sample_rate_hz\": " + std::to_string(rate_hz));
+}
+
+/// A log of the iCub's arm under a wrench, 0.5 s at 1 kHz unless told otherwise.
 struct IcubLog {
     TemporaryDirectory directory;
     std::filesystem::path path = directory.path() / "run.log";
+    tools::BusDescription bus;
     tools::TrainedModel model;
 
-    IcubLog() {
+    explicit IcubLog(int rows = 500, int rate_hz = 1000) {
+        bus = tools::read_bus_description(directory.write("bus.json", icub_arm_at(rate_hz)));
         std::mt19937_64 engine(1);
-        model = unlearned_model(engine, 4, 0.001, tools::output_names(tools::OutputKind::wrench, 4), 20);
+        model =
+            unlearned_model(engine, 4, 1.0 / rate_hz, tools::output_names(tools::OutputKind::wrench, 4), 20);
         tools::Recording recording;
         recording.source = "made up";
         recording.position.names = tools::joint_names("q", 4);
         recording.output.names = tools::output_names(tools::OutputKind::wrench, 4);
         std::normal_distribution<double> noise(0, 0.3);
-        for (int row = 0; row < 500; ++row) {
-            const double t = 1e-3 * row;
-            recording.time_ns.push_back(1'000'000 * row);
+        for (int row = 0; row < rows; ++row) {
+            const double t = 1.0 / rate_hz * row;
+            recording.time_ns.push_back(1'000'000'000LL / rate_hz * row);
             for (int i = 0; i < 4; ++i) {
                 recording.position.values.push_back(0.3 * i + 0.5 * std::sin(3 * t + i));
             }
@@ -66,7 +76,7 @@ struct IcubLog {
                 recording.output.values.push_back(5 * std::sin(3 * t + k) + noise(engine));
             }
         }
-        write_bus_log(recording, tools::read_bus_description(bus_folder + "icub_arm_strain.json"), {}, path);
+        write_bus_log(recording, bus, {}, path);
     }
 
     /// The log without the lines that have `word`.
