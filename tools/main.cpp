@@ -19,6 +19,7 @@ int run(int argc, char** argv) {
     dfdyn::tools::add_identify_command(app, command);
     dfdyn::tools::add_evaluate_command(app, command);
     dfdyn::tools::add_simulate_command(app, command);
+    dfdyn::tools::add_convert_command(app, command);
     dfdyn::tools::add_play_command(app, command);
     try {
         app.parse(argc, argv);

@@ -33,7 +33,14 @@ bool wait_for(Condition done) {
     return done();
 }
 
-/// How many raw CAN sockets receive from an interface, in the whole network namespace.
+bool has_ended(pid_t pid) {
+    siginfo_t info{};
+    return ::waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           info.si_pid == pid;
+}
+
+} // namespace
+
 long receivers() {
     std::ifstream lists("/proc/net/can/rcvlist_all");
     const std::string text{std::istreambuf_iterator<char>(lists), {}};
@@ -44,13 +51,9 @@ long receivers() {
     return count;
 }
 
-bool has_ended(pid_t pid) {
-    siginfo_t info{};
-    return ::waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
-           info.si_pid == pid;
+bool wait_for_receivers(long more_than) {
+    return wait_for([more_than] { return receivers() > more_than; });
 }
-
-} // namespace
 
 std::string run(const std::string& command) {
     std::FILE* const pipe = ::popen((command + " 2>&1").c_str(), "r");

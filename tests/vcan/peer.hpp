@@ -17,6 +17,11 @@ namespace dfdyn::tests {
 /// std::runtime_error with that when its status is not 0.
 std::string run(const std::string& command);
 
+/// How many raw CAN sockets receive from an interface, in the whole network namespace.
+long receivers();
+/// Waits until there are more than `more_than`, for some seconds at most; whether there are.
+bool wait_for_receivers(long more_than);
+
 /// A program that runs beside the test, such as candump, with its output in a file.
 class Background {
   public:

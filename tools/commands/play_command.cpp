@@ -1,27 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/can/play.hpp"
 #include "tools/commands/command.hpp"
+#include "tools/commands/stop_signal.hpp"
 
-#include <csignal>
 #include <iostream>
 #include <memory>
 
 namespace dfdyn::tools {
 namespace {
-
-std::atomic<bool> stop = false; // a signal handler reaches nothing else
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
-
-extern "C" void stop_playing(int /*signal*/) { stop = true; }
-
-/// Without SA_RESTART: the signal is to end the sleep.
-void stop_on_signals() {
-    struct sigaction action {};
-    action.sa_handler = stop_playing;
-    for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) {
-        ::sigaction(signal_number, &action, nullptr);
-    }
-}
 
 void print(const PlayOutcome& outcome) {
     std::cout << outcome.sent << " frames sent, " << outcome.refused << " refused; lateness median "
@@ -38,8 +24,7 @@ void print(const PlayOutcome& outcome) {
 }
 
 int run(const PlayOptions& options) {
-    stop_on_signals();
-    const PlayOutcome outcome = play(options, stop);
+    const PlayOutcome outcome = play(options, stop_on_signals());
     if (!outcome.not_real_time.empty()) {
         std::cerr << "note: the timing is that of an ordinary program (" << outcome.not_real_time << ")\n";
     }

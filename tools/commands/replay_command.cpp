@@ -2,12 +2,14 @@
 #include "tools/build_flags.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options.hpp"
+#include "tools/commands/stop_signal.hpp"
 #include "tools/common/atomic_file.hpp"
 #include "tools/common/error.hpp"
 #include "tools/common/progress.hpp"
 #include "tools/common/text.hpp"
 #include "tools/evaluation/replay.hpp"
 #include "tools/evaluation/replay_csv.hpp"
+#include "tools/evaluation/replay_interface.hpp"
 #include "tools/evaluation/replay_report.hpp"
 #include "tools/evaluation/replay_summary.hpp"
 #include "tools/model/model_file.hpp"
@@ -16,6 +18,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 namespace dfdyn::tools {
 
@@ -26,9 +29,34 @@ struct ReplayOptions {
     RecordingOptions recordings;
     std::filesystem::path csv;
     std::filesystem::path report;
-    std::size_t horizon = 25;
+    std::optional<std::size_t> horizon;
     bool from_prior = false;
+
+    std::filesystem::path bus; ///< the recordings are candump logs, or there is an interface
+    std::string log_interface;
+    InterfaceOptions can;
+
+    bool live() const { return !can.interface.empty(); }
+    /// In real time there is no time for it, unless asked for.
+    std::size_t chosen_horizon() const { return horizon.value_or(live() ? 0 : 25); }
 };
+
+void refuse(bool wrong, const char* message) {
+    if (wrong) {
+        throw InputError(message);
+    }
+}
+
+void check_usage(const ReplayOptions& options) {
+    const bool bus = !options.bus.empty();
+    refuse(options.recordings.logs.empty() == !options.live(), "expected --log or --can, one of them");
+    refuse(options.live() && !bus, "--can: expected --bus with the devices on it, found none");
+    refuse(bus && (options.recordings.rows != ":" || options.recordings.skip_bad_rows),
+           "--rows, --skip-bad-rows: expected a CSV recording, found --bus");
+    refuse(!bus && !options.log_interface.empty(), "--from: expected --bus, found a CSV recording");
+    refuse(!options.live() && (options.can.duration_s > 0 || !options.can.record.empty()),
+           "--duration, --record: expected --can, found a recording");
+}
 
 /// Models of the same joints and outputs.
 std::vector<TrainedModel> read_models(const std::vector<std::filesystem::path>& paths) {
@@ -56,20 +84,30 @@ std::vector<ReplayedRecording> replay_all(const ReplayOptions& options, std::spa
     std::vector<ReplayedRecording> replayed;
     for (const Recording& recording : options.recordings.read(columns)) {
         Progress progress("replaying " + recording.source, recording.row_count());
-        replayed.push_back(replay(estimator, models, recording, options.horizon,
+        replayed.push_back(replay(estimator, models, recording, options.chosen_horizon(),
                                   [&progress](std::size_t done) { progress.update(done); }));
     }
     return replayed;
 }
 
-int run(const ReplayOptions& options) {
-    std::vector<std::filesystem::path> inputs = options.recordings.logs;
-    inputs.insert(inputs.end(), options.models.begin(), options.models.end());
-    check_distinct({options.csv, options.report}, std::move(inputs));
-    const std::vector<TrainedModel> models = read_models(options.models);
-    const auto estimator = make_estimator(models, options.from_prior);
-    const std::vector<ReplayedRecording> replayed = replay_all(options, models, *estimator);
-    const ReplaySummary summary = summarise(models, *estimator, replayed, options.horizon);
+std::vector<ReplayedBus> replay_bus(const ReplayOptions& options, std::span<const TrainedModel> models,
+                                    HostEstimator& estimator) {
+    const BusDescription description = read_bus_description(options.bus);
+    std::vector<ReplayedBus> replayed;
+    if (options.live()) {
+        replayed.push_back(replay_interface(estimator, models, description, options.can,
+                                            options.chosen_horizon(), stop_on_signals()));
+    }
+    for (const std::filesystem::path& log : options.recordings.logs) {
+        replayed.push_back(
+            replay_log(estimator, models, description, log, options.log_interface, options.chosen_horizon()));
+    }
+    return replayed;
+}
+
+void write_results(const ReplayOptions& options, std::span<const TrainedModel> models,
+                   const HostEstimator& estimator, std::span<const ReplayedRecording> replayed) {
+    const ReplaySummary summary = summarise(models, estimator, replayed, options.chosen_horizon());
     if (!options.csv.empty()) {
         AtomicFile file(options.csv);
         write_replay_csv(file.stream(), models.front(), replayed);
@@ -79,7 +117,36 @@ int run(const ReplayOptions& options) {
         write_file(options.report, render_report(make_replay_report(models.front(), replayed, summary)));
     }
     print_summary(std::cout, summary);
-    return 0;
+}
+
+/// Whether a bus gave any prediction.
+bool predicted(const ReplayedBus& one) {
+    return std::ranges::any_of(one.replayed.status, [](const Status& status) { return status.predicted(); });
+}
+
+int run(const ReplayOptions& options) {
+    check_usage(options);
+    std::vector<std::filesystem::path> inputs = options.recordings.logs;
+    inputs.insert(inputs.end(), options.models.begin(), options.models.end());
+    inputs.push_back(options.bus);
+    check_distinct({options.csv, options.report, options.can.record}, std::move(inputs));
+    const std::vector<TrainedModel> models = read_models(options.models);
+    const auto estimator = make_estimator(models, options.from_prior);
+    if (options.bus.empty()) {
+        write_results(options, models, *estimator, replay_all(options, models, *estimator));
+        return 0;
+    }
+    std::vector<ReplayedBus> buses = replay_bus(options, models, *estimator);
+    const bool all_predicted = std::ranges::all_of(buses, predicted);
+    std::vector<ReplayedRecording> replayed;
+    for (ReplayedBus& one : buses) {
+        replayed.push_back(std::move(one.replayed));
+    }
+    write_results(options, models, *estimator, replayed);
+    for (const ReplayedBus& one : buses) {
+        print_bus(std::cout, one.bus);
+    }
+    return all_predicted ? 0 : 1;
 }
 
 } // namespace
@@ -97,20 +164,38 @@ void add_replay_command(CLI::App& app, Command& chosen) {
         ->delimiter(',')
         ->type_name("M.json[,...]");
     options->recordings.add_to(*command);
+    command->get_option("--log")->required(false);
+    command
+        ->add_option("--bus", options->bus,
+                     "The devices on a CAN bus (docs/can.md): recordings are candump logs, or --can")
+        ->type_name("B.json");
+    command
+        ->add_option("--from", options->log_interface,
+                     "The interface in the log whose frames to take, where there are several")
+        ->type_name("IFACE");
+    command->add_option("--can", options->can.interface, "Instead of --log: this CAN interface, in real time")
+        ->type_name("IFACE");
+    command->add_option("--duration", options->can.duration_s, "Of --can, seconds; else until Ctrl-C")
+        ->check(CLI::Range(0.0, 1e9))
+        ->type_name("S");
+    command->add_option("--record", options->can.record, "Log of what --can receives")->type_name("L.log");
     command
         ->add_option("-o,--output", options->csv,
                      "One row per tick: measured, predicted, deviation, nis, learned, status")
         ->type_name("OUT.csv");
     command->add_option("--report", options->report, "Self-contained page with curves and figures")
         ->type_name("R.html");
-    command->add_option("--horizon", options->horizon, "Samples T of the paper's index epsilon; 0: none")
-        ->check(CLI::Range(0, 10000))
-        ->capture_default_str();
+    command
+        ->add_option("--horizon", options->horizon,
+                     "Samples T of the paper's index epsilon; 0: none; without: 25, with --can none")
+        ->check(CLI::Range(0, 10000));
     command->add_flag("--from-prior", options->from_prior,
                       "Start with nothing learned: keep the hyperparameters, drop the trained start");
     command->footer(
         "Example:\n  dfdyn replay --model model.json --log run.csv -o out.csv --report report.html\n"
-        "Exit status: 0 done, 2 bad usage or input.");
+        "  dfdyn replay --model model.json --bus bus.json --log run.log -o out.csv\n"
+        "  dfdyn replay --model model.json --bus bus.json --can can0 --record run.log -o out.csv\n"
+        "Exit status: 0 done, 1 a bus gave no prediction at all, 2 bad usage or input.");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }
 

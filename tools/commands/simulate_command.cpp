@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/can/bus_traffic.hpp"
+#include "tools/can/frame_recorder.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options.hpp"
 #include "tools/commands/robot_options.hpp"
 #include "tools/common/atomic_file.hpp"
+#include "tools/common/error.hpp"
 #include "tools/common/progress.hpp"
 #include "tools/simulation/simulation_csv.hpp"
 
+#include <cmath>
 #include <memory>
 
 namespace dfdyn::tools {
@@ -17,6 +21,8 @@ struct SimulateOptions {
     std::filesystem::path scenario;
     std::filesystem::path recording;
     std::filesystem::path truth;
+    std::filesystem::path candump;
+    std::filesystem::path bus;
     std::optional<std::uint64_t> seed;
 };
 
@@ -35,14 +41,65 @@ Robot read_chain(const SimulateOptions& options) {
     return robot;
 }
 
-/// A recording, and the truth where asked for, that appear whole or not at all.
+/// What the devices of a bus send, as a log.
+class CandumpOutput {
+  public:
+    CandumpOutput(const SimulateOptions& options, const Robot& robot, const Scenario& scenario)
+        : description_(read_bus_description(options.bus)), scenario_(scenario),
+          file_(options.candump, "can0"), traffic_(description_, {.seed = scenario.seed},
+                                                   [this](const hal::Frame& frame) { file_.write(frame); }) {
+        const bool measured = description_.outputs == OutputKind::wrench ? scenario.force_torque.has_value()
+                              : description_.outputs == OutputKind::motor_current
+                                  ? scenario.torque_sensor.torque_constant.has_value()
+                                  : true;
+        if (description_.joint_count != static_cast<int>(robot.joints.size()) || !measured) {
+            throw InputError(description_.source +
+                             ": expected the joints of the robot, and outputs that the scenario measures, "
+                             "found others");
+        }
+    }
+
+    void write(const SimulatedSample& sample) {
+        traffic_.add(std::llround(1e9 * sample.time_s), span_of(sample.position), span_of(output(sample)));
+    }
+
+    void commit() {
+        traffic_.finish();
+        file_.commit();
+    }
+
+  private:
+    static std::span<const double> span_of(const auto& values) {
+        return {values.data(), static_cast<std::size_t>(values.size())};
+    }
+
+    const Eigen::VectorXd& output(const SimulatedSample& sample) {
+        output_ = description_.outputs == OutputKind::wrench ? Eigen::VectorXd(sample.wrench)
+                  : description_.outputs == OutputKind::motor_current
+                      ? Eigen::VectorXd(sample.torque.cwiseQuotient(*scenario_.torque_sensor.torque_constant))
+                      : Eigen::VectorXd(sample.torque);
+        return output_;
+    }
+
+    BusDescription description_;
+    Scenario scenario_;
+    FrameRecorder file_;
+    BusTraffic traffic_;
+    Eigen::VectorXd output_;
+};
+
+/// A recording, the truth and the frames where asked for, that appear whole or not at all.
 class Outputs {
   public:
-    Outputs(const SimulateOptions& options, const Scenario& scenario, std::size_t joint_count)
-        : recording_file_(options.recording), recording_(recording_file_.stream(), scenario, joint_count) {
+    Outputs(const SimulateOptions& options, const Scenario& scenario, const Robot& robot)
+        : recording_file_(options.recording),
+          recording_(recording_file_.stream(), scenario, robot.joints.size()) {
         if (!options.truth.empty()) {
             truth_file_.emplace(options.truth);
-            truth_.emplace(truth_file_->stream(), scenario.force_torque.has_value(), joint_count);
+            truth_.emplace(truth_file_->stream(), scenario.force_torque.has_value(), robot.joints.size());
+        }
+        if (!options.candump.empty()) {
+            candump_.emplace(options, robot, scenario);
         }
     }
 
@@ -51,9 +108,15 @@ class Outputs {
         if (truth_) {
             truth_->write(sample.truth);
         }
+        if (candump_) {
+            candump_->write(sample);
+        }
     }
 
     void commit() {
+        if (candump_) {
+            candump_->commit();
+        }
         if (truth_file_) {
             truth_file_->commit();
         }
@@ -65,15 +128,20 @@ class Outputs {
     SimulatedRecordingCsv recording_;
     std::optional<AtomicFile> truth_file_;
     std::optional<SimulatedTruthCsv> truth_;
+    std::optional<CandumpOutput> candump_;
 };
 
 int run(const SimulateOptions& options) {
-    check_distinct({options.recording, options.truth}, {options.robot, options.scenario});
+    check_distinct({options.recording, options.truth, options.candump},
+                   {options.robot, options.scenario, options.bus});
+    if (options.candump.empty() != options.bus.empty()) {
+        throw InputError("expected --candump and --bus together, found one of them");
+    }
     const Robot robot = read_chain(options);
     Scenario scenario = read_scenario(options.scenario, robot);
     scenario.seed = options.seed.value_or(scenario.seed);
     Simulation simulation(robot, scenario);
-    Outputs outputs(options, scenario, robot.joints.size());
+    Outputs outputs(options, scenario, robot);
     Progress progress("simulating", scenario.recording.samples);
     for (std::size_t done = 0; done < scenario.recording.samples; ++done) {
         outputs.write(simulation.next());
@@ -101,6 +169,9 @@ void add_simulate_command(CLI::App& app, Command& chosen) {
         ->add_option("--truth", options->truth,
                      "The same rows without sensors: true motion, torques, friction, wrench, tip")
         ->type_name("T.csv");
+    command->add_option("--candump", options->candump, "The frames of the devices in --bus, as of candump -L")
+        ->type_name("L.log");
+    command->add_option("--bus", options->bus, "The devices: docs/can.md")->type_name("B.json");
     command->add_option("--seed", options->seed, "Instead of the scenario's own")->type_name("N");
     command->footer("Example:\n  dfdyn simulate --robot arm.urdf --scenario circles.json -o run.csv\n"
                     "The same robot, scenario and seed give the same bytes.\n"

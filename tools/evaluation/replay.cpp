@@ -14,6 +14,7 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr float not_predicted = std::numeric_limits<float>::quiet_NaN();
+constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
 void check_fit(const TrainedModel& model, const Recording& recording) {
     const auto joints = static_cast<std::size_t>(model.joints);
@@ -39,18 +40,6 @@ MeasuredSample sample_at(const Recording& recording, std::size_t row) {
             derivative(recording.acceleration), recording.output.row(row)};
 }
 
-void append(const Tick& tick, ReplayedRecording& replayed) {
-    const bool predicted = tick.status.predicted();
-    for (std::size_t k = 0; k < tick.prediction.size(); ++k) {
-        replayed.predicted.push_back(predicted ? tick.prediction[k] : not_predicted);
-        replayed.standard_deviation.push_back(predicted ? tick.standard_deviation[k] : not_predicted);
-    }
-    replayed.normalised_innovation_squared.push_back(predicted ? tick.normalised_innovation_squared
-                                                               : not_predicted);
-    replayed.status.push_back(tick.status);
-    replayed.duration_us.push_back(std::chrono::duration<double, std::micro>(tick.duration).count());
-}
-
 } // namespace
 
 bool needs_derivatives(const TrainedModel& model) {
@@ -61,31 +50,75 @@ bool needs_derivatives(const TrainedModel& model) {
            (model.physics && measured(model.physics->motion));
 }
 
+std::string_view reason_name(const ReplayedRecording& replayed, std::size_t tick) {
+    const hal::Reason bus = replayed.bus_reason.empty() ? hal::Reason::ok : replayed.bus_reason[tick];
+    return bus != hal::Reason::ok ? hal::name(bus) : name(replayed.status[tick].reason());
+}
+
+Replayer::Replayer(HostEstimator& estimator, std::string source, std::size_t outputs, std::size_t horizon)
+    : estimator_(estimator), outputs_(outputs), horizon_(horizon),
+      errors_(std::max<std::size_t>(horizon, 1), outputs, estimator.weight_count()) {
+    replayed_.source = std::move(source);
+}
+
+void Replayer::tick(double time_s, const MeasuredSample& sample) {
+    const Tick tick = estimator_.tick(sample);
+    replayed_.time_s.push_back(time_s);
+    append(tick, sample.output);
+    if (!tick.status.predicted() || sample.output.empty()) {
+        errors_.skip();
+    } else if (horizon_ > 0) {
+        errors_.add(estimator_, sample.output);
+    }
+}
+
+void Replayer::tick(double time_s, const MeasuredSample& sample, hal::Reason output) {
+    tick(time_s, sample);
+    replayed_.bus_reason.push_back(replayed_.status.back().predicted() ? output : hal::Reason::ok);
+}
+
+void Replayer::skip(double time_s, hal::Reason position) {
+    Tick tick;
+    tick.status.prediction = Reason::gap; // what the estimator will make of it
+    replayed_.time_s.push_back(time_s);
+    append(tick, {});
+    replayed_.bus_reason.push_back(position);
+    errors_.skip();
+}
+
+ReplayedRecording Replayer::finish() {
+    replayed_.horizon = errors_.indices();
+    return std::move(replayed_);
+}
+
+void Replayer::append(const Tick& tick, std::span<const double> output) {
+    const bool predicted = tick.status.predicted();
+    for (std::size_t k = 0; k < outputs_; ++k) {
+        replayed_.measured.push_back(output.empty() ? not_measured : output[k]);
+        replayed_.predicted.push_back(predicted ? tick.prediction[k] : not_predicted);
+        replayed_.standard_deviation.push_back(predicted ? tick.standard_deviation[k] : not_predicted);
+    }
+    replayed_.normalised_innovation_squared.push_back(
+        predicted && !output.empty() ? tick.normalised_innovation_squared : not_predicted);
+    replayed_.status.push_back(tick.status);
+    replayed_.duration_us.push_back(std::chrono::duration<double, std::micro>(tick.duration).count());
+}
+
 ReplayedRecording replay(HostEstimator& estimator, std::span<const TrainedModel> models,
                          const Recording& recording, std::size_t horizon,
                          const std::function<void(std::size_t)>& on_tick) {
     for (const TrainedModel& model : models) {
         check_fit(model, recording);
     }
-    const std::size_t outputs = recording.output.names.size();
-    HorizonError errors(std::max<std::size_t>(horizon, 1), outputs, estimator.weight_count());
-    ReplayedRecording replayed{
-        recording.source, recording.time_s, recording.output.values, {}, {}, {}, {}, {}, {}};
+    Replayer replayer(estimator, recording.source, recording.output.names.size(), horizon);
     for (std::size_t row = 0; row < recording.row_count(); ++row) {
         if (recording.gap_before[row] != 0) {
             estimator.begin_recording();
         }
-        const Tick tick = estimator.tick(sample_at(recording, row));
-        append(tick, replayed);
-        if (!tick.status.predicted()) {
-            errors.skip();
-        } else if (horizon > 0) {
-            errors.add(estimator, recording.output.row(row));
-        }
+        replayer.tick(recording.time_s[row], sample_at(recording, row));
         on_tick(row + 1);
     }
-    replayed.horizon = errors.indices();
-    return replayed;
+    return replayer.finish();
 }
 
 double normalised_error(const ReplayedRecording& replayed, std::size_t outputs, std::size_t output,
@@ -94,8 +127,9 @@ double normalised_error(const ReplayedRecording& replayed, std::size_t outputs, 
     double error_square = 0;
     for (std::size_t tick = first; tick < last; ++tick) {
         const auto predicted = static_cast<double>(replayed.predicted[tick * outputs + output]);
-        if (!std::isnan(predicted)) {
-            measured.push_back(replayed.measured[tick * outputs + output]);
+        const double output_value = replayed.measured[tick * outputs + output];
+        if (!std::isnan(predicted) && !std::isnan(output_value)) {
+            measured.push_back(output_value);
             error_square += (measured.back() - predicted) * (measured.back() - predicted);
         }
     }
@@ -112,7 +146,7 @@ double share_within_two_deviations(const ReplayedRecording& replayed, std::size_
     std::size_t predicted = 0;
     std::size_t within = 0;
     for (std::size_t element = output; element < replayed.predicted.size(); element += outputs) {
-        if (!std::isnan(replayed.predicted[element])) {
+        if (!std::isnan(replayed.predicted[element]) && !std::isnan(replayed.measured[element])) {
             const double error =
                 replayed.measured[element] - static_cast<double>(replayed.predicted[element]);
             ++predicted;

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/reason.hpp"
 #include "tools/evaluation/horizon_error.hpp"
 #include "tools/host/host_estimator.hpp"
 #include "tools/recording/recording.hpp"
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -17,17 +20,48 @@ namespace dfdyn::tools {
 struct ReplayedRecording {
     std::string source;
     std::vector<double> time_s;
-    std::vector<double> measured;                     ///< ticks × m
+    std::vector<double> measured;                     ///< ticks × m; NaN where nothing was measured
     std::vector<float> predicted;                     ///< ticks × m; NaN where nothing was predicted
     std::vector<float> standard_deviation;            ///< ticks × m; likewise
-    std::vector<float> normalised_innovation_squared; ///< per tick; NaN likewise
+    std::vector<float> normalised_innovation_squared; ///< per tick; NaN where there is none
     std::vector<Status> status;
-    std::vector<double> duration_us; ///< of each tick, on this machine
+    std::vector<hal::Reason> bus_reason; ///< why a bus has no sample, or no output in it; else empty
+    std::vector<double> duration_us;     ///< of each tick, on this machine
     std::vector<HorizonIndex> horizon;
 };
 
+/// The one reason worth reporting of a tick ("ok" for none): the bus' if there is one, else the estimator's.
+std::string_view reason_name(const ReplayedRecording& replayed, std::size_t tick);
+
 /// Whether a part of the model needs the recording's own derivatives, columns qd and qdd.
 bool needs_derivatives(const TrainedModel& model);
+
+/// Runs an estimator over samples as they come, and notes what it does. Keeps references to both.
+class Replayer {
+  public:
+    /// `horizon`: T of the index ε, 0 for none.
+    Replayer(HostEstimator& estimator, std::string source, std::size_t outputs, std::size_t horizon);
+
+    /// One tick. `sample.output` is empty where nothing was measured.
+    void tick(double time_s, const MeasuredSample& sample);
+    /// Likewise, of a bus; `output` says why nothing was measured.
+    void tick(double time_s, const MeasuredSample& sample, hal::Reason output);
+    /// A tick for which a bus has no positions.
+    void skip(double time_s, hal::Reason position);
+
+    std::size_t ticks() const noexcept { return replayed_.time_s.size(); }
+
+    /// All of it; call once, last.
+    ReplayedRecording finish();
+
+  private:
+    void append(const Tick& tick, std::span<const double> output);
+
+    HostEstimator& estimator_;
+    std::size_t outputs_, horizon_;
+    HorizonError errors_;
+    ReplayedRecording replayed_;
+};
 
 /// Runs `estimator` over `recording`, learning on throughout; what it has learned before stays. `on_tick` is
 /// told the number of ticks done. `models`: those that `estimator` was made of. `horizon`: T of the index ε,
@@ -36,13 +70,13 @@ ReplayedRecording replay(HostEstimator& estimator, std::span<const TrainedModel>
                          const Recording& recording, std::size_t horizon,
                          const std::function<void(std::size_t)>& on_tick);
 
-/// rms(measured - predicted) / std(measured) of one output over the predicted ticks in [first, last); NaN if
-/// there are none.
+/// rms(measured - predicted) / std(measured) of one output over the ticks in [first, last) that are measured
+/// and predicted; NaN if there are none.
 double normalised_error(const ReplayedRecording& replayed, std::size_t outputs, std::size_t output,
                         std::size_t first, std::size_t last);
 
-/// The share of predicted ticks whose output lies within two standard deviations of its prediction; NaN if
-/// there are none.
+/// The share of measured and predicted ticks whose output lies within two standard deviations of its
+/// prediction; NaN if there are none.
 double share_within_two_deviations(const ReplayedRecording& replayed, std::size_t outputs,
                                    std::size_t output);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/evaluation/replay_csv.hpp"
 
-#include "dfdyn/status.hpp"
 #include "tools/recording/csv_writer.hpp"
 
 namespace dfdyn::tools {
@@ -27,7 +26,7 @@ void write_row(CsvWriter& writer, const ReplayedRecording& recording, std::size_
     const Status& status = recording.status[tick];
     writer.field(static_cast<double>(recording.normalised_innovation_squared[tick]))
         .field(status.learned() ? 1 : 0)
-        .name(name(status.reason()));
+        .name(reason_name(recording, tick));
     writer.end_row();
 }
 

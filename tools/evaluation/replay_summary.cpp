@@ -18,11 +18,10 @@ namespace {
 
 std::vector<std::pair<std::string, std::size_t>> count_refusals(const ReplayedRecording& replayed) {
     std::map<std::string, std::size_t> counts;
-    for (const Status& status : replayed.status) {
-        if (status.reason() != Reason::ok) {
-            ++counts[name(status.reason())];
-        }
+    for (std::size_t tick = 0; tick < replayed.status.size(); ++tick) {
+        ++counts[std::string(reason_name(replayed, tick))];
     }
+    counts.erase(name(Reason::ok));
     return {counts.begin(), counts.end()};
 }
 

@@ -28,7 +28,6 @@ typename Host::Sample empty_sample(int joints, int outputs) {
     typename Host::Sample sample{};
     sample.position = zeros<Host::joints>(joints);
     sample.output = zeros<Host::outputs>(outputs);
-    sample.output_valid = true;
     if constexpr (requires { sample.velocity; }) {
         sample.velocity = zeros<Host::joints>(joints);
         sample.acceleration = zeros<Host::joints>(joints);
@@ -48,6 +47,7 @@ class EstimatorOf final : public HostEstimator {
         sample_.time_ns = sample.time_ns;
         copy(sample.position, sample_.position);
         copy(sample.output, sample_.output);
+        sample_.output_valid = !sample.output.empty();
         if constexpr (requires { sample_.velocity; }) {
             copy(sample.velocity, sample_.velocity);
             copy(sample.acceleration, sample_.acceleration);

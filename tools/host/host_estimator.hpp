@@ -29,7 +29,7 @@ struct MeasuredSample {
     std::span<const double> position;     ///< n values
     std::span<const double> velocity;     ///< n values; read by models of measured derivatives only
     std::span<const double> acceleration; ///< likewise
-    std::span<const double> output;       ///< m values
+    std::span<const double> output;       ///< m values; empty: nothing was measured, predict only
 };
 
 /// The embedded estimator of any model, whatever its sizes and input: what the firmware runs, behind one

@@ -54,6 +54,9 @@ class Cia402Drive {
                !restricted(position_id()) && effort;
     }
 
+    /// Whether efforts are mapped.
+    [[nodiscard]] constexpr bool has_effort() const noexcept { return config_.effort_pdo != 0; }
+
     [[nodiscard]] constexpr bool claims(std::uint32_t id) const noexcept {
         return id == position_id() || (has_effort() && id == effort_id()) || id == emcy_id() ||
                id == heartbeat_id();
@@ -121,7 +124,6 @@ class Cia402Drive {
     [[nodiscard]] constexpr std::uint32_t node() const noexcept {
         return static_cast<std::uint32_t>(config_.node);
     }
-    [[nodiscard]] constexpr bool has_effort() const noexcept { return config_.effort_pdo != 0; }
     [[nodiscard]] constexpr std::uint32_t position_id() const noexcept {
         return config_.position_pdo + node();
     }

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/catch.hpp"
+#include "tests/tools/can/bus_support.hpp"
+#include "tests/vcan/peer.hpp"
+#include "tools/evaluation/replay_interface.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <thread>
+
+namespace {
+
+using namespace dfdyn::tools;
+using dfdyn::tests::IcubLog;
+
+bool same_bits(const std::vector<float>& one, const std::vector<float>& other, std::size_t count) {
+    return std::equal(one.begin(), one.begin() + static_cast<std::ptrdiff_t>(count), other.begin(),
+                      [](float a, float b) { return std::bit_cast<int>(a) == std::bit_cast<int>(b); });
+}
+
+} // namespace
+
+TEST_CASE("what is predicted on a live bus, its recording replayed in-process predicts bit for bit") {
+    // At 100 Hz, because a booted kernel's pauses are longer than the ages that 1 kHz allows.
+    constexpr int rows = 200;
+    const IcubLog log(rows, 100);
+    const auto recorded = log.directory.path() / "recorded.log";
+    std::atomic<bool> stop = false;
+    const long receivers = dfdyn::tests::receivers();
+    std::thread player([&] {
+        dfdyn::tests::wait_for_receivers(receivers);
+        dfdyn::tests::run(std::string(DFDYN_PROGRAM) + " play --log " + log.path.string() + " --can vcan0");
+        std::this_thread::sleep_for(std::chrono::milliseconds(200)); // what was sent is delivered
+        stop = true;
+    });
+    const auto live_estimator = make_estimator(log.model, true);
+    const ReplayedRecording live =
+        replay_interface(*live_estimator, {&log.model, 1}, log.bus, {"vcan0", 0, recorded}, 0, stop).replayed;
+    player.join();
+    const auto estimator = make_estimator(log.model, true);
+    const ReplayedBus again = replay_log(*estimator, {&log.model, 1}, log.bus, recorded, "", 0);
+    const ReplayedRecording& replayed = again.replayed;
+
+    CHECK(again.bus.frames == 4 * rows + 6); // and the sensor's full scales
+    const std::size_t ticks = replayed.status.size();
+    REQUIRE(ticks > 150);
+    REQUIRE(live.status.size() >= ticks); // the silence after the last frame is not in the recording
+    CHECK(std::ranges::count_if(live.status, [](const auto& status) { return status.learned(); }) > 100);
+    CHECK(std::equal(replayed.time_s.begin(), replayed.time_s.end(), live.time_s.begin()));
+    CHECK(std::equal(replayed.bus_reason.begin(), replayed.bus_reason.end(), live.bus_reason.begin()));
+    CHECK(same_bits(replayed.predicted, live.predicted, 6 * ticks));
+    CHECK(same_bits(replayed.standard_deviation, live.standard_deviation, 6 * ticks));
+}

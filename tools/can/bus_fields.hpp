@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/can/bus_description.hpp"
+#include "tools/common/text.hpp"
+#include "tools/model/json_reader.hpp"
+
+#include <array>
+#include <string>
+
+namespace dfdyn::tools {
+
+/// The fields of a bus description that a file may leave out. Errors as of JsonReader.
+double number_or(const JsonReader& reader, const std::string& name, double absent, double low, double high);
+int whole_or(const JsonReader& reader, const std::string& name, int absent, int low, int high);
+
+/// Seconds in the file, from 0 to 60.
+std::int64_t nanoseconds_or(const JsonReader& reader, const std::string& name, double absent_s);
+
+/// `"0x280"`: an identifier of 11 bits.
+std::uint32_t identifier_or(const JsonReader& reader, const std::string& name, std::uint32_t absent);
+std::string identifier_text(std::uint32_t id);
+
+/// `family`, `boards` and what belongs to the family. `description` has its rates and trigger.
+void read_boards(const JsonReader& joints, BusDescription& description);
+
+/// Whether the boards' frames carry efforts.
+bool measures_efforts(const std::vector<BusBoard>& boards);
+
+struct WrenchSensor {
+    AnySensor device;
+    std::array<double, 6> limit; ///< what it can measure, ±
+};
+
+/// `family` and what belongs to it.
+WrenchSensor read_wrench_sensor(const JsonReader& output);
+
+} // namespace dfdyn::tools

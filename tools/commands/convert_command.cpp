@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/can/bus_traffic.hpp"
+#include "tools/commands/command.hpp"
+#include "tools/commands/options.hpp"
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+namespace dfdyn::tools {
+
+namespace {
+
+struct ConvertOptions {
+    std::filesystem::path recording;
+    std::filesystem::path bus;
+    std::filesystem::path log;
+    TrafficOptions traffic;
+};
+
+int run(const ConvertOptions& options) {
+    check_distinct({options.log}, {options.recording, options.bus});
+    const BusDescription description = read_bus_description(options.bus);
+    ReadOptions columns;
+    columns.joint_count = static_cast<std::size_t>(description.joint_count);
+    columns.outputs = description.outputs;
+    const Recording recording = read_recording(options.recording, columns);
+    const double load = write_bus_log(recording, description, options.traffic, options.log);
+    std::cout << "bus load: " << std::round(1000 * load) / 10 << " %\n";
+    return 0;
+}
+
+} // namespace
+
+void add_convert_command(CLI::App& app, Command& chosen) {
+    const auto options = std::make_shared<ConvertOptions>();
+    CLI::App* command = app.add_subcommand(
+        "convert", "Writes a CSV recording as the frames that an arm's devices would have sent on a CAN bus");
+    command->add_option("--log", options->recording, "The recording")->required()->type_name("L.csv");
+    command->add_option("--bus", options->bus, "The devices: docs/can.md")->required()->type_name("B.json");
+    command->add_option("-o,--output", options->log, "As of candump -L, with nanoseconds")
+        ->required()
+        ->type_name("L.log");
+    command
+        ->add_option("--jitter-us", options->traffic.jitter_us,
+                     "How late frames are at most, evenly distributed")
+        ->check(CLI::Range(0.0, 1e6))
+        ->type_name("US")
+        ->capture_default_str();
+    command->add_option("--seed", options->traffic.seed, "Of the jitter")
+        ->type_name("N")
+        ->capture_default_str();
+    command->footer(
+        "Example:\n  dfdyn convert --log run.csv --bus bus.json -o run.log\n"
+        "The same recording, bus and seed give the same bytes. A bus that cannot carry the frames is "
+        "an error.\nExit status: 0 done, 2 bad usage or input.");
+    command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/evaluation/replay_can.hpp"
+
+#include <atomic>
+
+namespace dfdyn::tools {
+
+struct InterfaceOptions {
+    std::string interface;
+    double duration_s = 0;        ///< 0: until stopped
+    std::filesystem::path record; ///< a log of what was received; empty: none
+};
+
+/// Runs `estimator` over what a CAN interface receives, in real time, until `stop` becomes true. Asks sensors
+/// for their full scales while those are missing. `replay_log` of the recorded log gives the same ticks, bit
+/// for bit, up to the last frame. Throws InputError where the interface cannot be opened or nothing was
+/// received; and as CanReplayer.
+ReplayedBus replay_interface(HostEstimator& estimator, std::span<const TrainedModel> models,
+                             const BusDescription& description, const InterfaceOptions& options,
+                             std::size_t horizon, const std::atomic<bool>& stop);
+
+} // namespace dfdyn::tools
