@@ -22,7 +22,7 @@ bool same_bits(const std::vector<float>& one, const std::vector<float>& other, s
 } // namespace
 
 TEST_CASE("what is predicted on a live bus, its recording replayed in-process predicts bit for bit") {
-    // At 100 Hz, because a booted kernel's pauses are longer than the ages that 1 kHz allows.
+    // At 100 Hz: at 1 kHz a booted kernel gave too few valid ticks to learn from.
     constexpr int rows = 200;
     const IcubLog log(rows, 100);
     const auto recorded = log.directory.path() / "recorded.log";

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 #include <variant>
 
 namespace dfdyn::tools {
@@ -33,7 +32,7 @@ class AnyBoard {
     static constexpr int joints = 2;
 
     AnyBoard() = default;
-    explicit AnyBoard(Device device) : device_(std::move(device)) {}
+    explicit AnyBoard(Device device) : device_(device) {}
 
     hal::Decoded decode(const hal::Frame& frame) noexcept {
         return std::visit([&](auto& device) { return device.decode(frame); }, device_);
@@ -65,7 +64,7 @@ class AnySensor {
   public:
     using Device = std::variant<hal::icub::StrainBoard, hal::RobotousRft, hal::AtiNetcan>;
 
-    explicit AnySensor(Device device) : device_(std::move(device)) {}
+    explicit AnySensor(Device device) : device_(device) {}
 
     hal::Decoded decode(const hal::Frame& frame) noexcept {
         return std::visit([&](auto& device) { return device.decode(frame); }, device_);

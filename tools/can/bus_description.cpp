@@ -32,7 +32,7 @@ BusTrigger read_trigger(const JsonReader& reader) {
 /// Three periods without a value are too many, unless the file says otherwise.
 BusSource read_source(const JsonReader& reader, double default_rate_hz) {
     BusSource source;
-    source.rate_hz = number_or(reader, "rate_hz", default_rate_hz, 0.1, 100'000);
+    source.rate_hz = reader.number_or("rate_hz", default_rate_hz, 0.1, 100'000);
     source.max_age_ns = nanoseconds_or(reader, "max_age_s", 3 / source.rate_hz);
     source.latency_ns = nanoseconds_or(reader, "latency_s", 0);
     return source;
@@ -59,7 +59,7 @@ int count_joints(const JsonReader& reader, const std::vector<BusBoard>& boards) 
 
 void read_joints(const JsonReader& reader, BusDescription& description) {
     description.joints = read_source(reader, description.sample_rate_hz);
-    description.position_limit_rad = number_or(reader, "limit_rad", 7, 1e-3, 1e6);
+    description.position_limit_rad = reader.number_or("limit_rad", 7, 1e-3, 1e6);
     read_boards(reader, description);
     description.joint_count = count_joints(reader, description.boards);
 }
@@ -77,19 +77,19 @@ void read_efforts(const JsonReader& reader, bool measured, BusDescription& descr
         throw reader.error("quantity", "tau or i", in_quotes(quantity));
     }
     const double limit =
-        number_or(reader, "limit", std::numeric_limits<float>::max(), 0, std::numeric_limits<float>::max());
+        reader.number_or("limit", std::numeric_limits<float>::max(), 0, std::numeric_limits<float>::max());
     description.output_range.assign(static_cast<std::size_t>(description.joint_count), {-limit, limit});
 }
 
 void read_sensor(const JsonReader& reader, BusDescription& description) {
     description.outputs = OutputKind::wrench;
-    WrenchSensor sensor = read_wrench_sensor(reader);
-    description.sensor = std::move(sensor.device);
+    const WrenchSensor sensor = read_wrench_sensor(reader);
+    description.sensor = sensor.device;
     for (const double limit : sensor.limit) {
         description.output_range.push_back({-limit, limit});
     }
     description.pair_window_ns = nanoseconds_or(reader, "pair_window_s", 0.5 / description.output.rate_hz);
-    description.frozen_after = whole_or(reader, "frozen_after", 100, 2, 1'000'000);
+    description.frozen_after = reader.whole_or("frozen_after", 100, 2, 1'000'000);
 }
 
 void read_output(const JsonReader& reader, BusDescription& description) {

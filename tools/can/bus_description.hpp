@@ -6,6 +6,7 @@
 #include "tools/recording/recording.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -58,9 +59,7 @@ struct BusDescription {
     std::int64_t pair_window_ns = 0;      ///< of a wrench's two frames, see hal::PairGate
     int frozen_after = 0;                 ///< identical wrenches, see hal::FrozenGate
 
-    [[nodiscard]] std::int64_t sample_period_ns() const {
-        return static_cast<std::int64_t>(1e9 / sample_rate_hz + 0.5);
-    }
+    [[nodiscard]] std::int64_t sample_period_ns() const { return std::llround(1e9 / sample_rate_hz); }
 };
 
 /// Reads a bus description. Throws InputError `FILE: path.to.field: expected …, found …` for a file that is

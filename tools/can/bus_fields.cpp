@@ -38,10 +38,10 @@ double ratio_or(const JsonReader& reader, const std::string& name, double absent
     return reader.has(name) ? ratio(reader, name) : absent;
 }
 
-double zero_rad(const JsonReader& board) { return number_or(board, "zero_rad", 0, -1000, 1000); }
+double zero_rad(const JsonReader& board) { return board.number_or("zero_rad", 0, -1000, 1000); }
 
 BusBoard one_joint(AnyBoard::Device device, int joint) {
-    return {AnyBoard(std::move(device)), {joint, hal::unused_joint}};
+    return {AnyBoard(device), {joint, hal::unused_joint}};
 }
 
 BusBoard read_two_joint_board(const JsonReader& board) {
@@ -87,9 +87,9 @@ BusBoard read_odrive(const JsonReader& board, std::int64_t heartbeat_timeout_ns)
 void read_mapping(const JsonReader& mapping, std::uint32_t& pdo, int& length, hal::Signal& signal) {
     mapping.allow_only(Names{"pdo", "length", "start_bit", "bits"});
     pdo = identifier_or(mapping, "pdo", pdo);
-    length = whole_or(mapping, "length", length, 1, 8);
-    signal.start_bit = whole_or(mapping, "start_bit", signal.start_bit, 0, 63);
-    signal.length = whole_or(mapping, "bits", signal.length, 1, 64);
+    length = mapping.whole_or("length", length, 1, 8);
+    signal.start_bit = mapping.whole_or("start_bit", signal.start_bit, 0, 63);
+    signal.length = mapping.whole_or("bits", signal.length, 1, 64);
 }
 
 /// What is the same for all drives of a bus.
@@ -172,9 +172,9 @@ WrenchSensor read_robotous(const JsonReader& output) {
         throw output.error("second_id", "another identifier than the first",
                            identifier_text(config.second_id));
     }
-    config.counts_per_newton = number_or(output, "counts_per_newton", config.counts_per_newton, 1e-3, 1e6);
+    config.counts_per_newton = output.number_or("counts_per_newton", config.counts_per_newton, 1e-3, 1e6);
     config.counts_per_newton_metre =
-        number_or(output, "counts_per_newton_metre", config.counts_per_newton_metre, 1e-3, 1e6);
+        output.number_or("counts_per_newton_metre", config.counts_per_newton_metre, 1e-3, 1e6);
     return {AnySensor(hal::RobotousRft(config)),
             limit_or(output, 32768 / config.counts_per_newton, 32768 / config.counts_per_newton_metre)};
 }
@@ -182,7 +182,7 @@ WrenchSensor read_robotous(const JsonReader& output) {
 WrenchSensor read_ati(const JsonReader& output) {
     allow_only(output, sensor_fields, {"base", "matrix", "counts_per_newton", "counts_per_newton_metre"});
     hal::AtiNetcan::Config config;
-    config.base = static_cast<std::uint32_t>(whole_or(output, "base", 0x20, 0, 0x7E));
+    config.base = static_cast<std::uint32_t>(output.whole_or("base", 0x20, 0, 0x7E));
     const std::vector<double> matrix = output.numbers("matrix", 36);
     for (std::size_t i = 0; i < matrix.size(); ++i) {
         config.matrix[i / 6][i % 6] = matrix[i];
@@ -205,16 +205,8 @@ void for_each_board(const JsonReader& joints, Read read, std::vector<BusBoard>& 
 
 } // namespace
 
-double number_or(const JsonReader& reader, const std::string& name, double absent, double low, double high) {
-    return reader.has(name) ? reader.number_within(name, low, high) : absent;
-}
-
-int whole_or(const JsonReader& reader, const std::string& name, int absent, int low, int high) {
-    return reader.has(name) ? reader.whole_number(name, low, high) : absent;
-}
-
 std::int64_t nanoseconds_or(const JsonReader& reader, const std::string& name, double absent_s) {
-    return std::llround(1e9 * number_or(reader, name, absent_s, 0, 60));
+    return std::llround(1e9 * reader.number_or(name, absent_s, 0, 60));
 }
 
 std::uint32_t identifier_or(const JsonReader& reader, const std::string& name, std::uint32_t absent) {

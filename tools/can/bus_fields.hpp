@@ -10,11 +10,8 @@
 
 namespace dfdyn::tools {
 
-/// The fields of a bus description that a file may leave out. Errors as of JsonReader.
-double number_or(const JsonReader& reader, const std::string& name, double absent, double low, double high);
-int whole_or(const JsonReader& reader, const std::string& name, int absent, int low, int high);
-
-/// Seconds in the file, from 0 to 60.
+/// A field of a bus description that a file may leave out. Errors as of JsonReader. Seconds in the file, from
+/// 0 to 60.
 std::int64_t nanoseconds_or(const JsonReader& reader, const std::string& name, double absent_s);
 
 /// `"0x280"`: an identifier of 11 bits.

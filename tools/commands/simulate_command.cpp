@@ -45,7 +45,7 @@ Robot read_chain(const SimulateOptions& options) {
 class CandumpOutput {
   public:
     CandumpOutput(const SimulateOptions& options, const Robot& robot, const Scenario& scenario)
-        : description_(read_bus_description(options.bus)), scenario_(scenario),
+        : description_(read_bus_description(options.bus)), torque_sensor_(scenario.torque_sensor),
           file_(options.candump, "can0"), traffic_(description_, {.seed = scenario.seed},
                                                    [this](const hal::Frame& frame) { file_.write(frame); }) {
         const bool measured = description_.outputs == OutputKind::wrench ? scenario.force_torque.has_value()
@@ -76,13 +76,13 @@ class CandumpOutput {
     const Eigen::VectorXd& output(const SimulatedSample& sample) {
         output_ = description_.outputs == OutputKind::wrench ? Eigen::VectorXd(sample.wrench)
                   : description_.outputs == OutputKind::motor_current
-                      ? Eigen::VectorXd(sample.torque.cwiseQuotient(*scenario_.torque_sensor.torque_constant))
+                      ? Eigen::VectorXd(torque_sensor_.current(sample.torque))
                       : Eigen::VectorXd(sample.torque);
         return output_;
     }
 
     BusDescription description_;
-    Scenario scenario_;
+    TorqueSensorModel torque_sensor_;
     FrameRecorder file_;
     BusTraffic traffic_;
     Eigen::VectorXd output_;

@@ -69,7 +69,7 @@ std::vector<std::string> effects_of(const JsonReader& entry) {
 
 void read_settings(const JsonReader& entry, Case& one) {
     const auto whole = [&entry](const std::string& name, int high, int& value) {
-        value = entry.has(name) ? entry.whole_number(name, 1, high) : value;
+        value = entry.whole_or(name, value, 1, high);
     };
     whole("lags", 1000, one.lags);
     whole("features", 5000, one.feature_count);
@@ -81,9 +81,7 @@ void read_settings(const JsonReader& entry, Case& one) {
     flag("orthogonal", one.orthogonal);
     flag("relevance", one.relevance);
     flag("centred", one.centred);
-    if (entry.has("forgetting")) {
-        one.forgetting_factor = entry.number_within("forgetting", 0.5, 1);
-    }
+    one.forgetting_factor = entry.number_or("forgetting", one.forgetting_factor, 0.5, 1);
     if (entry.has("physics_input")) {
         one.physics_input = one_of(entry, "physics_input", entry.text("physics_input"), physics_inputs);
     }

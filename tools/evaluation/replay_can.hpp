@@ -47,8 +47,8 @@ class CanReplayer {
 };
 
 /// Runs `estimator` over a candump log, on the log's own clock. `log_interface`: the one whose frames to
-/// take, where the log has several. Throws InputError for a log
-/// that is malformed, or without frames; and as CanReplayer.
+/// take, where the log has several. Throws InputError for a log that is malformed, or without frames; and as
+/// CanReplayer.
 ReplayedBus replay_log(HostEstimator& estimator, std::span<const TrainedModel> models,
                        const BusDescription& description, const std::filesystem::path& log,
                        const std::string& log_interface, std::size_t horizon);

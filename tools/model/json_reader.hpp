@@ -42,6 +42,13 @@ class JsonReader {
     double number(const std::string& name) const;
     double positive_number(const std::string& name) const;
     double number_within(const std::string& name, double low, double high) const;
+    /// `absent` where there is no such field.
+    int whole_or(const std::string& name, int absent, int low, int high) const {
+        return has(name) ? whole_number(name, low, high) : absent;
+    }
+    double number_or(const std::string& name, double absent, double low, double high) const {
+        return has(name) ? number_within(name, low, high) : absent;
+    }
     std::vector<double> numbers(const std::string& name) const;
     std::vector<double> numbers(const std::string& name, int count) const;
     std::vector<double> positive_numbers(const std::string& name, int count) const;

@@ -126,8 +126,7 @@ EncoderModel read_encoders(const ScenarioReader& reader) {
         {"rate_hz", "bits_per_turn", "noise_rad", "eccentricity_rad", "eccentricity_phase_rad"});
     EncoderModel model;
     model.rate_hz = reader.within("rate_hz", 1, 1e5, model.rate_hz);
-    model.bits_per_turn =
-        reader.json().has("bits_per_turn") ? reader.json().whole_number("bits_per_turn", 0, 40) : 0;
+    model.bits_per_turn = reader.json().whole_or("bits_per_turn", 0, 0, 40);
     model.noise = reader.within("noise_rad", 0, 1, 0);
     model.eccentricity = reader.per_joint("eccentricity_rad", 0);
     model.eccentricity_phase = reader.per_joint("eccentricity_phase_rad", 0);
@@ -154,14 +153,14 @@ WrenchSensorModel read_force_torque(const ScenarioReader& reader, const Robot& r
     }
     WrenchSensorModel model;
     model.rate_hz = reader.within("rate_hz", 1, 1e5, model.rate_hz);
-    model.bits = reader.json().has("bits") ? reader.json().whole_number("bits", 2, 40) : model.bits;
+    model.bits = reader.json().whole_or("bits", model.bits, 2, 40);
     model.range = Eigen::Map<const Wrench>(reader.json().positive_numbers("range", 6).data());
     if (reader.json().has("calibration")) {
         model.calibration = Eigen::Map<const WrenchMatrix>(reader.json().numbers("calibration", 36).data());
     }
     model.noise = reader.six("noise");
     model.bandwidth_hz = reader.within("bandwidth_hz", 0, 1e5, 0);
-    model.order = reader.json().has("order") ? reader.json().whole_number("order", 1, 2) : model.order;
+    model.order = reader.json().whole_or("order", model.order, 1, 2);
     model.bias = reader.six("bias");
     model.drift_per_s = reader.six("drift_per_s");
     model.delay_s = reader.within("delay_s", 0, 10, 0);

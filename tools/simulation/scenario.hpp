@@ -30,6 +30,9 @@ struct RecordingModel {
 struct TorqueSensorModel {
     JointVector noise;                          ///< N·m, standard deviation
     std::optional<JointVector> torque_constant; ///< N·m/A, at the joint
+
+    /// A; only where there are torque constants.
+    JointVector current(const JointVector& torque) const { return torque.cwiseQuotient(*torque_constant); }
 };
 
 /// All that a simulation needs beside the robot. Its file: docs/scenario.md.

@@ -12,7 +12,7 @@ void ScenarioReader::allow_only(std::initializer_list<std::string_view> names) c
 }
 
 double ScenarioReader::within(const std::string& name, double low, double high, double fallback) const {
-    return json_.has(name) ? json_.number_within(name, low, high) : fallback;
+    return json_.number_or(name, fallback, low, high);
 }
 
 std::string ScenarioReader::text_or_empty(const std::string& name) const {

@@ -67,7 +67,7 @@ void SimulatedRecordingCsv::write(const SimulatedSample& sample) {
         }
     }
     if (has("i")) {
-        const JointVector current = sample.torque.cwiseQuotient(*scenario_.torque_sensor.torque_constant);
+        const JointVector current = scenario_.torque_sensor.current(sample.torque);
         csv_.fields(span_of(current));
     }
     if (has("wrench")) {
