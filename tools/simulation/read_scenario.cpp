@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 
 namespace dfdyn::tools {
 
@@ -108,17 +109,40 @@ TorqueSensorModel read_torque_sensor(const ScenarioReader& reader) {
 ControllerModel read_controller(const ScenarioReader& reader) {
     reader.allow_only({"kind", "rate_hz", "position_gain", "velocity_gain", "mass_error"});
     ControllerModel model;
+    static const std::map<std::string, ControllerKind> kinds{
+        {"computed_torque", ControllerKind::computed_torque},
+        {"gravity_compensation", ControllerKind::gravity_compensation},
+        {"feed_forward", ControllerKind::feed_forward}};
     const std::string kind = reader.json().text("kind");
-    if (kind != "computed_torque" && kind != "gravity_compensation") {
-        throw reader.json().error("kind", "computed_torque or gravity_compensation", in_quotes(kind));
+    const auto found = kinds.find(kind);
+    if (found == kinds.end()) {
+        throw reader.json().error("kind", "computed_torque, feed_forward or gravity_compensation",
+                                  in_quotes(kind));
     }
-    model.kind =
-        kind == "computed_torque" ? ControllerKind::computed_torque : ControllerKind::gravity_compensation;
+    model.kind = found->second;
     model.rate_hz = reader.within("rate_hz", 1, 1e5, model.rate_hz);
     model.position_gain = reader.per_joint("position_gain");
     model.velocity_gain = reader.per_joint("velocity_gain");
     model.mass_error = reader.within("mass_error", 0, 1, 0);
     return model;
+}
+
+std::vector<Payload> read_payloads(const JsonReader& reader) {
+    std::vector<Payload> payloads;
+    for (const JsonReader& entry : reader.objects("payloads", 0, 100)) {
+        const ScenarioReader one(entry, 0);
+        one.allow_only({"attached_s", "mass_kg", "centre_m"});
+        Payload payload;
+        payload.attached_s = one.within("attached_s", 0, 1e6, 0);
+        payload.mass = one.json().number_within("mass_kg", 1e-6, 1e4);
+        payload.centre = Eigen::Map<const Eigen::Vector3d>(one.json().numbers("centre_m", 3).data());
+        if (!payloads.empty() && payload.attached_s < payloads.back().attached_s) {
+            throw one.json().error("attached_s", "payloads in order of time",
+                                   number_text(payload.attached_s));
+        }
+        payloads.push_back(payload);
+    }
+    return payloads;
 }
 
 EncoderModel read_encoders(const ScenarioReader& reader) {
@@ -241,7 +265,7 @@ Scenario read_scenario(const std::filesystem::path& path, const Robot& robot) {
     const nlohmann::json json = load(path);
     const ScenarioReader reader(JsonReader(json, shown(path)), static_cast<int>(robot.joints.size()));
     reader.allow_only({"schema", "chain", "seed", "integration_rate_hz", "recording", "task", "controller",
-                       "actuators", "encoders", "derivatives", "force_torque"});
+                       "actuators", "payloads", "encoders", "derivatives", "force_torque"});
     Scenario scenario;
     scenario.seed = reader.json().has("seed") ? reader.json().seed("seed") : scenario.seed;
     scenario.integration_rate_hz =
@@ -251,6 +275,9 @@ Scenario read_scenario(const std::filesystem::path& path, const Robot& robot) {
     scenario.controller = read_controller(reader.object("controller"));
     scenario.actuators = read_actuators(reader.object("actuators"));
     scenario.torque_sensor = read_torque_sensor(reader.object("actuators"));
+    if (reader.json().has("payloads")) {
+        scenario.payloads = read_payloads(reader.json());
+    }
     scenario.encoders = read_encoders(reader.object("encoders"));
     scenario.derivatives = read_derivatives(reader.object("derivatives"), scenario.encoders.rate_hz);
     if (reader.json().has("force_torque")) {

@@ -4,6 +4,7 @@
 #include "tools/simulation/controller.hpp"
 #include "tools/simulation/derivative_estimator.hpp"
 #include "tools/simulation/encoders.hpp"
+#include "tools/simulation/payload_schedule.hpp"
 #include "tools/simulation/simulated_arm.hpp"
 #include "tools/simulation/task.hpp"
 #include "tools/simulation/wrench_sensor.hpp"
@@ -43,6 +44,7 @@ struct Scenario {
     TaskModel task;
     ControllerModel controller;
     ActuatorModel actuators;
+    std::vector<Payload> payloads; ///< in order of time
     TorqueSensorModel torque_sensor;
     EncoderModel encoders;
     DerivativeModel derivatives;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/simulation/simulated_arm.hpp"
 
+#include <utility>
+
 namespace dfdyn::tools {
 
 SimulatedArm::SimulatedArm(const Robot& robot, const ActuatorModel& actuators, const JointVector& position)
@@ -11,6 +13,13 @@ SimulatedArm::SimulatedArm(const Robot& robot, const ActuatorModel& actuators, c
     state_.position = position;
     state_.velocity = JointVector::Zero(position.size());
     state_.torque = state_.velocity;
+    complete();
+}
+
+void SimulatedArm::attach(const InertialParameters& body) {
+    Robot robot = dynamics_.robot();
+    robot.joints.back().inertia += body;
+    dynamics_ = ArmDynamics(std::move(robot), actuators_.rotor_inertia);
     complete();
 }
 

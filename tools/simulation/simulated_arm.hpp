@@ -35,6 +35,9 @@ class SimulatedArm {
     /// At rest at `position`, bristles relaxed. Throws InputError as ArmDynamics does.
     SimulatedArm(const Robot& robot, const ActuatorModel& actuators, const JointVector& position);
 
+    /// Fixes a body to the last link, in that link's frame; the motion goes on.
+    void attach(const InertialParameters& body);
+
     /// Holds the actuators' torque at `command`, within their limit, and completes the state's acceleration.
     void apply(const JointVector& command);
 

@@ -37,6 +37,7 @@ Simulation::Simulation(const Robot& robot, const Scenario& scenario)
       control_steps_(std::llround(scenario.integration_rate_hz / scenario.controller.rate_hz)),
       task_(make_task(scenario.task, robot, 1 / scenario.controller.rate_hz, scenario.seed)),
       reference_(task_->next()), arm_(robot, scenario.actuators, reference_.position),
+      payloads_(scenario.payloads, robot),
       controller_(robot, scenario.actuators.rotor_inertia, scenario.controller, scenario.seed),
       encoders_(scenario.encoders, prismatic(robot), scenario.seed),
       control_derivatives_(scenario.derivatives, static_cast<int>(robot.joints.size()),
@@ -61,6 +62,7 @@ void Simulation::control() {
 
 /// What happens at the instant of the state at hand.
 void Simulation::observe() {
+    payloads_.attach_due(static_cast<double>(step_) * period_s_, arm_);
     if (step_ % encoder_steps_ == 0) {
         encoders_.observe(arm_.state().position);
         control_derivatives_.observe(encoders_.reading());

@@ -50,6 +50,7 @@ class Simulation {
     std::unique_ptr<Task> task_;
     Reference reference_;
     SimulatedArm arm_;
+    PayloadSchedule payloads_;
     Controller controller_;
     Encoders encoders_;
     DerivativeEstimator control_derivatives_; ///< the controller's own, at the encoders' rate
