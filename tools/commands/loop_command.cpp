@@ -5,20 +5,19 @@
 #include "tools/commands/stop_signal.hpp"
 #include "tools/common/atomic_file.hpp"
 #include "tools/common/error.hpp"
+#include "tools/common/number.hpp"
 #include "tools/common/progress.hpp"
 #include "tools/common/text.hpp"
 #include "tools/control/closed_loop.hpp"
-#include "tools/control/real_time_run.hpp"
+#include "tools/control/loop_recording.hpp"
+#include "tools/control/loop_summary.hpp"
 #include "tools/control/tracking_report.hpp"
 #include "tools/model/model_file.hpp"
-#include "tools/recording/csv_writer.hpp"
 
-#include <algorithm>
+#include <cmath>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <optional>
-#include <span>
 
 namespace dfdyn::tools {
 
@@ -52,66 +51,25 @@ LoopParts read_parts(const LoopOptions& options) {
     return parts;
 }
 
-/// What `dfdyn train` reads: the positions and torques of each knot.
-class LoopRecording {
-  public:
-    LoopRecording(const std::filesystem::path& path, std::size_t joints, int every)
-        : file_(path), csv_(file_.stream(), columns(joints)), every_(every) {}
-
-    void add(const ClosedLoopInstant& instant) {
-        if (tick_++ % every_ == 0 && instant.position.size() > 0 && instant.torque.size() > 0) {
-            csv_.field(instant.time_s).fields(values(instant.position)).fields(values(instant.torque));
-            csv_.end_row();
-        }
+/// Ticks of a row of the scenario's recording.
+int recorded_every(const LoopParts& parts, const LoopOptions& options) {
+    const double ratio = parts.scenario.controller.rate_hz / parts.scenario.recording.rate_hz;
+    if (!(ratio >= 0.999) || std::abs(ratio - std::round(ratio)) > 1e-6) {
+        throw InputError(shown(options.scenario) + ": recording.rate_hz: expected controller.rate_hz by a "
+                                                   "whole number, found " +
+                         number_text(parts.scenario.recording.rate_hz));
     }
-    void commit() { file_.commit(); }
-
-  private:
-    static std::vector<std::string> columns(std::size_t joints) {
-        std::vector<std::string> names{"t"};
-        for (const char* const prefix : {"q", "tau"}) {
-            std::ranges::copy(joint_names(prefix, joints), std::back_inserter(names));
-        }
-        return names;
-    }
-    static std::span<const double> values(const JointVector& vector) {
-        return {vector.data(), static_cast<std::size_t>(vector.size())};
-    }
-
-    AtomicFile file_;
-    CsvWriter csv_;
-    int every_;
-    long tick_ = 0;
-};
-
-void print_learning(std::ostream& out, const FeedForward& feed_forward) {
-    if (const LearnedFeedForward* const learned = feed_forward.learned()) {
-        const LearningCounters& counters = learned->counters();
-        out << "learning: " << counters.samples << " samples, " << counters.learned << " learned, "
-            << counters.faults << " refused";
-        if (counters.faults > 0) {
-            out << " (last: " << name(counters.last_fault) << ')';
-        }
-        out << "; " << learned->cost() << " multiply-adds per sample\n";
-    }
-}
-
-void print_loop(std::ostream& out, const ControlLoop& loop) {
-    const LoopCounters& counters = loop.counters();
-    out << "loop: " << counters.ticks << " ticks, " << counters.running << " followed the reference, "
-        << counters.coasted << " without position, " << counters.limited << " at a torque limit; "
-        << name(loop.state()) << " (" << name(loop.cause()) << ")\n";
-    print_learning(out, loop.feed_forward());
+    return static_cast<int>(std::lround(ratio));
 }
 
 TrackingRun simulate_run(const LoopParts& parts, const LoopOptions& options, bool learned) {
     ClosedLoop loop(parts.robot, parts.scenario, shown(options.scenario), learned ? &*parts.model : nullptr,
                     parts.bus ? &*parts.bus : nullptr);
     const std::string name = learned ? "learned" : "nominal";
-    constexpr int recorded_every = 8;
     std::optional<LoopRecording> recording;
     if (!options.folder.empty()) {
-        recording.emplace(options.folder / (name + ".csv"), parts.robot.joints.size(), recorded_every);
+        recording.emplace(options.folder / (name + ".csv"), parts.robot.joints.size(),
+                          recorded_every(parts, options));
     }
     Tracking tracking;
     Progress progress("simulating " + name, static_cast<std::size_t>(options.duration_s * 1000));
@@ -153,13 +111,10 @@ int run_on_bus(const LoopOptions& options) {
     const auto loop = make_control_loop(parts.robot, parts.scenario, shown(options.scenario),
                                         parts.model ? &*parts.model : nullptr, port.delay_ticks());
     const PaceOutcome pace =
-        run_loop(*loop, port, options.interface, period_s, options.duration_s, stop_on_signals());
-    if (!pace.not_real_time.empty()) {
-        std::cerr << "note: the timing is that of an ordinary program (" << pace.not_real_time << ")\n";
-    }
+        run_loop(*loop, port, {options.interface, period_s, options.duration_s, stop_on_signals()});
     print_loop(std::cout, *loop);
-    std::cout << "pace: " << pace.late << " deadlines missed, worst lateness " << pace.worst_lateness_us
-              << " us; " << port.refused() << " command frames refused\n";
+    print_port(std::cout, port.counters());
+    print_pace(std::cout, pace);
     return loop->cause() == StopCause::requested ? 0 : 1;
 }
 

@@ -2,8 +2,8 @@
 #include "tools/commands/command.hpp"
 #include "tools/commands/robot_options.hpp"
 #include "tools/commands/stop_signal.hpp"
-#include "tools/control/closed_loop.hpp"
-#include "tools/control/real_time_run.hpp"
+#include "tools/control/loop_setup.hpp"
+#include "tools/control/loop_summary.hpp"
 
 #include <iostream>
 #include <memory>
@@ -28,13 +28,10 @@ int run(const PlantOptions& options) {
     SimulatedPlant plant(robot, scenario, start);
     PlantPort port(bus);
     const PaceOutcome pace =
-        run_plant(plant, port, options.interface, period_s, options.duration_s, stop_on_signals());
-    if (!pace.not_real_time.empty()) {
-        std::cerr << "note: the timing is that of an ordinary program (" << pace.not_real_time << ")\n";
-    }
-    std::cout << "plant: " << pace.ticks << " ticks, " << pace.late << " late, worst lateness "
-              << pace.worst_lateness_us << " us; " << port.commands() << " command frames, "
-              << port.timeouts() << " times without command, " << port.refused() << " frames refused\n";
+        run_plant(plant, port, {options.interface, period_s, options.duration_s, stop_on_signals()});
+    std::cout << "plant: " << port.commands() << " command frames, " << port.timeouts()
+              << " times without command, " << port.refused() << " frames refused\n";
+    print_pace(std::cout, pace);
     return 0;
 }
 

@@ -2,7 +2,6 @@
 #include "tools/control/closed_loop.hpp"
 
 #include "tools/common/error.hpp"
-#include "tools/common/number.hpp"
 
 #include <cmath>
 
@@ -75,23 +74,6 @@ void ClosedLoop::check_waiting() const {
     constexpr double longest_s = 10;
     if (static_cast<double>(tick_) * period_s_ > longest_s) {
         throw InputError("expected positions of all joints, found none that can be believed for 10 s");
-    }
-}
-
-void check_bus(const BusDescription& bus, const Robot& robot, const Scenario& scenario) {
-    if (bus.joint_count != static_cast<int>(robot.joints.size())) {
-        throw InputError(bus.source + ": joints: expected the robot's " +
-                         std::to_string(robot.joints.size()) + " joints, found " +
-                         std::to_string(bus.joint_count));
-    }
-    if (std::abs(bus.joints.rate_hz - scenario.controller.rate_hz) > 1e-6 * bus.joints.rate_hz) {
-        throw InputError(bus.source + ": joints: expected the rate of the loop, " +
-                         number_text(scenario.controller.rate_hz) + " Hz, found " +
-                         number_text(bus.joints.rate_hz));
-    }
-    if (bus.sensor && !scenario.force_torque) {
-        throw InputError(bus.source + ": output: expected a scenario with force_torque for this sensor, "
-                                      "found one without");
     }
 }
 

@@ -57,8 +57,4 @@ class ClosedLoop {
     std::int64_t tick_ = 0, moving_tick_ = 0;
 };
 
-/// Throws InputError, naming the description's file, unless it has the robot's joints, its joints' rate is
-/// that of the loop, and the scenario has the sensor that it has.
-void check_bus(const BusDescription& bus, const Robot& robot, const Scenario& scenario);
-
 } // namespace dfdyn::tools

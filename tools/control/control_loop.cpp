@@ -25,7 +25,6 @@ const Reference& ControlLoop::measured_reference() const noexcept {
 
 const JointVector& ControlLoop::tick(const LoopInput& input) {
     ++counters_.ticks;
-    counters_.missed_deadlines += input.deadline_missed ? 1 : 0;
     if (state() == LoopState::running) { // the reference goes on with the time
         ++tick_;
         references_[(tick_ + static_cast<std::size_t>(config_.knot_ticks)) % references_.size()] =
@@ -70,6 +69,8 @@ void ControlLoop::follow(const LoopInput& input) {
             static_cast<std::int64_t>(std::llround(static_cast<double>(knot_ticks) * config_.period_s * 1e9));
         feed_forward_.advance(input.time_ns + ahead_ns,
                               references_[(tick_ + knot_ticks) % references_.size()]);
+    } else {
+        feed_forward_.go_on();
     }
     const double share = static_cast<double>(since_knot) / static_cast<double>(knot_ticks);
     command_ = feed_forward_.torque(share) + feedback_.torque(measured_reference());

@@ -13,7 +13,7 @@ namespace dfdyn::tools {
 
 struct LoopConfig {
     double period_s = 0.001;
-    int knot_ticks = 8;  ///< ticks of a knot: the learned model's sample period
+    int knot_ticks = 1;  ///< of a knot: the learned model's sample period
     int delay_ticks = 0; ///< ticks between a measurement and the tick that gets it
     FeedbackGains gains;
     DerivativeModel filter;   ///< of the velocity
@@ -35,7 +35,6 @@ struct LoopCounters {
     std::uint64_t ticks = 0;
     std::uint64_t running = 0; ///< of them: followed the reference
     std::uint64_t coasted = 0; ///< of those: without a measured position
-    std::uint64_t missed_deadlines = 0;
     std::uint64_t limited = 0; ///< with a torque at its limit, of any joint
 };
 

@@ -57,6 +57,12 @@ void FeedForward::measured(std::int64_t time_ns, const JointVector& position, co
     learned_->learn(time_ns, position, torque);
 }
 
+void FeedForward::go_on() {
+    if (learned_) {
+        learned_->go_on();
+    }
+}
+
 void FeedForward::advance(std::int64_t next_ns, const Reference& next) {
     from_ = to_;
     nominal_now_ = to_ = nominal_torque(next);

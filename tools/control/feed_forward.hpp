@@ -30,6 +30,9 @@ class FeedForward {
     /// The measured position and torque of a knot; left out where the sensors have nothing to show.
     void measured(std::int64_t time_ns, const JointVector& position, const JointVector& torque);
 
+    /// Work that a tick between two knots does.
+    void go_on();
+
     /// Goes on to the next knot: its time and reference.
     void advance(std::int64_t next_ns, const Reference& next);
 

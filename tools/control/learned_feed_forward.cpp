@@ -29,15 +29,22 @@ std::span<const double> values(const JointVector& vector) {
     return {vector.data(), static_cast<std::size_t>(vector.size())};
 }
 
+/// What suffices to learn a sample in `ticks` slices: twice the cost, because with forgetting there may be a
+/// second sweep, and in each slice as much as may be left over.
+Budget share_of(const Cost& cost, int ticks) {
+    return {(2 * cost.learn + ticks - 1) / ticks + cost.largest_step};
+}
+
 } // namespace
 
-LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prior, int joints,
+LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prior, int joints, int ticks,
                                        const std::string& source)
-    : sample_period_s_(model.sample_period_s),
+    : sample_period_ns_(std::llround(model.sample_period_s * 1e9)),
       lags_(std::max(model.input.lags, model.physics ? model.physics->motion.lags : 0)) {
     check_model(model, joints, source);
     learner_ = make_estimator(model, from_prior);
     follower_ = make_estimator(model, from_prior);
+    share_ = share_of(learner_->cost(), ticks);
     weights_.resize(learner_->weight_count());
     learner_->copy_weights(weights_);
     prediction_.resize(static_cast<std::size_t>(joints));
@@ -46,22 +53,42 @@ LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prio
 void LearnedFeedForward::begin(std::int64_t time_ns, const JointVector& position) {
     learner_->begin_recording();
     follower_->begin_recording();
-    const auto period_ns = static_cast<std::int64_t>(std::llround(sample_period_s_ * 1e9));
     for (int lag = lags_; lag >= 0; --lag) {
-        follower_->tick({time_ns - lag * period_ns, values(position), {}, {}, {}});
+        follower_->tick({time_ns - lag * sample_period_ns_, values(position), {}, {}, {}});
     }
 }
 
 void LearnedFeedForward::learn(std::int64_t time_ns, const JointVector& position, const JointVector& torque) {
-    const Status status = learner_->tick({time_ns, values(position), {}, {}, values(torque)}).status;
+    const Status status =
+        learner_->tick({time_ns, values(position), {}, {}, values(torque)}, share_).status;
     ++counters_.samples;
-    if (status.learned()) {
+    if (status.learned() || status.reason() == Reason::learning_in_progress) {
         ++counters_.learned;
-        learner_->copy_weights(weights_);
+        in_progress_ = true;
+        take_over();
     } else if (is_fault(status.reason())) {
         ++counters_.faults;
         counters_.last_fault = status.reason();
     }
+}
+
+void LearnedFeedForward::go_on() {
+    if (in_progress_) {
+        learner_->advance(share_);
+        take_over();
+    }
+}
+
+void LearnedFeedForward::take_over() {
+    if (learner_->advance(Budget::predict_only())) { // nothing is left to do
+        learner_->copy_weights(weights_);
+        in_progress_ = false;
+    }
+}
+
+std::int64_t LearnedFeedForward::tick_cost() const {
+    const Cost cost = learner_->cost();
+    return 2 * (cost.predict + cost.variance) + share_.operations;
 }
 
 bool LearnedFeedForward::predict(std::int64_t time_ns, const JointVector& reference, JointVector& torque) {

@@ -24,31 +24,40 @@ struct LearningCounters {
 /// is evaluated on a window of the reference's: two estimators of the same model, one that learns and one
 /// whose weights are always the first one's. So the command follows from what the arm is to do, free of the
 /// encoders' noise and lag, and what is learned from what it did.
+///
+/// Learning a sample is spread over the control ticks until the next one: each does at most its share.
 class LearnedFeedForward {
   public:
-    /// `from_prior`: without the start that training computed. Throws InputError, naming `source`, for a
+    /// `from_prior`: without the start that training computed. `ticks`: of control per sample. Throws InputError, naming `source`, for a
     /// model that is not of `joints` joints and their torques, or needs measured derivatives.
-    LearnedFeedForward(const TrainedModel& model, bool from_prior, int joints, const std::string& source);
+    LearnedFeedForward(const TrainedModel& model, bool from_prior, int joints, int ticks,
+                       const std::string& source);
 
     /// The arm rests at `position`, and has long since; `time_ns`: of now. Restarts both windows.
     void begin(std::int64_t time_ns, const JointVector& position);
 
-    /// Learns what was measured at one instant.
+    /// Begins to learn what was measured at one instant.
     void learn(std::int64_t time_ns, const JointVector& position, const JointVector& torque);
+
+    /// Goes on learning it; once in each control tick.
+    void go_on();
 
     /// What torque the reference takes at `time_ns`, a sample period after the last: true and N·m, or false
     /// where the model does not know.
     bool predict(std::int64_t time_ns, const JointVector& reference, JointVector& torque);
 
-    double sample_period_s() const noexcept { return sample_period_s_; }
-    /// Multiply-adds of a learn and a predict, at most.
-    std::int64_t cost() const { return learner_->cost().learn + 2 * learner_->cost().predict; }
+    /// Multiply-adds of a control tick, at most.
+    std::int64_t tick_cost() const;
     const LearningCounters& counters() const noexcept { return counters_; }
 
   private:
-    double sample_period_s_;
+    void take_over();
+
+    std::int64_t sample_period_ns_;
     int lags_;
     std::unique_ptr<HostEstimator> learner_, follower_;
+    Budget share_;            ///< of a control tick
+    bool in_progress_ = false; ///< the learner knows more than `weights_`
     std::vector<float> weights_, prediction_;
     LearningCounters counters_;
 };

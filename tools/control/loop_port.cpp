@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/control/loop_port.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace dfdyn::tools {
 
@@ -27,7 +29,13 @@ LoopPort::LoopPort(const BusDescription& description, double loop_period_s)
       measures_torque_(description.outputs == OutputKind::joint_torque),
       delay_ticks_(delay_of(description, loop_period_s)), period_ns_(std::llround(loop_period_s * 1e9)),
       arm_(make_bus_arm(description)), commands_(description), position_(description.joint_count),
-      torque_(description.joint_count) {}
+      torque_(description.joint_count), next_request_ns_(std::numeric_limits<std::int64_t>::min()) {}
+
+void LoopPort::count(std::size_t frames) noexcept {
+    counters_.received += frames;
+    counters_.most_in_tick = std::max(counters_.most_in_tick, frames);
+    counters_.overfull_ticks += frames == frames_per_tick ? 1 : 0;
+}
 
 LoopInput LoopPort::sense(std::int64_t tick_ns, std::int64_t now_ns) {
     LoopInput input;
@@ -35,10 +43,14 @@ LoopInput LoopPort::sense(std::int64_t tick_ns, std::int64_t now_ns) {
     input.bus_lost = bus_lost_;
     const std::optional<std::int64_t> instant = timer_ ? std::optional(input.time_ns) : moment_;
     if (!instant) {
+        ++counters_.incomplete;
         return input;
     }
     const BusSample& sample = arm_->assemble(*instant, now_ns);
     if (!sample.valid()) {
+        ++counters_.invalid;
+        counters_.last_reason = sample.position_reason;
+        counters_.last_joint = sample.joint;
         return input;
     }
     position_ = Eigen::Map<const Eigen::VectorXd>(sample.position.data(), position_.size());

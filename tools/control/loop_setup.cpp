@@ -10,7 +10,6 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double default_knot_s = 0.008;
 constexpr double ramp_s = 0.2;
 constexpr double largest_following_error_rad = 0.5;
 
@@ -59,17 +58,36 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
     config.safe_stop.ramp_ticks = static_cast<int>(std::ceil(ramp_s * controller.rate_hz));
 
     std::optional<LearnedFeedForward> model;
-    double knot_s = default_knot_s;
     if (learned != nullptr) {
-        model.emplace(learned->model, learned->from_prior, joints, learned->source);
-        knot_s = model->sample_period_s();
+        config.knot_ticks = knot_ticks(config.period_s, learned->model.sample_period_s, learned->source);
+        model.emplace(learned->model, learned->from_prior, joints, config.knot_ticks, learned->source);
     }
-    config.knot_ticks = knot_ticks(config.period_s, knot_s, learned != nullptr ? learned->source : source);
     FeedForward feed_forward(robot, scenario.actuators.rotor_inertia, std::move(model),
                              config.knot_ticks * config.period_s);
     return std::make_unique<ControlLoop>(
         std::move(config), std::move(feed_forward),
         make_task(scenario.task, robot, 1 / controller.rate_hz, scenario.seed));
+}
+
+void check_bus(const BusDescription& bus, const Robot& robot, const Scenario& scenario) {
+    if (bus.joint_count != static_cast<int>(robot.joints.size())) {
+        throw InputError(bus.source + ": joints: expected the robot's " +
+                         std::to_string(robot.joints.size()) + " joints, found " +
+                         std::to_string(bus.joint_count));
+    }
+    if (std::abs(bus.joints.rate_hz - scenario.controller.rate_hz) > 1e-6 * bus.joints.rate_hz) {
+        throw InputError(bus.source + ": joints: expected the rate of the loop, " +
+                         number_text(scenario.controller.rate_hz) + " Hz, found " +
+                         number_text(bus.joints.rate_hz));
+    }
+    if (bus.sensor && !scenario.force_torque) {
+        throw InputError(bus.source + ": output: expected a scenario with force_torque for this sensor, "
+                                      "found one without");
+    }
+    if (bus.outputs == OutputKind::motor_current && !scenario.torque_sensor.torque_constant) {
+        throw InputError(bus.source + ": output.quantity: expected a scenario with "
+                                      "actuators.torque_constant_nm_per_a for currents, found one without");
+    }
 }
 
 } // namespace dfdyn::tools

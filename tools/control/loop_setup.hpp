@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/can/bus_description.hpp"
 #include "tools/control/control_loop.hpp"
 #include "tools/simulation/scenario.hpp"
 
@@ -23,5 +24,9 @@ struct LoopModel {
 std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenario& scenario,
                                                const std::string& source, const LoopModel* learned,
                                                int delay_ticks = 0);
+
+/// Throws InputError, naming the description's file, unless it has the robot's joints, its joints' rate is
+/// that of the loop, and the scenario has what its sensor or its drives measure.
+void check_bus(const BusDescription& bus, const Robot& robot, const Scenario& scenario);
 
 } // namespace dfdyn::tools

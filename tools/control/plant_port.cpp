@@ -7,6 +7,7 @@ namespace dfdyn::tools {
 
 PlantPort::PlantPort(const BusDescription& description)
     : devices_(description), torques_(description), has_sensor_(description.sensor.has_value()),
+      currents_(description.outputs == OutputKind::motor_current),
       torque_(JointVector::Zero(description.joint_count)),
       next_heartbeat_ns_(std::numeric_limits<std::int64_t>::min()) {}
 

@@ -18,19 +18,13 @@ class PlantPort {
 
     explicit PlantPort(const BusDescription& description);
 
-    /// Takes the commands that have arrived, and answers requests.
+    /// Takes the commands that have arrived, and answers requests; at most `room_.size()` frames.
     template <hal::Bus B>
     void receive(B& bus) {
-        for (int round = 0; round < rounds; ++round) {
-            const std::span<const hal::Frame> frames = bus.drain(room_);
-            for (const hal::Frame& frame : frames) {
-                take(frame, bus.now_ns());
-                if (const std::optional<hal::Frame> answer = devices_.answer(frame)) {
-                    offer(bus, *answer);
-                }
-            }
-            if (frames.size() < room_.size()) {
-                return;
+        for (const hal::Frame& frame : bus.drain(room_)) {
+            take(frame, bus.now_ns());
+            if (const std::optional<hal::Frame> answer = devices_.answer(frame)) {
+                offer(bus, *answer);
             }
         }
     }
@@ -45,8 +39,8 @@ class PlantPort {
             next_heartbeat_ns_ = bus.now_ns() + DeviceFrames::heartbeat_period_ns;
             offer_all(bus, devices_.heartbeats());
         }
-        const JointVector torque = plant.torque();
-        offer_all(bus, devices_.joints(values(plant.position()), values(torque)));
+        const JointVector effort = currents_ ? plant.current() : plant.torque();
+        offer_all(bus, devices_.joints(values(plant.position()), values(effort)));
         if (has_sensor_) {
             offer_all(bus, devices_.wrench({plant.wrench().data(), 6}));
         }
@@ -60,8 +54,6 @@ class PlantPort {
     std::uint64_t refused() const noexcept { return refused_; }   ///< frames not sent
 
   private:
-    static constexpr int rounds = 4;
-
     static std::span<const double> values(const JointVector& vector) {
         return {vector.data(), static_cast<std::size_t>(vector.size())};
     }
@@ -81,7 +73,8 @@ class PlantPort {
     DeviceFrames devices_;
     TorqueFrames torques_;
     bool has_sensor_;
-    std::array<hal::Frame, 64> room_{};
+    bool currents_; ///< are what the drives measure
+    std::array<hal::Frame, 256> room_{};
     JointVector torque_;
     std::int64_t next_heartbeat_ns_;
     std::int64_t commanded_ns_ = 0;

@@ -2,31 +2,34 @@
 #pragma once
 
 #include "tools/control/loop_port.hpp"
+#include "tools/control/pace.hpp"
 #include "tools/control/plant_port.hpp"
 
 #include <atomic>
-#include <cstdint>
 #include <string>
 
 namespace dfdyn::tools {
 
-/// How well a program kept its time.
+/// Where, how fast and for how long a program runs.
+struct RealTimeRun {
+    std::string interface;
+    double period_s = 0.001;
+    double duration_s = 0;         ///< 0: until `stop`
+    const std::atomic<bool>& stop; ///< becomes true at a signal
+};
+
 struct PaceOutcome {
-    std::uint64_t ticks = 0;
-    std::uint64_t late = 0; ///< begun after the next tick was due
-    std::int64_t worst_lateness_us = 0;
+    PaceCounters counters;
     std::string not_real_time; ///< why the timing is that of an ordinary program; empty: it is not
 };
 
-/// Runs `loop` on a CAN interface, a tick per `period_s`, each at an absolute time, until it has stopped; a
-/// stop is requested after `duration_s` (0: never) or when `stop` becomes true. A tick that begins late is
-/// run at once: a missed deadline. Throws InputError where the interface cannot be opened.
-PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const std::string& interface, double period_s,
-                     double duration_s, const std::atomic<bool>& stop);
+/// Runs `loop` on a CAN interface, a tick per period, each at an absolute time, until it has stopped; a stop
+/// is requested when the time is over or `stop` becomes true. A tick that begins late is run at once. Throws
+/// InputError where the interface cannot be opened.
+PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run);
 
 /// Runs a simulated arm on a CAN interface likewise: it stands until the first command comes, and goes on
-/// until `stop` becomes true or `duration_s` is over.
-PaceOutcome run_plant(SimulatedPlant& plant, PlantPort& port, const std::string& interface, double period_s,
-                      double duration_s, const std::atomic<bool>& stop);
+/// until the time is over or `stop` becomes true.
+PaceOutcome run_plant(SimulatedPlant& plant, PlantPort& port, const RealTimeRun& run);
 
 } // namespace dfdyn::tools

@@ -23,8 +23,8 @@ class CombinedEstimator final : public HostEstimator {
           predictions_(members_.size() * outputs), deviations_(predictions_.size()), measured_(outputs),
           prediction_(outputs), deviation_(outputs) {}
 
-    Tick tick(const MeasuredSample& sample) override {
-        Tick all = tick_members(sample);
+    Tick tick(const MeasuredSample& sample, Budget budget) override {
+        Tick all = tick_members(sample, budget);
         combination_.combine(predictions_.data(), prediction_.data());
         combination_.combine(deviations_.data(), deviation_.data());
         if (all.status.learned()) {
@@ -35,6 +35,14 @@ class CombinedEstimator final : public HostEstimator {
         all.prediction = prediction_;
         all.standard_deviation = deviation_;
         return all;
+    }
+
+    bool advance(Budget budget) override {
+        bool idle = true;
+        for (const CombinationMember& member : members_) {
+            idle = member.estimator->advance(budget) && idle;
+        }
+        return idle;
     }
 
     void predict_with(std::span<const float> weights, std::span<float> prediction) const override {
@@ -113,10 +121,10 @@ class CombinedEstimator final : public HostEstimator {
 
   private:
     /// The members' ticks, their predictions put into the tables; without prediction of the combination.
-    Tick tick_members(const MeasuredSample& sample) {
+    Tick tick_members(const MeasuredSample& sample, Budget budget) {
         Tick all;
         for (std::size_t j = 0; j < members_.size(); ++j) {
-            const Tick one = members_[j].estimator->tick(sample);
+            const Tick one = members_[j].estimator->tick(sample, budget);
             const auto row = static_cast<std::ptrdiff_t>(j * outputs_);
             std::ranges::copy(one.prediction, predictions_.begin() + row);
             std::ranges::copy(one.standard_deviation, deviations_.begin() + row);

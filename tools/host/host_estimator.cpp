@@ -43,7 +43,7 @@ class EstimatorOf final : public HostEstimator {
           sample_(empty_sample<Host>(model.joints, output_count())),
           estimate_{outputs(), outputs(), outputs(), 0, {}}, input_cost_(cost_of_inputs(model)) {}
 
-    Tick tick(const MeasuredSample& sample) override {
+    Tick tick(const MeasuredSample& sample, Budget budget) override {
         sample_.time_ns = sample.time_ns;
         copy(sample.position, sample_.position);
         copy(sample.output, sample_.output);
@@ -53,12 +53,14 @@ class EstimatorOf final : public HostEstimator {
             copy(sample.acceleration, sample_.acceleration);
         }
         const auto begin = Clock::now();
-        estimate_ = estimator_.tick(sample_, Budget::unlimited());
+        estimate_ = estimator_.tick(sample_, budget);
         const auto duration = Clock::now() - begin;
         return {std::span(estimate_.prediction.data(), size()),
                 std::span(estimate_.standard_deviation.data(), size()),
                 estimate_.normalised_innovation_squared, estimate_.status, duration};
     }
+
+    bool advance(Budget budget) override { return estimator_.advance(budget); }
 
     void predict_with(std::span<const float> weights, std::span<float> prediction) const override {
         estimator_.regression().predict_with(weights.data(), prediction.data());

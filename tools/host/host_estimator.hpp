@@ -38,8 +38,13 @@ class HostEstimator {
   public:
     virtual ~HostEstimator() = default;
 
-    /// One tick with an unlimited budget. The spans in the result live until the next tick.
-    virtual Tick tick(const MeasuredSample& sample) = 0;
+    /// One tick, as `Estimator::tick`. The spans in the result live until the next tick.
+    virtual Tick tick(const MeasuredSample& sample, Budget budget) = 0;
+    /// With an unlimited budget.
+    Tick tick(const MeasuredSample& sample) { return tick(sample, Budget::unlimited()); }
+
+    /// Goes on with what earlier ticks began to learn; true when nothing is left (see Estimator::advance).
+    virtual bool advance(Budget budget) = 0;
 
     /// What the columns of the last tick predict with other weights (as `weights` gave them); m values into
     /// `prediction`.
@@ -48,6 +53,7 @@ class HostEstimator {
     /// What has been learned as plain numbers: the weights of all outputs, m × 2d, and the physics'
     /// parameters where they are learned too.
     virtual std::size_t weight_count() const = 0;
+    /// While nothing is left to learn.
     virtual void copy_weights(std::span<float> weights) const = 0;
 
     /// Begins a recording: the window restarts, what has been learned stays.

@@ -78,6 +78,10 @@ class Estimator {
         return estimate;
     }
 
+    /// Goes on with what earlier ticks began to learn, so that the rest of a sample can be spread over the
+    /// time until the next: at most the budget's multiply-adds. True when nothing is left.
+    bool advance(Budget budget) noexcept { return work(budget); }
+
     /// Back to the state after construction: the start that the constants give, an empty window, counters at
     /// zero.
     void reset() noexcept {
