@@ -180,6 +180,31 @@ TEMPLATE_TEST_CASE("a sample in hand is learned on in ticks that are refused or 
     CHECK(estimator.counters().learned == 1);
 }
 
+TEMPLATE_TEST_CASE("a sample is learned on between ticks, bit for bit, in steps of no more than the budget",
+                   "", UdFloat, InformationDouble, Parametric, Mean, Kernel) {
+    DFDYN_SEEDED_ENGINE(engine);
+    const auto constants = make_constants<TestType>(engine, 0.99);
+    Estimator<TestType> sliced(constants);
+    Estimator<TestType> whole(constants);
+    constexpr Cost cost = cost_of<TestType>();
+    std::uniform_int_distribution<std::int64_t> operations(cost.largest_step, cost.learn / 2);
+    int slices = 0;
+    int different = 0;
+    for (int t = 0; t < 500; ++t) {
+        const auto sample = moving_sample<TestType>(t, engine);
+        sliced.tick(sample, Budget{operations(engine)});
+        for (bool idle = sliced.advance(Budget::predict_only()); !idle; ++slices) {
+            idle = sliced.advance(Budget{operations(engine)});
+        }
+        whole.tick(sample, Budget::unlimited());
+        different += weights_of(sliced) == weights_of(whole) ? 0 : 1;
+    }
+    CHECK(slices > 1000);
+    CHECK(different == 0);
+    CHECK(sliced.counters().learned == whole.counters().learned);
+    CHECK(sliced.advance(Budget::predict_only()));
+}
+
 TEST_CASE("the cost of a tick is a constant expression of the model") {
     constexpr Cost cost = Estimator<UdFloat>::cost();
     static_assert(cost.predict > 0 && cost.variance > 0 && cost.learn > cost.largest_step);

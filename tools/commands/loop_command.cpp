@@ -55,8 +55,9 @@ LoopParts read_parts(const LoopOptions& options) {
 int recorded_every(const LoopParts& parts, const LoopOptions& options) {
     const double ratio = parts.scenario.controller.rate_hz / parts.scenario.recording.rate_hz;
     if (!(ratio >= 0.999) || std::abs(ratio - std::round(ratio)) > 1e-6) {
-        throw InputError(shown(options.scenario) + ": recording.rate_hz: expected controller.rate_hz by a "
-                                                   "whole number, found " +
+        throw InputError(shown(options.scenario) +
+                         ": recording.rate_hz: expected controller.rate_hz by a "
+                         "whole number, found " +
                          number_text(parts.scenario.recording.rate_hz));
     }
     return static_cast<int>(std::lround(ratio));
@@ -99,7 +100,7 @@ int simulate(const LoopOptions& options) {
     }
     print_tracking(std::cout, runs);
     if (!options.folder.empty()) {
-        write_tracking(options.folder, runs);
+        write_tracking(options.folder, "Tracking of " + parts.robot.name, runs);
     }
     return 0;
 }
@@ -131,6 +132,9 @@ int run(const LoopOptions& options) {
     }
     if (options.bus.empty()) {
         throw InputError("loop --can: expected --bus, found none");
+    }
+    if (!options.folder.empty()) {
+        throw InputError("loop --can: expected no --output, which is for --simulate, found one");
     }
     return run_on_bus(options);
 }

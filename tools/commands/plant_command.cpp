@@ -26,7 +26,7 @@ int run(const PlantOptions& options) {
     const double period_s = 1 / bus.joints.rate_hz;
     const JointVector start = make_task(scenario.task, robot, period_s, scenario.seed)->next().position;
     SimulatedPlant plant(robot, scenario, start);
-    PlantPort port(bus);
+    PlantPort port(bus, scenario.torque_sensor);
     const PaceOutcome pace =
         run_plant(plant, port, {options.interface, period_s, options.duration_s, stop_on_signals()});
     std::cout << "plant: " << port.commands() << " command frames, " << port.timeouts()

@@ -7,14 +7,15 @@
 
 namespace dfdyn::tools {
 
-ClosedLoop::Link::Link(const BusDescription& bus, double period_s) : loop(bus, period_s), plant(bus) {
+ClosedLoop::Link::Link(const BusDescription& bus, const Scenario& scenario)
+    : loop(bus, 1 / scenario.controller.rate_hz), plant(bus, scenario.torque_sensor) {
     MemoryBus::join(loop_end, plant_end);
 }
 
 ClosedLoop::ClosedLoop(const Robot& robot, const Scenario& scenario, const std::string& source,
                        const LoopModel* learned, const BusDescription* bus)
     : period_s_(1 / scenario.controller.rate_hz),
-      link_(bus != nullptr ? std::make_unique<Link>(*bus, period_s_) : nullptr),
+      link_(bus != nullptr ? std::make_unique<Link>(*bus, scenario) : nullptr),
       loop_(make_control_loop(robot, scenario, source, learned, link_ ? link_->loop.delay_ticks() : 0)),
       plant_(robot, scenario, loop_->reference().position) {
     if (bus != nullptr) {

@@ -39,7 +39,7 @@ class ClosedLoop {
   private:
     /// The wire and its two ends.
     struct Link {
-        Link(const BusDescription& bus, double period_s);
+        Link(const BusDescription& bus, const Scenario& scenario);
 
         MemoryBus loop_end, plant_end;
         LoopPort loop;

@@ -59,8 +59,7 @@ void LearnedFeedForward::begin(std::int64_t time_ns, const JointVector& position
 }
 
 void LearnedFeedForward::learn(std::int64_t time_ns, const JointVector& position, const JointVector& torque) {
-    const Status status =
-        learner_->tick({time_ns, values(position), {}, {}, values(torque)}, share_).status;
+    const Status status = learner_->tick({time_ns, values(position), {}, {}, values(torque)}, share_).status;
     ++counters_.samples;
     if (status.learned() || status.reason() == Reason::learning_in_progress) {
         ++counters_.learned;

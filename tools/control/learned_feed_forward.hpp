@@ -28,8 +28,9 @@ struct LearningCounters {
 /// Learning a sample is spread over the control ticks until the next one: each does at most its share.
 class LearnedFeedForward {
   public:
-    /// `from_prior`: without the start that training computed. `ticks`: of control per sample. Throws InputError, naming `source`, for a
-    /// model that is not of `joints` joints and their torques, or needs measured derivatives.
+    /// `from_prior`: without the start that training computed. `ticks`: of control per sample. Throws
+    /// InputError, naming `source`, for a model that is not of `joints` joints and their torques, or needs
+    /// measured derivatives.
     LearnedFeedForward(const TrainedModel& model, bool from_prior, int joints, int ticks,
                        const std::string& source);
 
@@ -56,7 +57,7 @@ class LearnedFeedForward {
     std::int64_t sample_period_ns_;
     int lags_;
     std::unique_ptr<HostEstimator> learner_, follower_;
-    Budget share_;            ///< of a control tick
+    Budget share_;             ///< of a control tick
     bool in_progress_ = false; ///< the learner knows more than `weights_`
     std::vector<float> weights_, prediction_;
     LearningCounters counters_;

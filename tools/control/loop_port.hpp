@@ -14,12 +14,12 @@ namespace dfdyn::tools {
 
 /// What a port did so far.
 struct PortCounters {
-    std::uint64_t received = 0;       ///< frames
-    std::size_t most_in_tick = 0;     ///< frames of one tick
-    std::uint64_t overfull_ticks = 0; ///< that left frames for the next
-    std::uint64_t refused = 0;        ///< frames of ours that were not sent
-    std::uint64_t incomplete = 0;     ///< ticks for which no sample had become complete
-    std::uint64_t invalid = 0;        ///< ticks whose sample's positions could not be believed
+    std::uint64_t received = 0;                ///< frames
+    std::size_t most_in_tick = 0;              ///< frames of one tick
+    std::uint64_t overfull_ticks = 0;          ///< that left frames for the next
+    std::uint64_t refused = 0;                 ///< frames of ours that were not sent
+    std::uint64_t incomplete = 0;              ///< ticks for which no sample had become complete
+    std::uint64_t invalid = 0;                 ///< ticks whose sample's positions could not be believed
     hal::Reason last_reason = hal::Reason::ok; ///< of those
     int last_joint = hal::unused_joint;        ///< that it is about
 };

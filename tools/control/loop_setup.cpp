@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/control/loop_setup.hpp"
 
+#include "tools/can/bus_wire.hpp"
+#include "tools/can/device_frames.hpp"
+#include "tools/can/torque_frames.hpp"
 #include "tools/common/error.hpp"
 #include "tools/common/number.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace dfdyn::tools {
 
@@ -36,6 +41,28 @@ int knot_ticks(double period_s, double knot_s, const std::string& source) {
                          number_text(period_s) + " s, found " + number_text(knot_s) + " s");
     }
     return static_cast<int>(std::lround(ratio));
+}
+
+/// Share of the bit rate that the devices' frames and the commands to them take at worst.
+double bus_load(const BusDescription& bus) {
+    BusDescription joints = bus;
+    joints.sensor.reset();
+    const std::vector<double> values(static_cast<std::size_t>(bus.joint_count));
+    const DeviceFrames devices(joints);
+    std::vector<hal::Frame> frames = devices.joints(values, values);
+    TorqueFrames commands(bus);
+    std::ranges::copy(commands.encode(values), std::back_inserter(frames));
+    if (const std::optional<hal::Frame> sync = devices.sync()) {
+        frames.push_back(*sync);
+    }
+    double bits = 0;
+    for (const hal::Frame& frame : frames) {
+        bits += frame_bits(frame) * bus.joints.rate_hz;
+    }
+    hal::Frame longest;
+    longest.length = 8;
+    bits += bus.sensor ? 2 * frame_bits(longest) * bus.output.rate_hz : 0; // a wrench is two frames
+    return bits / bus.bit_rate;
 }
 
 } // namespace
@@ -79,6 +106,12 @@ void check_bus(const BusDescription& bus, const Robot& robot, const Scenario& sc
         throw InputError(bus.source + ": joints: expected the rate of the loop, " +
                          number_text(scenario.controller.rate_hz) + " Hz, found " +
                          number_text(bus.joints.rate_hz));
+    }
+    if (const double load = bus_load(bus); load > 1) {
+        throw InputError(bus.source +
+                         ": bit_rate: expected a bus that carries its devices' frames and their "
+                         "commands, found one that they load to " +
+                         std::to_string(std::lround(100 * load)) + " %");
     }
     if (bus.sensor && !scenario.force_torque) {
         throw InputError(bus.source + ": output: expected a scenario with force_torque for this sensor, "

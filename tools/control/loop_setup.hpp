@@ -26,7 +26,8 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
                                                int delay_ticks = 0);
 
 /// Throws InputError, naming the description's file, unless it has the robot's joints, its joints' rate is
-/// that of the loop, and the scenario has what its sensor or its drives measure.
+/// that of the loop, its bit rate carries their frames, and the scenario has what its sensor or its drives
+/// measure.
 void check_bus(const BusDescription& bus, const Robot& robot, const Scenario& scenario);
 
 } // namespace dfdyn::tools

@@ -2,12 +2,13 @@
 #include "tools/control/plant_port.hpp"
 
 #include <limits>
+#include <utility>
 
 namespace dfdyn::tools {
 
-PlantPort::PlantPort(const BusDescription& description)
+PlantPort::PlantPort(const BusDescription& description, TorqueSensorModel torque_sensor)
     : devices_(description), torques_(description), has_sensor_(description.sensor.has_value()),
-      currents_(description.outputs == OutputKind::motor_current),
+      currents_(description.outputs == OutputKind::motor_current), torque_sensor_(std::move(torque_sensor)),
       torque_(JointVector::Zero(description.joint_count)),
       next_heartbeat_ns_(std::numeric_limits<std::int64_t>::min()) {}
 

@@ -16,7 +16,8 @@ class PlantPort {
   public:
     static constexpr std::int64_t command_timeout_ns = 20'000'000;
 
-    explicit PlantPort(const BusDescription& description);
+    /// `torque_sensor`: what a current is, for drives that measure currents.
+    PlantPort(const BusDescription& description, TorqueSensorModel torque_sensor);
 
     /// Takes the commands that have arrived, and answers requests; at most `room_.size()` frames.
     template <hal::Bus B>
@@ -39,7 +40,8 @@ class PlantPort {
             next_heartbeat_ns_ = bus.now_ns() + DeviceFrames::heartbeat_period_ns;
             offer_all(bus, devices_.heartbeats());
         }
-        const JointVector effort = currents_ ? plant.current() : plant.torque();
+        const JointVector torque = plant.torque();
+        const JointVector effort = currents_ ? torque_sensor_.current(torque) : torque;
         offer_all(bus, devices_.joints(values(plant.position()), values(effort)));
         if (has_sensor_) {
             offer_all(bus, devices_.wrench({plant.wrench().data(), 6}));
@@ -74,6 +76,7 @@ class PlantPort {
     TorqueFrames torques_;
     bool has_sensor_;
     bool currents_; ///< are what the drives measure
+    TorqueSensorModel torque_sensor_;
     std::array<hal::Frame, 256> room_{};
     JointVector torque_;
     std::int64_t next_heartbeat_ns_;

@@ -18,8 +18,8 @@ hal::SocketCanOptions bus_options(const std::string& interface) {
     return options;
 }
 
-/// Calls `tick(bus, due_ns, missed, over)` once per period, at absolute times, until it returns false; `over`:
-/// whether the run is to end.
+/// Calls `tick(bus, due_ns, missed, over)` once per period, at absolute times, until it returns false;
+/// `over`: whether the run is to end.
 template <class Tick>
 PaceOutcome keep_pace(const RealTimeRun& run, const Tick& tick) try {
     hal::SocketCanBus bus(bus_options(run.interface));

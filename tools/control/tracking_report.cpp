@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/control/tracking_report.hpp"
 
+#include "tools/build_flags.hpp"
 #include "tools/common/atomic_file.hpp"
+#include "tools/common/number.hpp"
 #include "tools/recording/csv_writer.hpp"
 #include "tools/recording/recording.hpp"
 #include "tools/report/chart.hpp"
+#include "tools/report/figure_page.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <iterator>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -16,10 +21,15 @@ namespace {
 
 constexpr double mrad_per_rad = 1e3;
 
-std::string fixed(double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%9.3f", value);
+std::string fixed(double value, int width) {
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "%*.3f", width, value);
     return text.data();
+}
+
+/// The first run's error over the last's.
+double ratio(const std::vector<TrackingRun>& runs, std::size_t window) {
+    return runs.front().windows.at(window).all / runs.back().windows.at(window).all;
 }
 
 ChartCurve curve_of(const TrackingRun& run) {
@@ -52,38 +62,71 @@ void write_table(const std::filesystem::path& path, const std::vector<TrackingRu
     file.commit();
 }
 
+ReportTable window_table(const std::vector<TrackingRun>& runs) {
+    ReportTable table{"RMS over all joints, mrad", {"window (s)"}, {}, {}};
+    for (const TrackingRun& run : runs) {
+        table.columns.push_back(run.name);
+    }
+    if (runs.size() > 1) {
+        table.columns.emplace_back("ratio");
+    }
+    const std::vector<TrackingWindow>& first = runs.front().windows;
+    for (std::size_t w = 0; w < first.size(); ++w) {
+        std::vector<ReportCell> row{number_text(first[w].start_s) + " to " + number_text(first[w].end_s)};
+        for (const TrackingRun& run : runs) {
+            row.emplace_back(mrad_per_rad * run.windows.at(w).all);
+        }
+        if (runs.size() > 1) {
+            row.emplace_back(ratio(runs, w));
+        }
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+std::string curves_of(const std::vector<TrackingRun>& runs) {
+    std::vector<ChartCurve> curves;
+    std::ranges::transform(runs, std::back_inserter(curves), curve_of);
+    return curve_chart("Tracking error by feed-forward", "time (s)", "RMS over all joints (mrad)", curves);
+}
+
 } // namespace
 
 void print_tracking(std::ostream& out, const std::vector<TrackingRun>& runs) {
+    const bool compared = runs.size() > 1;
     out << "tracking error, root mean square over all joints, mrad\n  window (s)";
     for (const TrackingRun& run : runs) {
         out << "  " << run.name;
     }
-    out << (runs.size() > 1 ? "  ratio\n" : "\n");
+    out << (compared ? "    ratio\n" : "\n");
     const std::vector<TrackingWindow>& first = runs.front().windows;
     for (std::size_t w = 0; w < first.size(); ++w) {
-        out << fixed(first[w].start_s);
+        out << fixed(first[w].start_s, 12);
         for (const TrackingRun& run : runs) {
-            out << fixed(mrad_per_rad * run.windows.at(w).all);
+            out << fixed(mrad_per_rad * run.windows.at(w).all, static_cast<int>(run.name.size()) + 2);
         }
-        if (runs.size() > 1) {
-            out << fixed(first[w].all / runs.back().windows.at(w).all);
-        }
-        out << '\n';
+        out << (compared ? fixed(ratio(runs, w), 9) : "") << '\n';
     }
 }
 
-void write_tracking(const std::filesystem::path& folder, const std::vector<TrackingRun>& runs) {
+void write_tracking(const std::filesystem::path& folder, const std::string& title,
+                    const std::vector<TrackingRun>& runs) {
     make_folder(folder);
     if (runs.front().windows.empty()) {
         return;
     }
     write_table(folder / "tracking.csv", runs);
-    std::vector<ChartCurve> curves;
-    std::ranges::transform(runs, std::back_inserter(curves), curve_of);
-    write_file(folder / "tracking.svg",
-               standalone_chart(curve_chart("Tracking error by feed-forward", "time (s)",
-                                            "RMS over all joints (mrad)", curves)));
+    const std::string chart = curves_of(runs);
+    write_file(folder / "tracking.svg", standalone_chart(chart));
+    const std::string summary =
+        "Reference minus true position, root mean square over windows of time: "
+        "feedback and feed-forward of the nominal rigid body, and of a learned model.";
+    const FigurePage page{
+        title,
+        summary,
+        {{"Tracking error", {}, {{"tracking", "Tracking error", chart}}, {window_table(runs)}}},
+        {{"Build", build_flags()}}};
+    write_file(folder / "tracking.html", render_figure_page(page));
 }
 
 } // namespace dfdyn::tools

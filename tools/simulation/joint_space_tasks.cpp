@@ -9,6 +9,13 @@
 
 namespace dfdyn::tools {
 
+namespace {
+
+/// One number per joint, without heap: a control loop asks for every instant of the reference.
+using JointArray = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, largest_simulated_chain, 1>;
+
+} // namespace
+
 Multisine::Multisine(const MultisineTask& model, double period_s, std::uint64_t seed)
     : model_(model), period_s_(period_s), phase_(model.centre.size(), model.tones) {
     NormalSource source(seed, stream::task);
@@ -22,17 +29,17 @@ Reference Multisine::next() {
     const double time_s = static_cast<double>(step_++) * period_s_;
     const SmoothStep size = smooth_step(time_s, model_.start_s);
     const double spacing = model_.tones > 1 ? (model_.highest_hz - model_.lowest_hz) / (model_.tones - 1) : 0;
-    Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(phase_.rows());
-    Eigen::ArrayXd rate = sum;
-    Eigen::ArrayXd acceleration = sum;
+    JointArray sum = JointArray::Zero(phase_.rows());
+    JointArray rate = sum;
+    JointArray acceleration = sum;
     for (Eigen::Index tone = 0; tone < phase_.cols(); ++tone) {
         const double omega = 2 * std::numbers::pi * (model_.lowest_hz + spacing * static_cast<double>(tone));
-        const Eigen::ArrayXd angle = omega * time_s + phase_.col(tone).array();
+        const JointArray angle = omega * time_s + phase_.col(tone).array();
         sum += angle.sin();
         rate += omega * angle.cos();
         acceleration -= omega * omega * angle.sin();
     }
-    const Eigen::ArrayXd amplitude = model_.amplitude.array() / static_cast<double>(model_.tones);
+    const JointArray amplitude = model_.amplitude.array() / static_cast<double>(model_.tones);
     return {model_.centre + (amplitude * size.value * sum).matrix(),
             amplitude * (size.rate * sum + size.value * rate),
             amplitude * (size.acceleration * sum + 2 * size.rate * rate + size.value * acceleration)};

@@ -22,7 +22,7 @@ std::vector<bool> prismatic(const Robot& robot) {
 } // namespace
 
 SimulatedPlant::SimulatedPlant(const Robot& robot, const Scenario& scenario, const JointVector& position)
-    : torque_sensor_(scenario.torque_sensor), period_s_(1 / scenario.integration_rate_hz),
+    : torque_noise_deviation_(scenario.torque_sensor.noise), period_s_(1 / scenario.integration_rate_hz),
       encoder_steps_(std::llround(scenario.integration_rate_hz / scenario.encoders.rate_hz)),
       arm_(robot, scenario.actuators, position), payloads_(scenario.payloads, robot),
       encoders_(scenario.encoders, prismatic(robot), scenario.seed),
@@ -61,7 +61,7 @@ void SimulatedPlant::advance_to(double time_s) {
 JointVector SimulatedPlant::torque() {
     JointVector reading = arm_.state().torque;
     for (Eigen::Index i = 0; i < reading.size(); ++i) {
-        reading[i] += torque_sensor_.noise[i] * torque_noise_.next();
+        reading[i] += torque_noise_deviation_[i] * torque_noise_.next();
     }
     return reading;
 }

@@ -24,8 +24,6 @@ class SimulatedPlant {
     const JointVector& position() const noexcept { return encoders_.reading(); } ///< as the encoders show it
     /// As the torque sensors show it now: another noise in every call.
     JointVector torque();
-    /// The same as motor currents, A; the scenario must have torque constants.
-    JointVector current() { return torque_sensor_.current(torque()); }
     /// As the F/T sensor shows it; the scenario must have one.
     const Wrench& wrench() const { return wrench_sensor_->reading(); }
     const SimulatedArm::State& truth() const noexcept { return arm_.state(); }
@@ -33,7 +31,7 @@ class SimulatedPlant {
   private:
     void observe();
 
-    TorqueSensorModel torque_sensor_;
+    JointVector torque_noise_deviation_;
     double period_s_;
     std::int64_t encoder_steps_;
     SimulatedArm arm_;

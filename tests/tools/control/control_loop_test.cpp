@@ -2,9 +2,11 @@
 #include "tools/control/control_loop.hpp"
 
 #include "tests/support/catch.hpp"
-#include "tests/tools/simulation/small_arms.hpp"
-#include "tools/control/closed_loop.hpp"
+#include "tests/tools/control/pendulum.hpp"
+#include "tools/common/error.hpp"
+#include "tools/control/loop_setup.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -13,39 +15,21 @@ namespace {
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
 
-constexpr double mass = 1, length = 0.5, gravity = 9.81;
-
-Scenario pendulum_scenario() {
-    Scenario scenario = quiet_scenario(1);
-    scenario.controller.kind = ControllerKind::feed_forward;
-    scenario.controller.position_gain = JointVector::Constant(1, 50);
-    scenario.controller.velocity_gain = JointVector::Constant(1, 5);
-    scenario.actuators.torque_limit = JointVector::Constant(1, 20);
-    return scenario;
-}
-
-double weight(double position) { return mass * gravity * length * std::sin(position); }
-
-double rms_error(const Scenario& scenario) {
-    ClosedLoop loop(pendulum(mass, length), scenario, "test", nullptr);
-    double square = 0;
-    loop.run_to(5, [&](const ClosedLoopInstant& instant) { square += instant.error.squaredNorm(); });
-    CHECK(loop.loop().state() == LoopState::running);
-    return std::sqrt(square / 5000);
-}
-
 /// A loop about a pendulum that stands at the reference's start, tick by tick.
 class Bench {
   public:
     explicit Bench(const Scenario& scenario)
-        : loop_(make_control_loop(pendulum(mass, length), scenario, "test", nullptr)),
+        : loop_(make_control_loop(test_pendulum(), scenario, "test", nullptr)),
           position_(loop_->reference().position) {}
 
     double tick(bool valid = true, bool stop = false) {
         LoopInput input;
+        input.stop_requested = stop;
+        return tick(input, valid);
+    }
+    double tick(LoopInput input, bool valid = true) {
         input.time_ns = 1'000'000 * ticks_++;
         input.position = valid ? &position_ : nullptr;
-        input.stop_requested = stop;
         return loop_->tick(input)[0];
     }
     ControlLoop& loop() { return *loop_; }
@@ -58,30 +42,6 @@ class Bench {
 };
 
 } // namespace
-
-TEST_CASE("with a rigid body that is right the arm follows; a payload that nobody knows of makes the error "
-          "of its weight") {
-    Scenario scenario = pendulum_scenario();
-    CHECK(rms_error(scenario) < 1e-3);
-    Payload payload;
-    payload.mass = 0.2;
-    scenario.payloads = {payload};
-    // about 0.3 rad: 0.2 kg of weight over the position gain
-    const double sag = 0.2 / mass * weight(0.3) / 50;
-    CHECK(rms_error(scenario) == Approx(sag).epsilon(0.5));
-}
-
-TEST_CASE("the same closed loop gives the same bits") {
-    const auto run = [] {
-        Scenario scenario = pendulum_scenario();
-        scenario.encoders.noise = 1e-4;
-        std::vector<double> commands;
-        ClosedLoop loop(pendulum(mass, length), scenario, "test", nullptr);
-        loop.run_to(0.5, [&](const ClosedLoopInstant& instant) { commands.push_back(instant.command[0]); });
-        return commands;
-    };
-    CHECK(run() == run());
-}
 
 TEST_CASE("no command is beyond the limit, and those at it are counted") {
     Scenario scenario = pendulum_scenario();
@@ -145,4 +105,71 @@ TEST_CASE("an arm that drifts while the loop holds it is damped") {
         torque = bench.tick(true, true);
     }
     CHECK(torque == Approx(weight(bench.position()[0]) - 5 * 1.0).epsilon(1e-3));
+}
+
+TEST_CASE("every cause stops the loop within its patience, without a jump of the torque") {
+    struct Fault {
+        StopCause cause;
+        int patience;
+        LoopInput input;
+        double displaced;
+    };
+    LoopInput requested, missed, lost;
+    requested.stop_requested = true;
+    missed.deadline_missed = true;
+    lost.bus_lost = true;
+    const std::vector<Fault> faults{{StopCause::requested, 0, requested, 0},
+                                    {StopCause::missed_deadlines, 10, missed, 0},
+                                    {StopCause::bus_lost, 0, lost, 0},
+                                    {StopCause::following_error, 0, {}, 0.6}};
+    for (const Fault& fault : faults) {
+        CAPTURE(name(fault.cause));
+        Bench bench(pendulum_scenario());
+        for (int tick = 0; tick < 50; ++tick) {
+            bench.tick();
+        }
+        double last = bench.tick();
+        bench.position()[0] += fault.displaced;
+        for (int tick = 0; tick < fault.patience; ++tick) {
+            last = bench.tick(fault.input);
+            CHECK(bench.loop().state() == LoopState::running);
+        }
+        double largest_step = 0;
+        for (int tick = 0; tick < 250; ++tick) {
+            const double next = bench.tick(fault.input);
+            largest_step = std::max(largest_step, std::abs(next - last));
+            last = next;
+        }
+        CHECK(bench.loop().state() == LoopState::stopped);
+        CHECK(bench.loop().cause() == fault.cause);
+        CHECK(largest_step < 0.2);
+        CHECK(last == Approx(weight(bench.position()[0])).margin(1e-3));
+    }
+}
+
+TEST_CASE("a loop is told what its scenario and model must have") {
+    const auto refusal = [](const Scenario& scenario, const Robot& robot, const LoopModel* model) {
+        try {
+            make_control_loop(robot, scenario, "s.json", model);
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("none");
+    };
+    Scenario scenario = pendulum_scenario();
+    CHECK(refusal(scenario, test_pendulum(), nullptr) == "none");
+    LoopModel model{{}, "m.json", false};
+    model.model.sample_period_s = 0.0085;
+    CHECK(refusal(scenario, test_pendulum(), &model) ==
+          "m.json: expected a sample period that is a multiple of the loop's 0.001 s, found 0.0085 s");
+    scenario.actuators.torque_limit.reset();
+    CHECK(refusal(scenario, test_pendulum(), nullptr) ==
+          "s.json: actuators.torque_limit_nm: expected a limit of joint swing, for which the robot has none, "
+          "found none");
+    Robot robot = test_pendulum();
+    robot.joints[0].effort = 20;
+    CHECK(refusal(scenario, robot, nullptr) == "none");
+    scenario.controller.kind = ControllerKind::computed_torque;
+    CHECK(refusal(scenario, robot, nullptr) ==
+          "s.json: controller.kind: expected feed_forward, found another");
 }

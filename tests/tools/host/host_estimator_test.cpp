@@ -57,6 +57,32 @@ TEST_CASE("an estimator goes on from its snapshot as it did when it was taken") 
     CHECK(run(*other, 200, 300) == expected);
 }
 
+TEST_CASE("learning in slices ends where learning at once does") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const std::string structure = GENERATE("NP", "P", "SP", "SPK");
+    const TrainedModel model = structure == "NP"
+                                   ? small_model(engine, InputKind::DFR)
+                                   : small_physics_model(engine, structure, InputKind::DFR, true);
+    CAPTURE(structure);
+    const auto at_once = make_estimator(model, true);
+    const auto sliced = make_estimator(model, true);
+    const dfdyn::Budget slice{sliced->cost().learn / 8 + sliced->cost().largest_step};
+    int in_progress = 0;
+    for (int tick = 0; tick < 100; ++tick) {
+        const std::array position{std::sin(0.012 * tick), std::cos(0.02 * tick)};
+        const std::array output{position[0], position[1], 1.0, 0.0, -position[0], 2.0};
+        const MeasuredSample sample{std::int64_t{4000000} * tick, position, {}, {}, output};
+        at_once->tick(sample);
+        in_progress += sliced->tick(sample, slice).status.reason() == dfdyn::Reason::learning_in_progress;
+        int slices = 0;
+        while (!sliced->advance(slice)) {
+            REQUIRE(++slices < 20);
+        }
+    }
+    CHECK(in_progress > 50);
+    CHECK(sliced->snapshot() == at_once->snapshot());
+}
+
 TEST_CASE("a snapshot of another model changes nothing") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto estimator = make_estimator(small_model(engine, InputKind::DFR), false);

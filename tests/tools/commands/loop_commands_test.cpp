@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// `dfdyn loop` and `dfdyn plant` from the command line; over a bus: tests/vcan.
+#include "tests/support/catch.hpp"
+#include "tests/tools/commands/run_program.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace {
+
+using Catch::Matchers::ContainsSubstring;
+using dfdyn::tests::file_content;
+using dfdyn::tests::Outcome;
+using dfdyn::tests::run_program;
+using dfdyn::tests::TemporaryDirectory;
+
+const std::string data = DFDYN_TEST_DATA_DIR;
+const std::string robot = " --robot " + data + "/robots/small_arm/small_arm.urdf";
+const std::string bus = " --bus " + data + "/can/small_arm_loop.json";
+
+std::string scenario_text() { return file_content(data + "/scenarios/small_arm_loop.json"); }
+
+/// Calls with the small arm and its scenario, in which `from` is `to`.
+class Bench {
+  public:
+    explicit Bench(const std::string& from = "", const std::string& to = "") {
+        std::string text = scenario_text();
+        if (!from.empty()) {
+            text.replace(text.find(from), from.size(), to);
+        }
+        directory_.write("s.json", text);
+    }
+    std::string path(const std::string& name) const { return directory_.path() / name; }
+    void write(const std::string& name, const std::string& text) const { directory_.write(name, text); }
+    Outcome call(const std::string& arguments) const { return run_program(directory_, arguments); }
+    Outcome loop(const std::string& arguments) const {
+        return call("loop" + robot + " --scenario " + path("s.json") + arguments);
+    }
+    /// What a loop that is not run says.
+    std::string refusal(const std::string& arguments) const {
+        const Outcome outcome = loop(arguments);
+        CHECK(outcome.status == 2);
+        CHECK(outcome.out.empty());
+        CHECK(std::ranges::count(outcome.error, '\n') == 1);
+        return outcome.error;
+    }
+
+  private:
+    TemporaryDirectory directory_;
+};
+
+const std::string simulate = " --simulate --duration 11";
+
+} // namespace
+
+TEST_CASE("a simulated loop is recorded, a model trained on that, and the loop with it tracks better") {
+    const Bench bench(R"("encoders")",
+                      R"("payloads": [{"mass_kg": 0.5, "centre_m": [0, 0, 0]}], "encoders")");
+    const Outcome nominal = bench.loop(simulate + bus + " -o " + bench.path("nominal"));
+    CHECK(nominal.error.empty());
+    REQUIRE(nominal.status == 0);
+    CHECK_THAT(nominal.out, ContainsSubstring("nominal loop: "));
+    CHECK_THAT(nominal.out, ContainsSubstring("running (none)"));
+    const std::string log = bench.path("nominal/nominal.csv");
+    CHECK(std::ranges::count(file_content(log), '\n') == 1101);
+    REQUIRE(bench
+                .call("train --outputs tau --model P --effects viscous_friction,rotor_inertia --starts 1 "
+                      "--tip tool" +
+                      robot + " --log " + log + " -o " + bench.path("m.json"))
+                .status == 0);
+    const Outcome learned =
+        bench.loop(simulate + bus + " --model " + bench.path("m.json") + " -o " + bench.path("learned"));
+    REQUIRE(learned.status == 0);
+    CHECK_THAT(learned.out, ContainsSubstring("learning: "));
+    const std::string last = learned.out.substr(learned.out.rfind('\n', learned.out.size() - 2) + 1);
+    const double ratio = std::stod(last.substr(last.find_last_of(' ') + 1));
+    CHECK(ratio > 3);
+    for (const char* const name :
+         {"nominal.csv", "learned.csv", "tracking.csv", "tracking.svg", "tracking.html"}) {
+        CHECK(std::filesystem::exists(bench.path("learned") + "/" + name));
+    }
+}
+
+TEST_CASE("the same call prints the same") {
+    const Bench bench;
+    CHECK(bench.loop(simulate + bus).out == bench.loop(simulate + bus).out);
+}
+
+TEST_CASE("a loop needs to know where its arm is, and for how long a simulated one runs") {
+    const Bench bench;
+    CHECK_THAT(bench.refusal(""), ContainsSubstring("expected one of --simulate and --can, found none"));
+    CHECK_THAT(bench.refusal(" --simulate --can can0"), ContainsSubstring("found both"));
+    CHECK_THAT(bench.refusal(" --simulate"), ContainsSubstring("expected --duration, found none"));
+    CHECK_THAT(bench.refusal(" --can can0"), ContainsSubstring("expected --bus, found none"));
+    CHECK_THAT(bench.refusal(" --can can0 -o out" + bus), ContainsSubstring("--output"));
+    CHECK(bench.loop(" --simulate --duration -1").status == 2);
+    CHECK(bench.loop(" --simulate --duration nan").status == 2);
+}
+
+TEST_CASE("an interface that is not there is said, by the loop and by the plant") {
+    const Bench bench;
+    CHECK_THAT(bench.refusal(" --can nosuch0" + bus), ContainsSubstring("nosuch0"));
+    const Outcome plant = bench.call("plant" + robot + " --scenario " + bench.path("s.json") + bus +
+                                     " --can nosuch0 --duration 1");
+    CHECK(plant.status == 2);
+    CHECK_THAT(plant.error, ContainsSubstring("nosuch0"));
+    CHECK(std::ranges::count(plant.error, '\n') == 1);
+}
+
+TEST_CASE("what does not fit together is said before anything runs") {
+    const Bench bench;
+    CHECK_THAT(Bench("feed_forward", "computed_torque").refusal(simulate),
+               ContainsSubstring("controller.kind: expected feed_forward"));
+    CHECK_THAT(Bench("\"controller\": {\"kind\": \"feed_forward\", \"rate_hz\": 100",
+                     "\"controller\": {\"kind\": \"feed_forward\", \"rate_hz\": 200")
+                   .refusal(simulate + bus),
+               ContainsSubstring("expected the rate of the loop, 200 Hz, found 100"));
+    CHECK_THAT(bench.refusal(simulate + " --bus " + data + "/can/ur5_loop.json"),
+               ContainsSubstring("expected the robot's 2 joints, found 6"));
+    CHECK_THAT(Bench("\"recording\": {\"rate_hz\": 100", "\"recording\": {\"rate_hz\": 80")
+                   .refusal(simulate + " -o " + bench.path("out")),
+               ContainsSubstring("recording.rate_hz"));
+    bench.write("slow.json", [] {
+        std::string text = file_content(data + "/can/small_arm_loop.json");
+        const std::string rate = "\"bit_rate\": 1000000";
+        return text.replace(text.find(rate), rate.size(), "\"bit_rate\": 10000");
+    }());
+    CHECK_THAT(bench.refusal(simulate + " --bus " + bench.path("slow.json")),
+               ContainsSubstring("bit_rate: expected a bus that carries"));
+    bench.write("broken.json", "{");
+    CHECK_THAT(bench.refusal(simulate + " --model " + bench.path("broken.json")),
+               ContainsSubstring("broken.json"));
+    CHECK_THAT(bench.refusal(simulate + " --bus " + bench.path("broken.json")),
+               ContainsSubstring("broken.json"));
+    bench.write("file", "");
+    CHECK_THAT(bench.refusal(simulate + " -o " + bench.path("file")), ContainsSubstring("file"));
+}

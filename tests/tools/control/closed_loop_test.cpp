@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// The loop and the simulated arm, with the frames of devices between them, in simulated time.
+#include "tools/control/closed_loop.hpp"
+
+#include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/can/bus_support.hpp"
+#include "tests/tools/control/pendulum.hpp"
+#include "tools/common/error.hpp"
+#include "tools/control/tracking.hpp"
+
+#include <cmath>
+#include <vector>
+
+namespace {
+
+using namespace dfdyn::tools;
+using namespace dfdyn::tests;
+
+/// Tracking errors of the pendulum, tick by tick, rad.
+std::vector<double> errors(const Scenario& scenario, double duration_s, const LoopModel* model = nullptr,
+                           const BusDescription* bus = nullptr) {
+    ClosedLoop loop(test_pendulum(), scenario, "test", model, bus);
+    std::vector<double> result;
+    loop.run_to(duration_s, [&](const ClosedLoopInstant& instant) { result.push_back(instant.error[0]); });
+    CHECK(loop.loop().state() == LoopState::running);
+    return result;
+}
+
+double rms(const std::vector<double>& values, std::size_t first) {
+    double square = 0;
+    for (std::size_t i = first; i < values.size(); ++i) {
+        square += values[i] * values[i];
+    }
+    return std::sqrt(square / static_cast<double>(values.size() - first));
+}
+
+Scenario loaded_scenario() {
+    Scenario scenario = pendulum_scenario();
+    scenario.payloads = {{0, 0.5, Eigen::Vector3d::Zero()}};
+    return scenario;
+}
+
+LoopModel random_model(std::mt19937_64& engine) {
+    return {unlearned_model(engine, 1, 0.008, {"tau1"}, 30), "model", true};
+}
+
+} // namespace
+
+TEST_CASE("with a rigid body that is right the arm follows; a payload that nobody knows of makes the error "
+          "of its weight") {
+    CHECK(rms(errors(pendulum_scenario(), 5), 0) < 1e-3);
+    Scenario scenario = pendulum_scenario();
+    scenario.payloads = {{0, 0.2, Eigen::Vector3d::Zero()}};
+    // about 0.3 rad: 0.2 kg of weight over the position gain
+    const double sag = 0.2 / pendulum_mass * weight(0.3) / 50;
+    CHECK(rms(errors(scenario, 5), 0) == Approx(sag).epsilon(0.5));
+}
+
+TEST_CASE("a loop that learns carries a payload that nobody told it of") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const LoopModel model = random_model(engine);
+    const std::vector<double> nominal = errors(loaded_scenario(), 12);
+    const std::vector<double> learned = errors(loaded_scenario(), 12, &model);
+    CHECK(rms(learned, 8000) < rms(nominal, 8000) / 3);
+}
+
+TEST_CASE("frames between loop and arm cost no more than their quantisation, and a period where SYNC does") {
+    const double direct = rms(errors(loaded_scenario(), 4), 0);
+    const BusDescription by_sync = one_drive(at_sync);
+    const BusDescription by_set = one_drive(at_set);
+    CHECK(rms(errors(loaded_scenario(), 4, nullptr, &by_set), 0) == Approx(direct).epsilon(0.01));
+    CHECK(rms(errors(loaded_scenario(), 4, nullptr, &by_sync), 0) == Approx(direct).epsilon(0.05));
+}
+
+TEST_CASE("the same closed loop gives the same bits, over frames and with learning") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const LoopModel model = random_model(engine);
+    const BusDescription bus = one_drive(at_sync);
+    Scenario scenario = loaded_scenario();
+    scenario.encoders.noise = 1e-4;
+    const std::vector<double> once = errors(scenario, 2, &model, &bus);
+    CHECK(once == errors(scenario, 2, &model, &bus));
+    scenario.seed = 2;
+    CHECK(once != errors(scenario, 2, &model, &bus));
+}
+
+// At a sample the host's estimators, whose sizes are known at run time only, make room for their results.
+TEST_CASE("between two samples of its model a loop that learns does not touch the heap") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const LoopModel model = random_model(engine);
+    const auto loop = make_control_loop(test_pendulum(), pendulum_scenario(), "test", &model);
+    JointVector position = loop->reference().position;
+    JointVector torque = JointVector::Zero(1);
+    std::uint64_t between = 0, at_samples = 0;
+    for (int tick = 0; tick < 2000; ++tick) {
+        position[0] += 1e-4 * std::sin(0.01 * tick);
+        LoopInput input;
+        input.time_ns = std::int64_t{1'000'000} * tick;
+        input.position = &position;
+        input.torque = &torque;
+        const AllocationGuard guard;
+        torque = loop->tick(input);
+        (tick % 8 == 0 ? at_samples : between) += guard.calls().allocations;
+    }
+    CHECK(between == 0);
+    CHECK(at_samples <= 250 * 6 + 20);
+    CHECK(loop->state() == LoopState::running);
+    CHECK(loop->feed_forward().learned()->counters().learned > 200);
+}
+
+TEST_CASE("a bus that does not fit robot and scenario is refused") {
+    const auto refusal = [](const BusDescription& bus, const Scenario& scenario, const Robot& robot) {
+        try {
+            check_bus(bus, robot, scenario);
+        } catch (const InputError& error) {
+            const std::string text = error.what();
+            return text.substr(text.find("bus.json: ") + 10);
+        }
+        return std::string("none");
+    };
+    Scenario scenario = pendulum_scenario();
+    const Robot robot = test_pendulum();
+    CHECK(refusal(one_drive(at_sync), scenario, robot) == "none");
+    CHECK_THAT(refusal(one_drive(at_sync, "i"), scenario, robot),
+               Catch::Matchers::StartsWith("output.quantity: expected a scenario with"));
+    Robot longer = robot;
+    longer.joints.push_back(robot.joints[0]);
+    CHECK(refusal(one_drive(at_sync), scenario, longer) == "joints: expected the robot's 2 joints, found 1");
+    BusDescription slow = one_drive(at_sync);
+    slow.bit_rate = 200'000; // SYNC, 6 bytes and 2 bytes at 1 kHz: 55 + 115 + 75 bits
+    CHECK(refusal(slow, scenario, robot) ==
+          "bit_rate: expected a bus that carries its devices' frames and their commands, found one that they "
+          "load to 123 %");
+    scenario.controller.rate_hz = 500;
+    CHECK(refusal(one_drive(at_sync), scenario, robot) ==
+          "joints: expected the rate of the loop, 500 Hz, found 1000");
+}

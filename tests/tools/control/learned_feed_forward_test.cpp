@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/control/learned_feed_forward.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/can/bus_support.hpp"
+#include "tools/common/error.hpp"
+
+#include <cmath>
+#include <vector>
+
+namespace {
+
+using namespace dfdyn::tools;
+using dfdyn::tests::unlearned_model;
+
+constexpr double period_s = 0.008;
+constexpr std::int64_t period = 8'000'000;
+
+TrainedModel model_of(std::mt19937_64& engine, const std::vector<std::string>& outputs = {"tau1", "tau2"},
+                      int joints = 2) {
+    return unlearned_model(engine, joints, period_s, outputs, 30);
+}
+
+JointVector position(int tick) {
+    JointVector result(2);
+    result << 0.4 * std::sin(0.02 * tick), 0.5 * std::cos(0.03 * tick) - 0.5;
+    return result;
+}
+JointVector torque(const JointVector& position) {
+    JointVector result(2);
+    result << 3 * position[0] + std::sin(3 * position[1]), 2 * position[1] * position[1] - 1;
+    return result;
+}
+
+/// Learns `count` samples of the motion, with as many slices in between as there are ticks.
+void learn(LearnedFeedForward& feed_forward, int first, int count, int ticks) {
+    for (int tick = first; tick < first + count; ++tick) {
+        feed_forward.learn(tick * period, position(tick), torque(position(tick)));
+        for (int slice = 1; slice < ticks; ++slice) {
+            feed_forward.go_on();
+        }
+    }
+}
+
+/// Predictions along the motion.
+std::vector<JointVector> follow(LearnedFeedForward& feed_forward, int first, int count) {
+    std::vector<JointVector> predictions;
+    for (int tick = first; tick < first + count; ++tick) {
+        JointVector predicted;
+        if (feed_forward.predict(tick * period, position(tick), predicted)) {
+            predictions.push_back(predicted);
+        }
+    }
+    return predictions;
+}
+
+std::string refusal(const TrainedModel& model) {
+    try {
+        const LearnedFeedForward feed_forward(model, true, 2, 8, "m.json");
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+} // namespace
+
+TEST_CASE("what was learned of measured positions is predicted for the reference's") {
+    DFDYN_SEEDED_ENGINE(engine);
+    LearnedFeedForward feed_forward(model_of(engine), true, 2, 8, "model");
+    feed_forward.begin(0, position(0));
+    learn(feed_forward, 1, 1500, 8);
+    const std::vector<JointVector> predicted = follow(feed_forward, 1, 300);
+    REQUIRE(predicted.size() == 300);
+    double square = 0;
+    for (int tick = 11; tick < 301; ++tick) {
+        square += (predicted[static_cast<std::size_t>(tick - 1)] - torque(position(tick))).squaredNorm();
+    }
+    CHECK(std::sqrt(square / 290) < 0.1); // of torques of about 1 N·m
+    CHECK(feed_forward.counters().samples == 1500);
+    CHECK(feed_forward.counters().learned == 1500 - 4); // its window of 5 positions was empty
+    CHECK(feed_forward.counters().faults == 0);
+}
+
+TEST_CASE("learning in the slices of eight ticks gives what learning at once does, bit for bit") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const TrainedModel model = model_of(engine);
+    std::vector<std::vector<JointVector>> predictions;
+    for (const int ticks : {1, 8}) {
+        LearnedFeedForward feed_forward(model, true, 2, ticks, "model");
+        feed_forward.begin(0, position(0));
+        learn(feed_forward, 1, 200, ticks);
+        predictions.push_back(follow(feed_forward, 1, 50));
+    }
+    CHECK(predictions[0] == predictions[1]);
+    CHECK(predictions[0].back() != JointVector::Zero(2));
+}
+
+TEST_CASE("with more ticks per sample each does less") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const TrainedModel model = model_of(engine);
+    const std::int64_t one = LearnedFeedForward(model, true, 2, 1, "model").tick_cost();
+    const std::int64_t eight = LearnedFeedForward(model, true, 2, 8, "model").tick_cost();
+    CHECK(eight < one / 2);
+}
+
+TEST_CASE("from the start the model knows an arm at rest; a refused sample changes nothing and is counted") {
+    DFDYN_SEEDED_ENGINE(engine);
+    LearnedFeedForward feed_forward(model_of(engine), true, 2, 8, "model");
+    feed_forward.begin(0, position(0));
+    CHECK(follow(feed_forward, 1, 1).size() == 1);
+    learn(feed_forward, 1, 100, 8);
+    const std::uint64_t learned = feed_forward.counters().learned;
+    JointVector absurd = position(101);
+    absurd[1] = 1e9;
+    feed_forward.learn(101 * period, absurd, torque(position(101)));
+    CHECK(feed_forward.counters().learned == learned);
+    CHECK(feed_forward.counters().faults == 1);
+    CHECK(feed_forward.counters().last_fault == dfdyn::Reason::position_out_of_range);
+}
+
+TEST_CASE("a model of something else than these joints' torques by their positions is refused") {
+    DFDYN_SEEDED_ENGINE(engine);
+    CHECK(refusal(model_of(engine)) == "none");
+    CHECK(refusal(model_of(engine, {"i1", "i2"})) ==
+          "m.json: expected a model of the outputs tau1, tau2, found one of i1, i2");
+    CHECK(refusal(model_of(engine, {"tau1", "tau2", "tau3"}, 3)) ==
+          "m.json: expected a model of the outputs tau1, tau2, found one of tau1, tau2, tau3");
+    TrainedModel measured = model_of(engine);
+    measured.input.kind = InputKind::STD;
+    measured.input.derivatives = Derivatives::measured;
+    CHECK(refusal(measured) == "m.json: expected a model of positions alone, found one that needs measured "
+                               "derivatives (input STD)");
+}

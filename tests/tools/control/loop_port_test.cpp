@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/control/loop_port.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/tools/control/pendulum.hpp"
+#include "tests/tools/control/scripted_bus.hpp"
+#include "tools/can/device_frames.hpp"
+
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace dfdyn::tools;
+using namespace dfdyn::tests;
+namespace hal = dfdyn::hal;
+
+constexpr std::int64_t period = 1'000'000;
+
+hal::Frame stamped(hal::Frame frame, std::int64_t time_ns) {
+    frame.stamp_ns = time_ns;
+    return frame;
+}
+
+/// A port and the drive at the other end, tick by tick.
+class Line {
+  public:
+    explicit Line(const BusDescription& description) : devices_(description), port_(description, 0.001) {}
+
+    /// Goes on by a period; the drive sends its position and torque if it is to.
+    LoopInput tick(double position, bool sends = true) {
+        bus.time_ns += period;
+        if (sends) {
+            send(position);
+        }
+        port_.receive(bus);
+        return port_.sense(bus.time_ns, bus.time_ns);
+    }
+    LoopPort& port() { return port_; }
+
+    ScriptedBus bus;
+
+  private:
+    void send(double position) {
+        if (const auto frame = devices_.sync()) {
+            bus.waiting.push_back(stamped(*frame, bus.time_ns));
+        }
+        const double torque = 10 * position;
+        for (const hal::Frame& frame : devices_.joints({&position, 1}, {&torque, 1})) {
+            bus.waiting.push_back(stamped(frame, bus.time_ns));
+        }
+    }
+
+    DeviceFrames devices_;
+    LoopPort port_;
+};
+
+/// Position at tick k.
+double at(int tick) { return 0.5 + 0.001 * tick; }
+
+} // namespace
+
+TEST_CASE("a tick gets position and torque of the instant that the description's trigger gives") {
+    const auto [trigger, delay] =
+        GENERATE(table<std::string, int>({{at_sync, 1}, {at_timer, 2}, {at_set, 0}}));
+    CAPTURE(trigger);
+    Line line(one_drive(trigger));
+    CHECK(line.port().delay_ticks() == delay);
+    LoopInput input;
+    for (int tick = 0; tick < 30; ++tick) {
+        input = line.tick(at(tick));
+    }
+    REQUIRE(input.position != nullptr);
+    REQUIRE(input.torque != nullptr);
+    CHECK(input.time_ns == line.bus.time_ns - delay * period);
+    CHECK((*input.position)[0] == Approx(at(29 - delay)).margin(1e-5));
+    CHECK((*input.torque)[0] == Approx(10 * at(29 - delay)).margin(1e-3));
+}
+
+TEST_CASE("where the bus has no torque, what was commanded stands for it") {
+    Line line(one_drive(at_set, "i"));
+    for (int tick = 0; tick < 30; ++tick) {
+        line.tick(at(tick));
+    }
+    CHECK(line.tick(at(30)).torque == nullptr); // nothing was commanded yet
+    line.port().send(line.bus, JointVector::Constant(1, 7));
+    CHECK((*line.tick(at(31)).torque)[0] == 7);
+}
+
+TEST_CASE(
+    "a drive that falls silent, or sends what cannot be, gives ticks without position, and the reason") {
+    Line line(one_drive(at_timer));
+    for (int tick = 0; tick < 30; ++tick) {
+        line.tick(at(tick));
+    }
+    LoopInput input;
+    for (int tick = 0; tick < 20; ++tick) {
+        input = line.tick(0, false);
+    }
+    CHECK(input.position == nullptr);
+    CHECK(line.port().counters().last_reason == hal::Reason::position_stale);
+    CHECK(line.port().counters().last_joint == 0);
+    const std::uint64_t invalid = line.port().counters().invalid;
+    for (int tick = 0; tick < 5; ++tick) {
+        input = line.tick(100); // 16 turns
+    }
+    CHECK(input.position == nullptr);
+    CHECK(line.port().counters().last_reason == hal::Reason::position_out_of_range);
+    CHECK(line.port().counters().invalid == invalid + 5);
+}
+
+TEST_CASE("ticks for which no sample becomes complete are counted") {
+    Line line(one_drive(at_set));
+    for (int tick = 0; tick < 30; ++tick) {
+        line.tick(at(tick));
+    }
+    const PortCounters before = line.port().counters();
+    CHECK(line.tick(0, false).position == nullptr);
+    CHECK(line.port().counters().incomplete == before.incomplete + 1);
+    CHECK(line.port().counters().invalid == before.invalid);
+}
+
+TEST_CASE("a flood is read in pieces of a bounded size, and the sample behind it is found") {
+    Line line(one_drive(at_set));
+    for (int tick = 0; tick < 30; ++tick) {
+        line.tick(at(tick));
+    }
+    CHECK(line.port().counters().most_in_tick <= 3);
+    line.bus.waiting.assign(2 * LoopPort::frames_per_tick + 10, stamped(hal::Frame{}, line.bus.time_ns));
+    int ticks = 1;
+    while (line.tick(at(30), ticks == 1).position == nullptr) {
+        REQUIRE(++ticks < 5);
+    }
+    CHECK(ticks == 3);
+    CHECK(line.port().counters().most_in_tick == LoopPort::frames_per_tick);
+    CHECK(line.port().counters().overfull_ticks == 2);
+}
+
+TEST_CASE("a bus that is off, or an interface that is down, is lost; one that struggles is not") {
+    Line line(one_drive(at_set));
+    for (const auto& [state, lost] :
+         {std::pair(hal::BusState::active, false), std::pair(hal::BusState::warning, false),
+          std::pair(hal::BusState::passive, false), std::pair(hal::BusState::off, true),
+          std::pair(hal::BusState::interface_down, true)}) {
+        line.bus.bus_state = state;
+        CHECK(line.tick(0.5).bus_lost == lost);
+    }
+}
+
+TEST_CASE("command frames that the bus has no room for are counted") {
+    Line line(one_drive(at_set));
+    line.bus.room = 1;
+    line.port().send(line.bus, JointVector::Constant(1, 1));
+    CHECK(line.port().counters().refused == 0);
+    line.port().send(line.bus, JointVector::Constant(1, 1));
+    CHECK(line.port().counters().refused == 1);
+}
+
+TEST_CASE("a sensor that has not told its full scales is asked for them, ten times a second") {
+    const TemporaryDirectory directory;
+    std::string text = file_content(DFDYN_TEST_DATA_DIR "/can/icub_loop.json");
+    const std::string known = R"(, "full_scale": [1500, 1500, 2000, 35, 35, 25])";
+    text.erase(text.find(known), known.size());
+    const BusDescription description = read_bus_description(directory.write("bus.json", text));
+    LoopPort port(description, 0.001);
+    ScriptedBus bus;
+    for (int tick = 0; tick < 200; ++tick) {
+        port.receive(bus);
+        bus.time_ns += period;
+    }
+    REQUIRE(bus.taken.size() == 12);
+    CHECK(bus.taken[0].id == 0x20D);
+    const DeviceFrames devices(read_bus_description(DFDYN_TEST_DATA_DIR "/can/icub_loop.json"));
+    for (std::size_t channel = 0; channel < 6; ++channel) {
+        bus.waiting.push_back(stamped(*devices.answer(bus.taken[channel]), bus.time_ns));
+    }
+    for (int tick = 0; tick < 200; ++tick) {
+        port.receive(bus);
+        bus.time_ns += period;
+    }
+    CHECK(bus.taken.size() == 12);
+}
