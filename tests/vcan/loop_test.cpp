@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop and the arm as two programs with a bus between them. Nothing here depends on how fast they run.
+// The loop and the arm as two programs with a bus between them, at 100 Hz: the rate that a booted kernel
+// keeps.
 #include "tests/support/catch.hpp"
 #include "tests/vcan/peer.hpp"
+#include "tools/control/loop_port.hpp"
 
 #include <chrono>
 #include <csignal>
@@ -12,57 +14,126 @@ namespace {
 
 using Catch::Matchers::ContainsSubstring;
 using dfdyn::tests::Background;
+using dfdyn::tests::file_content;
 using dfdyn::tests::run;
+using dfdyn::tests::TemporaryDirectory;
 
-std::string program(const std::string& subcommand, const std::string& interface) {
-    const std::string data = DFDYN_TEST_DATA_DIR;
-    return std::string(DFDYN_PROGRAM) + " " + subcommand + " --robot " + data +
-           "/robots/small_arm/small_arm.urdf --scenario " + data + "/scenarios/small_arm_loop.json --bus " +
-           data + "/can/small_arm_loop.json --can " + interface;
+const std::string data = DFDYN_TEST_DATA_DIR;
+const std::string robot = " --robot " + data + "/robots/small_arm/small_arm.urdf";
+const std::string bus = " --bus " + data + "/can/small_arm_loop.json";
+
+/// A call with the small arm; `scenario`: none for its own.
+std::string call(const std::string& arguments, const std::string& scenario = "") {
+    return std::string(DFDYN_PROGRAM) + " " + arguments + robot + bus + " --scenario " +
+           (scenario.empty() ? data + "/scenarios/small_arm_loop.json" : scenario);
 }
 
-/// Lines of what a loop prints: a note where it is no real-time program, the loop, the pace.
-std::string last_words(const Background& loop) { return loop.output(2); }
+/// Both programs print so many lines when they end.
+constexpr std::size_t loop_lines = 3, plant_lines = 2;
+
+/// The number that follows `words` in `text`.
+double number_after(const std::string& text, const std::string& words) {
+    const std::size_t place = text.find(words);
+    REQUIRE(place != std::string::npos);
+    return std::stod(text.substr(place + words.size()));
+}
+
+void pause(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
+
+/// Runs a loop, and after a while ends its plant without warning. What the loop says, and its status.
+std::string loop_without_plant() {
+    const Background plant(call("plant --can vcan0"));
+    std::thread end([&plant] {
+        pause(1500);
+        plant.signal(SIGKILL);
+    });
+    const std::string said = run(call("loop --can vcan0") + " || echo status $?");
+    end.join();
+    return said;
+}
 
 } // namespace
 
-TEST_CASE("a loop moves the arm of another program, and both end when they are asked to") {
-    const Background plant(program("plant", "vcan0"));
-    const std::string said = run(program("loop", "vcan0") + " --duration 2");
+TEST_CASE("a loop moves the arm of another program for as long as it is asked to") {
+    const Background plant(call("plant --can vcan0"));
+    const std::string said = run(call("loop --can vcan0 --duration 2"));
     CHECK_THAT(said, ContainsSubstring("stopped (requested)"));
-    CHECK_THAT(said, ContainsSubstring("followed the reference"));
     CHECK_THAT(said, ContainsSubstring("; 0 command frames refused"));
+    CHECK(number_after(said, "ticks, ") > 100); // followed the reference
     plant.signal(SIGINT);
-    const std::string plant_said = plant.output(1);
-    CHECK_THAT(plant_said, ContainsSubstring("command frames"));
-    CHECK_THAT(plant_said, !ContainsSubstring(" 0 command frames"));
+    const std::string plant_said = plant.output(plant_lines);
+    CHECK(number_after(plant_said, "plant: ") > 200);         // command frames of two drives
+    CHECK(number_after(plant_said, "command frames, ") <= 1); // silences
+}
+
+TEST_CASE("a loop that is interrupted stops by its ramp, and says so") {
+    const Background plant(call("plant --can vcan0"));
+    const Background loop(call("loop --can vcan0"));
+    pause(1500);
+    loop.signal(SIGINT);
+    const std::string said = loop.output(loop_lines);
+    CHECK_THAT(said, ContainsSubstring("stopped (requested)"));
+    CHECK(number_after(said, "ticks, ") > 50);
 }
 
 TEST_CASE("a loop whose arm falls silent stops by itself, and says why") {
-    const Background loop(program("loop", "vcan0"));
-    {
-        const Background plant(program("plant", "vcan0"));
-        std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-    }
-    CHECK_THAT(last_words(loop), ContainsSubstring("stopped (no_position)"));
+    const std::string said = loop_without_plant();
+    CHECK_THAT(said, ContainsSubstring("stopped (no_position)"));
+    CHECK_THAT(said, ContainsSubstring("position_stale"));
+    CHECK_THAT(said, ContainsSubstring("status 1"));
 }
 
 TEST_CASE("a loop whose interface goes down stops by itself, and says why") {
     run("ip link add dev vcan4 type vcan && ip link set vcan4 up");
     {
-        const Background plant(program("plant", "vcan4"));
-        const Background loop(program("loop", "vcan4"));
-        std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+        const Background plant(call("plant --can vcan4"));
+        const Background loop(call("loop --can vcan4"));
+        pause(1500);
         run("ip link set vcan4 down");
-        CHECK_THAT(last_words(loop), ContainsSubstring("stopped (bus_lost)"));
+        CHECK_THAT(loop.output(loop_lines), ContainsSubstring("stopped (bus_lost)"));
     }
     run("ip link del vcan4");
 }
 
-TEST_CASE("a check of a bus finds the arm in order, and finds it missing") {
-    const std::string check = std::string(DFDYN_PROGRAM) + " buscheck --bus " + DFDYN_TEST_DATA_DIR +
-                              "/can/small_arm_loop.json --can vcan0 --duration 1";
-    CHECK_THAT(run(check + " || true"), ContainsSubstring("finding silent_source"));
-    const Background plant(program("plant", "vcan0"));
-    CHECK_THAT(run(check + " || true"), !ContainsSubstring("finding silent_source"));
+TEST_CASE("beside a flood a tick reads no more than its bound; the loop goes on, or stops with a reason") {
+    const Background plant(call("plant --can vcan0"));
+    const Background loop(call("loop --can vcan0 --duration 3"));
+    pause(800);
+    std::string said;
+    {
+        const Background flood("cangen vcan0 -g 0 -i -I 555 -L 8", Background::Ready::at_once);
+        pause(1000);
+    }
+    said = loop.output(loop_lines);
+    CAPTURE(said);
+    CHECK(number_after(said, "bus: ") > 500); // frames
+    const double most = number_after(said, "at most ");
+    CHECK(most > 10);
+    CHECK(most <= dfdyn::tools::LoopPort::frames_per_tick);
+    const bool named = said.find("stopped (requested)") != std::string::npos ||
+                       said.find("stopped (no_position)") != std::string::npos ||
+                       said.find("stopped (missed_deadlines)") != std::string::npos ||
+                       said.find("stopped (following_error)") != std::string::npos;
+    CHECK(named);
+}
+
+TEST_CASE("over the bus a loop learns the payload of the arm that it moves") {
+    const TemporaryDirectory directory;
+    const auto path = [&](const std::string& name) { return (directory.path() / name).string(); };
+    std::string text = file_content(data + "/scenarios/small_arm_loop.json");
+    const std::string place = R"("encoders")";
+    text.replace(text.find(place), place.size(),
+                 R"("payloads": [{"mass_kg": 0.5, "centre_m": [0, 0, 0]}], "encoders")");
+    const std::string scenario = directory.write("s.json", text);
+    const std::string nominal = run(call("loop --simulate --duration 10.1 -o " + path("nominal"), scenario));
+    run(std::string(DFDYN_PROGRAM) + " train --outputs tau --model P --own-motion --starts 1 --tip tool" +
+        robot + " --effects viscous_friction,rotor_inertia --log " + path("nominal/nominal.csv") + " -o " +
+        path("m.json"));
+    const Background plant(call("plant --can vcan0", scenario));
+    const std::string learned =
+        run(call("loop --can vcan0 --from-prior --duration 10.5 --model " + path("m.json"), scenario));
+    CAPTURE(nominal, learned);
+    CHECK(number_after(learned, " samples, ") > 500);
+    const std::string second_window = "       5.000"; // and its error
+    CHECK(number_after(learned, second_window) < number_after(nominal, second_window) / 2);
 }

@@ -48,6 +48,9 @@ LoopParts read_parts(const LoopOptions& options) {
         parts.bus = read_bus_description(options.bus);
         check_bus(*parts.bus, parts.robot, parts.scenario);
     }
+    if (!options.folder.empty()) {
+        make_folder(options.folder);
+    }
     return parts;
 }
 
@@ -61,6 +64,13 @@ int recorded_every(const LoopParts& parts, const LoopOptions& options) {
                          number_text(parts.scenario.recording.rate_hz));
     }
     return static_cast<int>(std::lround(ratio));
+}
+
+void show_tracking(const LoopParts& parts, const LoopOptions& options, const std::vector<TrackingRun>& runs) {
+    print_tracking(std::cout, runs);
+    if (!options.folder.empty()) {
+        write_tracking(options.folder, "Tracking of " + parts.robot.name, runs);
+    }
 }
 
 TrackingRun simulate_run(const LoopParts& parts, const LoopOptions& options, bool learned) {
@@ -91,17 +101,11 @@ TrackingRun simulate_run(const LoopParts& parts, const LoopOptions& options, boo
 
 int simulate(const LoopOptions& options) {
     const LoopParts parts = read_parts(options);
-    if (!options.folder.empty()) {
-        make_folder(options.folder);
-    }
     std::vector<TrackingRun> runs{simulate_run(parts, options, false)};
     if (parts.model) {
         runs.push_back(simulate_run(parts, options, true));
     }
-    print_tracking(std::cout, runs);
-    if (!options.folder.empty()) {
-        write_tracking(options.folder, "Tracking of " + parts.robot.name, runs);
-    }
+    show_tracking(parts, options, runs);
     return 0;
 }
 
@@ -111,11 +115,13 @@ int run_on_bus(const LoopOptions& options) {
     LoopPort port(*parts.bus, period_s);
     const auto loop = make_control_loop(parts.robot, parts.scenario, shown(options.scenario),
                                         parts.model ? &*parts.model : nullptr, port.delay_ticks());
+    Tracking tracking;
     const PaceOutcome pace =
-        run_loop(*loop, port, {options.interface, period_s, options.duration_s, stop_on_signals()});
+        run_loop(*loop, port, {options.interface, period_s, options.duration_s, stop_on_signals()}, tracking);
     print_loop(std::cout, *loop);
     print_port(std::cout, port.counters());
     print_pace(std::cout, pace);
+    show_tracking(parts, options, {{parts.model ? "learned" : "nominal", tracking.windows()}});
     return loop->cause() == StopCause::requested ? 0 : 1;
 }
 
@@ -132,9 +138,6 @@ int run(const LoopOptions& options) {
     }
     if (options.bus.empty()) {
         throw InputError("loop --can: expected --bus, found none");
-    }
-    if (!options.folder.empty()) {
-        throw InputError("loop --can: expected no --output, which is for --simulate, found one");
     }
     return run_on_bus(options);
 }
@@ -163,8 +166,9 @@ void add_loop_command(CLI::App& app, Command& chosen) {
         ->check(CLI::PositiveNumber)
         ->type_name("S");
     command
-        ->add_option("-o,--output", options->folder,
-                     "With --simulate: tracking.csv, tracking.svg and a recording of each run")
+        ->add_option(
+            "-o,--output", options->folder,
+            "Tracking error as tracking.csv, .svg and .html; with --simulate also a recording of each run")
         ->type_name("DIR");
     command->footer(
         "Examples:\n"

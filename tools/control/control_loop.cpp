@@ -10,8 +10,8 @@ namespace dfdyn::tools {
 ControlLoop::ControlLoop(LoopConfig config, FeedForward feed_forward, std::unique_ptr<Task> task)
     : config_(std::move(config)), feed_forward_(std::move(feed_forward)),
       feedback_(config_.gains, config_.filter, config_.period_s), safe_stop_(config_.safe_stop),
-      task_(std::move(task)), zero_(JointVector::Zero(config_.torque_limit.size())), command_(zero_),
-      last_followed_(zero_) {
+      task_(std::move(task)), zero_(JointVector::Zero(config_.torque_limit.size())), error_(zero_),
+      command_(zero_), last_followed_(zero_) {
     references_.resize(static_cast<std::size_t>(config_.knot_ticks + 1 + config_.delay_ticks));
     for (int i = 0; i <= config_.knot_ticks; ++i) {
         references_[static_cast<std::size_t>(i)] = task_->next();
@@ -31,11 +31,11 @@ const JointVector& ControlLoop::tick(const LoopInput& input) {
             task_->next();
     }
     sense(input);
-    const bool seen = feedback_.position().size() > 0;
-    const JointVector error =
-        seen ? JointVector(measured_reference().position - feedback_.position()) : zero_;
+    if (feedback_.position().size() > 0) {
+        error_ = measured_reference().position - feedback_.position();
+    }
     const LoopState state = safe_stop_.tick(
-        {input.position != nullptr, input.deadline_missed, input.bus_lost, input.stop_requested}, error);
+        {input.position != nullptr, input.deadline_missed, input.bus_lost, input.stop_requested}, error_);
     if (state == LoopState::running) {
         follow(input);
     } else if (state != LoopState::waiting && moved()) {
@@ -62,8 +62,8 @@ void ControlLoop::follow(const LoopInput& input) {
     }
     ++counters_.running;
     if (since_knot == 0) {
-        if (input.position != nullptr && input.torque != nullptr) {
-            feed_forward_.measured(input.time_ns, *input.position, *input.torque);
+        if (input.position != nullptr) {
+            feed_forward_.measured(input.time_ns, *input.position, input.torque);
         }
         const auto ahead_ns =
             static_cast<std::int64_t>(std::llround(static_cast<double>(knot_ticks) * config_.period_s * 1e9));

@@ -56,6 +56,9 @@ class ControlLoop {
     StopCause cause() const noexcept { return safe_stop_.cause(); }
     /// What the arm was to do at the last tick.
     const Reference& reference() const noexcept { return references_[tick_ % references_.size()]; }
+    /// Reference minus position, as measured for the last tick or coasted on, rad; of the instant of the
+    /// measurement.
+    const JointVector& error() const noexcept { return error_; }
     const LoopCounters& counters() const noexcept { return counters_; }
     const FeedForward& feed_forward() const noexcept { return feed_forward_; }
 
@@ -75,7 +78,7 @@ class ControlLoop {
     std::unique_ptr<Task> task_;
     std::vector<Reference> references_; ///< ring: from that of the measurements to that of the next knot
     std::size_t tick_ = 0;              ///< of the motion
-    JointVector zero_, command_, last_followed_;
+    JointVector zero_, error_, command_, last_followed_;
     LoopCounters counters_;
 };
 

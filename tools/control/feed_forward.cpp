@@ -47,12 +47,12 @@ void FeedForward::judge(const JointVector& torque) {
     ++judged_;
 }
 
-void FeedForward::measured(std::int64_t time_ns, const JointVector& position, const JointVector& torque) {
+void FeedForward::measured(std::int64_t time_ns, const JointVector& position, const JointVector* torque) {
     if (!learned_) {
         return;
     }
-    if (known_) {
-        judge(torque);
+    if (known_ && torque != nullptr) {
+        judge(*torque);
     }
     learned_->learn(time_ns, position, torque);
 }

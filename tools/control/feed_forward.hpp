@@ -27,8 +27,9 @@ class FeedForward {
     /// The motion begins at `start`, at rest, with the knot of `time_ns`.
     void begin(std::int64_t time_ns, const Reference& start);
 
-    /// The measured position and torque of a knot; left out where the sensors have nothing to show.
-    void measured(std::int64_t time_ns, const JointVector& position, const JointVector& torque);
+    /// The measured position of a knot, and its torque: null where nothing was measured. Left out where the
+    /// position is not known either.
+    void measured(std::int64_t time_ns, const JointVector& position, const JointVector* torque);
 
     /// Work that a tick between two knots does.
     void go_on();

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace dfdyn::tools {
 
@@ -58,9 +59,10 @@ void LearnedFeedForward::begin(std::int64_t time_ns, const JointVector& position
     }
 }
 
-void LearnedFeedForward::learn(std::int64_t time_ns, const JointVector& position, const JointVector& torque) {
-    const Status status = learner_->tick({time_ns, values(position), {}, {}, values(torque)}, share_).status;
-    ++counters_.samples;
+void LearnedFeedForward::learn(std::int64_t time_ns, const JointVector& position, const JointVector* torque) {
+    const std::span<const double> output = torque != nullptr ? values(*torque) : std::span<const double>();
+    const Status status = learner_->tick({time_ns, values(position), {}, {}, output}, share_).status;
+    counters_.samples += torque != nullptr ? 1 : 0;
     if (status.learned() || status.reason() == Reason::learning_in_progress) {
         ++counters_.learned;
         in_progress_ = true;

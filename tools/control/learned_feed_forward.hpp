@@ -37,8 +37,8 @@ class LearnedFeedForward {
     /// The arm rests at `position`, and has long since; `time_ns`: of now. Restarts both windows.
     void begin(std::int64_t time_ns, const JointVector& position);
 
-    /// Begins to learn what was measured at one instant.
-    void learn(std::int64_t time_ns, const JointVector& position, const JointVector& torque);
+    /// Begins to learn what was measured at one instant; `torque`: null where only the position was.
+    void learn(std::int64_t time_ns, const JointVector& position, const JointVector* torque);
 
     /// Goes on learning it; once in each control tick.
     void go_on();

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace dfdyn::tools {
 
@@ -45,7 +46,7 @@ PaceOutcome keep_pace(const RealTimeRun& run, const Tick& tick) try {
 
 } // namespace
 
-PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run) {
+PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, Tracking& tracking) {
     return keep_pace(run, [&](hal::SocketCanBus& bus, std::int64_t due_ns, bool missed, bool over) {
         port.receive(bus);
         LoopInput input = port.sense(due_ns, bus.now_ns());
@@ -55,16 +56,22 @@ PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run) 
         if (loop.state() != LoopState::waiting) {
             port.send(bus, torque);
         }
+        if (loop.state() == LoopState::running) {
+            tracking.add(run.period_s * static_cast<double>(loop.counters().running - 1), loop.error(),
+                         loop.feed_forward().learned_share());
+        }
         return loop.state() != LoopState::stopped;
     });
 }
 
 PaceOutcome run_plant(SimulatedPlant& plant, PlantPort& port, const RealTimeRun& run) {
-    std::uint64_t tick = 0;
+    std::optional<std::int64_t> start_ns; // until the first command its brakes hold it
     return keep_pace(run, [&](hal::SocketCanBus& bus, std::int64_t /*due_ns*/, bool /*missed*/, bool over) {
         port.receive(bus);
-        if (port.commands() > 0) { // until then its brakes hold it
-            plant.advance_to(static_cast<double>(++tick) * run.period_s);
+        if (port.commands() > 0) {
+            start_ns = start_ns.value_or(bus.now_ns());
+            // where it really is now, also when this tick is late: the stamps of its frames are to be true
+            plant.advance_to(1e-9 * static_cast<double>(bus.now_ns() - *start_ns));
         }
         plant.apply(port.torque(bus.now_ns()));
         port.send(bus, plant);

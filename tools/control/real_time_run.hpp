@@ -4,6 +4,7 @@
 #include "tools/control/loop_port.hpp"
 #include "tools/control/pace.hpp"
 #include "tools/control/plant_port.hpp"
+#include "tools/control/tracking.hpp"
 
 #include <atomic>
 #include <string>
@@ -24,9 +25,10 @@ struct PaceOutcome {
 };
 
 /// Runs `loop` on a CAN interface, a tick per period, each at an absolute time, until it has stopped; a stop
-/// is requested when the time is over or `stop` becomes true. A tick that begins late is run at once. Throws
-/// InputError where the interface cannot be opened.
-PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run);
+/// is requested when the time is over or `stop` becomes true. A tick that begins late is run at once.
+/// `tracking` gets the error of every tick of the motion, by measured positions. Throws InputError where the
+/// interface cannot be opened.
+PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, Tracking& tracking);
 
 /// Runs a simulated arm on a CAN interface likewise: it stands until the first command comes, and goes on
 /// until the time is over or `stop` becomes true.

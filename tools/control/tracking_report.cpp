@@ -93,6 +93,9 @@ std::string curves_of(const std::vector<TrackingRun>& runs) {
 } // namespace
 
 void print_tracking(std::ostream& out, const std::vector<TrackingRun>& runs) {
+    if (runs.front().windows.empty()) {
+        return;
+    }
     const bool compared = runs.size() > 1;
     out << "tracking error, root mean square over all joints, mrad\n  window (s)";
     for (const TrackingRun& run : runs) {

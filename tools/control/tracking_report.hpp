@@ -17,7 +17,7 @@ struct TrackingRun {
 };
 
 /// A line per window: the error of each run over all joints (mrad), and the first run's over the last's.
-/// `runs`: at least one, all of as many windows.
+/// Nothing for runs without a whole window. `runs`: at least one, all of as many windows.
 void print_tracking(std::ostream& out, const std::vector<TrackingRun>& runs);
 
 /// Writes into `folder` tracking.csv (per run and window: over all joints and of each, mrad; share of the

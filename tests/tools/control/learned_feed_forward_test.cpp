@@ -36,7 +36,8 @@ JointVector torque(const JointVector& position) {
 /// Learns `count` samples of the motion, with as many slices in between as there are ticks.
 void learn(LearnedFeedForward& feed_forward, int first, int count, int ticks) {
     for (int tick = first; tick < first + count; ++tick) {
-        feed_forward.learn(tick * period, position(tick), torque(position(tick)));
+        const JointVector measured = torque(position(tick));
+        feed_forward.learn(tick * period, position(tick), &measured);
         for (int slice = 1; slice < ticks; ++slice) {
             feed_forward.go_on();
         }
@@ -114,10 +115,28 @@ TEST_CASE("from the start the model knows an arm at rest; a refused sample chang
     const std::uint64_t learned = feed_forward.counters().learned;
     JointVector absurd = position(101);
     absurd[1] = 1e9;
-    feed_forward.learn(101 * period, absurd, torque(position(101)));
+    const JointVector measured = torque(position(101));
+    feed_forward.learn(101 * period, absurd, &measured);
     CHECK(feed_forward.counters().learned == learned);
     CHECK(feed_forward.counters().faults == 1);
     CHECK(feed_forward.counters().last_fault == dfdyn::Reason::position_out_of_range);
+}
+
+TEST_CASE("a sample without torque is not learned, and the window of positions goes on over it") {
+    DFDYN_SEEDED_ENGINE(engine);
+    LearnedFeedForward feed_forward(model_of(engine), true, 2, 8, "model");
+    feed_forward.begin(0, position(0));
+    learn(feed_forward, 1, 100, 8);
+    const std::uint64_t learned = feed_forward.counters().learned;
+    for (int tick = 101; tick < 201; ++tick) {
+        const JointVector measured = torque(position(tick));
+        feed_forward.learn(tick * period, position(tick), tick % 2 == 0 ? &measured : nullptr);
+        for (int slice = 1; slice < 8; ++slice) {
+            feed_forward.go_on();
+        }
+    }
+    CHECK(feed_forward.counters().learned == learned + 50);
+    CHECK(feed_forward.counters().samples == 150);
 }
 
 TEST_CASE("a model of something else than these joints' torques by their positions is refused") {
