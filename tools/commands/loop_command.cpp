@@ -73,7 +73,8 @@ void show_tracking(const LoopParts& parts, const LoopOptions& options, const std
     }
 }
 
-TrackingRun simulate_run(const LoopParts& parts, const LoopOptions& options, bool learned) {
+/// Nothing where the loop stopped by itself.
+std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOptions& options, bool learned) {
     ClosedLoop loop(parts.robot, parts.scenario, shown(options.scenario), learned ? &*parts.model : nullptr,
                     parts.bus ? &*parts.bus : nullptr);
     const std::string name = learned ? "learned" : "nominal";
@@ -96,14 +97,22 @@ TrackingRun simulate_run(const LoopParts& parts, const LoopOptions& options, boo
     }
     std::cout << name << ' ';
     print_loop(std::cout, loop.loop());
-    return {name, tracking.windows()};
+    return loop.loop().state() == LoopState::running ? std::optional(TrackingRun{name, tracking.windows()})
+                                                     : std::nullopt;
 }
 
 int simulate(const LoopOptions& options) {
     const LoopParts parts = read_parts(options);
-    std::vector<TrackingRun> runs{simulate_run(parts, options, false)};
-    if (parts.model) {
-        runs.push_back(simulate_run(parts, options, true));
+    std::vector<TrackingRun> runs;
+    for (const bool learned : {false, true}) {
+        if (learned && !parts.model) {
+            break;
+        }
+        const std::optional<TrackingRun> run = simulate_run(parts, options, learned);
+        if (!run) {
+            return 1;
+        }
+        runs.push_back(*run);
     }
     show_tracking(parts, options, runs);
     return 0;

@@ -51,7 +51,7 @@ void ClosedLoop::command(std::int64_t time_ns, const JointVector& torque) {
 }
 
 void ClosedLoop::run_to(double time_s, const std::function<void(const ClosedLoopInstant&)>& on_tick) {
-    while (static_cast<double>(moving_tick_) * period_s_ < time_s) {
+    while (static_cast<double>(moving_tick_) * period_s_ < time_s && loop_->state() != LoopState::stopped) {
         ClosedLoopInstant instant;
         instant.time_s = static_cast<double>(moving_tick_) * period_s_;
         plant_.advance_to(instant.time_s);
@@ -72,9 +72,9 @@ void ClosedLoop::run_to(double time_s, const std::function<void(const ClosedLoop
 }
 
 void ClosedLoop::check_waiting() const {
-    constexpr double longest_s = 10;
+    constexpr double longest_s = 30;
     if (static_cast<double>(tick_) * period_s_ > longest_s) {
-        throw InputError("expected positions of all joints, found none that can be believed for 10 s");
+        throw InputError("expected positions of all joints, found none that can be believed for 30 s");
     }
 }
 

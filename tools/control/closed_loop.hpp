@@ -29,8 +29,8 @@ class ClosedLoop {
                const LoopModel* learned, const BusDescription* bus = nullptr);
 
     /// Runs from where it is to `time_s`, which counts from where the motion began: until then the arm
-    /// stands. `on_tick` sees every tick since. Throws InputError as SimulatedPlant does, and when the loop
-    /// gets no positions.
+    /// stands. Ends early when the loop has stopped. `on_tick` sees every tick since. Throws InputError as
+    /// SimulatedPlant does, and when the loop gets no positions.
     void run_to(double time_s, const std::function<void(const ClosedLoopInstant&)>& on_tick);
 
     const ControlLoop& loop() const noexcept { return *loop_; }

@@ -96,6 +96,14 @@ TEST_CASE("a loop needs to know where its arm is, and for how long a simulated o
     CHECK(bench.loop(" --simulate --duration nan").status == 2);
 }
 
+TEST_CASE("a simulated loop that stops by itself says why, with status 1") {
+    const Bench bench("\"position_gain\": [25, 12]", "\"position_gain\": [-25, -12]");
+    const Outcome outcome = bench.loop(simulate + bus);
+    CHECK(outcome.status == 1);
+    CHECK_THAT(outcome.out, ContainsSubstring("stopped (following_error)"));
+    CHECK_THAT(outcome.out, !ContainsSubstring("tracking error"));
+}
+
 TEST_CASE("an interface that is not there is said, by the loop and by the plant") {
     const Bench bench;
     CHECK_THAT(bench.refusal(" --can nosuch0" + bus), ContainsSubstring("nosuch0"));
