@@ -55,10 +55,10 @@ Recording commissioning(const Setting& setting) {
         recording.gap_before.push_back(recording.time_s.empty());
         recording.time_s.push_back(instant.time_s);
         recording.time_ns.push_back(std::llround(instant.time_s * 1e9));
-        recording.position.values.insert(recording.position.values.end(), instant.position.begin(),
-                                         instant.position.end());
-        recording.output.values.insert(recording.output.values.end(), instant.torque.begin(),
-                                       instant.torque.end());
+        const JointVector& position = *instant.measured.position;
+        const JointVector& torque = *instant.measured.torque;
+        recording.position.values.insert(recording.position.values.end(), position.begin(), position.end());
+        recording.output.values.insert(recording.output.values.end(), torque.begin(), torque.end());
     });
     return recording;
 }

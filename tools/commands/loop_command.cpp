@@ -54,16 +54,18 @@ LoopParts read_parts(const LoopOptions& options) {
     return parts;
 }
 
-/// Ticks of a row of the scenario's recording.
-int recorded_every(const LoopParts& parts, const LoopOptions& options) {
-    const double ratio = parts.scenario.controller.rate_hz / parts.scenario.recording.rate_hz;
+/// For the rows that the scenario's `recording` asks for.
+LoopRecording make_recording(const LoopParts& parts, const LoopOptions& options) {
+    const double rate_hz = parts.scenario.controller.rate_hz;
+    const double ratio = rate_hz / parts.scenario.recording.rate_hz;
     if (!(ratio >= 0.999) || std::abs(ratio - std::round(ratio)) > 1e-6) {
         throw InputError(shown(options.scenario) +
-                         ": recording.rate_hz: expected controller.rate_hz by a "
-                         "whole number, found " +
+                         ": recording.rate_hz: expected controller.rate_hz by a whole number, found " +
                          number_text(parts.scenario.recording.rate_hz));
     }
-    return static_cast<int>(std::lround(ratio));
+    constexpr double without_end_s = 600;
+    return {static_cast<int>(parts.robot.joints.size()), static_cast<int>(std::lround(ratio)), 1 / rate_hz,
+            options.duration_s > 0 ? options.duration_s : without_end_s};
 }
 
 void show_tracking(const LoopParts& parts, const LoopOptions& options, const std::vector<TrackingRun>& runs) {
@@ -78,22 +80,16 @@ std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOption
     ClosedLoop loop(parts.robot, parts.scenario, shown(options.scenario), learned ? &*parts.model : nullptr,
                     parts.bus ? &*parts.bus : nullptr);
     const std::string name = learned ? "learned" : "nominal";
-    std::optional<LoopRecording> recording;
-    if (!options.folder.empty()) {
-        recording.emplace(options.folder / (name + ".csv"), parts.robot.joints.size(),
-                          recorded_every(parts, options));
-    }
+    LoopRecording recording = make_recording(parts, options);
     Tracking tracking;
     Progress progress("simulating " + name, static_cast<std::size_t>(options.duration_s * 1000));
     loop.run_to(options.duration_s, [&](const ClosedLoopInstant& instant) {
         tracking.add(instant.time_s, instant.error, loop.loop().feed_forward().learned_share());
-        if (recording) {
-            recording->add(instant);
-        }
+        recording.add(instant.measured);
         progress.update(static_cast<std::size_t>(instant.time_s * 1000));
     });
-    if (recording) {
-        recording->commit();
+    if (!options.folder.empty()) {
+        recording.write(options.folder / (name + ".csv"));
     }
     std::cout << name << ' ';
     print_loop(std::cout, loop.loop());
@@ -124,13 +120,17 @@ int run_on_bus(const LoopOptions& options) {
     LoopPort port(*parts.bus, period_s);
     const auto loop = make_control_loop(parts.robot, parts.scenario, shown(options.scenario),
                                         parts.model ? &*parts.model : nullptr, port.delay_ticks());
-    Tracking tracking;
+    LoopLog log{Tracking(), make_recording(parts, options)};
     const PaceOutcome pace =
-        run_loop(*loop, port, {options.interface, period_s, options.duration_s, stop_on_signals()}, tracking);
+        run_loop(*loop, port, {options.interface, period_s, options.duration_s, stop_on_signals()}, log);
     print_loop(std::cout, *loop);
     print_port(std::cout, port.counters());
     print_pace(std::cout, pace);
-    show_tracking(parts, options, {{parts.model ? "learned" : "nominal", tracking.windows()}});
+    const std::string name = parts.model ? "learned" : "nominal";
+    if (!options.folder.empty()) {
+        log.recording.write(options.folder / (name + ".csv"));
+    }
+    show_tracking(parts, options, {{name, log.tracking.windows()}});
     return loop->cause() == StopCause::requested ? 0 : 1;
 }
 
@@ -177,7 +177,8 @@ void add_loop_command(CLI::App& app, Command& chosen) {
     command
         ->add_option(
             "-o,--output", options->folder,
-            "Tracking error as tracking.csv, .svg and .html; with --simulate also a recording of each run")
+            "Tracking error as tracking.csv, .svg and .html, and a recording of each run (at most 10 minutes "
+            "without --duration)")
         ->type_name("DIR");
     command->footer(
         "Examples:\n"

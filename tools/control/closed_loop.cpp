@@ -23,7 +23,7 @@ ClosedLoop::ClosedLoop(const Robot& robot, const Scenario& scenario, const std::
     }
 }
 
-LoopInput ClosedLoop::sense(std::int64_t time_ns, ClosedLoopInstant& instant) {
+LoopInput ClosedLoop::sense(std::int64_t time_ns) {
     if (link_) {
         link_->loop_end.set_time(time_ns);
         link_->plant_end.set_time(time_ns);
@@ -31,12 +31,12 @@ LoopInput ClosedLoop::sense(std::int64_t time_ns, ClosedLoopInstant& instant) {
         link_->loop.receive(link_->loop_end);
         return link_->loop.sense(time_ns, time_ns);
     }
-    instant.position = plant_.position();
-    instant.torque = plant_.torque();
+    position_ = plant_.position();
+    torque_ = plant_.torque();
     LoopInput input;
     input.time_ns = time_ns;
-    input.position = &instant.position;
-    input.torque = &instant.torque;
+    input.position = &position_;
+    input.torque = &torque_;
     return input;
 }
 
@@ -56,18 +56,16 @@ void ClosedLoop::run_to(double time_s, const std::function<void(const ClosedLoop
         instant.time_s = static_cast<double>(moving_tick_) * period_s_;
         plant_.advance_to(instant.time_s);
         const std::int64_t time_ns = std::llround(static_cast<double>(tick_++) * period_s_ * 1e9);
-        const LoopInput input = sense(time_ns, instant);
-        instant.position = input.position != nullptr ? *input.position : JointVector();
-        instant.torque = input.torque != nullptr ? *input.torque : JointVector();
-        instant.command = loop_->tick(input);
+        instant.measured = sense(time_ns);
+        instant.command = loop_->tick(instant.measured);
         if (loop_->state() == LoopState::waiting) {
             check_waiting();
             continue;
         }
         ++moving_tick_;
         instant.error = loop_->reference().position - plant_.truth().position;
-        command(time_ns, instant.command);
         on_tick(instant);
+        command(time_ns, instant.command);
     }
 }
 

@@ -15,9 +15,9 @@ namespace dfdyn::tools {
 /// One instant of a closed loop, as it was at a tick.
 struct ClosedLoopInstant {
     double time_s = 0;
-    JointVector position, torque; ///< measured
-    JointVector error;            ///< reference minus true position, rad
-    JointVector command;          ///< N·m
+    LoopInput measured;  ///< refers to what lives until the command goes out
+    JointVector error;   ///< reference minus true position, rad
+    JointVector command; ///< N·m
 };
 
 /// A loop and the arm of a scenario in one thread, in simulated time: the same inputs give the same bits.
@@ -29,8 +29,8 @@ class ClosedLoop {
                const LoopModel* learned, const BusDescription* bus = nullptr);
 
     /// Runs from where it is to `time_s`, which counts from where the motion began: until then the arm
-    /// stands. Ends early when the loop has stopped. `on_tick` sees every tick since. Throws InputError as
-    /// SimulatedPlant does, and when the loop gets no positions.
+    /// stands. Ends early when the loop has stopped. `on_tick` sees every tick since, before its command goes
+    /// out. Throws InputError as SimulatedPlant does, and when the loop gets no positions.
     void run_to(double time_s, const std::function<void(const ClosedLoopInstant&)>& on_tick);
 
     const ControlLoop& loop() const noexcept { return *loop_; }
@@ -46,7 +46,7 @@ class ClosedLoop {
         PlantPort plant;
     };
 
-    LoopInput sense(std::int64_t time_ns, ClosedLoopInstant& instant);
+    LoopInput sense(std::int64_t time_ns);
     void command(std::int64_t time_ns, const JointVector& torque);
     void check_waiting() const;
 
@@ -54,6 +54,7 @@ class ClosedLoop {
     std::unique_ptr<Link> link_; ///< none: readings and torques pass directly
     std::unique_ptr<ControlLoop> loop_;
     SimulatedPlant plant_;
+    JointVector position_, torque_; ///< as read directly
     std::int64_t tick_ = 0, moving_tick_ = 0;
 };
 

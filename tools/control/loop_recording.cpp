@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/control/loop_recording.hpp"
 
+#include "tools/common/atomic_file.hpp"
+#include "tools/recording/csv_writer.hpp"
 #include "tools/recording/recording.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <span>
 
 namespace dfdyn::tools {
 
@@ -18,20 +22,34 @@ std::vector<std::string> columns(std::size_t joints) {
     return names;
 }
 
-std::span<const double> values(const JointVector& vector) {
-    return {vector.data(), static_cast<std::size_t>(vector.size())};
-}
-
 } // namespace
 
-LoopRecording::LoopRecording(const std::filesystem::path& path, std::size_t joints, int every)
-    : file_(path), csv_(file_.stream(), columns(joints)), every_(every) {}
+LoopRecording::LoopRecording(int joints, int every, double period_s, double duration_s)
+    : joints_(static_cast<std::size_t>(joints)), every_(every) {
+    const auto rows = static_cast<std::size_t>(std::ceil(duration_s / (period_s * every))) + 1;
+    time_ns_.reserve(rows);
+    values_.reserve(rows * 2 * joints_);
+}
 
-void LoopRecording::add(const ClosedLoopInstant& instant) {
-    if (tick_++ % every_ == 0 && instant.position.size() > 0 && instant.torque.size() > 0) {
-        csv_.field(instant.time_s).fields(values(instant.position)).fields(values(instant.torque));
-        csv_.end_row();
+void LoopRecording::add(const LoopInput& input) {
+    const bool due = tick_++ % every_ == 0;
+    if (due && input.position != nullptr && input.torque != nullptr &&
+        time_ns_.size() < time_ns_.capacity()) {
+        time_ns_.push_back(input.time_ns);
+        std::ranges::copy(*input.position, std::back_inserter(values_));
+        std::ranges::copy(*input.torque, std::back_inserter(values_));
     }
+}
+
+void LoopRecording::write(const std::filesystem::path& path) const {
+    AtomicFile file(path);
+    CsvWriter csv(file.stream(), columns(joints_));
+    for (std::size_t row = 0; row < time_ns_.size(); ++row) {
+        csv.field(1e-9 * static_cast<double>(time_ns_[row] - time_ns_.front()));
+        csv.fields(std::span(values_).subspan(2 * joints_ * row, 2 * joints_));
+        csv.end_row();
+    }
+    file.commit();
 }
 
 } // namespace dfdyn::tools

@@ -46,19 +46,20 @@ PaceOutcome keep_pace(const RealTimeRun& run, const Tick& tick) try {
 
 } // namespace
 
-PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, Tracking& tracking) {
+PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, LoopLog& log) {
     return keep_pace(run, [&](hal::SocketCanBus& bus, std::int64_t due_ns, bool missed, bool over) {
         port.receive(bus);
         LoopInput input = port.sense(due_ns, bus.now_ns());
         input.deadline_missed = missed;
         input.stop_requested = over;
         const JointVector& torque = loop.tick(input);
+        if (loop.state() == LoopState::running) {
+            log.tracking.add(run.period_s * static_cast<double>(loop.counters().running - 1), loop.error(),
+                             loop.feed_forward().learned_share());
+            log.recording.add(input);
+        }
         if (loop.state() != LoopState::waiting) {
             port.send(bus, torque);
-        }
-        if (loop.state() == LoopState::running) {
-            tracking.add(run.period_s * static_cast<double>(loop.counters().running - 1), loop.error(),
-                         loop.feed_forward().learned_share());
         }
         return loop.state() != LoopState::stopped;
     });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tools/control/loop_port.hpp"
+#include "tools/control/loop_recording.hpp"
 #include "tools/control/pace.hpp"
 #include "tools/control/plant_port.hpp"
 #include "tools/control/tracking.hpp"
@@ -24,11 +25,16 @@ struct PaceOutcome {
     std::string not_real_time; ///< why the timing is that of an ordinary program; empty: it is not
 };
 
+/// What is kept of a loop's motion.
+struct LoopLog {
+    Tracking tracking; ///< by measured positions
+    LoopRecording recording;
+};
+
 /// Runs `loop` on a CAN interface, a tick per period, each at an absolute time, until it has stopped; a stop
 /// is requested when the time is over or `stop` becomes true. A tick that begins late is run at once.
-/// `tracking` gets the error of every tick of the motion, by measured positions. Throws InputError where the
-/// interface cannot be opened.
-PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, Tracking& tracking);
+/// `log` gets every tick of the motion. Throws InputError where the interface cannot be opened.
+PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, LoopLog& log);
 
 /// Runs a simulated arm on a CAN interface likewise: it stands until the first command comes, and goes on
 /// until the time is over or `stop` becomes true.
