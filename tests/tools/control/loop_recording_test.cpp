@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/control/loop_recording.hpp"
+
+#include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace {
+
+using namespace dfdyn::tools;
+using dfdyn::tests::file_content;
+using dfdyn::tests::TemporaryDirectory;
+
+/// Ticks of 1 ms from 5 s on, whose position is the tick's number; without torque at tick 4.
+void record(LoopRecording& recording, int ticks) {
+    JointVector position(2), torque(2);
+    for (int tick = 0; tick < ticks; ++tick) {
+        position << tick, 0.5;
+        torque << -tick, 2;
+        LoopInput input;
+        input.time_ns = 5'000'000'000 + std::int64_t{1'000'000} * tick;
+        input.position = &position;
+        input.torque = tick == 4 ? nullptr : &torque;
+        recording.add(input);
+    }
+}
+
+std::string written(const LoopRecording& recording) {
+    const TemporaryDirectory directory;
+    recording.write(directory.path() / "run.csv");
+    return file_content(directory.path() / "run.csv");
+}
+
+} // namespace
+
+TEST_CASE("every so many ticks a row of positions and torques is kept, where both were measured") {
+    LoopRecording recording(2, 2, 0.001, 1);
+    record(recording, 8);
+    CHECK(written(recording) == "t,q1,q2,tau1,tau2\n0,0,0.5,0,2\n0.002,2,0.5,-2,2\n0.006,6,0.5,-6,2\n");
+}
+
+TEST_CASE("a recording ends where its time is over, and takes no memory while it runs") {
+    LoopRecording recording(2, 1, 0.001, 0.01);
+    const dfdyn::tests::AllocationGuard guard;
+    record(recording, 100);
+    const dfdyn::tests::HeapCalls calls = guard.calls();
+    CHECK(calls.allocations == 0);
+    const std::string text = written(recording);
+    CHECK(std::count(text.begin(), text.end(), '\n') == 12);
+}
+
+TEST_CASE("a recording of nothing has its columns") {
+    CHECK(written(LoopRecording(1, 1, 0.001, 1)) == "t,q1,tau1\n");
+}
