@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # run_vcan_tests.sh PROGRAM [ARGUMENT...]: runs PROGRAM as root where it has the CAN interface vcan0 to itself: in a network
 # namespace of its own where this machine's kernel can make one with a virtual CAN interface, else in a user-mode Linux that is
-# booted for it, for DFDYN_VCAN_SECONDS (100) at most. Prints what it prints; ends with its status. No status is a failure.
+# booted for it, for DFDYN_VCAN_SECONDS (170) at most. Prints what it prints; ends with its status. No status is a failure.
 set -euo pipefail
 
-boot_and_run_s=${DFDYN_VCAN_SECONDS:-100}
+boot_and_run_s=${DFDYN_VCAN_SECONDS:-170}
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
