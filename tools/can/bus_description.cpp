@@ -3,10 +3,13 @@
 
 #include "tools/can/bus_arm.hpp"
 #include "tools/can/bus_fields.hpp"
+#include "tools/can/bus_wire.hpp"
+#include "tools/common/number.hpp"
 #include "tools/common/read_file.hpp"
 #include "tools/common/text.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace dfdyn::tools {
@@ -81,6 +84,41 @@ void read_efforts(const JsonReader& reader, bool measured, BusDescription& descr
     description.output_range.assign(static_cast<std::size_t>(description.joint_count), {-limit, limit});
 }
 
+/// How long a wrench takes on its bus at worst: it waits for whatever else of the arm is sent meanwhile.
+double waiting_s(const BusDescription& description) {
+    const auto seconds = [&](const hal::FrameList& list) {
+        int bits = 0;
+        for (int i = 0; i < list.count; ++i) {
+            bits += frame_bits(list.frame[static_cast<std::size_t>(i)]);
+        }
+        return bits / description.bit_rate;
+    };
+    double joints_s = 0;
+    for (const BusBoard& board : description.boards) {
+        joints_s += seconds(board.board.encode({}));
+    }
+    const double wrench_s = seconds(description.sensor->encode(hal::Wrench{}));
+    const double period_s = 1 / description.output.rate_hz;
+    double wait_s = wrench_s;
+    for (double before_s = 0; wait_s > before_s && wait_s < period_s;) {
+        before_s = wait_s;
+        wait_s = wrench_s + joints_s * std::ceil(before_s * description.joints.rate_hz);
+    }
+    return wait_s;
+}
+
+/// Half a period, for what else is on the bus; more where the arm's own frames take longer.
+void read_pairing(const JsonReader& reader, BusDescription& description) {
+    const double period_s = 1 / description.output.rate_hz;
+    const double absent_s = std::clamp(waiting_s(description), 0.5 * period_s, 0.9 * period_s);
+    description.pairing = {.period_ns = std::llround(1e9 * period_s),
+                           .delay_ns = nanoseconds_or(reader, "pair_window_s", absent_s)};
+    if (description.pairing.delay_ns >= description.pairing.period_ns) {
+        throw reader.error("pair_window_s", "less than a period of the sensor, " + number_text(period_s),
+                           number_text(reader.number("pair_window_s")));
+    }
+}
+
 void read_sensor(const JsonReader& reader, BusDescription& description) {
     description.outputs = OutputKind::wrench;
     const WrenchSensor sensor = read_wrench_sensor(reader);
@@ -88,7 +126,7 @@ void read_sensor(const JsonReader& reader, BusDescription& description) {
     for (const double limit : sensor.limit) {
         description.output_range.push_back({-limit, limit});
     }
-    description.pair_window_ns = nanoseconds_or(reader, "pair_window_s", 0.5 / description.output.rate_hz);
+    read_pairing(reader, description);
     description.frozen_after = reader.whole_or("frozen_after", 100, 2, 1'000'000);
 }
 
