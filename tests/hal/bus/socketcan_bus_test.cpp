@@ -23,11 +23,11 @@ using dfdyn::hal::SocketCanBus;
 namespace {
 
 /// From now on this process can open no socket, as where a container's rules forbid it.
-bool forbid_sockets(unsigned error_number) {
+bool forbid_sockets(int error_number) {
     std::array<sock_filter, 4> program{{
         BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
         BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_socket, 0, 1),
-        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | error_number),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | static_cast<unsigned>(error_number)),
         BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
     }};
     const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
@@ -36,7 +36,7 @@ bool forbid_sockets(unsigned error_number) {
 }
 
 /// What a process says that may open no socket, for this reason.
-std::string refusal_without_permission(unsigned error_number) {
+std::string refusal_without_permission(int error_number) {
     std::array<int, 2> ends{};
     REQUIRE(::pipe(ends.data()) == 0);
     const pid_t child = ::fork();
@@ -79,7 +79,7 @@ TEST_CASE("an interface that cannot be opened is refused in one line with its na
 }
 
 TEST_CASE("without permission the refusal says so, and what to allow") {
-    for (const unsigned error_number : {EPERM, EACCES}) {
+    for (const int error_number : {EPERM, EACCES}) {
         CHECK_THAT(refusal_without_permission(error_number),
                    Catch::Matchers::StartsWith("can0: expected a CAN socket, found: a system that keeps CAN "
                                                "from this program (allow address family AF_CAN"));
