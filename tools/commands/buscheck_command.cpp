@@ -52,6 +52,9 @@ void check_interface(const BusCheckOptions& options, BusCheck& check) try {
             std::this_thread::sleep_for(std::chrono::microseconds(200));
         }
     }
+    constexpr int drains_at_end = 16; // what came before the end and waits
+    for (int drain = 0; drain < drains_at_end && check.take(bus, room); ++drain) {
+    }
 } catch (const hal::BusError& error) {
     throw InputError(error.what());
 }
