@@ -6,6 +6,7 @@ set(dfdyn_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/dfdyn")
 
 install(TARGETS dfdyn_firmware dfdyn_hal EXPORT dfdynFirmwareTargets)
 install(DIRECTORY firmware_lib/include/ hal/include/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+install(DIRECTORY hal/dbc DESTINATION "${CMAKE_INSTALL_DATADIR}/dfdyn")
 install(EXPORT dfdynFirmwareTargets NAMESPACE dfdyn:: DESTINATION "${dfdyn_package_dir}")
 
 if(DFDYN_BUILD_TOOLS)

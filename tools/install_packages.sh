@@ -33,6 +33,8 @@ test_packages=(
     "libstdc++-arm-none-eabi-newlib:no build for the Cortex-M7"
     "qemu-system-arm:no run on the Cortex-M7"
     "can-utils:the CAN backend cannot be tested against other programs"
+    "python3:the frames of DBC files cannot be read by another program"
+    "python3-can:the frames of DBC files cannot be read by another program"
     "iproute2:the CAN backend cannot be tested"
     "kmod:the CAN backend cannot be tested where the kernel has no CAN"
     "user-mode-linux:the CAN backend cannot be tested where the kernel has no CAN"

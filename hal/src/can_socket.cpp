@@ -73,6 +73,11 @@ BusError open_error(const std::string& interface, const OpenFault& fault) {
     std::string found = std::system_category().message(fault.error_number);
     if (fault.error_number == EAFNOSUPPORT || fault.error_number == EPROTONOSUPPORT) {
         found = "a kernel without CAN (its modules: can, can-raw): " + found;
+    } else if (fault.error_number == EPERM || fault.error_number == EACCES) {
+        found =
+            "a system that keeps CAN from this program (allow address family AF_CAN in the container's or "
+            "service's rules: seccomp, AppArmor, SELinux): " +
+            found;
     } else if (fault.error_number == ENODEV && ::if_nametoindex(interface.c_str()) != 0) {
         found = "an interface of another kind";
     }

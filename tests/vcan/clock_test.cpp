@@ -5,8 +5,10 @@
 #include "tests/vcan/peer.hpp"
 
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <ctime>
+#include <thread>
 
 namespace {
 
@@ -53,4 +55,26 @@ TEST_CASE("a wall clock that is set does not move the stamps") {
         CHECK(frames[index].stamp_ns < sent_ns.at(2 * index + 1) + between_ns);
     }
     set_wall_clock_by(-step_s);
+}
+
+TEST_CASE(
+    "F22: frames that wait together have each its own stamp, not the last one's or that of the reading") {
+    SocketCanBus bus(on_vcan0());
+    SocketCanBus peer(on_vcan0());
+    std::array<Frame, 8> room;
+    bus.drain(room);
+    constexpr std::int64_t apart_ns = 20'000'000;
+    std::array<std::int64_t, 3> sent_ns{};
+    for (std::int64_t& time_ns : sent_ns) {
+        time_ns = bus.now_ns();
+        peer.send(Frame{});
+        std::this_thread::sleep_for(std::chrono::nanoseconds(apart_ns));
+    }
+    const auto frames = bus.drain(room);
+    REQUIRE(frames.size() == 3);
+    for (std::size_t index = 0; index < 3; ++index) {
+        CHECK(frames[index].stamp_source == StampSource::kernel);
+        CHECK(frames[index].stamp_ns > sent_ns.at(index) - 1'000'000);
+        CHECK(frames[index].stamp_ns < sent_ns.at(index) + apart_ns);
+    }
 }

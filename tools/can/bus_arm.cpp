@@ -34,7 +34,7 @@ Output make_output(const BusDescription& description) {
     if constexpr (std::is_same_v<Output, Wrenches>) {
         return Wrenches(*description.sensor, {.track = track,
                                               .range = ranges,
-                                              .pair_window_ns = description.pair_window_ns,
+                                              .pairing = description.pairing,
                                               .frozen_limit = description.frozen_after});
     } else {
         return Output({.track = track, .range = ranges});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/gate/pairing.hpp"
 #include "dfdyn/hal/gate/range.hpp"
 #include "tools/can/any_device.hpp"
 #include "tools/recording/recording.hpp"
@@ -56,7 +57,7 @@ struct BusDescription {
     std::optional<AnySensor> sensor; ///< none: the outputs are the joints' own efforts
     BusSource output;
     std::vector<hal::Range> output_range; ///< one per output
-    std::int64_t pair_window_ns = 0;      ///< of a wrench's two frames, see hal::PairGate
+    hal::PairGate::Config pairing{};      ///< of a wrench's two frames
     int frozen_after = 0;                 ///< identical wrenches, see hal::FrozenGate
 
     [[nodiscard]] std::int64_t sample_period_ns() const { return std::llround(1e9 / sample_rate_hz); }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/can/bus_fields.hpp"
 
+#include "tools/can/dbc_fields.hpp"
+
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -230,7 +232,7 @@ std::string identifier_text(std::uint32_t id) {
     return "0x" + std::string(digits.data(), end);
 }
 
-void read_boards(const JsonReader& joints, BusDescription& description) {
+void read_boards(const JsonReader& joints, const std::filesystem::path& folder, BusDescription& description) {
     const std::string family = joints.text("family");
     if (family == "icub_two_joint_board") {
         allow_only(joints, joint_fields, {});
@@ -251,8 +253,15 @@ void read_boards(const JsonReader& joints, BusDescription& description) {
         for_each_board(
             joints, [&](const JsonReader& board) { return read_odrive(board, timeout_ns); },
             description.boards);
+    } else if (family == "dbc") {
+        allow_only(joints, joint_fields, {"file"});
+        const Dbc dbc = read_dbc(folder / joints.text("file"));
+        for_each_board(
+            joints, [&](const JsonReader& board) { return read_dbc_joint(board, dbc, description.boards); },
+            description.boards);
     } else {
-        throw joints.error("family", "icub_two_joint_board, icub_2foc, cia402 or odrive", in_quotes(family));
+        throw joints.error("family", "icub_two_joint_board, icub_2foc, cia402, odrive or dbc",
+                           in_quotes(family));
     }
 }
 
@@ -260,13 +269,15 @@ bool measures_efforts(const std::vector<BusBoard>& boards) {
     const auto measures = [](const BusBoard& board) {
         const AnyBoard::Device& device = board.board.device();
         const auto* drive = std::get_if<hal::Cia402Drive>(&device);
+        const auto* mapped = std::get_if<DbcJoint>(&device);
         return std::holds_alternative<hal::icub::FocBoard>(device) ||
-               (drive != nullptr && drive->has_effort());
+               (drive != nullptr && drive->has_effort()) ||
+               (mapped != nullptr && mapped->config().effort.has_value());
     };
     return std::ranges::all_of(boards, measures);
 }
 
-WrenchSensor read_wrench_sensor(const JsonReader& output) {
+WrenchSensor read_wrench_sensor(const JsonReader& output, const std::filesystem::path& folder) {
     const std::string family = output.text("family");
     if (family == "icub_strain") {
         return read_strain(output);
@@ -277,7 +288,12 @@ WrenchSensor read_wrench_sensor(const JsonReader& output) {
     if (family == "ati_netcan") {
         return read_ati(output);
     }
-    throw output.error("family", "efforts, icub_strain, robotous_rft or ati_netcan", in_quotes(family));
+    if (family == "dbc") {
+        allow_only(output, sensor_fields, {"file", "wrench"});
+        const DbcSensor sensor = read_dbc_sensor(output, read_dbc(folder / output.text("file")));
+        return {AnySensor(sensor), six(output.positive_numbers("limit", 6))};
+    }
+    throw output.error("family", "efforts, icub_strain, robotous_rft, ati_netcan or dbc", in_quotes(family));
 }
 
 } // namespace dfdyn::tools

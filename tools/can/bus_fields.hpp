@@ -18,8 +18,9 @@ std::int64_t nanoseconds_or(const JsonReader& reader, const std::string& name, d
 std::uint32_t identifier_or(const JsonReader& reader, const std::string& name, std::uint32_t absent);
 std::string identifier_text(std::uint32_t id);
 
-/// `family`, `boards` and what belongs to the family. `description` has its rates and trigger.
-void read_boards(const JsonReader& joints, BusDescription& description);
+/// `family`, `boards` and what belongs to the family. `description` has its rates and trigger; the files that
+/// `joints` names are in `folder`.
+void read_boards(const JsonReader& joints, const std::filesystem::path& folder, BusDescription& description);
 
 /// Whether the boards' frames carry efforts.
 bool measures_efforts(const std::vector<BusBoard>& boards);
@@ -29,7 +30,7 @@ struct WrenchSensor {
     std::array<double, 6> limit; ///< what it can measure, ±
 };
 
-/// `family` and what belongs to it.
-WrenchSensor read_wrench_sensor(const JsonReader& output);
+/// `family` and what belongs to it; files likewise.
+WrenchSensor read_wrench_sensor(const JsonReader& output, const std::filesystem::path& folder);
 
 } // namespace dfdyn::tools

@@ -17,9 +17,9 @@ void BusSampler::take(const hal::Frame& frame, hal::BusState state, const hal::B
     if (!started_) {
         start(frame.stamp_ns);
     }
-    advance_to(frame.stamp_ns - 1);
-    now_ns_ += std::max<std::int64_t>(0, frame.stamp_ns - last_stamp_ns_);
-    last_stamp_ns_ = frame.stamp_ns;
+    const std::int64_t time_ns = clock_.due_ns(frame.stamp_ns);
+    assemble_before(std::min(time_ns, now_ns_ + longest_silence_ns));
+    now_ns_ = time_ns;
     ++frames_;
     leave_out_before(now_ns_);
     arm_->update(state, counters);
@@ -30,12 +30,12 @@ void BusSampler::take(const hal::Frame& frame, hal::BusState state, const hal::B
 }
 
 void BusSampler::advance_to(std::int64_t stamp_ns) {
-    assemble_before(now_ns_ + std::clamp<std::int64_t>(stamp_ns - last_stamp_ns_ + 1, 0, longest_silence_ns));
+    assemble_before(std::min(clock_.time_of(stamp_ns) + 1, now_ns_ + longest_silence_ns));
 }
 
 void BusSampler::start(std::int64_t stamp_ns) {
     started_ = true;
-    start_ns_ = last_stamp_ns_ = now_ns_ = stamp_ns;
+    start_ns_ = now_ns_ = stamp_ns;
     due_ns_ = stamp_ns + (timer_ ? period_ns_ : patience_ns_);
 }
 

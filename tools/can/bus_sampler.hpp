@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/log_clock.hpp"
 #include "tools/can/bus_arm.hpp"
 
 #include <cstdint>
@@ -11,8 +12,7 @@ namespace dfdyn::tools {
 
 /// Makes the samples of a stream of frames when they are due, by the trigger of a bus description. Time is
 /// what the frames' stamps say, so that the same frames with the same stamps give the same samples, bit for
-/// bit, whether they come from a bus or from a recording. A stamp that runs backward starts the stream's time
-/// anew at the frame before.
+/// bit, whether they come from a bus or from a recording; see hal::LogClock for stamps that run backward.
 ///
 /// Where a SYNC, or a set, fails to come, samples are assembled at the sample rate instead, and say why they
 /// are incomplete; for `longest_silence_ns` at most after the last frame.
@@ -52,9 +52,9 @@ class BusSampler {
     bool started_ = false;
     std::uint64_t frames_ = 0;
     std::int64_t start_ns_ = 0;
-    std::int64_t last_stamp_ns_ = 0; ///< of a frame, by its own clock
-    std::int64_t now_ns_ = 0;        ///< of the last frame, on a clock that never runs backward
-    std::int64_t due_ns_ = 0;        ///< of the next sample that time alone calls for
+    hal::LogClock clock_;
+    std::int64_t now_ns_ = 0; ///< of the last frame, by that clock
+    std::int64_t due_ns_ = 0; ///< of the next sample that time alone calls for
 };
 
 } // namespace dfdyn::tools

@@ -16,6 +16,13 @@ void append(const hal::FrameList& list, std::vector<Frame>& frames) {
     frames.insert(frames.end(), list.frame.begin(), list.frame.begin() + list.count);
 }
 
+void append(const DbcJoint& joint, const hal::JointValue& value, std::vector<DbcValue>& values) {
+    values.push_back({&joint.config().position, value.position_rad});
+    if (joint.config().effort) {
+        values.push_back({&*joint.config().effort, value.effort});
+    }
+}
+
 hal::Reason calibration_of(const AnySensor& sensor) {
     if (const auto* strain = std::get_if<StrainBoard>(&sensor.device())) {
         return strain->full_scale().reason();
@@ -63,6 +70,7 @@ DeviceFrames::DeviceFrames(const BusDescription& description)
 std::vector<Frame> DeviceFrames::joints(std::span<const double> position,
                                         std::span<const double> effort) const {
     std::vector<Frame> frames;
+    std::vector<DbcValue> mapped; // joints of a DBC file may share frames
     for (const BusBoard& board : boards_) {
         std::array<hal::JointValue, 2> values{};
         for (std::size_t i = 0; i < values.size(); ++i) {
@@ -72,8 +80,15 @@ std::vector<Frame> DeviceFrames::joints(std::span<const double> position,
                 values[i].effort = effort.empty() ? 0 : effort[joint];
             }
         }
-        append(board.board.encode(values), frames);
+        if (const auto* joint = std::get_if<DbcJoint>(&board.board.device())) {
+            append(*joint, values[0], mapped);
+        } else {
+            append(board.board.encode(values), frames);
+        }
     }
+    std::vector<Frame> shared(mapped.size());
+    shared.resize(encode_fields(mapped, shared));
+    frames.insert(frames.end(), shared.begin(), shared.end());
     return frames;
 }
 

@@ -20,5 +20,6 @@ void add_convert_command(CLI::App& app, Command& chosen);
 void add_play_command(CLI::App& app, Command& chosen);
 void add_loop_command(CLI::App& app, Command& chosen);
 void add_plant_command(CLI::App& app, Command& chosen);
+void add_buscheck_command(CLI::App& app, Command& chosen);
 
 } // namespace dfdyn::tools

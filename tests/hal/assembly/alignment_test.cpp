@@ -42,7 +42,7 @@ Arm make_arm(int output_bus) {
             {RobotousRft({.first_id = 0xF9, .second_id = 0xFA}),
              {.track = {.max_age_ns = 3 * ms, .latency_ns = force_latency_ns, .qualification = at_once},
               .range = {wide, wide, wide, wide, wide, wide},
-              .pair_window_ns = 400 * us,
+              .pairing = {.period_ns = ms, .delay_ns = 400 * us},
               .frozen_limit = 50}}}; // these forces have no noise, and stand at their peaks
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/gate/clock.hpp"
 #include "dfdyn/hal/replay_bus.hpp"
 
 #include "tests/support/allocation_guard.hpp"
@@ -209,4 +210,74 @@ TEST_CASE("a replay gives random recordings back whole, whatever the steps of it
         REQUIRE(got == recording.size());
         REQUIRE(differing == 0);
     }
+}
+
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+
+/// Frames each millisecond; from the one numbered `from` to before `to` their stamps are off by `error_ns`.
+std::vector<ReplayEntry> stepping_clock(int frames, int from, int to, std::int64_t error_ns) {
+    std::vector<ReplayEntry> recording;
+    for (int number = 0; number < frames; ++number) {
+        const std::int64_t off_ns = number >= from && number < to ? error_ns : 0;
+        recording.push_back(entry(100'000 * ms + number * ms + off_ns, static_cast<std::uint32_t>(number)));
+    }
+    return recording;
+}
+
+/// What a clock gate makes of a recording, read each millisecond.
+struct Gated {
+    dfdyn::hal::ClockGate gate{{}};
+    int good = 0; ///< frames that were accepted with a stamp less than 1 ms old
+    std::int64_t took_ns = 0;
+
+    explicit Gated(const std::vector<ReplayEntry>& recording) {
+        Entries entries(recording);
+        ReplayBus bus(entries);
+        std::array<Frame, 64> room;
+        const std::int64_t begin_ns = bus.now_ns();
+        while (!bus.ended()) {
+            for (const Frame& frame : bus.drain(room)) {
+                const auto stamp_ns = gate.accept(frame.stamp_ns, bus.now_ns());
+                good += stamp_ns && bus.now_ns() - *stamp_ns < ms ? 1 : 0;
+            }
+            took_ns = bus.now_ns() - begin_ns;
+            bus.advance_to(bus.now_ns() + ms);
+        }
+    }
+};
+
+} // namespace
+
+TEST_CASE("a recording whose clock was set back goes on from there, and the new clock is adopted once") {
+    for (const std::int64_t jump_ns : {-6'000 * ms, -90'000 * ms, -50 * ms}) {
+        const Gated gated(stepping_clock(10'000, 3'000, 10'000, jump_ns));
+        CHECK(gated.gate.adopted() == 1);
+        CHECK(gated.gate.refused() == 20);
+        CHECK(gated.good == 10'000 - 19);
+        CHECK(gated.took_ns == (10'000 - 1 - 20) * ms); // those by which it was settled came at once
+    }
+}
+
+TEST_CASE("a stray stamp in a recording moves its clock for no longer than the stray lasts") {
+    const Gated back(stepping_clock(5'000, 3'000, 3'001, -6'000 * ms));
+    CHECK(back.gate.adopted() == 0);
+    CHECK(back.good == 5'000 - 1);
+    CHECK(back.took_ns == 4'999 * ms);
+    const Gated ahead(stepping_clock(5'000, 3'000, 3'001, 6'000 * ms)); // not told from a silence
+    CHECK(ahead.gate.adopted() == 1);
+    CHECK(ahead.good == 5'000 - 19);
+}
+
+TEST_CASE(
+    "frames that overtake each other, however many, leave a recording's clock in step with its stamps") {
+    std::vector<ReplayEntry> recording;
+    for (int number = 0; number < 5'000; ++number) {
+        recording.push_back(entry(number * ms + 400'000, 1));
+        recording.push_back(entry(number * ms + 100'000, 2));
+    }
+    const Gated gated(recording);
+    CHECK(gated.good == 10'000);
+    CHECK(gated.took_ns == 4'999 * ms);
 }

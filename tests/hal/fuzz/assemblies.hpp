@@ -24,9 +24,11 @@ constexpr hal::RangeGate<6>::Ranges fuzz_wrench_range{
 
 template <hal::WrenchSource Sensor>
 hal::WrenchOutput<Sensor, 8> fuzz_wrench(const Sensor& sensor) {
-    return {
-        sensor,
-        {.track = fuzz_track, .range = fuzz_wrench_range, .pair_window_ns = 2 * fuzz_ms, .frozen_limit = 3}};
+    return {sensor,
+            {.track = fuzz_track,
+             .range = fuzz_wrench_range,
+             .pairing = {.period_ns = 4 * fuzz_ms, .delay_ns = 2 * fuzz_ms},
+             .frozen_limit = 3}};
 }
 
 template <int n>

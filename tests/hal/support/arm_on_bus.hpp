@@ -191,7 +191,7 @@ class ArmOnBus {
                            .latency_ns = 0,
                            .qualification = {qualification_ticks, 1000}},
                  .range = {{{-1500, 1500}, {-1500, 1500}, {-2000, 2000}, {-35, 35}, {-35, 35}, {-25, 25}}},
-                 .pair_window_ns = 400 * us,
+                 .pairing = {.period_ns = ms, .delay_ns = 400 * us},
                  .frozen_limit = frozen_limit}};
     }
 

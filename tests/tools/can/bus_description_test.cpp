@@ -44,7 +44,11 @@ TEST_CASE("a bus description says what is on the bus") {
     CHECK(icub.sample_period_ns() == 1'000'000);
     CHECK(icub.joints.max_age_ns == 3'000'000);
     CHECK(icub.output_range[2].highest == 2000);
-    CHECK(icub.pair_window_ns == 500'000);
+    CHECK(icub.pairing.delay_ns == 500'000);
+    CHECK(icub.pairing.period_ns == 1'000'000);
+    const BusDescription slow =
+        changed("icub_arm_strain.json", "\"bit_rate\": 1000000", "\"bit_rate\": 600000");
+    CHECK(slow.pairing.delay_ns == 833'333); // 2 x 135 and 2 x 115 bits
     CHECK(icub.boards.at(1).joint == std::array{2, 3});
     const BusDescription ur5 = read_bus_description(bus_folder + "ur5_cia402.json");
     CHECK(ur5.joint_count == 6);
@@ -64,7 +68,7 @@ TEST_CASE("what a bus description cannot be is refused by field, expectation and
         {"ur5_cia402.json", "dfdyn.bus/1", "dfdyn.bus/2",
          R"(schema: expected "dfdyn.bus/1", found "dfdyn.bus/2")"},
         {"ur5_cia402.json", "cia402", "cia403",
-         R"(joints.family: expected icub_two_joint_board, icub_2foc, cia402 or odrive, found "cia403")"},
+         R"(joints.family: expected icub_two_joint_board, icub_2foc, cia402, odrive or dbc, found "cia403")"},
         {"ur5_cia402.json", "\"joint\": 6", "\"joint\": 5",
          "joints.boards: expected joints 1 to N, each once, found joint 6 after another one of that number"},
         {"ur5_cia402.json", "\"joint\": 2", "\"joint\": 7",
@@ -90,6 +94,8 @@ TEST_CASE("what a bus description cannot be is refused by field, expectation and
          R"(output.family: expected a sensor, because the joints' boards send no efforts, found "efforts")"},
         {"icub_arm_strain.json", "[1500, 1500", "[32767, 1500",
          "output.full_scale: expected full scales that a sensor of an arm can have, N and N·m, found others"},
+        {"icub_arm_strain.json", "\"address\": 13", "\"address\": 13, \"pair_window_s\": 0.001",
+         "output.pair_window_s: expected less than a period of the sensor, 0.001, found 0.001"},
         {"icub_arm_strain.json", "\"bit_rate\"", "\"bitrate\"",
          "field \"bitrate\": expected one of schema, bit_rate, sample_rate_hz, trigger, joints, output, "
          "found "

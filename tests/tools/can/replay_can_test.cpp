@@ -185,3 +185,21 @@ TEST_CASE("a description that does not fit the model is refused") {
     CHECK_THROWS_WITH(replay_can(ur5_model(), bus, log.path),
                       "bus.json: joints: expected 6, as of the model, found 4");
 }
+
+TEST_CASE("a log whose clock was set back is learned on, but for the frames that settle it") {
+    IcubLog log;
+    std::istringstream lines(file_content(log.path));
+    std::string text;
+    int number = 0;
+    for (std::string line; std::getline(lines, line); ++number) { // "(0.010130000) can0 …", 4 frames a row
+        const std::size_t point = line.find('.');
+        const int seconds = std::stoi(line.substr(1, point - 1)) + (number < 1000 ? 10 : 0);
+        text += "(" + std::to_string(seconds) + line.substr(point) + "\n";
+    }
+    const std::size_t steady = learned(replay_can(log.model, log.bus, log.path).replayed);
+    const std::size_t set_back =
+        learned(replay_can(log.model, log.bus, log.directory.write("set_back.log", text)).replayed);
+    CHECK(steady > 480);
+    CHECK(set_back < steady);
+    CHECK(set_back > steady - 30); // 20 frames; ten readings that show the joints anew; the lag window
+}

@@ -94,3 +94,21 @@ TEST_CASE("options of a bus without a bus are refused") {
     CHECK(bench.call("convert" + csv + bench.bus("none.json") + " -o " + bench.path("no.log")).status == 2);
     CHECK_FALSE(std::filesystem::exists(bench.path("no.log")));
 }
+
+TEST_CASE("a log of a bus is judged: all is well, or what is wrong with its place") {
+    const Bench bench;
+    const std::string log = " --log " + bench.path("run.log");
+    const Outcome well = bench.call("buscheck" + log + bench.bus());
+    CAPTURE(well.out, well.error);
+    CHECK(well.status == 0);
+    CHECK_THAT(well.out, ContainsSubstring("nothing is wrong\n"));
+    CHECK_THAT(well.out, ContainsSubstring("0x282"));
+
+    const Outcome other = bench.call("buscheck" + log + bench.bus("other.json"));
+    CHECK(other.status == 1);
+    CHECK_THAT(other.out, ContainsSubstring("wrong_identifier: 0x283 (joint 2) is not sent") &&
+                              ContainsSubstring("inferred from: 0x282") && ContainsSubstring("to fix:"));
+    CHECK(bench.call("buscheck" + bench.bus()).status == 2);
+    CHECK(bench.call("buscheck" + log + bench.bus() + " --can can0").status == 2);
+    CHECK(bench.call("buscheck --log " + bench.path("none.log") + bench.bus()).status == 2);
+}

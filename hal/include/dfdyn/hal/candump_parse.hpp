@@ -54,6 +54,8 @@ class CandumpParser {
   private:
     constexpr bool at_end() const noexcept { return at_ == text_.size(); }
     constexpr char peek() const noexcept { return at_end() ? '\0' : text_[at_]; }
+    /// Not by substr, which may throw.
+    constexpr std::string_view rest() const noexcept { return {text_.data() + at_, text_.size() - at_}; }
     constexpr void skip_blanks() noexcept {
         while (is_blank(peek())) {
             ++at_;
@@ -67,7 +69,7 @@ class CandumpParser {
         return true;
     }
     constexpr bool take(std::string_view word) noexcept {
-        if (!text_.substr(at_).starts_with(word)) {
+        if (!rest().starts_with(word)) {
             return false;
         }
         at_ += word.size();
@@ -80,7 +82,7 @@ class CandumpParser {
         while (end < text_.size() && !is_blank(text_[end])) {
             ++end;
         }
-        return text_.substr(at_, end - at_);
+        return {text_.data() + at_, end - at_};
     }
 
     constexpr bool malformed(CandumpFault fault, std::size_t at) noexcept {
@@ -254,8 +256,7 @@ class CandumpParser {
         if (!take(" on '")) {
             return malformed(CandumpFault::drop_note);
         }
-        const std::string_view rest = text_.substr(at_);
-        result_.interface = rest.substr(0, rest.find('\''));
+        result_.interface = rest().substr(0, rest().find('\''));
         at_ += result_.interface.size();
         const bool whole = take("' socket (total drops ") && number(total) > 0 && take(')') && at_end();
         return whole || malformed(CandumpFault::drop_note);

@@ -4,6 +4,7 @@
 #include "dfdyn/hal/bus.hpp"
 #include "dfdyn/hal/bus_event.hpp"
 #include "dfdyn/hal/frame.hpp"
+#include "dfdyn/hal/log_clock.hpp"
 
 #include <algorithm>
 #include <array>
@@ -37,8 +38,9 @@ concept ReplaySource = requires(S source, ReplayEntry& entry) {
 ///         decode(bus.drain(frames));
 ///     }
 ///
-/// Frames are handed out in the recording's order with the stamps they have there; one whose stamp runs
-/// backward is due at once. Error frames move `state()`, frames that the recorder lost count as `dropped`.
+/// Frames are handed out in the recording's order with the stamps they have there, when they are due by the
+/// recording's clock (`LogClock`): one whose stamp runs backward at once. Error frames move `state()`, frames
+/// that the recorder lost count as `dropped`.
 template <ReplaySource Source>
 class ReplayBus {
   public:
@@ -48,16 +50,14 @@ class ReplayBus {
     /// Starts at the stamp of the first frame. `source` has to outlive the bus.
     explicit ReplayBus(Source& source) noexcept : source_(source) {
         fetch();
-        now_ns_ = next_.frame.stamp_ns;
+        now_ns_ = due_ns_;
     }
 
     /// Moves the clock to `time_ns`; a time that has passed leaves it where it is.
     void advance_to(std::int64_t time_ns) noexcept { now_ns_ = std::max(now_ns_, time_ns); }
 
     /// When the next frame is due: now, or later. Now when the recording has ended.
-    std::int64_t next_stamp_ns() const noexcept {
-        return ended_ ? now_ns_ : std::max(now_ns_, next_.frame.stamp_ns);
-    }
+    std::int64_t next_stamp_ns() const noexcept { return ended_ ? now_ns_ : std::max(now_ns_, due_ns_); }
 
     /// Whether all frames were handed out.
     bool ended() const noexcept { return ended_; }
@@ -114,7 +114,7 @@ class ReplayBus {
     const BusCounters& counters() const noexcept { return counters_; }
 
   private:
-    bool is_due() const noexcept { return !ended_ && next_.frame.stamp_ns <= now_ns_; }
+    bool is_due() const noexcept { return !ended_ && due_ns_ <= now_ns_; }
 
     /// Looks one frame ahead. What was lost before a frame counts when that frame is handed out.
     void fetch() noexcept {
@@ -122,12 +122,16 @@ class ReplayBus {
         ended_ = !source_.next(next_);
         if (ended_) {
             counters_.dropped += next_.dropped_before;
+        } else {
+            due_ns_ = clock_.due_ns(next_.frame.stamp_ns);
         }
     }
 
     Source& source_;
     ReplayEntry next_{};
     bool ended_ = false;
+    LogClock clock_;
+    std::int64_t due_ns_ = 0; ///< of the next frame
     std::int64_t now_ns_ = 0;
     BusState state_ = BusState::active;
     BusCounters counters_{};

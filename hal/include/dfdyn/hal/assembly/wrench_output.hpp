@@ -20,12 +20,12 @@ class WrenchOutput {
     struct Config {
         TrackConfig track;
         typename RangeGate<6>::Ranges range; ///< of the sensor
-        std::int64_t pair_window_ns;         ///< of the two frames of a wrench, see PairGate
+        PairGate::Config pairing;            ///< of the two frames of a wrench
         int frozen_limit;                    ///< identical readings, see FrozenGate
     };
 
     constexpr WrenchOutput(const Source& source, const Config& config) noexcept
-        : source_(source), pairing_(config.pair_window_ns), frozen_(config.frozen_limit),
+        : source_(source), pairing_(config.pairing), frozen_(config.frozen_limit),
           track_(config.track, config.range, output_reasons) {}
 
     /// Decodes a frame and takes it; a wrench may come with it.

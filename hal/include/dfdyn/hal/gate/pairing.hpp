@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dfdyn/hal/frame.hpp"
+#include "dfdyn/hal/gate/send_rate.hpp"
 
 #include <array>
 #include <cstddef>
@@ -10,13 +11,18 @@
 namespace dfdyn::hal {
 
 /// Joins the two frames of one wrench, which carry no counter: they belong together when the second was
-/// stamped at most `window` after the first. The window must be shorter than the sensor's period less the
-/// time between the two, or halves of different wrenches would match. Frames that overtook each other on the
-/// way, but are stamped in order, are joined. Frames that share one stamp (`StampSource::arrival`) are joined
-/// in their order; a loss among them cannot be seen.
+/// stamped at most `delay` after the first and no later wrench can have been sent by then. So halves of
+/// different wrenches are never joined, even where frames wait for the bus for most of a period; two that may
+/// or may not belong together are not joined either. Frames that overtook each other on the way, but are
+/// stamped in order, are joined. Frames that share one stamp (`StampSource::arrival`) are joined in their
+/// order; a loss among them cannot be seen.
 class PairGate {
   public:
-    explicit constexpr PairGate(std::int64_t window_ns) noexcept : window_ns_(window_ns) {}
+    /// Of the sensor's wrenches; `delay` also covers the time that the two frames take.
+    using Config = SendRateGate::Config;
+
+    explicit constexpr PairGate(const Config& config) noexcept
+        : delay_ns_(config.delay_ns), rate_{SendRateGate(config), SendRateGate(config)} {}
 
     enum class Result : std::uint8_t {
         waiting,  ///< for the other half
@@ -28,7 +34,7 @@ class PairGate {
     /// `part` is 0 or 1.
     constexpr Result push(int part, const Frame& frame) noexcept {
         const auto mine = static_cast<std::size_t>(part);
-        if (from_another_sender(mine, frame.stamp_ns)) {
+        if (rate_[mine].too_soon(frame.stamp_ns)) {
             reset();
             ++doubles_;
             return Result::doubled;
@@ -62,15 +68,6 @@ class PairGate {
     [[nodiscard]] constexpr std::uint64_t doubles() const noexcept { return doubles_; }
 
   private:
-    /// Too soon after the last of its kind; frames without stamps of their own may share one.
-    constexpr bool from_another_sender(std::size_t part, std::int64_t stamp_ns) noexcept {
-        const std::int64_t since_ns = stamp_ns - last_ns_[part];
-        const bool doubled = seen_[part] && since_ns > 0 && since_ns <= window_ns_;
-        seen_[part] = true;
-        last_ns_[part] = stamp_ns;
-        return doubled;
-    }
-
     constexpr void drop(std::size_t part) noexcept {
         pending_[part] = false;
         orphan_ns_ = half_[part].stamp_ns;
@@ -80,20 +77,20 @@ class PairGate {
     constexpr Result match(std::size_t newest) noexcept {
         const std::int64_t apart_ns = half_[1].stamp_ns - half_[0].stamp_ns;
         const bool in_order = newest == 1 ? apart_ns >= 0 : apart_ns > 0;
-        if (!in_order || apart_ns > window_ns_) {
+        if (!in_order || apart_ns > delay_ns_ || rate_[0].could_have_sent_again_by(half_[1].stamp_ns)) {
             drop(in_order ? 0 : 1); // the earlier one
             return Result::orphaned;
         }
+        SendRateGate::sent_together(rate_[0], rate_[1]);
         pending_ = {};
         ++pairs_;
         return Result::paired;
     }
 
-    std::int64_t window_ns_;
+    std::int64_t delay_ns_;
+    std::array<SendRateGate, 2> rate_;
     std::array<Frame, 2> half_{};
     std::array<bool, 2> pending_{};
-    std::array<bool, 2> seen_{};
-    std::array<std::int64_t, 2> last_ns_{};
     std::int64_t orphan_ns_ = 0;
     std::uint64_t pairs_ = 0;
     std::array<std::uint64_t, 2> orphans_{};

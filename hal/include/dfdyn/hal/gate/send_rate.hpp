@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace dfdyn::hal {
+
+/// Tells one sender of an identifier from two, by what one sender can do: it sends at most once per period,
+/// and each frame is on the wire at most `delay` after that. Two frames may so come closer together than a
+/// period, which on a loaded bus they do all the time; not more of them than the periods that have passed. A
+/// sender that is slower than its period, pauses, or sends when asked is never suspected.
+///
+/// It keeps the earliest time at which the last frame can have been sent: not earlier than `delay` before the
+/// frame came, nor than a period after the one before (the leaky bucket of network policing, Turner 1986).
+class SendRateGate {
+  public:
+    struct Config {
+        std::int64_t period_ns; ///< between two frames of the sender, by its own clock; > 0
+        std::int64_t delay_ns;  ///< jitter, and waiting for the bus; 0 … period
+    };
+
+    explicit constexpr SendRateGate(const Config& config) noexcept
+        : shortest_ns_(config.period_ns - config.period_ns / clock_tolerance), delay_ns_(config.delay_ns) {}
+
+    /// Whether this frame cannot be of the sender of the one before; it starts anew with this one. Frames
+    /// that share a stamp, or were overtaken, are no evidence.
+    constexpr bool too_soon(std::int64_t stamp_ns) noexcept {
+        if (started_ && stamp_ns <= last_ns_) {
+            return false;
+        }
+        const bool soon = started_ && !could_have_sent_again_by(stamp_ns);
+        const std::int64_t earliest_ns = stamp_ns - delay_ns_;
+        sent_ns_ = started_ && !soon ? std::max(earliest_ns, sent_ns_ + shortest_ns_) : earliest_ns;
+        last_ns_ = stamp_ns;
+        started_ = true;
+        return soon;
+    }
+
+    /// Whether a frame after the last one can have come by then. Requires a frame.
+    [[nodiscard]] constexpr bool could_have_sent_again_by(std::int64_t stamp_ns) const noexcept {
+        return sent_ns_ + shortest_ns_ <= stamp_ns;
+    }
+
+    /// The last frames of two identifiers were sent together: what is known of one holds for the other.
+    static constexpr void sent_together(SendRateGate& one, SendRateGate& other) noexcept {
+        one.sent_ns_ = other.sent_ns_ = std::max(one.sent_ns_, other.sent_ns_);
+    }
+
+  private:
+    /// A sender's clock is fast by one part in so many at most; CAN's own bit timing asks for better ones.
+    static constexpr std::int64_t clock_tolerance = 128;
+
+    std::int64_t shortest_ns_;
+    std::int64_t delay_ns_;
+    std::int64_t sent_ns_ = 0; ///< the last frame's, at the earliest
+    std::int64_t last_ns_ = 0;
+    bool started_ = false;
+};
+
+} // namespace dfdyn::hal

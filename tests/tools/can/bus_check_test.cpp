@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: Apache-2.0
+// Each rule on a log that has its fault, and none of them on logs that have none.
+#include "tools/can/bus_check.hpp"
+
+#include "dfdyn/hal/replay_bus.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/can/bus_support.hpp"
+
+#include <functional>
+#include <set>
+
+namespace {
+
+using namespace dfdyn::tools;
+using dfdyn::hal::Frame;
+using dfdyn::tests::bus_folder;
+using dfdyn::tests::TemporaryDirectory;
+using Frames = std::vector<Frame>;
+using Names = std::set<std::string>;
+
+/// Frames as a recording, of which the recorder lost some.
+class Tape {
+  public:
+    explicit Tape(Frames frames, std::uint64_t dropped = 0) : frames_(std::move(frames)), dropped_(dropped) {}
+
+    bool next(dfdyn::hal::ReplayEntry& entry) noexcept {
+        entry = {};
+        if (next_ == frames_.size()) {
+            return false;
+        }
+        entry.frame = frames_[next_++];
+        entry.dropped_before = next_ == frames_.size() / 2 ? dropped_ : 0;
+        return true;
+    }
+
+  private:
+    Frames frames_;
+    std::uint64_t dropped_;
+    std::size_t next_ = 0;
+};
+
+BusCheck checked(const BusDescription& description, const Frames& frames, std::uint64_t dropped = 0) {
+    BusCheck check(description);
+    Tape tape(frames, dropped);
+    dfdyn::hal::ReplayBus bus(tape);
+    std::array<Frame, 1> room{};
+    while (!bus.ended()) {
+        bus.advance_to(bus.next_stamp_ns());
+        check.take(bus, room);
+    }
+    return check;
+}
+
+Names rules(const BusDescription& description, const Frames& frames, std::uint64_t dropped = 0) {
+    Names names;
+    for (const BusFinding& finding : bus_findings(checked(description, frames, dropped))) {
+        for (const std::string& text : {finding.what, finding.evidence, finding.confirm, finding.fix}) {
+            CHECK_FALSE(text.empty());
+        }
+        names.insert(finding.rule);
+    }
+    return names;
+}
+
+BusDescription described(const std::string& text) {
+    const TemporaryDirectory directory;
+    return read_bus_description(directory.write("bus.json", text));
+}
+
+/// An arm in motion, for so long, as its devices would have sent it.
+Frames sound(const BusDescription& description, double duration_s = 4, double jitter_us = 20) {
+    Frames frames;
+    BusTraffic traffic(description, {jitter_us, 1}, [&](const Frame& frame) { frames.push_back(frame); });
+    std::mt19937_64 engine(dfdyn::tests::seed());
+    std::normal_distribution<double> noise;
+    const double rate_hz = std::max(description.joints.rate_hz, description.output.rate_hz);
+    const auto joints = static_cast<std::size_t>(description.joint_count);
+    for (std::int64_t row = 0; static_cast<double>(row) < duration_s * rate_hz; ++row) {
+        const double t = static_cast<double>(row) / rate_hz;
+        std::vector<double> position(joints);
+        std::vector<double> output(description.sensor ? 6 : joints);
+        for (std::size_t i = 0; i < joints; ++i) {
+            position[i] = 0.4 + 0.2 * std::sin(t + static_cast<double>(i));
+        }
+        for (std::size_t k = 0; k < output.size(); ++k) {
+            output[k] = 2 + std::sin(2 * t) + 0.2 * noise(engine);
+        }
+        traffic.add(std::llround(1e9 * t), position, output);
+    }
+    traffic.finish();
+    return frames;
+}
+
+BusDescription icub() { return read_bus_description(bus_folder + "icub_arm_strain.json"); }
+
+const std::string odrive_and_ati = R"({
+  "schema": "dfdyn.bus/1", "bit_rate": 1000000, "sample_rate_hz": 100, "trigger": {"on": "timer"},
+  "joints": {"family": "odrive", "boards": [{"node": 1, "joint": 1, "motor_per_joint": 9},
+                                            {"node": 2, "joint": 2, "motor_per_joint": -9}]},
+  "output": {"family": "ati_netcan", "base": 32, "counts_per_newton": 100, "counts_per_newton_metre": 5000,
+             "limit": [200, 200, 200, 6, 6, 6], "rate_hz": 200,
+             "matrix": [1,0,0,0,0,0, 0,1,0,0,0,0, 0,0,1,0,0,0, 0,0,0,1,0,0, 0,0,0,0,1,0, 0,0,0,0,0,1]}
+})";
+const std::string loaded = R"({
+  "schema": "dfdyn.bus/1", "bit_rate": 1000000, "sample_rate_hz": 1000, "trigger": {"on": "timer"},
+  "joints": {"family": "icub_two_joint_board", "boards": [
+    {"address": 1, "joints": [1, 2], "ticks_per_degree": [182, 182]},
+    {"address": 2, "joints": [3, 4], "ticks_per_degree": [182, 182]},
+    {"address": 3, "joints": [5, 6], "ticks_per_degree": [182, 182]},
+    {"address": 4, "joints": [7, 8], "ticks_per_degree": [182, 182]}]},
+  "output": {"family": "icub_strain", "address": 13, "full_scale": [1500, 1500, 2000, 35, 35, 25]}
+})";
+const std::string foc_and_robotous = R"({
+  "schema": "dfdyn.bus/1", "bit_rate": 1000000, "sample_rate_hz": 500, "trigger": {"on": "set"},
+  "joints": {"family": "icub_2foc", "boards": [{"address": 1, "joint": 1}, {"address": 2, "joint": 2}]},
+  "output": {"family": "robotous_rft"}
+})";
+
+Frames without(Frames frames, const std::function<bool(const Frame&)>& gone) {
+    std::erase_if(frames, gone);
+    return frames;
+}
+
+Frames changed(Frames frames, const std::function<void(Frame&)>& change) {
+    std::ranges::for_each(frames, change);
+    std::ranges::stable_sort(frames, {}, &Frame::stamp_ns);
+    return frames;
+}
+
+/// With a frame in the middle.
+Frames with(Frames frames, Frame frame) {
+    const std::size_t at = frames.size() / 2;
+    frame.stamp_ns = frames[at].stamp_ns;
+    frames.insert(frames.begin() + static_cast<std::ptrdiff_t>(at), frame);
+    return frames;
+}
+
+Frame error_frame(std::uint32_t classes, std::uint8_t detail = 0) {
+    Frame frame;
+    frame.error = true;
+    frame.id = classes;
+    frame.length = 8;
+    frame.data[1] = detail;
+    return frame;
+}
+
+bool is_first(const Frame& frame) { return !frame.error && frame.id == 0x111; }
+bool is_wrench(const Frame& frame) { return frame.id == 0x3DA || frame.id == 0x3DB; }
+
+} // namespace
+
+TEST_CASE("nothing is wrong with a bus of any family where nothing is wrong") {
+    for (const char* const name : {"icub_arm_strain", "ur5_cia402", "ur5_cia402_torque", "ur5_icub_2foc",
+                                   "ur5_two_joint_boards", "ur5_dbc"}) {
+        CAPTURE(name);
+        const BusDescription description = read_bus_description(bus_folder + name + ".json");
+        CHECK(rules(description, sound(description)) == Names{});
+    }
+    CHECK(rules(described(odrive_and_ati), sound(described(odrive_and_ati))) == Names{});
+    CHECK(rules(described(foc_and_robotous), sound(described(foc_and_robotous))) == Names{});
+    CHECK(rules(described(loaded), sound(described(loaded), 4, 50)) == Names{}); // 77 %
+}
+
+TEST_CASE("lost arbitration, and a stranger that sends little, are no finding") {
+    const BusDescription bus = icub();
+    CHECK(rules(bus, with(sound(bus), error_frame(dfdyn::hal::error_class::lost_arbitration))) == Names{});
+    CHECK(rules(bus, with(sound(bus), dfdyn::hal::make_frame(0x7A5, 8))) == Names{});
+}
+
+TEST_CASE("a source that is wrong is found by its rule, and by no other") {
+    const BusDescription bus = icub();
+    const Frames good = sound(bus);
+    SECTION("never there") { CHECK(rules(bus, without(good, is_first)) == Names{"silent_source"}); }
+    SECTION("on another identifier") {
+        const Frames moved =
+            changed(good, [](Frame& frame) { frame.id = is_first(frame) ? 0x151 : frame.id; });
+        CHECK(rules(bus, moved).contains("wrong_identifier"));
+        CHECK_FALSE(rules(bus, moved).contains("silent_source"));
+    }
+    SECTION("gone after 3 s") {
+        CHECK(rules(bus, without(good, [](const Frame& frame) {
+                        return is_first(frame) && frame.stamp_ns > 3'000'000'000;
+                    })) == Names{"source_stopped"});
+    }
+    SECTION("a quarter lost") {
+        int count = 0;
+        CHECK(rules(bus, without(good, [&](const Frame& frame) {
+                        return is_first(frame) && ++count % 4 == 0;
+                    })) == Names{"slow_source"});
+    }
+    SECTION("gone for 20 ms") {
+        CHECK(rules(bus, without(good, [](const Frame& frame) {
+                        return is_first(frame) && frame.stamp_ns / 20'000'000 == 100;
+                    })) == Names{"gaps"});
+    }
+    SECTION("another length now and then") {
+        int count = 0;
+        CHECK(rules(bus, changed(good, [&](Frame& frame) {
+                        frame.length = is_first(frame) && ++count % 500 == 0 ? 6 : frame.length;
+                    })) == Names{"rejected_frames"});
+    }
+    SECTION("early and late") {
+        const BusDescription slow = described(foc_and_robotous);
+        int count = 0;
+        CHECK(rules(slow, changed(sound(slow), [&](Frame& frame) {
+                        frame.stamp_ns += frame.id == 0x110 && ++count % 2 == 0 ? 1'500'000 : 0;
+                    })) == Names{"jitter"});
+    }
+}
+
+TEST_CASE("two devices on one identifier, and one that is faster than described, are told apart") {
+    const BusDescription bus = icub();
+    Frames twice = sound(bus);
+    for (const Frame& frame : sound(bus)) {
+        if (is_wrench(frame)) {
+            twice.push_back(frame);
+            twice.back().stamp_ns += 450'000;
+            twice.back().data[0] ^= 0x55;
+        }
+    }
+    CHECK(rules(bus, changed(twice, [](Frame&) {})) == Names{"id_collision"});
+    BusDescription slower = bus;
+    slower.output.rate_hz = 900;
+    CHECK(rules(slower, sound(bus)) == Names{"fast_source"});
+}
+
+TEST_CASE("a bus that is wrong is found by its rule, and by no other") {
+    const BusDescription bus = icub();
+    const Frames good = sound(bus);
+    namespace error_class = dfdyn::hal::error_class;
+    const auto rules_with = [&](const Frame& frame) { return rules(bus, with(good, frame)); };
+    CHECK(rules_with(error_frame(error_class::controller, 0x10)) == Names{"error_passive"});
+    CHECK(rules_with(error_frame(error_class::controller, 0x04)) == Names{"error_passive"});
+    CHECK(rules_with(error_frame(error_class::protocol)) == Names{"wire_errors"});
+    CHECK(rules_with(error_frame(error_class::no_acknowledgement)) == Names{"no_acknowledgement"});
+    CHECK(rules_with(error_frame(error_class::controller, 0x01)) == Names{"frames_dropped"});
+    CHECK(rules_with(error_frame(error_class::bus_off)).contains("bus_off"));
+    CHECK(rules(bus, good, 7) == Names{"frames_dropped"});
+    CHECK(rules(bus, {}) == Names{"silent_bus"});
+    Frame overflow = dfdyn::hal::make_frame(0x115, 0); // the board's own message: packets lost
+    CHECK(rules_with(overflow) == Names{"device_lost_frames"});
+    const Frames jumped = changed(good, [](Frame& frame) { frame.stamp_ns += 10'000'000'000; });
+    Frames set_back = jumped;
+    set_back.insert(set_back.end(), good.begin(), good.end());
+    CHECK(rules(bus, set_back).contains("clock_jumped"));
+}
+
+TEST_CASE("the load is that of all frames, against the bit rate") {
+    BusDescription bus = icub();
+    const Frames good = sound(bus);
+    // 2 x 135 bits of joints and 2 x 115 of the sensor at 1 kHz
+    const BusCheck check = checked(bus, good);
+    CHECK(check.load() == Approx(0.5).epsilon(0.01));
+    CHECK(check.expected_load() == Approx(0.5));
+    bus.bit_rate = 640'000;
+    CHECK(rules(bus, good) == Names{});
+    bus.bit_rate = 600'000;
+    CHECK(rules(bus, good) == Names{"overload"});
+    bus.bit_rate = 1'000'000;
+    Frames crowded = good;
+    for (std::int64_t number = 0; number < 4'000; ++number) {
+        crowded.push_back(dfdyn::hal::make_frame(0x600 + static_cast<std::uint32_t>(number % 5), 8));
+        crowded.back().stamp_ns = 10'000'000 + number * 1'000'000;
+    }
+    CHECK(rules(bus, changed(crowded, [](Frame&) {})) == Names{"unknown_traffic"});
+}
+
+TEST_CASE("what devices say of themselves is found by its rule") {
+    const BusDescription bus = icub();
+    const Frames good = sound(bus);
+    const auto changed_wrench = [&](auto change) {
+        return rules(bus, changed(good, [&](Frame& frame) {
+                         if (is_wrench(frame)) {
+                             change(frame);
+                         }
+                     }));
+    };
+    CHECK(changed_wrench([](Frame& frame) { frame.data = {0x10, 0x81, 0x20, 0x82, 0x30, 0x83}; }) ==
+          Names{"sensor_frozen"});
+    CHECK(changed_wrench([](Frame& frame) { frame.length = 7; }) == Names{"sensor_saturated"});
+    const auto is_torque = [](const Frame& frame) { return frame.id == 0x3DB; };
+    CHECK(rules(bus, without(good, is_torque)) == Names{"silent_source", "incomplete_wrench"});
+    Frame status = dfdyn::hal::make_frame(0x113, 8);
+    status.data[0] = 0x20; // absolute encoder error of joint 1
+    CHECK(rules(bus, with(good, status)) == Names{"encoder_fault"});
+    BusDescription narrow = bus;
+    narrow.position_limit_rad = 0.5;
+    CHECK(rules(narrow, good) == Names{"position_out_of_range"});
+    narrow = bus;
+    narrow.output_range[3] = {-1, 1};
+    CHECK(rules(narrow, good) == Names{"output_out_of_range"});
+    const auto is_reply = [](const Frame& frame) { return frame.id == 0x2D0; };
+    const std::string text = dfdyn::tests::file_content(bus_folder + "icub_arm_strain.json");
+    const BusDescription untold = described(text.substr(0, text.find(", \"full_scale\"")) + "}}");
+    CHECK(rules(untold, good) == Names{});
+    CHECK(rules(untold, without(good, is_reply)) == Names{"full_scale_unknown"});
+    CHECK(rules(untold, changed(good, [&](Frame& frame) {
+                    frame.data[2] = is_reply(frame) ? 0 : frame.data[2];
+                    frame.data[3] = is_reply(frame) ? 0 : frame.data[3];
+                })) == Names{"full_scale"});
+}
+
+TEST_CASE("what drives say of themselves is found by its rule") {
+    std::string text = dfdyn::tests::file_content(bus_folder + "ur5_cia402.json");
+    const std::string family = "\"family\": \"cia402\",";
+    text.insert(text.find(family) + family.size(), "\"heartbeat_timeout_s\": 0.25,");
+    const BusDescription drives = described(text);
+    const Frames good = sound(drives);
+    CHECK(rules(drives, good) == Names{});
+    const auto is_heartbeat = [](const Frame& frame) { return frame.id > 0x700; };
+    CHECK(rules(drives, without(good, is_heartbeat)) == Names{"heartbeat_missing"});
+    CHECK(rules(drives, changed(good, [&](Frame& frame) {
+                    frame.data[0] = is_heartbeat(frame) ? 0x7F : frame.data[0];
+                })) == Names{"not_operational"});
+    Frame emcy = dfdyn::hal::make_frame(0x83, 8);
+    emcy.data[1] = 0x23; // 0x2300: over-current
+    CHECK(rules(drives, with(good, emcy)) == Names{"device_fault"});
+    // an encoder that stays at zero
+    CHECK(rules(drives, changed(good, [](Frame& frame) {
+                    frame.data = frame.id == 0x281 ? std::array<std::uint8_t, 64>{} : frame.data;
+                })) == Names{"zeros"});
+}
+
+TEST_CASE("frames of more identifiers than there is memory for are watched in bounded memory") {
+    const BusDescription bus = icub();
+    Frames flood = sound(bus, 1);
+    for (std::uint32_t id = 0; id < 20'000; ++id) {
+        flood.push_back(dfdyn::hal::make_frame(id, 0));
+        flood.back().extended = true;
+        flood.back().stamp_ns = 900'000'000 + id;
+    }
+    const BusCheck check = checked(bus, changed(flood, [](Frame&) {}));
+    CHECK(check.streams().size() == BusCheck::most_streams);
+    std::ostringstream out;
+    print_bus_check(out, check, bus_findings(check));
+    CHECK_THAT(out.str(),
+               Catch::Matchers::Contains("0x111 ") && Catch::Matchers::Contains("joint 1, joint 2\n"));
+}

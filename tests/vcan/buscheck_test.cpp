@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/catch.hpp"
+#include "tests/tools/can/bus_support.hpp"
+#include "tests/vcan/peer.hpp"
+
+#include <csignal>
+
+using Catch::Matchers::Contains;
+using dfdyn::tests::Background;
+using dfdyn::tests::IcubLog;
+using dfdyn::tests::run;
+
+TEST_CASE("a live bus is looked at: who sends, and who does not") {
+    const IcubLog log(75, 50); // 1.5 s
+    const auto played = log.without(" 3DB#");
+    const auto bus = log.directory.write("bus.json", dfdyn::tests::icub_arm_at(50));
+    const std::string program = DFDYN_PROGRAM;
+    const Background check(program + " buscheck --can vcan0 --duration 60 --bus " + bus.string());
+    run(program + " play --log " + played.string() + " --can vcan0");
+    check.signal(SIGINT); // what waits is read before it ends
+    const std::string report = check.output(20);
+    CAPTURE(report);
+    CHECK_THAT(report, Contains("silent_source: 0x3DB (sensor) is never sent"));
+    for (const char* const id : {"0x111", "0x121", "0x3DA"}) {
+        CHECK_THAT(report, !Contains(std::string("silent_source: ") + id));
+        CHECK_THAT(report, !Contains(std::string("rejected_frames: ") + id));
+    }
+    CHECK_THAT(report, Contains("bus: error-active;"));
+    CHECK_THAT(report, Contains("frames were sent by programs of this computer"));
+}
