@@ -160,12 +160,13 @@ TEST_CASE("over the bus a loop learns the payload of the arm that it moves") {
         learned =
             run(call("loop --can vcan0 --from-prior --duration 10.5 --model " + path("m.json"), scenario) +
                 " || true");
-        kept_time = stopped_by(learned, {"requested"}) && number_after(learned, "ticks, ", "pace: ") < 20;
+        kept_time = stopped_by(learned, {"requested"}) && number_after(learned, "ticks, ", "pace: ") < 20 &&
+                    number_after(learned, "at most ", "pace: ") < 3000; // us late; a period is 10 ms
     }
     CAPTURE(nominal, learned);
     CHECK(number_after(learned, " samples, ") > 50); // learned
     if (!kept_time) {
-        WARN("the machine missed too many deadlines for the tracking error to mean something: " + learned);
+        WARN("the machine was too late for the tracking error to mean something: " + learned);
         return;
     }
     const std::string second_window = "       5.000"; // and its error

@@ -92,7 +92,7 @@ TEST_CASE("Ctrl-C ends dfdyn play before the log's end, and it says what it did"
     const std::string log =
         directory.write("run.log", "(1.000000) can0 123#\n(9999.000000) can0 456#\n").string();
     const std::string output = directory.path() / "output";
-    const std::string command = "timeout --preserve-status --signal=INT 0.5 " + std::string(DFDYN_PROGRAM) +
+    const std::string command = "timeout --preserve-status --signal=INT 3 " + std::string(DFDYN_PROGRAM) +
                                 " play --log " + log + " --can vcan0 >" + output;
     const int status = std::system(command.c_str());
     REQUIRE(WIFEXITED(status));
