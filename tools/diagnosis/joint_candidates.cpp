@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/candidate_parts.hpp"
+#include "tools/diagnosis/candidates.hpp"
+
+#include <cmath>
+
+namespace dfdyn::tools {
+
+namespace {
+
+/// What the effects of one joint are made of; velocity, direction: per row.
+struct JointSignals {
+    const DiagnosisSignals& all;
+    std::size_t joint;
+    std::string where;
+    Eigen::Index output;
+    Eigen::VectorXd position, velocity, direction;
+
+    JointSignals(const DiagnosisSignals& signals, std::size_t number)
+        : all(signals), joint(number), where(numbered("joint", number)), output(static_cast<Eigen::Index>(number)),
+          position(signals.measured.motion.position.col(output)),
+          velocity(signals.measured.motion.velocity.col(output)),
+          direction((velocity.array() / signals.sign_velocity[output]).tanh()) {}
+
+    Candidate candidate(const char* effect) const {
+        Candidate result;
+        result.effect = effect;
+        result.where = where;
+        return result;
+    }
+    EffectColumn column(Eigen::VectorXd series) const { return on_output(output, std::move(series)); }
+};
+
+Candidate viscous(const JointSignals& joint) {
+    return single_column("viscous_friction", joint.where, joint.column(joint.velocity), true, "viscous", "N·m·s/rad");
+}
+
+/// Dahl's friction of level 1 that builds up over `distance` (rad): df/dq = (1 - f sgn q') / distance, exact for steps of
+/// constant direction (P. R. Dahl, "A solid friction model", 1968).
+Eigen::VectorXd dahl(const JointSignals& joint, double distance) {
+    Eigen::VectorXd friction(joint.position.size());
+    for (const Stretch& stretch : joint.all.measured.stretches) {
+        double state = 0;
+        friction[stretch.first] = 0;
+        for (Eigen::Index row = stretch.first + 1; row < stretch.first + stretch.count; ++row) {
+            const double step = joint.position[row] - joint.position[row - 1];
+            const double settled = std::copysign(1.0, step);
+            state = settled + (state - settled) * std::exp(-std::abs(step) / distance);
+            friction[row] = state;
+        }
+    }
+    return friction;
+}
+
+constexpr double shortest_presliding = 3e-3; // rad; what builds up over less is called Coulomb friction
+
+Candidate coulomb(const JointSignals& joint) {
+    Candidate result = joint.candidate("coulomb_friction");
+    result.family = "sliding at " + joint.where;
+    result.columns = {joint.column(joint.direction), joint.column(dahl(joint, shortest_presliding / 8)),
+                      joint.column(dahl(joint, shortest_presliding / 3)),
+                      joint.column(joint.direction.array().square().matrix())};
+    result.shapes = {{{0}, {true}, 0}, {{1}, {true}, 1}, {{2}, {true}, 2}, {{0, 3}, {true, false}, 3}};
+    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
+        if (shape.columns.size() == 1) {
+            return std::vector<EffectParameter>{{"coulomb", "N·m", coefficients[0]}};
+        }
+        return std::vector<EffectParameter>{{"coulomb_pos", "N·m", coefficients[0] + coefficients[1]},
+                                            {"coulomb_neg", "N·m", coefficients[0] - coefficients[1]}};
+    };
+    return result;
+}
+
+Candidate stribeck(const JointSignals& joint) {
+    Candidate result = joint.candidate("stribeck_friction");
+    result.family = "sliding at " + joint.where;
+    const auto faded = [joint](double stribeck_velocity) {
+        return joint.column(
+            joint.direction.array() * (-(joint.velocity.array() / stribeck_velocity).square()).exp());
+    };
+    result.columns = {joint.column(joint.direction)};
+    const double slowest = joint.all.sign_velocity[joint.output];
+    for (const double stribeck_velocity : {0.01, 0.02, 0.04, 0.08, 0.16, 0.32}) {
+        if (stribeck_velocity > 1.5 * slowest) {
+            result.shapes.push_back({{0, result.columns.size()}, {true, true}, stribeck_velocity});
+            result.columns.push_back(faded(stribeck_velocity));
+        }
+    }
+    result.at_value = [joint, faded](double value) {
+        return std::vector<EffectColumn>{joint.column(joint.direction), faded(value)};
+    };
+    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
+        return std::vector<EffectParameter>{{"coulomb", "N·m", coefficients[0]},
+                                            {"static", "N·m", coefficients[0] + coefficients[1]},
+                                            {"stribeck_velocity", "rad/s", shape.value}};
+    };
+    return result;
+}
+
+Candidate presliding(const JointSignals& joint) {
+    Candidate result = joint.candidate("presliding_hysteresis");
+    result.family = "sliding at " + joint.where;
+    for (double distance = 1.4 * shortest_presliding; distance < 0.3; distance *= 1.7) {
+        result.shapes.push_back({{result.columns.size()}, {true}, distance});
+        result.columns.push_back(joint.column(dahl(joint, distance)));
+    }
+    result.at_value = [joint](double distance) {
+        return std::vector<EffectColumn>{joint.column(dahl(joint, distance))};
+    };
+    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
+        return std::vector<EffectParameter>{{"stiffness", "N·m/rad", coefficients[0] / shape.value},
+                                            {"break_away", "N·m", coefficients[0]}};
+    };
+    return result;
+}
+
+Candidate spring(const JointSignals& joint) {
+    Candidate result = joint.candidate("joint_spring");
+    result.columns = {joint.column(joint.position), joint.column(Eigen::VectorXd::Ones(joint.position.size()))};
+    result.shapes = {{{0, 1}, {true, false}, 0}};
+    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
+        return std::vector<EffectParameter>{{"stiffness", "N·m/rad", coefficients[0]},
+                                            {"rest", "rad", -coefficients[1] / coefficients[0]}};
+    };
+    return result;
+}
+
+} // namespace
+
+std::vector<Candidate> joint_candidates(const DiagnosisSignals& signals) {
+    std::vector<Candidate> result;
+    if (signals.wrench()) {
+        return result;
+    }
+    for (std::size_t number = 0; number < signals.joints(); ++number) {
+        const JointSignals joint(signals, number);
+        const Eigen::VectorXd load = signals.joint_torque.col(joint.output).cwiseAbs();
+        result.push_back(viscous(joint));
+        result.push_back(coulomb(joint));
+        result.push_back(stribeck(joint));
+        result.push_back(presliding(joint));
+        result.push_back(spring(joint));
+        result.push_back(single_column("load_dependent_friction", joint.where,
+                                       joint.column(load.cwiseProduct(joint.direction)), true, "mu", "1"));
+        result.push_back(single_column("torque_offset", joint.where,
+                                       joint.column(Eigen::VectorXd::Ones(signals.rows())), false, "offset",
+                                       "N·m"));
+        result.push_back(single_column("rotor_inertia", joint.where,
+                                       joint.column(signals.measured.motion.acceleration.col(joint.output)), true,
+                                       "inertia", "kg·m²"));
+    }
+    return result;
+}
+
+Candidate ripple_candidate(const DiagnosisSignals& signals, std::size_t number, const std::vector<int>& cycles) {
+    const JointSignals joint(signals, number);
+    Candidate result = joint.candidate("torque_ripple");
+    for (const int count : cycles) {
+        const Eigen::ArrayXd angle = joint.position.array() * count;
+        result.shapes.push_back(
+            {{result.columns.size(), result.columns.size() + 1}, {false, false}, static_cast<double>(count)});
+        result.columns.push_back(joint.column(angle.sin()));
+        result.columns.push_back(joint.column(angle.cos()));
+    }
+    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
+        return std::vector<EffectParameter>{{"amplitude", "N·m", coefficients.norm()},
+                                            {"cycles_per_rev", "1", shape.value},
+                                            {"phase", "rad", std::atan2(coefficients[1], coefficients[0])}};
+    };
+    return result;
+}
+
+std::vector<Candidate> drift_candidates(const DiagnosisSignals& signals, const Eigen::MatrixXd& friction) {
+    std::vector<Candidate> result;
+    const Eigen::VectorXd elapsed = signals.measured.time_s.array() - signals.measured.time_s[0];
+    for (Eigen::Index joint = 0; joint < friction.cols(); ++joint) {
+        if (friction.col(joint).any()) {
+            result.push_back(single_column("friction_drift", numbered("joint", static_cast<std::size_t>(joint)),
+                                           on_output(joint, friction.col(joint).cwiseProduct(elapsed)), false,
+                                           "rate", "1/s"));
+        }
+    }
+    return result;
+}
+
+} // namespace dfdyn::tools
