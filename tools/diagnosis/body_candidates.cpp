@@ -10,17 +10,21 @@ namespace {
 using Parameters = InertialParameters;
 
 /// Point mass at `centre`, per kg; and its first moment moved by 1 kg·m along `axis` while the mass stays.
-Parameters point_mass(const Eigen::Vector3d& centre) { return body_parameters(1, centre, Eigen::Matrix3d::Zero()); }
+Parameters point_mass(const Eigen::Vector3d& centre) {
+    return body_parameters(1, centre, Eigen::Matrix3d::Zero());
+}
 Parameters first_moment(const Eigen::Vector3d& centre, Eigen::Index axis) {
     constexpr double step = 1e-4; // m: linear in it up to this
     const Eigen::Vector3d shift = step * Eigen::Vector3d::Unit(axis);
     return (point_mass(centre + shift) - point_mass(centre - shift)) / (2 * step);
 }
 
-/// Mass at `centre`, then the three first moments about it, of body `body`; seen in a frame at `placement` of it.
+/// Mass at `centre`, then the three first moments about it, of body `body`; seen in a frame at `placement` of
+/// it.
 std::vector<EffectColumn> mass_columns(const DiagnosisSignals& signals, Eigen::Index body,
                                        const Eigen::Vector3d& centre, const Eigen::Isometry3d& placement) {
-    std::vector<EffectColumn> columns{on_outputs(signals.of_body(body, moved(point_mass(centre), placement)))};
+    std::vector<EffectColumn> columns{
+        on_outputs(signals.of_body(body, moved(point_mass(centre), placement)))};
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
         columns.push_back(on_outputs(signals.of_body(body, moved(first_moment(centre, axis), placement))));
     }
@@ -52,7 +56,8 @@ Candidate link_inertia(const DiagnosisSignals& signals, Eigen::Index body) {
     const Eigen::Index bodies = nominal.size() / 10;
     const auto link = signals.joints() - static_cast<std::size_t>(bodies - body);
     const double mass = nominal[10 * body];
-    const Eigen::Vector3d centre = mass > 0 ? Eigen::Vector3d(nominal.segment<3>(10 * body + 1) / mass) : Eigen::Vector3d::Zero();
+    const Eigen::Vector3d centre =
+        mass > 0 ? Eigen::Vector3d(nominal.segment<3>(10 * body + 1) / mass) : Eigen::Vector3d::Zero();
     Candidate result;
     result.effect = "link_inertia_error";
     result.where = numbered("link", link);
@@ -90,7 +95,8 @@ Candidate tilt(const DiagnosisSignals& signals) {
     }
     result.shapes = {whole_shape(result, false)};
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
-        return std::vector<EffectParameter>{{"tilt_x", "rad", coefficients[0]}, {"tilt_y", "rad", coefficients[1]}};
+        return std::vector<EffectParameter>{{"tilt_x", "rad", coefficients[0]},
+                                            {"tilt_y", "rad", coefficients[1]}};
     };
     return result;
 }

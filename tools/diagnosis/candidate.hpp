@@ -25,23 +25,26 @@ struct EffectParameter {
 
 /// One way in which a candidate can act: some of its columns, and what a coefficient may not be.
 struct EffectShape {
-    std::vector<std::size_t> columns;  ///< of the candidate
-    std::vector<bool> positive;        ///< per entry of `columns`: the coefficient must be
-    double value = 0;                  ///< the shape's own parameter, where the effect has one
+    std::vector<std::size_t> columns; ///< of the candidate
+    std::vector<bool> positive;       ///< per entry of `columns`: the coefficient must be
+    double value = 0;                 ///< the shape's own parameter, where the effect has one
 };
 
-/// A named cause at a place: an effect of the catalogue. Its contribution is linear in the coefficients of one of its shapes.
+/// A named cause at a place: an effect of the catalogue. Its contribution is linear in the coefficients of
+/// one of its shapes.
 struct Candidate {
     std::string effect, where;
-    std::string detail;    ///< tells candidates of the same effect and place apart: axes, times
-    std::string family;    ///< of several candidates of one family at most one is chosen; empty: of none
-    double tried = 1;      ///< of how many alternatives this one was picked beforehand
+    std::string detail; ///< tells candidates of the same effect and place apart: axes, times
+    std::string family; ///< of several candidates of one family at most one is chosen; empty: of none
+    double tried = 1;   ///< of how many alternatives this one was picked beforehand
     std::vector<EffectColumn> columns;
     std::vector<EffectShape> shapes;
-    /// Columns for another value of the shape's parameter; empty where there is none, or only the listed ones make sense.
+    /// Columns for another value of the shape's parameter; empty where there is none, or only the listed ones
+    /// make sense.
     std::function<std::vector<EffectColumn>(double)> at_value;
     /// The catalogue's parameters, the main one first, from the coefficients of a shape.
-    std::function<std::vector<EffectParameter>(const Eigen::VectorXd& coefficients, const EffectShape& shape)> parameters;
+    std::function<std::vector<EffectParameter>(const Eigen::VectorXd& coefficients, const EffectShape& shape)>
+        parameters;
 
     std::string key() const { return effect + '@' + where + ' ' + detail; }
 };

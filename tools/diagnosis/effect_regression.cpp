@@ -20,7 +20,8 @@ const Eigen::MatrixXd* SpectralColumn::on(Eigen::Index output) const {
 
 EffectRegression::EffectRegression(const SpectralRows& rows, const Eigen::MatrixXd& unexplained,
                                    Eigen::Index fitted_frames)
-    : rows_(rows), fitted_frames_(fitted_frames), noise_(Eigen::MatrixXd::Ones(rows.bins(), unexplained.cols())) {
+    : rows_(rows), fitted_frames_(fitted_frames),
+      noise_(Eigen::MatrixXd::Ones(rows.bins(), unexplained.cols())) {
     for (Eigen::Index output = 0; output < unexplained.cols(); ++output) {
         target_.push_back(rows.analyse(unexplained.col(output)));
     }

@@ -36,8 +36,10 @@ using SpectralColumnPointer = std::shared_ptr<const SpectralColumn>;
 /// Columns and what they are to explain, weighed by the noise of each output and frequency.
 class EffectRegression {
   public:
-    /// `unexplained`: T x m, what the rigid body leaves of the measurement. Only the first `fitted_frames` count.
-    EffectRegression(const SpectralRows& rows, const Eigen::MatrixXd& unexplained, Eigen::Index fitted_frames);
+    /// `unexplained`: T x m, what the rigid body leaves of the measurement. Only the first `fitted_frames`
+    /// count.
+    EffectRegression(const SpectralRows& rows, const Eigen::MatrixXd& unexplained,
+                     Eigen::Index fitted_frames);
 
     Eigen::Index outputs() const noexcept { return static_cast<Eigen::Index>(target_.size()); }
     Eigen::Index columns() const noexcept { return static_cast<Eigen::Index>(columns_.size()); }

@@ -12,7 +12,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double least_gain = 1e-6;      ///< of the evidence: below it nothing changes
+constexpr double least_gain = 1e-6;        ///< of the evidence: below it nothing changes
 constexpr double least_independent = 1e-5; ///< share of a column that the others must leave
 constexpr std::size_t most_effects = 48;
 
@@ -24,7 +24,8 @@ const SearchCandidate::Shape& shape_of(const SearchProblem& problem, const Chose
 double price(const SearchProblem& problem, const ChosenShape& chosen) {
     const SearchCandidate& candidate = problem.candidates[chosen.candidate];
     const auto parameters = static_cast<double>(candidate.shapes[chosen.shape].columns.size());
-    return std::log(static_cast<double>(problem.candidates.size() * candidate.shapes.size()) * candidate.tried) +
+    return std::log(static_cast<double>(problem.candidates.size() * candidate.shapes.size()) *
+                    candidate.tried) +
            0.5 * parameters * std::log1p(candidate.rows);
 }
 
@@ -85,8 +86,10 @@ Projection project(const SearchProblem& problem, const std::vector<Eigen::Index>
             factor.matrixL().solve(problem.sums.moment(columns))};
 }
 
-/// What a shape explains beyond the model; negative infinity when it may not, or the model leaves nothing of it.
-double gain_of(const SearchProblem& problem, const Projection& projection, const SearchCandidate::Shape& shape) {
+/// What a shape explains beyond the model; negative infinity when it may not, or the model leaves nothing of
+/// it.
+double gain_of(const SearchProblem& problem, const Projection& projection,
+               const SearchCandidate::Shape& shape) {
     constexpr double never = -std::numeric_limits<double>::infinity();
     const Eigen::MatrixXd seen = projection.seen(Eigen::all, shape.columns);
     const Eigen::MatrixXd own = problem.sums.gram(shape.columns, shape.columns);
@@ -102,7 +105,8 @@ double gain_of(const SearchProblem& problem, const Projection& projection, const
 }
 
 bool excludes(const std::vector<SearchCandidate>& candidates, std::size_t one, std::size_t other) {
-    return one == other || (candidates[one].family != 0 && candidates[one].family == candidates[other].family);
+    return one == other ||
+           (candidates[one].family != 0 && candidates[one].family == candidates[other].family);
 }
 
 std::vector<ChosenShape> without(std::vector<ChosenShape> chosen, std::size_t index) {
@@ -191,7 +195,8 @@ std::vector<ChosenShape> search_effects(const SearchProblem& problem, std::vecto
         if (at.chosen.size() < most_effects) {
             try_addition(best, problem, at.chosen);
         }
-        if (best.chosen.size() <= at.chosen.size()) { // nothing to add: is what there is the best of its kind?
+        if (best.chosen.size() <=
+            at.chosen.size()) { // nothing to add: is what there is the best of its kind?
             for (std::size_t i = 0; i < at.chosen.size(); ++i) {
                 const std::vector<ChosenShape> fewer = without(at.chosen, i);
                 keep_best(best, problem, fewer);

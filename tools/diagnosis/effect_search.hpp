@@ -27,7 +27,8 @@ struct ChosenShape {
     bool operator==(const ChosenShape&) const = default;
 };
 
-/// Columns that are always there, with the standard deviation of their coefficients before anything was measured.
+/// Columns that are always there, with the standard deviation of their coefficients before anything was
+/// measured.
 struct NuisanceColumn {
     Eigen::Index column = 0;
     double deviation = 1;
@@ -49,8 +50,8 @@ struct EffectFit {
     bool allowed = true;               ///< every coefficient has the sign it must have
 };
 
-/// Evidence of unit-information priors (Schwarz) for the effects' coefficients, of the given deviations for the nuisance;
-/// one in so many candidates is there, and any of its shapes is as likely.
+/// Evidence of unit-information priors (Schwarz) for the effects' coefficients, of the given deviations for
+/// the nuisance; one in so many candidates is there, and any of its shapes is as likely.
 EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShape>& chosen);
 
 /// What replacing nothing, or one of the chosen, by each other candidate would give.

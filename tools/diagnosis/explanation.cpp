@@ -27,11 +27,13 @@ struct Entry {
     std::size_t own_columns, own_shapes; ///< before refinement
 
     Entry(const SpectralRows& rows, Candidate one)
-        : candidate(std::move(one)), own_columns(candidate.columns.size()), own_shapes(candidate.shapes.size()) {
+        : candidate(std::move(one)), own_columns(candidate.columns.size()),
+          own_shapes(candidate.shapes.size()) {
         complete(rows);
     }
 
-    /// Shapes around the value of one of its shapes, in the place of earlier ones; returns where that shape now is.
+    /// Shapes around the value of one of its shapes, in the place of earlier ones; returns where that shape
+    /// now is.
     std::size_t refine(std::size_t chosen, const SpectralRows& rows) {
         const EffectShape shape = candidate.shapes[chosen];
         candidate.columns.resize(own_columns);
@@ -78,7 +80,8 @@ bool is_scanned(const Candidate& candidate) {
 
 class Search {
   public:
-    Search(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured, const ExplanationOptions& options)
+    Search(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
+           const ExplanationOptions& options)
         : signals_(signals), options_(options), rows_(signals.measured),
           regression_(rows_, measured - signals.nominal,
                       std::max<Eigen::Index>(
@@ -163,7 +166,8 @@ std::vector<Entry> Search::passing() const {
             }
         }
     };
-    add(sensor_candidates(signals_, signals_.nominal + at_.effects(signals_, is_of_the_arm), options_.gains_known));
+    add(sensor_candidates(signals_, signals_.nominal + at_.effects(signals_, is_of_the_arm),
+                          options_.gains_known));
     if (!signals_.wrench()) {
         add(drift_candidates(signals_, at_.effects(signals_, is_friction)));
     }
@@ -248,8 +252,9 @@ void Search::estimate_noise(bool white) {
     const Eigen::VectorXd coefficients = all_coefficients();
     Eigen::MatrixXd noise(rows_.bins(), regression_.outputs());
     for (Eigen::Index output = 0; output < noise.cols(); ++output) {
-        noise.col(output) = noise_spectrum(regression_.residual(output, coefficients),
-                                           static_cast<double>(at_.fit.columns.size()) / static_cast<double>(noise.cols()));
+        noise.col(output) =
+            noise_spectrum(regression_.residual(output, coefficients),
+                           static_cast<double>(at_.fit.columns.size()) / static_cast<double>(noise.cols()));
     }
     if (white) {
         noise = noise.colwise().mean().replicate(noise.rows(), 1).eval();
@@ -297,7 +302,8 @@ void accumulate(Eigen::MatrixXd& sum, double coefficient, const EffectColumn& co
 Eigen::Index Explanation::first_column(std::size_t chosen_index) const {
     auto first = static_cast<Eigen::Index>(problem.nuisance.size());
     for (std::size_t i = 0; i < chosen_index; ++i) {
-        first += static_cast<Eigen::Index>(candidates[chosen[i].candidate].shapes[chosen[i].shape].columns.size());
+        first +=
+            static_cast<Eigen::Index>(candidates[chosen[i].candidate].shapes[chosen[i].shape].columns.size());
     }
     return first;
 }
@@ -338,7 +344,8 @@ Eigen::MatrixXd Explanation::all(const DiagnosisSignals& signals) const {
     return sum;
 }
 
-Explanation explain(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured, const ExplanationOptions& options) {
+Explanation explain(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
+                    const ExplanationOptions& options) {
     return Search(signals, measured, options).run();
 }
 

@@ -28,7 +28,8 @@ struct Explanation {
     std::vector<EffectColumn> nuisance;
 
     /// T x m: what those of the chosen effects that are `wanted` add to the rigid body's outputs.
-    Eigen::MatrixXd effects(const DiagnosisSignals& signals, const std::function<bool(const Candidate&)>& wanted) const;
+    Eigen::MatrixXd effects(const DiagnosisSignals& signals,
+                            const std::function<bool(const Candidate&)>& wanted) const;
     /// T x m: all effects and the nuisance.
     Eigen::MatrixXd all(const DiagnosisSignals& signals) const;
     /// The coefficients of a chosen candidate's shape, and their covariance.
@@ -39,9 +40,10 @@ struct Explanation {
     Eigen::Index first_column(std::size_t chosen_index) const; ///< of `fit`
 };
 
-/// Searches among all candidates at once, in rounds: the noise is what the model at hand leaves, candidates that depend on
-/// the model (delays, gains, drifts, ripples, contacts) are made anew, shapes are refined, until nothing changes.
-/// `measured`: T x m, in N·m (N) also for currents.
-Explanation explain(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured, const ExplanationOptions& options);
+/// Searches among all candidates at once, in rounds: the noise is what the model at hand leaves, candidates
+/// that depend on the model (delays, gains, drifts, ripples, contacts) are made anew, shapes are refined,
+/// until nothing changes. `measured`: T x m, in N·m (N) also for currents.
+Explanation explain(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
+                    const ExplanationOptions& options);
 
 } // namespace dfdyn::tools

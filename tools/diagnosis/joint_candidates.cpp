@@ -17,8 +17,8 @@ struct JointSignals {
     Eigen::VectorXd position, velocity, direction;
 
     JointSignals(const DiagnosisSignals& signals, std::size_t number)
-        : all(signals), joint(number), where(numbered("joint", number)), output(static_cast<Eigen::Index>(number)),
-          position(signals.measured.motion.position.col(output)),
+        : all(signals), joint(number), where(numbered("joint", number)),
+          output(static_cast<Eigen::Index>(number)), position(signals.measured.motion.position.col(output)),
           velocity(signals.measured.motion.velocity.col(output)),
           direction((velocity.array() / signals.sign_velocity[output]).tanh()) {}
 
@@ -32,11 +32,12 @@ struct JointSignals {
 };
 
 Candidate viscous(const JointSignals& joint) {
-    return single_column("viscous_friction", joint.where, joint.column(joint.velocity), true, "viscous", "N·m·s/rad");
+    return single_column("viscous_friction", joint.where, joint.column(joint.velocity), true, "viscous",
+                         "N·m·s/rad");
 }
 
-/// Dahl's friction of level 1 that builds up over `distance` (rad): df/dq = (1 - f sgn q') / distance, exact for steps of
-/// constant direction (P. R. Dahl, "A solid friction model", 1968).
+/// Dahl's friction of level 1 that builds up over `distance` (rad): df/dq = (1 - f sgn q') / distance, exact
+/// for steps of constant direction (P. R. Dahl, "A solid friction model", 1968).
 Eigen::VectorXd dahl(const JointSignals& joint, double distance) {
     Eigen::VectorXd friction(joint.position.size());
     for (const Stretch& stretch : joint.all.measured.stretches) {
@@ -75,8 +76,8 @@ Candidate stribeck(const JointSignals& joint) {
     Candidate result = joint.candidate("stribeck_friction");
     result.family = "sliding at " + joint.where;
     const auto faded = [joint](double stribeck_velocity) {
-        return joint.column(
-            joint.direction.array() * (-(joint.velocity.array() / stribeck_velocity).square()).exp());
+        return joint.column(joint.direction.array() *
+                            (-(joint.velocity.array() / stribeck_velocity).square()).exp());
     };
     result.columns = {joint.column(joint.direction)};
     const double slowest = joint.all.sign_velocity[joint.output];
@@ -116,7 +117,8 @@ Candidate presliding(const JointSignals& joint) {
 
 Candidate spring(const JointSignals& joint) {
     Candidate result = joint.candidate("joint_spring");
-    result.columns = {joint.column(joint.position), joint.column(Eigen::VectorXd::Ones(joint.position.size()))};
+    result.columns = {joint.column(joint.position),
+                      joint.column(Eigen::VectorXd::Ones(joint.position.size()))};
     result.shapes = {{{0, 1}, {true, false}, 0}};
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
         return std::vector<EffectParameter>{{"stiffness", "N·m/rad", coefficients[0]},
@@ -146,13 +148,14 @@ std::vector<Candidate> joint_candidates(const DiagnosisSignals& signals) {
                                        joint.column(Eigen::VectorXd::Ones(signals.rows())), false, "offset",
                                        "N·m"));
         result.push_back(single_column("rotor_inertia", joint.where,
-                                       joint.column(signals.measured.motion.acceleration.col(joint.output)), true,
-                                       "inertia", "kg·m²"));
+                                       joint.column(signals.measured.motion.acceleration.col(joint.output)),
+                                       true, "inertia", "kg·m²"));
     }
     return result;
 }
 
-Candidate ripple_candidate(const DiagnosisSignals& signals, std::size_t number, const std::vector<int>& cycles) {
+Candidate ripple_candidate(const DiagnosisSignals& signals, std::size_t number,
+                           const std::vector<int>& cycles) {
     const JointSignals joint(signals, number);
     Candidate result = joint.candidate("torque_ripple");
     for (const int count : cycles) {
@@ -175,9 +178,9 @@ std::vector<Candidate> drift_candidates(const DiagnosisSignals& signals, const E
     const Eigen::VectorXd elapsed = signals.measured.time_s.array() - signals.measured.time_s[0];
     for (Eigen::Index joint = 0; joint < friction.cols(); ++joint) {
         if (friction.col(joint).any()) {
-            result.push_back(single_column("friction_drift", numbered("joint", static_cast<std::size_t>(joint)),
-                                           on_output(joint, friction.col(joint).cwiseProduct(elapsed)), false,
-                                           "rate", "1/s"));
+            result.push_back(single_column(
+                "friction_drift", numbered("joint", static_cast<std::size_t>(joint)),
+                on_output(joint, friction.col(joint).cwiseProduct(elapsed)), false, "rate", "1/s"));
         }
     }
     return result;

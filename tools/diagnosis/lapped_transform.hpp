@@ -5,12 +5,12 @@
 
 namespace dfdyn::tools {
 
-/// The modified discrete cosine transform: an orthonormal lapped transform (H. S. Malvar, "Signal Processing with Lapped
-/// Transforms", 1992), of which only the lowest frequencies are kept. The window is the power-complementary sine of a squared
-/// sine of Vorbis I, which leaks little. Its coefficients
-/// of coloured stationary noise are nearly independent, with the noise's spectral density as variance: so that
-/// least squares over them, weighed per frequency, know the noise's colour, and blocks of them are blocks of
-/// time. Frames of 2 `hop` samples, one every `hop`. Cost of a signal of T samples: 4 T bins.
+/// The modified discrete cosine transform: an orthonormal lapped transform (H. S. Malvar, "Signal Processing
+/// with Lapped Transforms", 1992), of which only the lowest frequencies are kept. The window is the
+/// power-complementary sine of a squared sine of Vorbis I, which leaks little. Its coefficients of coloured
+/// stationary noise are nearly independent, with the noise's spectral density as variance: so that least
+/// squares over them, weighed per frequency, know the noise's colour, and blocks of them are blocks of time.
+/// Frames of 2 `hop` samples, one every `hop`. Cost of a signal of T samples: 4 T bins.
 class LappedTransform {
   public:
     /// `hop`: samples; 1 <= bins <= hop.
@@ -28,7 +28,8 @@ class LappedTransform {
     Eigen::MatrixXd analyse(const Eigen::Ref<const Eigen::VectorXd>& signal) const;
 
     /// The transpose of `analyse`: a signal of `samples`.
-    Eigen::VectorXd synthesise(const Eigen::Ref<const Eigen::MatrixXd>& coefficients, Eigen::Index samples) const;
+    Eigen::VectorXd synthesise(const Eigen::Ref<const Eigen::MatrixXd>& coefficients,
+                               Eigen::Index samples) const;
 
   private:
     Eigen::Index hop_;

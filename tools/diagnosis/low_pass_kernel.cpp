@@ -43,8 +43,9 @@ Eigen::VectorXd differentiated(const Eigen::Ref<const Eigen::VectorXd>& signal) 
     }
     result.segment(1, count - 2) = (signal.tail(count - 2) - signal.head(count - 2)) / 2;
     if (count > 4) {
-        result.segment(2, count - 4) =
-            (8 * (signal.segment(3, count - 4) - signal.segment(1, count - 4)) - (signal.tail(count - 4) - signal.head(count - 4))) / 12;
+        result.segment(2, count - 4) = (8 * (signal.segment(3, count - 4) - signal.segment(1, count - 4)) -
+                                        (signal.tail(count - 4) - signal.head(count - 4))) /
+                                       12;
     }
     result[0] = 2 * result[1] - result[2];
     result[count - 1] = 2 * result[count - 2] - result[count - 3];

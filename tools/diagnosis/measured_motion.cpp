@@ -56,8 +56,9 @@ Eigen::Vector4d cubic_weights(const Recording& recording, std::size_t first, dou
     for (std::size_t i = 0; i < 4; ++i) {
         for (std::size_t j = 0; j < 4; ++j) {
             if (i != j) {
-                weights[static_cast<Eigen::Index>(i)] *= (time_s - recording.time_s[first + j]) /
-                                                         (recording.time_s[first + i] - recording.time_s[first + j]);
+                weights[static_cast<Eigen::Index>(i)] *=
+                    (time_s - recording.time_s[first + j]) /
+                    (recording.time_s[first + i] - recording.time_s[first + j]);
             }
         }
     }
@@ -74,10 +75,12 @@ Resampled resampled(const Recording& recording, const Stretch& stretch, double s
     const auto begin = static_cast<std::size_t>(stretch.first);
     const auto end = begin + static_cast<std::size_t>(stretch.count);
     const double start_s = recording.time_s[begin];
-    const auto rows = static_cast<Eigen::Index>(std::floor((recording.time_s[end - 1] - start_s) / step + 1e-6)) + 1;
+    const auto rows =
+        static_cast<Eigen::Index>(std::floor((recording.time_s[end - 1] - start_s) / step + 1e-6)) + 1;
     const Signals position = signals(recording.position);
     const Signals output = signals(recording.output);
-    Resampled result{Eigen::VectorXd(rows), Eigen::MatrixXd(rows, position.cols()), Eigen::MatrixXd(rows, output.cols())};
+    Resampled result{Eigen::VectorXd(rows), Eigen::MatrixXd(rows, position.cols()),
+                     Eigen::MatrixXd(rows, output.cols())};
     std::size_t next = begin;
     for (Eigen::Index row = 0; row < rows; ++row) {
         const double time_s = start_s + static_cast<double>(row) * step;
@@ -100,7 +103,8 @@ Eigen::MatrixXd position_power(const std::vector<Resampled>& stretches, const La
     Eigen::Index frames = 0;
     for (const Resampled& stretch : stretches) {
         for (Eigen::Index joint = 0; joint < power.cols(); ++joint) {
-            const Eigen::VectorXd centred = stretch.position.col(joint).array() - stretch.position.col(joint).mean();
+            const Eigen::VectorXd centred =
+                stretch.position.col(joint).array() - stretch.position.col(joint).mean();
             power.col(joint) += transform.analyse(centred).rowwise().squaredNorm();
         }
         frames += transform.frames(stretch.time_s.size());
@@ -113,7 +117,8 @@ struct PositionNoise {
     double trusted_hz = 0;
 };
 
-/// The noise is white: what is at the top of the spectrum. Positions are trusted up to where the last joint sinks into it.
+/// The noise is white: what is at the top of the spectrum. Positions are trusted up to where the last joint
+/// sinks into it.
 PositionNoise position_noise(const std::vector<Resampled>& stretches, double rate_hz) {
     const auto hop = std::max<Eigen::Index>(16, std::llround(rate_hz));
     const LappedTransform transform(hop, hop);
@@ -189,7 +194,8 @@ MeasuredMotion measured_motion(const Recording& recording) {
     MeasuredMotion result;
     result.rate_hz = rate_hz / static_cast<double>(decimation);
     result.smoothing_hz = std::clamp(1.2 * noise.trusted_hz, 5.0, 0.3 * result.rate_hz);
-    // white noise of variance s² per sample at `rate`, low-passed at f and differentiated: (2π)² s² · 2/rate · f³/3
+    // white noise of variance s² per sample at `rate`, low-passed at f and differentiated: (2π)² s² · 2/rate
+    // · f³/3
     const double f = result.smoothing_hz;
     result.velocity_noise =
         (2 * std::numbers::pi * std::sqrt(2 * step * f * f * f / 3) * noise.power.array().sqrt()).matrix();

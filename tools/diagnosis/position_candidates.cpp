@@ -35,7 +35,8 @@ Eigen::VectorXd flank(const DiagnosisSignals& signals, std::size_t joint) {
     const Eigen::VectorXd side = (load.array() / softness).tanh();
     Eigen::VectorXd result(side.size());
     for (const Stretch& stretch : signals.measured.stretches) {
-        result.segment(stretch.first, stretch.count) = filtered(side.segment(stretch.first, stretch.count), kernel);
+        result.segment(stretch.first, stretch.count) =
+            filtered(side.segment(stretch.first, stretch.count), kernel);
     }
     return result;
 }
@@ -47,13 +48,14 @@ std::vector<Candidate> position_candidates(const DiagnosisSignals& signals) {
     for (std::size_t joint = 0; joint < signals.joints(); ++joint) {
         const std::string where = numbered("joint", joint);
         const auto index = static_cast<Eigen::Index>(joint);
-        result.push_back(single_column(
-            "encoder_offset", numbered("encoder", joint),
-            on_outputs(signals.of_position(joint, -Eigen::VectorXd::Ones(signals.rows()))), false, "offset", "rad"));
+        result.push_back(
+            single_column("encoder_offset", numbered("encoder", joint),
+                          on_outputs(signals.of_position(joint, -Eigen::VectorXd::Ones(signals.rows()))),
+                          false, "offset", "rad"));
         result.push_back(eccentricity(signals, joint));
         result.push_back(single_column("backlash", where,
-                                       on_outputs(signals.of_position(joint, -flank(signals, joint) / 2)), true,
-                                       "gap", "rad"));
+                                       on_outputs(signals.of_position(joint, -flank(signals, joint) / 2)),
+                                       true, "gap", "rad"));
         Candidate flexibility = single_column(
             "joint_flexibility", where,
             on_outputs(signals.of_position(joint, -signals.joint_torque.col(index))), true, "", "");

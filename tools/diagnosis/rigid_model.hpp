@@ -11,16 +11,18 @@
 
 namespace dfdyn::tools {
 
-/// The rigid body's outputs along a motion: joint torques (N·m; also where currents were measured) or the wrench at the
-/// sensor. T x m. Cost: T times one recursive Newton-Euler pass.
+/// The rigid body's outputs along a motion: joint torques (N·m; also where currents were measured) or the
+/// wrench at the sensor. T x m. Cost: T times one recursive Newton-Euler pass.
 Eigen::MatrixXd rigid_outputs(const Robot& robot, OutputKind outputs, const RobotMotion& motion);
 
 /// How the outputs answer to small changes of the motion, joint by joint (T x m each; central differences).
 struct MotionSensitivity {
     std::vector<Eigen::MatrixXd> position, velocity, acceleration; ///< per joint
 
-    /// The change of the outputs when the position of `joint` were `change` (per row) larger, and its derivatives too.
-    Eigen::MatrixXd of(std::size_t joint, const Eigen::VectorXd& change, const Eigen::VectorXd& change_velocity,
+    /// The change of the outputs when the position of `joint` were `change` (per row) larger, and its
+    /// derivatives too.
+    Eigen::MatrixXd of(std::size_t joint, const Eigen::VectorXd& change,
+                       const Eigen::VectorXd& change_velocity,
                        const Eigen::VectorXd& change_acceleration) const;
 };
 

@@ -22,7 +22,8 @@ struct Scored {
     int cycles = 0;
 };
 
-/// Sum of squares that a ripple would explain, per number of cycles; its energy is taken at the frequency of each instant.
+/// Sum of squares that a ripple would explain, per number of cycles; its energy is taken at the frequency of
+/// each instant.
 std::vector<Scored> ripple_gains(const DiagnosisSignals& signals, const EffectRegression& regression,
                                  const Eigen::MatrixXd& weighed, Eigen::Index joint) {
     const Eigen::VectorXd position = signals.measured.motion.position.col(joint);
@@ -74,7 +75,8 @@ bool overlap(const Window& one, const Window& other) {
 
 /// All windows of one length over one output; counted by `tried`.
 void scan_windows(const DiagnosisSignals& signals, const EffectRegression& regression,
-                  const Eigen::VectorXd& weighed, Window window, double length_s, std::vector<Window>& found) {
+                  const Eigen::VectorXd& weighed, Window window, double length_s,
+                  std::vector<Window>& found) {
     const Eigen::VectorXd& time = signals.measured.time_s;
     const auto length = static_cast<Eigen::Index>(length_s * signals.measured.rate_hz);
     const Eigen::Index middle = time.size() / 2;
@@ -86,7 +88,8 @@ void scan_windows(const DiagnosisSignals& signals, const EffectRegression& regre
     const Eigen::VectorXd weight = regression.noise().col(window.output).cwiseSqrt().cwiseInverse();
     const double energy = (weight.asDiagonal() * regression.rows().analyse(series)).squaredNorm();
     const Eigen::VectorXd shape = series.segment(middle, length);
-    for (Eigen::Index first = 0; first + length < time.size(); first += std::max<Eigen::Index>(1, length / 8)) {
+    for (Eigen::Index first = 0; first + length < time.size();
+         first += std::max<Eigen::Index>(1, length / 8)) {
         const double product = weighed.segment(first, length).dot(shape);
         window.gain = product * product / energy;
         window.start_s = time[first];
@@ -95,8 +98,10 @@ void scan_windows(const DiagnosisSignals& signals, const EffectRegression& regre
     }
 }
 
-/// Without what happens around a joint's reversals: there a friction that is not quite right leaves pulses of its own.
-Eigen::VectorXd away_from_reversals(const DiagnosisSignals& signals, Eigen::VectorXd series, Eigen::Index joint) {
+/// Without what happens around a joint's reversals: there a friction that is not quite right leaves pulses of
+/// its own.
+Eigen::VectorXd away_from_reversals(const DiagnosisSignals& signals, Eigen::VectorXd series,
+                                    Eigen::Index joint) {
     if (signals.wrench()) {
         return series;
     }
@@ -119,7 +124,8 @@ Eigen::MatrixXd weighed_residual(const EffectRegression& regression, const Eigen
     for (Eigen::Index output = 0; output < regression.outputs(); ++output) {
         Eigen::MatrixXd left = Eigen::MatrixXd::Zero(rows.bins(), rows.frames());
         left.leftCols(regression.fitted_frames()) =
-            regression.noise().col(output).cwiseInverse().asDiagonal() * regression.residual(output, coefficients);
+            regression.noise().col(output).cwiseInverse().asDiagonal() *
+            regression.residual(output, coefficients);
         series.push_back(rows.synthesise(left));
     }
     Eigen::MatrixXd result(series.front().size(), regression.outputs());
@@ -156,7 +162,8 @@ std::vector<Candidate> scan_contacts(const DiagnosisSignals& signals, const Effe
     std::ranges::sort(windows, std::greater<>{}, &Window::gain);
     std::vector<Window> kept;
     for (const Window& window : windows) {
-        const bool seen = std::any_of(kept.begin(), kept.end(), [&](const Window& one) { return overlap(one, window); });
+        const bool seen =
+            std::any_of(kept.begin(), kept.end(), [&](const Window& one) { return overlap(one, window); });
         if (!seen && kept.size() < most) {
             kept.push_back(window);
         }

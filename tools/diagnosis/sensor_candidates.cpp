@@ -27,11 +27,13 @@ Candidate per_axis(const char* effect, const Eigen::VectorXd& series, const char
         result.shapes.push_back({{first, first + 1, first + 2}, {false, false, false}, 0});
     }
     result.shapes.push_back(whole_shape(result, false));
-    result.parameters = [per = std::string(per)](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
+    result.parameters = [per = std::string(per)](const Eigen::VectorXd& coefficients,
+                                                 const EffectShape& shape) {
         std::vector<EffectParameter> values;
         for (std::size_t i = 0; i < shape.columns.size(); ++i) {
             const std::size_t axis = shape.columns[i];
-            values.push_back({axes[axis], axis_units[axis] + per, coefficients[static_cast<Eigen::Index>(i)]});
+            values.push_back(
+                {axes[axis], axis_units[axis] + per, coefficients[static_cast<Eigen::Index>(i)]});
         }
         return values;
     };
@@ -44,8 +46,9 @@ Candidate axis_gain(const Eigen::MatrixXd& wrench, Eigen::Index from, Eigen::Ind
     const auto source = static_cast<std::size_t>(from);
     const auto sink = static_cast<std::size_t>(to);
     const std::string unit = std::string(axis_units[sink]) + "/" + axis_units[source];
-    Candidate result = single_column(own ? "ft_gain" : "ft_crosstalk", "ft_sensor", on_output(to, wrench.col(from)),
-                                     false, "gain", own ? "1" : unit, 1, own ? 1 : 0);
+    Candidate result =
+        single_column(own ? "ft_gain" : "ft_crosstalk", "ft_sensor", on_output(to, wrench.col(from)), false,
+                      "gain", own ? "1" : unit, 1, own ? 1 : 0);
     result.detail = std::string(axes[source]) + " to " + axes[sink];
     result.parameters = [own, from, to, unit](const Eigen::VectorXd& coefficients, const EffectShape&) {
         const auto axis_from = static_cast<double>(from);
@@ -129,18 +132,21 @@ std::vector<Candidate> sensor_candidates(const DiagnosisSignals& signals, const 
     return result;
 }
 
-Candidate contact_candidate(const DiagnosisSignals& signals, Eigen::Index output, double start_s, double end_s) {
+Candidate contact_candidate(const DiagnosisSignals& signals, Eigen::Index output, double start_s,
+                            double end_s) {
     const double rise_s = std::min(0.15, (end_s - start_s) / 2);
     Eigen::VectorXd pulse(signals.rows());
     for (Eigen::Index row = 0; row < pulse.size(); ++row) {
-        const double inside = std::min(signals.measured.time_s[row] - start_s, end_s - signals.measured.time_s[row]);
+        const double inside =
+            std::min(signals.measured.time_s[row] - start_s, end_s - signals.measured.time_s[row]);
         const double share = std::clamp(inside / rise_s, 0.0, 1.0);
         pulse[row] = (1 - std::cos(std::numbers::pi * share)) / 2;
     }
     Candidate result;
     result.effect = "external_contact";
     result.where = signals.wrench() ? "ft_sensor" : numbered("joint", static_cast<std::size_t>(output));
-    result.detail = number_text(start_s) + " to " + number_text(end_s) + " s on output " + std::to_string(output);
+    result.detail =
+        number_text(start_s) + " to " + number_text(end_s) + " s on output " + std::to_string(output);
     // what the surroundings exert, the actuators need not
     result.columns = {on_output(output, signals.wrench() ? pulse : Eigen::VectorXd(-pulse))};
     result.shapes = {whole_shape(result, false)};

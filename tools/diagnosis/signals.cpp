@@ -22,7 +22,8 @@ Eigen::MatrixXd DiagnosisSignals::of_position(std::size_t joint, const Eigen::Ve
     return sensitivity.of(joint, change, velocity, rate(velocity));
 }
 
-Eigen::MatrixXd DiagnosisSignals::of_body(Eigen::Index body, const Eigen::Matrix<double, 10, 1>& parameters) const {
+Eigen::MatrixXd DiagnosisSignals::of_body(Eigen::Index body,
+                                          const Eigen::Matrix<double, 10, 1>& parameters) const {
     return unstacked(regressor.middleCols<10>(10 * body) * parameters, outputs());
 }
 

@@ -11,9 +11,10 @@ struct DiagnosisSignals {
     Robot robot;
     OutputKind kind = OutputKind::joint_torque;
     MeasuredMotion measured;
-    Eigen::MatrixXd nominal;       ///< T x m: the rigid body along the motion; N·m also for currents
-    Eigen::MatrixXd joint_torque;  ///< T x n: the rigid body's torques; `nominal` unless the outputs are a wrench
-    Eigen::MatrixXd regressor;     ///< T m x 10 bodies, rows t m + k: of the rigid body
+    Eigen::MatrixXd nominal; ///< T x m: the rigid body along the motion; N·m also for currents
+    Eigen::MatrixXd
+        joint_torque;          ///< T x n: the rigid body's torques; `nominal` unless the outputs are a wrench
+    Eigen::MatrixXd regressor; ///< T m x 10 bodies, rows t m + k: of the rigid body
     MotionSensitivity sensitivity;
     Eigen::VectorXd sign_velocity; ///< n, rad/s: below it the direction of motion is not certain
 
@@ -26,7 +27,8 @@ struct DiagnosisSignals {
     Eigen::VectorXd rate(const Eigen::VectorXd& series) const;
     /// The outputs that a change of the true position of `joint` brings, T x m.
     Eigen::MatrixXd of_position(std::size_t joint, const Eigen::VectorXd& change) const;
-    /// The outputs of a body with these ten parameters that is fixed to link `body` (0: the first that counts).
+    /// The outputs of a body with these ten parameters that is fixed to link `body` (0: the first that
+    /// counts).
     Eigen::MatrixXd of_body(Eigen::Index body, const Eigen::Matrix<double, 10, 1>& parameters) const;
 };
 

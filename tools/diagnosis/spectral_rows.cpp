@@ -17,7 +17,8 @@ LappedTransform transform_at(double rate_hz) {
 } // namespace
 
 SpectralRows::SpectralRows(const MeasuredMotion& measured)
-    : transform_(transform_at(measured.rate_hz)), stretches_(measured.stretches), rows_(measured.time_s.size()) {
+    : transform_(transform_at(measured.rate_hz)), stretches_(measured.stretches),
+      rows_(measured.time_s.size()) {
     for (const Stretch& stretch : stretches_) {
         const Eigen::Index count = transform_.frames(stretch.count);
         for (Eigen::Index frame = 0; frame < count; ++frame) {
@@ -54,7 +55,8 @@ Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, double param
     const Eigen::Index bins = coefficients.rows();
     const auto total = static_cast<double>(coefficients.size());
     const double spent = std::max(total / 2, total - parameters) / total;
-    const Eigen::VectorXd power = coefficients.rowwise().squaredNorm() / (spent * static_cast<double>(coefficients.cols()));
+    const Eigen::VectorXd power =
+        coefficients.rowwise().squaredNorm() / (spent * static_cast<double>(coefficients.cols()));
     Eigen::VectorXd spectrum(bins);
     for (Eigen::Index bin = 0; bin < bins; ++bin) {
         const Eigen::Index reach = std::min<Eigen::Index>({1 + bin / 6, bin, bins - 1 - bin});
