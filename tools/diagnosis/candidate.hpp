@@ -43,9 +43,9 @@ struct Candidate {
     double extra_price = 0; ///< what it must explain, in units of the evidence, because others of its kind do
     std::vector<EffectColumn> columns;
     std::vector<EffectShape> shapes;
-    /// Columns for another value of the shape's parameter; empty where there is none, or only the listed ones
-    /// make sense.
-    std::function<std::vector<EffectColumn>(double)> at_value;
+    /// The last column of a shape for another value of its parameter; empty where there is none, or only the
+    /// listed ones make sense.
+    std::function<EffectColumn(const EffectShape& shape, double value)> at_value;
     /// The catalogue's parameters, the main one first, from the coefficients of a shape.
     std::function<std::vector<EffectParameter>(const Eigen::VectorXd& coefficients, const EffectShape& shape)>
         parameters;

@@ -42,11 +42,8 @@ struct Entry {
         for (const double factor : {1.0, 0.75, 0.87, 0.95, 1.05, 1.15, 1.33}) {
             EffectShape near = shape;
             near.value = factor * shape.value;
-            const std::vector<EffectColumn> made = candidate.at_value(near.value);
-            for (std::size_t i = 0; i < made.size(); ++i) {
-                near.columns[i] = candidate.columns.size();
-                candidate.columns.push_back(made[i]);
-            }
+            near.columns.back() = candidate.columns.size();
+            candidate.columns.push_back(candidate.at_value(shape, near.value));
             candidate.shapes.push_back(std::move(near));
         }
         // so close to each other they do not count as alternatives
@@ -122,6 +119,7 @@ class Search {
 
   private:
     void add_nuisance();
+    std::vector<Candidate> demanding_as_chosen(std::vector<Candidate> contacts) const;
     std::vector<Entry> passing() const;
     void refine();
     void gather(std::vector<Entry> passing);
@@ -157,6 +155,20 @@ void Search::add_nuisance() {
     at_.masses_uncertain = true;
 }
 
+/// Once the largest events are chosen, those left stand out less against each other: they are judged as the
+/// first were.
+std::vector<Candidate> Search::demanding_as_chosen(std::vector<Candidate> contacts) const {
+    for (Candidate& contact : contacts) {
+        for (const ChosenShape& one : at_.chosen) {
+            const Candidate& chosen = at_.candidates[one.candidate];
+            if (chosen.effect == contact.effect && chosen.where == contact.where) {
+                contact.extra_price = std::max(contact.extra_price, chosen.extra_price);
+            }
+        }
+    }
+    return contacts;
+}
+
 /// Candidates that depend on the model at hand. Ripples and contacts that were chosen stay as they are.
 std::vector<Entry> Search::passing() const {
     std::vector<Candidate> found;
@@ -179,7 +191,7 @@ std::vector<Entry> Search::passing() const {
     }
     const Eigen::MatrixXd weighed = weighed_residual(regression_, all_coefficients());
     add(scan_ripples(signals_, regression_, weighed));
-    add(scan_contacts(signals_, regression_, weighed));
+    add(demanding_as_chosen(scan_contacts(signals_, regression_, weighed)));
     std::vector<Entry> result;
     for (Candidate& candidate : found) {
         result.emplace_back(rows_, std::move(candidate));

@@ -99,11 +99,33 @@ void measure_gain(Finding& finding, const Eigen::MatrixXd& contribution, const E
     finding.rms_before = rms(left.col(finding.output) + contribution.col(finding.output));
 }
 
+bool same_contact(const Finding& one, const Finding& other) {
+    constexpr double apart_s = 0.5;
+    const auto start_s = [](const Finding& finding) { return finding.parameters[0].value; };
+    const auto end_s = [](const Finding& finding) { return finding.parameters[1].value; };
+    return one.effect == "external_contact" && other.effect == one.effect && one.where == other.where &&
+           start_s(one) < end_s(other) + apart_s && start_s(other) < end_s(one) + apart_s;
+}
+
+/// A contact shows on several axes, and by more than one pulse: the strongest of them tells of it.
+std::vector<Finding> without_repeated_contacts(std::vector<Finding> findings) {
+    std::vector<Finding> kept;
+    for (Finding& finding : findings) {
+        if (std::none_of(kept.begin(), kept.end(),
+                         [&](const Finding& one) { return same_contact(one, finding); })) {
+            kept.push_back(std::move(finding));
+        }
+    }
+    return kept;
+}
+
 } // namespace
 
 double calibrated_confidence(double margin_to_nothing, double margin_to_others) {
-    const double margin = std::min(margin_to_nothing, margin_to_others);
-    return 1 / (1 + std::exp(-0.5 * margin));
+    // fitted to what was right and wrong in simulated recordings; see docs/diagnosis.md
+    const double score = -4.1 + 0.72 * std::log(std::max(margin_to_nothing, 0.1)) +
+                         0.50 * std::log(std::clamp(margin_to_others, 0.1, 1e4));
+    return 1 / (1 + std::exp(-score));
 }
 
 std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanation& explanation,
@@ -134,7 +156,7 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
     }
     std::ranges::sort(findings, std::greater<>{},
                       [](const Finding& finding) { return finding.margin_to_nothing; });
-    return findings;
+    return without_repeated_contacts(std::move(findings));
 }
 
 } // namespace dfdyn::tools

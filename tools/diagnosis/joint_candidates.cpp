@@ -55,14 +55,23 @@ Eigen::VectorXd dahl(const JointSignals& joint, double distance) {
 
 constexpr double shortest_presliding = 3e-3; // rad; what builds up over less is called Coulomb friction
 
+/// Which way a joint slides, in columns 0 to 2 of Coulomb's and Stribeck's friction: by its velocity, or by
+/// its travel, which keeps the direction where the joint stands.
+std::vector<Eigen::VectorXd> directions(const JointSignals& joint) {
+    return {joint.direction, dahl(joint, shortest_presliding / 8), dahl(joint, shortest_presliding / 3)};
+}
+
 Candidate coulomb(const JointSignals& joint) {
     Candidate result = joint.candidate("coulomb_friction");
     result.family = "sliding at " + joint.where;
-    result.columns = {joint.column(joint.direction), joint.column(dahl(joint, shortest_presliding / 8)),
-                      joint.column(dahl(joint, shortest_presliding / 3)),
-                      joint.column(joint.direction.array().square().matrix())};
-    result.shapes = {
-        {{0}, is_positive, 0}, {{1}, is_positive, 1}, {{2}, is_positive, 2}, {{0, 3}, first_is_positive, 3}};
+    for (Eigen::VectorXd& direction : directions(joint)) {
+        result.shapes.push_back({{result.columns.size()}, is_positive, 0});
+        result.columns.push_back(joint.column(std::move(direction)));
+    }
+    result.columns.push_back(joint.column(joint.direction.array().square().matrix()));
+    for (std::size_t i = 0; i < 3; ++i) {
+        result.shapes.push_back({{i, 3}, first_is_positive, 0});
+    }
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
         if (shape.columns.size() == 1) {
             return std::vector<EffectParameter>{{"coulomb", "N·m", coefficients[0]}};
@@ -76,20 +85,23 @@ Candidate coulomb(const JointSignals& joint) {
 Candidate stribeck(const JointSignals& joint) {
     Candidate result = joint.candidate("stribeck_friction");
     result.family = "sliding at " + joint.where;
-    const auto faded = [joint](double stribeck_velocity) {
-        return joint.column(joint.direction.array() *
+    const std::vector<Eigen::VectorXd> sliding = directions(joint);
+    const auto faded = [sliding, joint](std::size_t direction, double stribeck_velocity) {
+        return joint.column(sliding[direction].array() *
                             (-(joint.velocity.array() / stribeck_velocity).square()).exp());
     };
-    result.columns = {joint.column(joint.direction)};
+    for (const Eigen::VectorXd& direction : sliding) {
+        result.columns.push_back(joint.column(direction));
+    }
     const double slowest = joint.all.sign_velocity[joint.output];
     for (const double stribeck_velocity : {0.01, 0.02, 0.04, 0.08, 0.16, 0.32}) {
-        if (stribeck_velocity > 1.5 * slowest) {
-            result.shapes.push_back({{0, result.columns.size()}, is_positive, stribeck_velocity});
-            result.columns.push_back(faded(stribeck_velocity));
+        for (std::size_t i = 0; i < sliding.size() && stribeck_velocity > 1.5 * slowest; ++i) {
+            result.shapes.push_back({{i, result.columns.size()}, is_positive, stribeck_velocity});
+            result.columns.push_back(faded(i, stribeck_velocity));
         }
     }
-    result.at_value = [joint, faded](double value) {
-        return std::vector<EffectColumn>{joint.column(joint.direction), faded(value)};
+    result.at_value = [faded](const EffectShape& shape, double value) {
+        return faded(shape.columns.front(), value);
     };
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
         return std::vector<EffectParameter>{{"coulomb", "N·m", coefficients[0]},
@@ -106,8 +118,8 @@ Candidate presliding(const JointSignals& joint) {
         result.shapes.push_back({{result.columns.size()}, is_positive, distance});
         result.columns.push_back(joint.column(dahl(joint, distance)));
     }
-    result.at_value = [joint](double distance) {
-        return std::vector<EffectColumn>{joint.column(dahl(joint, distance))};
+    result.at_value = [joint](const EffectShape& /*shape*/, double distance) {
+        return joint.column(dahl(joint, distance));
     };
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
         return std::vector<EffectParameter>{{"stiffness", "N·m/rad", coefficients[0] / shape.value},
@@ -144,8 +156,8 @@ std::vector<Candidate> joint_candidates(const DiagnosisSignals& signals) {
         result.push_back(presliding(joint));
         result.push_back(spring(joint));
         result.push_back(single_column("load_dependent_friction", joint.where,
-                                       joint.column(load.cwiseProduct(joint.direction)), positive_up_to(1),
-                                       "mu", "1"));
+                                       joint.column(load.cwiseProduct(dahl(joint, shortest_presliding / 8))),
+                                       positive_up_to(1), "mu", "1"));
         result.push_back(single_column("torque_offset", joint.where,
                                        joint.column(Eigen::VectorXd::Ones(signals.rows())), is_anything,
                                        "offset", "N·m"));

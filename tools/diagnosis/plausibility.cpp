@@ -66,12 +66,13 @@ void suspect_position_unit(const Robot& robot, const Recording& recording, Suspi
     if (beyond.empty()) {
         return;
     }
-    result.fatal = true;
-    std::string text = std::string("positions of joint ") + joint_list(beyond) + " are up to " +
-                       in_words(factor) + " times beyond the joints' limits: ";
-    text += factor > degrees ? "looks like thousandths (mrad, mm)"
-            : factor > 1.5   ? "looks like degrees"
-                             : "another zero, or another robot";
+    constexpr double another_unit = 5; // an encoder's error is less than that
+    result.fatal = factor > another_unit;
+    std::string text("positions of joint ");
+    text += joint_list(beyond) + " are up to " + in_words(factor) + " times beyond the joints' limits: ";
+    text += factor > 2 * degrees    ? "looks like thousandths (mrad, mm)"
+            : factor > another_unit ? "looks like degrees"
+                                    : "another zero, or another robot";
     result.sentences.push_back(std::move(text));
 }
 

@@ -181,7 +181,7 @@ std::vector<Candidate> scan_ripples(const DiagnosisSignals& signals, const Effec
 
 std::vector<Candidate> scan_contacts(const DiagnosisSignals& signals, const EffectRegression& regression,
                                      const Eigen::MatrixXd& weighed) {
-    constexpr std::size_t usual = 3; // an event must stand out against this one of its kind
+    constexpr std::size_t usual = 3; // an event must explain three times what this one of its kind does
     std::vector<Candidate> result;
     for (Eigen::Index output = 0; output < regression.outputs(); ++output) {
         const Eigen::VectorXd calm = away_from_reversals(signals, weighed.col(output), output);
@@ -193,7 +193,7 @@ std::vector<Candidate> scan_contacts(const DiagnosisSignals& signals, const Effe
         if (events.size() > usual) {
             result.push_back(contact_candidate(signals, output, pulses_around(events.front())));
             result.back().tried = static_cast<double>(windows.size());
-            result.back().extra_price = events[usual].gain;
+            result.back().extra_price = 1.5 * events[usual].gain;
         }
     }
     return result;
