@@ -14,7 +14,8 @@ double Contact::pulse(double time_s) const {
     return wave * wave;
 }
 
-JointVector JointLoads::torque(const JointVector& position, double time_s) const {
+JointVector JointLoads::torque(const JointVector& position, const JointVector& velocity,
+                               double time_s) const {
     JointVector result = JointVector::Zero(position.size());
     if (springs) {
         result += springs->stiffness.cwiseProduct(springs->rest - position);
@@ -27,6 +28,9 @@ JointVector JointLoads::torque(const JointVector& position, double time_s) const
         if (contact.joint) {
             result[*contact.joint] += contact.peak * contact.pulse(time_s);
         }
+    }
+    if (further) {
+        result += further(position, velocity);
     }
     return result;
 }

@@ -3,6 +3,7 @@
 
 #include "tools/simulation/joint_vector.hpp"
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -37,11 +38,13 @@ struct JointLoads {
     std::optional<JointSprings> springs;
     std::optional<TorqueRipple> ripple;
     std::vector<Contact> contacts;
+    /// Whatever else acts on the joints (N·m), from their positions and velocities; not in a scenario's file.
+    std::function<JointVector(const JointVector& position, const JointVector& velocity)> further;
 
-    bool none() const noexcept { return !springs && !ripple && contacts.empty(); }
+    bool none() const noexcept { return !springs && !ripple && contacts.empty() && !further; }
 
     /// What acts on the joints, without contacts at the tip. N·m.
-    JointVector torque(const JointVector& position, double time_s) const;
+    JointVector torque(const JointVector& position, const JointVector& velocity, double time_s) const;
 
     /// What acts at the tip, N in the base's frame.
     Eigen::Vector3d tip_force(double time_s) const;

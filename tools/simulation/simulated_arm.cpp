@@ -69,9 +69,10 @@ void SimulatedArm::apply(const JointVector& command) {
     if (actuators_.torque_limit) {
         command_ = command.cwiseMin(*actuators_.torque_limit).cwiseMax(-*actuators_.torque_limit);
     }
-    if (actuators_.bandwidth_hz > 0) {
+    if (actuators_.bandwidth_hz > 0 && commanded_) {
         return; // the torque follows
     }
+    commanded_ = true;
     state_.torque = command_;
     accelerate();
 }
@@ -109,7 +110,7 @@ JointVector SimulatedArm::acceleration_at(const ArmDynamics::Configuration& conf
         }
     }
     if (!loads_.none()) {
-        torque += loads_.torque(position.head(joints), instant.time_s);
+        torque += loads_.torque(position.head(joints), velocity.head(joints), instant.time_s);
         const Eigen::Vector3d force = loads_.tip_force(instant.time_s);
         if (!force.isZero(0)) {
             torque += dynamics_.tip_jacobian(configuration).transpose() * force;

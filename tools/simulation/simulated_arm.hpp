@@ -88,7 +88,8 @@ class SimulatedArm {
     std::vector<Eigen::Index> motor_; ///< per joint: which coordinate is its motor's
     JointVector position_, velocity_; ///< coordinates: joints, then motors of soft ones
     JointVector command_;
-    JointVector load_; ///< N·m, what the gears pass on; friction sees it a step later
+    bool commanded_ = false; ///< the first command is there before the brakes let go
+    JointVector load_;       ///< N·m, what the gears pass on; friction sees it a step later
     double time_s_ = 0;
     State state_;
     ArmDynamics::Configuration configuration_, stage_;
