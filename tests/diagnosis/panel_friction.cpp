@@ -99,6 +99,7 @@ DrawnEffect load_dependent(const EffectDraw& of, Eigen::Index joint) {
         LuGreParameters& friction = friction_of(scenario, joint);
         friction.load_coefficient = size;
         add_bristles(friction, size * load, stiff_bend, inertia);
+        friction.damping = 0;
     };
     effect.parameters = [](double size) { return EffectParameters{{"mu", size}}; };
     effect.guess = of.wanted(joint) / load;

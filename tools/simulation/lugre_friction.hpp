@@ -14,7 +14,8 @@ struct LuGreParameters {
     double breakaway = 0;         ///< static friction, N·m; at least `coulomb`
     double stribeck_velocity = 1; ///< rad/s, positive
     double negative_excess = 0;   ///< N·m: how much higher the level is while the joint moves backwards
-    double load_coefficient = 0;  ///< N·m of level per N·m of load, either sign of load alike
+    double load_coefficient = 0;  ///< N·m of level per N·m of load, either sign of load alike; only without
+                                  ///< damping, which would blow up where the load vanishes
     double drift_per_s = 0;       ///< 1/s: relative change of level and viscous friction since t = 0
 };
 

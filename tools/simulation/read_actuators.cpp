@@ -50,6 +50,10 @@ std::vector<LuGreParameters> read_friction(const ScenarioReader& reader) {
                                       "stribeck_velocity_rad_per_s at every joint",
                                       "0 or less");
         }
+        if (one.load_coefficient > 0 && one.damping != 0) {
+            throw reader.json().error("damping_nms_per_rad", "no damping where there is a load_coefficient",
+                                      number_text(one.damping));
+        }
         if (one.breakaway < one.coulomb) {
             throw reader.json().error("static_nm", "at least coulomb_nm at every joint", "less");
         }
