@@ -15,6 +15,7 @@ struct DrawnEffect {
     std::function<void(double size, tools::Scenario&)> hide;
     std::function<EffectParameters(double size)> parameters; ///< main parameter first
     std::function<void(tools::Robot&)> rebuild;              ///< of the arm that is simulated; may be none
+    bool soft = false;                                       ///< encoders vibrate against links
     double guess = 0;                                        ///< size that may have the strength wanted
     double largest = 0;                                      ///< that physics, or good sense, allows
     double integration_rate_hz = 2000;                       ///< at least

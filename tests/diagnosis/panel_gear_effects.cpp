@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace dfdyn::tests {
 
@@ -12,37 +13,73 @@ using namespace tools;
 
 namespace {
 
-constexpr double rotor_share = 0.15;       // of the link's own inertia about its axis
+constexpr double rotor_share = 0.6;        // of the least inertia that the joint can have
 constexpr double contact_frequency = 1000; // rad/s, of the rotor on a closed gear
+constexpr double slowest_frequency = 25;   // rad/s, of the arm on a soft gear
 constexpr double gear_integration_rate_hz = 4000;
 
-/// Inertia about the joint's axis of the link that it moves.
-double own_inertia(const RobotJoint& joint) {
-    const InertialParameters& body = joint.inertia;
-    Eigen::Matrix3d inertia;
-    inertia << body[4], body[5], body[6], body[5], body[7], body[8], body[6], body[8], body[9];
-    return joint.axis.dot(inertia * joint.axis);
+/// Inertias that a joint has during the reference motion: while the other joints are free, and while they are
+/// held.
+struct JointInertia {
+    double least_free = std::numeric_limits<double>::infinity();
+    Eigen::VectorXd mean_held; ///< of all joints
+};
+
+JointInertia joint_inertia(const PanelSetup& setup, Eigen::Index joint) {
+    const ArmDynamics dynamics(setup.robot, JointVector::Zero(setup.joints()));
+    ArmDynamics::Configuration configuration;
+    JointInertia result;
+    result.mean_held = Eigen::VectorXd::Zero(setup.joints());
+    double count = 0;
+    for (Eigen::Index row = 0; row < setup.reference.position.rows(); row += 50) {
+        dynamics.configure(setup.reference.position.row(row).transpose(), configuration);
+        const JointMatrix mass = dynamics.mass_matrix(configuration);
+        const JointMatrix inverse = mass.inverse();
+        result.least_free = std::min(result.least_free, 1 / inverse(joint, joint));
+        result.mean_held += mass.diagonal();
+        ++count;
+    }
+    result.mean_held /= count;
+    return result;
 }
 
 /// Takes the rotor out of the link, so that a rigid gear would make the arm that is described.
 void take_rotor_out(RobotJoint& joint, double rotor) {
-    const Eigen::Vector3d& a = joint.axis;
-    joint.inertia.tail<6>() -= rotor * (Eigen::Matrix<double, 6, 1>() << a.x() * a.x(), a.x() * a.y(),
-                                        a.x() * a.z(), a.y() * a.y(), a.y() * a.z(), a.z() * a.z())
-                                           .finished();
+    joint.inertia -= body_parameters(0, Eigen::Vector3d::Zero(), rotor * joint.axis * joint.axis.transpose());
 }
 
-void soften(Scenario& scenario, Eigen::Index joint, double rotor, double stiffness, double damping,
-            double gap) {
+/// The feedback of a motor that has a soft gear behind it is made for its rotor, not for the arm.
+void retune(Scenario& scenario, const JointInertia& inertia, Eigen::Index joint, double rotor) {
+    ControllerModel& controller = scenario.controller;
+    controller.kind = ControllerKind::feed_forward;
+    controller.velocity_gain = 14 * inertia.mean_held;
+    controller.position_gain = 7 * controller.velocity_gain;
+    // fast, as the drive of a light rotor is: else its weight turns the link over
+    controller.rate_hz = scenario.encoders.rate_hz = 2000;
+    controller.velocity_gain[joint] = 150 * rotor;
+    controller.position_gain[joint] = 20 * controller.velocity_gain[joint];
+    scenario.actuators.bandwidth_hz = 500;
+    scenario.encoders.bits_per_turn = std::max(scenario.encoders.bits_per_turn, 17);
+    scenario.derivatives.velocity_window = 6;
+}
+
+struct Gear {
+    JointInertia inertia;
+    Eigen::Index joint;
+    double rotor;
+};
+
+void soften(Scenario& scenario, const Gear& soft, double stiffness, double damping, double gap) {
     const JointVector zero = JointVector::Zero(scenario.actuators.rotor_inertia.size());
     GearModel& gear = scenario.actuators.gear;
     if (gear.stiffness.size() == 0) {
         gear = {zero, zero, zero};
     }
-    scenario.actuators.rotor_inertia[joint] += rotor;
-    gear.stiffness[joint] = stiffness;
-    gear.damping[joint] = damping;
-    gear.gap[joint] = gap;
+    scenario.actuators.rotor_inertia[soft.joint] += soft.rotor;
+    gear.stiffness[soft.joint] = stiffness;
+    gear.damping[soft.joint] = damping;
+    gear.gap[soft.joint] = gap;
+    retune(scenario, soft.inertia, soft.joint, soft.rotor);
 }
 
 /// N·m, per row of the reference.
@@ -68,32 +105,35 @@ Eigen::VectorXd second_derivative(const Eigen::VectorXd& values, double period_s
     return result;
 }
 
-DrawnEffect backlash(const EffectDraw& of, Eigen::Index joint, double rotor) {
-    const double stiffness = rotor * contact_frequency * contact_frequency;
-    const double damping = 0.6 * rotor * contact_frequency;
+DrawnEffect backlash(const EffectDraw& of, const Gear& gear) {
+    const Eigen::Index joint = gear.joint;
+    const double stiffness = gear.rotor * contact_frequency * contact_frequency;
+    const double damping = 0.6 * gear.rotor * contact_frequency;
     const Eigen::VectorXd torque = gear_torque(of.setup, joint);
     DrawnEffect effect;
-    effect.hide = [joint, rotor, stiffness, damping](double size, Scenario& scenario) {
-        soften(scenario, joint, rotor, stiffness, damping, size);
+    effect.hide = [gear, stiffness, damping](double size, Scenario& scenario) {
+        soften(scenario, gear, stiffness, damping, size);
     };
     effect.parameters = [](double size) { return EffectParameters{{"gap", size}}; };
     if (turning_share(torque) > 0.1) {
         constexpr double small = 1e-3;
         MotionRows real = of.setup.reference;
         real.position.col(joint) -= small / 2 * torque.cwiseSign();
-        effect.guess = small * of.strength / strength_along_reference(of.setup, real);
+        // beside the angle, there is the link's push when the play is through
+        effect.guess = std::min(0.03, small * of.strength / strength_along_reference(of.setup, real));
     }
     effect.largest = 0.15;
     return effect;
 }
 
 /// The size is the compliance, rad/(N·m).
-DrawnEffect flexibility(const EffectDraw& of, Eigen::Index joint, double rotor) {
+DrawnEffect flexibility(const EffectDraw& of, const Gear& gear) {
+    const Eigen::Index joint = gear.joint;
     const double loss = of.draw.uniform(0.02, 0.06); // damping ratio of the rotor on the gear
     const Eigen::VectorXd torque = gear_torque(of.setup, joint);
     DrawnEffect effect;
-    effect.hide = [joint, rotor, loss](double size, Scenario& scenario) {
-        soften(scenario, joint, rotor, 1 / size, 2 * loss * std::sqrt(rotor / size), 0);
+    effect.hide = [gear, loss](double size, Scenario& scenario) {
+        soften(scenario, gear, 1 / size, 2 * loss * std::sqrt(gear.rotor / size), 0);
     };
     effect.parameters = [](double size) { return EffectParameters{{"stiffness", 1 / size}}; };
     constexpr double small = 1e-6;
@@ -101,7 +141,7 @@ DrawnEffect flexibility(const EffectDraw& of, Eigen::Index joint, double rotor) 
     real.position.col(joint) -= small * torque;
     real.acceleration.col(joint) -= small * second_derivative(torque, 0.02);
     effect.guess = small * of.strength / strength_along_reference(of.setup, real);
-    effect.largest = 0.02;
+    effect.largest = 1 / (gear.inertia.mean_held[joint] * slowest_frequency * slowest_frequency);
     return effect;
 }
 
@@ -110,9 +150,12 @@ DrawnEffect flexibility(const EffectDraw& of, Eigen::Index joint, double rotor) 
 std::optional<DrawnEffect> draw_gear_effect(const std::string& name, const EffectDraw& of) {
     const Eigen::Index joint = of.joint();
     const auto link = static_cast<std::size_t>(joint);
-    const double rotor = rotor_share * own_inertia(of.setup.robot.joints[link]);
-    DrawnEffect effect = name == "backlash" ? backlash(of, joint, rotor) : flexibility(of, joint, rotor);
+    const JointInertia inertia = joint_inertia(of.setup, joint);
+    const double rotor = rotor_share * inertia.least_free;
+    const Gear gear{inertia, joint, rotor};
+    DrawnEffect effect = name == "backlash" ? backlash(of, gear) : flexibility(of, gear);
     effect.where = joint_place(joint);
+    effect.soft = true;
     effect.integration_rate_hz = gear_integration_rate_hz;
     effect.rebuild = [link, rotor](Robot& robot) { take_rotor_out(robot.joints[link], rotor); };
     return effect;

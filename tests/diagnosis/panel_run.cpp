@@ -59,9 +59,28 @@ void subtract_steady_friction(Eigen::MatrixXd& difference, const PanelSetup& set
     }
 }
 
+/// Rates of the motion that the encoders show, as rows of a recording tell them: the vibrations of a soft
+/// joint are faster than the rows and must not turn into slow ones.
+MotionRows from_rows(const MotionRows& shown, double rate_hz) {
+    MotionRows result = shown;
+    const Eigen::Index rows = shown.position.rows();
+    const auto reach = static_cast<Eigen::Index>(std::lround(0.03 * rate_hz));
+    const double step = static_cast<double>(reach) / rate_hz;
+    for (Eigen::Index row = 2 * reach; row + 2 * reach < rows; ++row) {
+        const auto at = [&](Eigen::Index steps) { return shown.position.row(row + steps * reach); };
+        // differences of fourth order
+        result.velocity.row(row) = (at(-2) - 8 * at(-1) + 8 * at(1) - at(2)) / (12 * step);
+        result.acceleration.row(row) =
+            (-at(-2) + 16 * at(-1) - 30 * at(0) + 16 * at(1) - at(2)) / (12 * step * step);
+    }
+    return result;
+}
+
 /// What the rigid body of the true arm leaves of the outputs.
-Eigen::MatrixXd unexplained(const PanelSetup& setup, const PanelRun& run) {
-    return run.output - rigid_outputs(setup, setup.robot, run.shown);
+Eigen::MatrixXd unexplained(const PanelSetup& setup, const PanelRun& run, const DrawnEffect& effect) {
+    const MotionRows motion =
+        effect.soft ? from_rows(run.shown, setup.scenario.recording.rate_hz) : run.shown;
+    return run.output - rigid_outputs(setup, setup.robot, motion);
 }
 
 } // namespace
@@ -89,7 +108,7 @@ PanelRun run_panel(const PanelSetup& setup, const Robot& robot, const Scenario& 
 
 Eigen::MatrixXd contribution(const PanelSetup& setup, const PanelRun& run, const DrawnEffect& effect,
                              double size) {
-    Eigen::MatrixXd result = unexplained(setup, run);
+    Eigen::MatrixXd result = unexplained(setup, run, effect);
     if (effect.drifting) {
         subtract_steady_friction(result, setup, run, effect, size);
     }
@@ -103,7 +122,7 @@ Eigen::VectorXd strengths(const PanelSetup& setup, const Eigen::MatrixXd& contri
 std::optional<Fitted> fit_strength(const PanelSetup& setup, const DrawnEffect& effect, double strength) {
     Fitted fitted;
     fitted.effect = effect;
-    fitted.size = effect.guess;
+    fitted.size = effect.guess < 3 * effect.largest ? std::min(effect.guess, effect.largest) : effect.guess;
     while (fitted.simulations < most_simulations) {
         if (!(fitted.size > 0 && fitted.size <= effect.largest)) {
             return std::nullopt;
@@ -121,7 +140,7 @@ std::optional<Fitted> fit_strength(const PanelSetup& setup, const DrawnEffect& e
             strengths(setup, contribution(setup, fitted.run, effect, fitted.size));
         fitted.strength = reached.maxCoeff(&fitted.main_output);
         if (std::abs(fitted.strength / strength - 1) < tolerance) {
-            fitted.companion_strength = strengths(setup, unexplained(setup, fitted.run)).maxCoeff();
+            fitted.companion_strength = strengths(setup, unexplained(setup, fitted.run, effect)).maxCoeff();
             return fitted;
         }
         fitted.size *= std::clamp(strength / fitted.strength, 0.02, 50.0);

@@ -5,19 +5,59 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 
 namespace dfdyn::tools {
 
 namespace {
 
-/// Rotors that move with their links; those of soft joints move on their own.
-JointVector rigid_rotors(const ActuatorModel& actuators) {
-    JointVector result = actuators.rotor_inertia;
-    for (Eigen::Index i = 0; i < result.size(); ++i) {
-        if (actuators.gear.soft(i)) {
-            result[i] = 0;
+/// Mass-less but for its inertia about the joint's axis.
+InertialParameters rotor_body(const Eigen::Vector3d& axis, double inertia) {
+    return body_parameters(0, Eigen::Vector3d::Zero(), inertia * axis * axis.transpose());
+}
+
+void check_soft(const RobotJoint& joint, double rotor_inertia) {
+    if (joint.prismatic || !(rotor_inertia > 0)) {
+        throw InputError("joint " + joint.name +
+                         ": expected a soft joint to turn and to have a rotor, found " +
+                         (joint.prismatic ? "a prismatic one" : "none"));
+    }
+}
+
+/// Soft joints become two: rotor, and link against it.
+Robot split(const Robot& robot, const ActuatorModel& actuators) {
+    Robot result = robot;
+    result.joints.clear();
+    for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        if (actuators.gear.soft(k)) {
+            RobotJoint rotor = robot.joints[i];
+            check_soft(rotor, actuators.rotor_inertia[k]);
+            rotor.inertia = rotor_body(rotor.axis, actuators.rotor_inertia[k]);
+            result.joints.push_back(rotor);
         }
+        result.joints.push_back(robot.joints[i]);
+        if (actuators.gear.soft(k)) {
+            result.joints.back().placement.setIdentity();
+        }
+        if (robot.sensor && robot.sensor->link == i + 1) {
+            result.sensor->link = result.joints.size();
+        }
+    }
+    return result;
+}
+
+/// Rotors that are only inertia about their joint; the others are bodies.
+JointVector rotors(const ActuatorModel& actuators) {
+    JointVector result(actuators.rotor_inertia.size());
+    Eigen::Index count = 0;
+    for (Eigen::Index i = 0; i < actuators.rotor_inertia.size(); ++i) {
+        if (actuators.gear.soft(i)) {
+            result.conservativeResize(result.size() + 1);
+            result[count++] = 0;
+        }
+        result[count++] = actuators.gear.soft(i) ? 0 : actuators.rotor_inertia[i];
     }
     return result;
 }
@@ -26,31 +66,32 @@ JointVector rigid_rotors(const ActuatorModel& actuators) {
 
 SimulatedArm::SimulatedArm(const Robot& robot, const ActuatorModel& actuators, const JointVector& position,
                            const JointLoads& loads)
-    : dynamics_(robot, rigid_rotors(actuators)), actuators_(actuators), loads_(loads), position_(position) {
+    : dynamics_(split(robot, actuators), rotors(actuators)), actuators_(actuators), loads_(loads) {
     for (const LuGreParameters& parameters : actuators.friction) {
         friction_.emplace_back(parameters);
     }
-    add_motors();
-    velocity_ = JointVector::Zero(position_.size());
+    position_ = velocity_ = JointVector::Zero(dynamics_.joint_count());
+    for (Eigen::Index i = 0, coordinate = 0; i < position.size(); ++i) {
+        position_[coordinate] = position[i];
+        motor_.push_back(coordinate);
+        coordinate += soft(i) ? 2 : 1;
+    }
+    rest_on_gears();
     state_.torque = command_ = load_ = JointVector::Zero(position.size());
     complete();
 }
 
-void SimulatedArm::add_motors() {
+/// Links hang in their gears as their weight at this position asks.
+void SimulatedArm::rest_on_gears() {
+    dynamics_.configure(position_, configuration_);
+    const JointVector at_rest = JointVector::Zero(position_.size());
+    const JointVector weight = dynamics_.inverse(configuration_, at_rest, at_rest);
     for (Eigen::Index i = 0; i < joint_count(); ++i) {
-        motor_.push_back(i);
-        if (!actuators_.gear.soft(i)) {
-            continue;
+        if (soft(i)) {
+            const Eigen::Index link = motor(i) + 1;
+            const double play = std::copysign(actuators_.gear.gap[i] / 2, weight[link]);
+            position_[link] = -weight[link] / actuators_.gear.stiffness[i] - play;
         }
-        const Eigen::Index coordinate = position_.size();
-        if (coordinate == largest_simulated_chain || !(actuators_.rotor_inertia[i] > 0)) {
-            throw InputError("joint " + std::to_string(i + 1) +
-                             ": expected a soft joint to have a rotor, and at most " +
-                             std::to_string(largest_simulated_chain) + " joints and motors of soft joints");
-        }
-        motor_.back() = coordinate;
-        position_.conservativeResize(coordinate + 1);
-        position_[coordinate] = position_[i];
     }
 }
 
@@ -60,7 +101,7 @@ void SimulatedArm::attach(const InertialParameters& body) {
     if (robot.sensor && robot.sensor->link == robot.joints.size()) {
         robot.sensor->inertia_beyond += body;
     }
-    dynamics_ = ArmDynamics(std::move(robot), rigid_rotors(actuators_));
+    dynamics_ = ArmDynamics(std::move(robot), rotors(actuators_));
     complete();
 }
 
@@ -85,83 +126,110 @@ SimulatedArm::Instant SimulatedArm::instant(double later_s) const {
     return {time_s_ + later_s, command_ + left * (state_.torque - command_)};
 }
 
-JointVector SimulatedArm::friction_at(const JointVector& velocity) const {
+JointVector SimulatedArm::of_motors(const JointVector& coordinates) const {
     JointVector result(joint_count());
     for (Eigen::Index i = 0; i < result.size(); ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        result[i] = friction_[k].torque(velocity[motor_[k]]);
+        result[i] = coordinates[motor(i)];
     }
     return result;
 }
 
-JointVector SimulatedArm::acceleration_at(const ArmDynamics::Configuration& configuration,
-                                          const JointVector& position, const JointVector& velocity,
-                                          const Instant& instant) const {
-    const Eigen::Index joints = joint_count();
-    JointVector torque = instant.torque - friction_at(velocity);
-    JointVector acceleration(position.size());
-    for (Eigen::Index i = 0; i < joints; ++i) {
-        const Eigen::Index motor = motor_[static_cast<std::size_t>(i)];
-        if (motor != i) {
-            const double passed =
-                actuators_.gear.torque(i, position[motor] - position[i], velocity[motor] - velocity[i]);
-            acceleration[motor] = (torque[i] - passed) / actuators_.rotor_inertia[i];
-            torque[i] = passed;
+JointVector SimulatedArm::of_joints(const JointVector& coordinates) const {
+    JointVector result = of_motors(coordinates);
+    for (Eigen::Index i = 0; i < result.size(); ++i) {
+        if (soft(i)) {
+            result[i] += coordinates[motor(i) + 1];
+        }
+    }
+    return result;
+}
+
+JointVector SimulatedArm::friction_at(const JointVector& velocity) const {
+    JointVector result(joint_count());
+    for (Eigen::Index i = 0; i < result.size(); ++i) {
+        result[i] = friction_[static_cast<std::size_t>(i)].torque(velocity[motor(i)]);
+    }
+    return result;
+}
+
+double SimulatedArm::gear_torque(Eigen::Index joint, const JointVector& position,
+                                 const JointVector& velocity) const {
+    const Eigen::Index link = motor(joint) + 1;
+    return actuators_.gear.torque(joint, -position[link], -velocity[link]);
+}
+
+void SimulatedArm::add_loads(const ArmDynamics::Configuration& configuration, const JointVector& position,
+                             const JointVector& velocity, double time_s, JointVector& force) const {
+    const JointVector load = loads_.torque(of_joints(position), of_joints(velocity), time_s);
+    for (Eigen::Index i = 0; i < joint_count(); ++i) {
+        force[motor(i)] += load[i];
+        if (soft(i)) {
+            force[motor(i) + 1] += load[i];
+        }
+    }
+    const Eigen::Vector3d push = loads_.tip_force(time_s);
+    if (!push.isZero(0)) {
+        force += dynamics_.tip_jacobian(configuration).transpose() * push;
+    }
+}
+
+/// On the coordinates.
+JointVector SimulatedArm::forces(const ArmDynamics::Configuration& configuration, const JointVector& position,
+                                 const JointVector& velocity, const Instant& instant) const {
+    const JointVector drive = instant.torque - friction_at(velocity);
+    JointVector force(position.size());
+    for (Eigen::Index i = 0; i < joint_count(); ++i) {
+        force[motor(i)] = drive[i];
+        if (soft(i)) {
+            force[motor(i) + 1] = gear_torque(i, position, velocity);
         }
     }
     if (!loads_.none()) {
-        torque += loads_.torque(position.head(joints), velocity.head(joints), instant.time_s);
-        const Eigen::Vector3d force = loads_.tip_force(instant.time_s);
-        if (!force.isZero(0)) {
-            torque += dynamics_.tip_jacobian(configuration).transpose() * force;
-        }
+        add_loads(configuration, position, velocity, instant.time_s, force);
     }
-    acceleration.head(joints) = dynamics_.forward(configuration, velocity.head(joints), torque);
-    return acceleration;
+    return force;
 }
 
 JointVector SimulatedArm::acceleration_at(const JointVector& position, const JointVector& velocity,
                                           const Instant& instant) {
     dynamics_.configure(position, stage_);
-    return acceleration_at(stage_, position, velocity, instant);
+    return dynamics_.forward(stage_, velocity, forces(stage_, position, velocity, instant));
 }
 
 void SimulatedArm::move_bristles(double duration) {
-    for (std::size_t i = 0; i < friction_.size(); ++i) {
-        friction_[i].advance(velocity_[motor_[i]], duration);
+    for (Eigen::Index i = 0; i < joint_count(); ++i) {
+        friction_[static_cast<std::size_t>(i)].advance(velocity_[motor(i)], duration);
     }
 }
 
 void SimulatedArm::accelerate() {
-    const Eigen::Index joints = joint_count();
-    const JointVector acceleration = acceleration_at(configuration_, position_, velocity_, instant(0));
-    state_.acceleration = acceleration.head(joints);
-    for (Eigen::Index i = 0; i < joints; ++i) {
-        state_.motor_acceleration[i] = acceleration[motor_[static_cast<std::size_t>(i)]];
-    }
+    acceleration_ = dynamics_.forward(configuration_, velocity_,
+                                      forces(configuration_, position_, velocity_, instant(0)));
+    state_.acceleration = of_joints(acceleration_);
+    state_.motor_acceleration = of_motors(acceleration_);
 }
 
 void SimulatedArm::complete() {
-    const Eigen::Index joints = joint_count();
     dynamics_.configure(position_, configuration_);
-    state_.position = position_.head(joints);
-    state_.velocity = velocity_.head(joints);
-    for (Eigen::Index i = 0; i < joints; ++i) {
+    for (Eigen::Index i = 0; i < joint_count(); ++i) {
         friction_[static_cast<std::size_t>(i)].set_conditions(time_s_, load_[i]);
     }
+    state_.position = of_joints(position_);
+    state_.velocity = of_joints(velocity_);
+    state_.motor_position = of_motors(position_);
+    state_.motor_velocity = of_motors(velocity_);
     state_.friction = friction_at(velocity_);
-    state_.motor_position = state_.motor_velocity = state_.motor_acceleration = state_.position;
-    for (Eigen::Index i = 0; i < joints; ++i) {
-        state_.motor_position[i] = position_[motor_[static_cast<std::size_t>(i)]];
-        state_.motor_velocity[i] = velocity_[motor_[static_cast<std::size_t>(i)]];
-    }
     accelerate();
-    load_ =
-        state_.torque - state_.friction - actuators_.rotor_inertia.cwiseProduct(state_.motor_acceleration);
+    load_ = state_.torque - state_.friction - actuators_.rotor_inertia.cwiseProduct(state_.acceleration);
+    for (Eigen::Index i = 0; i < joint_count(); ++i) {
+        if (soft(i)) {
+            load_[i] = gear_torque(i, position_, velocity_);
+        }
+    }
 }
 
 Wrench SimulatedArm::wrench() const {
-    const Wrench rigid = dynamics_.wrench(configuration_, state_.velocity, state_.acceleration);
+    const Wrench rigid = dynamics_.wrench(configuration_, velocity_, acceleration_);
     const Eigen::Vector3d force = loads_.tip_force(time_s_);
     return force.isZero(0) ? rigid : Wrench(rigid + dynamics_.wrench_of_tip_force(configuration_, force));
 }
@@ -173,7 +241,7 @@ void SimulatedArm::advance(double duration) {
     const Instant end = instant(duration);
     const JointVector q = position_;
     const JointVector v1 = velocity_;
-    const JointVector a1 = acceleration_at(configuration_, q, v1, begin);
+    const JointVector a1 = dynamics_.forward(configuration_, v1, forces(configuration_, q, v1, begin));
     const JointVector v2 = v1 + duration / 2 * a1;
     const JointVector a2 = acceleration_at(q + duration / 2 * v1, v2, middle);
     const JointVector v3 = v1 + duration / 2 * a2;

@@ -26,8 +26,10 @@ struct ActuatorModel {
 /// whole one (classical Runge-Kutta of order 4, bristles held), then the bristles another half. Without
 /// bristles its order is 4, with them 2. The bristles' own part is exact, so that only the oscillation of a
 /// link on its bristles bounds the step: step · sqrt(σ0 / inertia) below 2, and σ1 / inertia · step below 2.
-/// A soft joint has its motor's position as a further coordinate; its stiffness and the smaller of its two
-/// inertias bound the step in the same way.
+///
+/// A soft joint is two joints about one axis: the rotor turns against the link before, the link against the
+/// rotor, pushed by the gear. The rotor is a body of its own there, that is carried along by the links before
+/// it. A gear's stiffness and the smaller of its two inertias bound the step as bristles do.
 class SimulatedArm {
   public:
     struct State {
@@ -40,8 +42,8 @@ class SimulatedArm {
         JointVector motor_position, motor_velocity, motor_acceleration;
     };
 
-    /// At rest at `position`, bristles and gears relaxed. Throws InputError as ArmDynamics does, when a soft
-    /// joint has no rotor, and when joints and motors of soft ones are more than the simulation holds.
+    /// At rest at `position`, bristles relaxed, gears under the weight. Throws InputError as ArmDynamics
+    /// does, and when a soft joint has no rotor or is prismatic.
     SimulatedArm(const Robot& robot, const ActuatorModel& actuators, const JointVector& position,
                  const JointLoads& loads = {});
 
@@ -55,6 +57,7 @@ class SimulatedArm {
     void advance(double duration);
 
     const State& state() const noexcept { return state_; }
+    /// Of the joints, soft ones counted twice.
     const ArmDynamics& dynamics() const noexcept { return dynamics_; }
     /// Of the position at hand; valid until the next `advance`.
     const ArmDynamics::Configuration& configuration() const noexcept { return configuration_; }
@@ -69,12 +72,21 @@ class SimulatedArm {
         JointVector torque; ///< of the actuators
     };
 
-    Eigen::Index joint_count() const noexcept { return dynamics_.joint_count(); }
-    void add_motors();
+    Eigen::Index joint_count() const noexcept { return static_cast<Eigen::Index>(motor_.size()); }
+    bool soft(Eigen::Index joint) const { return actuators_.gear.soft(joint); }
+    void rest_on_gears();
+    /// The coordinate of a joint's motor; that of a soft joint's link against its rotor is the next.
+    Eigen::Index motor(Eigen::Index joint) const { return motor_[static_cast<std::size_t>(joint)]; }
+    /// Of the links, from one value per coordinate.
+    JointVector of_joints(const JointVector& coordinates) const;
+    JointVector of_motors(const JointVector& coordinates) const;
+    double gear_torque(Eigen::Index joint, const JointVector& position, const JointVector& velocity) const;
+    JointVector forces(const ArmDynamics::Configuration& configuration, const JointVector& position,
+                       const JointVector& velocity, const Instant& instant) const;
+    void add_loads(const ArmDynamics::Configuration& configuration, const JointVector& position,
+                   const JointVector& velocity, double time_s, JointVector& force) const;
     Instant instant(double later_s) const;
     JointVector friction_at(const JointVector& velocity) const;
-    JointVector acceleration_at(const ArmDynamics::Configuration& configuration, const JointVector& position,
-                                const JointVector& velocity, const Instant& instant) const;
     JointVector acceleration_at(const JointVector& position, const JointVector& velocity,
                                 const Instant& instant);
     void move_bristles(double duration);
@@ -85,8 +97,8 @@ class SimulatedArm {
     ActuatorModel actuators_;
     JointLoads loads_;
     std::vector<LuGreFriction> friction_;
-    std::vector<Eigen::Index> motor_; ///< per joint: which coordinate is its motor's
-    JointVector position_, velocity_; ///< coordinates: joints, then motors of soft ones
+    std::vector<Eigen::Index> motor_;
+    JointVector position_, velocity_, acceleration_; ///< coordinates
     JointVector command_;
     bool commanded_ = false; ///< the first command is there before the brakes let go
     JointVector load_;       ///< N·m, what the gears pass on; friction sees it a step later
