@@ -4,40 +4,13 @@
 #include "dfdyn/hal/socketcan_bus.hpp"
 #include "tools/can/candump_log.hpp"
 #include "tools/common/error.hpp"
+#include "tools/common/real_time.hpp"
 #include "tools/common/text.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <system_error>
-
-#include <ctime>
-#include <sched.h>
-#include <sys/mman.h>
 
 namespace dfdyn::tools {
 namespace {
-
-/// Asks for a real-time priority and for memory that stays; returns what was not granted, and why.
-std::string become_real_time() {
-    std::string refused;
-    const auto ask = [&](const char* what, int result) {
-        if (result != 0) {
-            refused += (refused.empty() ? "" : "; ") + std::string(what) + ": " +
-                       std::system_category().message(errno);
-        }
-    };
-    sched_param priority{};
-    priority.sched_priority = 50; // the kernel's interrupt threads have 50: not above them
-    ask("real-time priority", ::sched_setscheduler(0, SCHED_FIFO, &priority));
-    ask("memory locked", ::mlockall(MCL_CURRENT | MCL_FUTURE));
-    return refused;
-}
-
-/// Sleeps until the monotonic clock shows `due_ns`, or a signal comes.
-void sleep_until(std::int64_t due_ns) {
-    const timespec due{due_ns / 1'000'000'000, due_ns % 1'000'000'000};
-    ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr);
-}
 
 /// Throws InputError unless the whole log can be read and has frames.
 void read_through(const PlayOptions& options) {

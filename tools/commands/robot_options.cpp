@@ -4,6 +4,7 @@
 #include "tools/common/error.hpp"
 #include "tools/common/text.hpp"
 #include "tools/robot/read_robot.hpp"
+#include "tools/simulation/scenario.hpp"
 
 #include <cmath>
 #include <iostream>
@@ -64,6 +65,21 @@ Robot RobotOptions::read(OutputKind outputs) const {
                          in_quotes(robot.base) + " and link " + in_quotes(robot.tip) +
                          ", found none (--ft-joint names it)");
     }
+    return robot;
+}
+
+Robot read_scenario_robot(const std::filesystem::path& urdf, const std::filesystem::path& scenario) {
+    const ScenarioChain chain = read_scenario_chain(scenario);
+    RobotOptions reading;
+    reading.urdf = urdf;
+    reading.tip = chain.tip;
+    reading.base = chain.base;
+    reading.ft_joint = chain.ft_joint;
+    reading.wrench_direction = chain.wrench_direction;
+    reading.gravity = chain.gravity;
+    // whether a sensor is needed, the scenario tells
+    Robot robot = reading.read(OutputKind::joint_torque);
+    robot.tip_placement.translate(chain.tip_point);
     return robot;
 }
 

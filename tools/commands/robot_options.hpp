@@ -25,4 +25,8 @@ struct RobotOptions {
     Robot read(OutputKind outputs) const;
 };
 
+/// Reads the chain of the robot `urdf` that the scenario is about, with its tip moved to the scenario's
+/// point.
+Robot read_scenario_robot(const std::filesystem::path& urdf, const std::filesystem::path& scenario);
+
 } // namespace dfdyn::tools

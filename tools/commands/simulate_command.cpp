@@ -26,21 +26,6 @@ struct SimulateOptions {
     std::optional<std::uint64_t> seed;
 };
 
-Robot read_chain(const SimulateOptions& options) {
-    const ScenarioChain chain = read_scenario_chain(options.scenario);
-    RobotOptions reading;
-    reading.urdf = options.robot;
-    reading.tip = chain.tip;
-    reading.base = chain.base;
-    reading.ft_joint = chain.ft_joint;
-    reading.wrench_direction = chain.wrench_direction;
-    reading.gravity = chain.gravity;
-    // whether a sensor is needed, the scenario tells
-    Robot robot = reading.read(OutputKind::joint_torque);
-    robot.tip_placement.translate(chain.tip_point);
-    return robot;
-}
-
 /// What the devices of a bus send, as a log.
 class CandumpOutput {
   public:
@@ -137,7 +122,7 @@ int run(const SimulateOptions& options) {
     if (options.candump.empty() != options.bus.empty()) {
         throw InputError("expected --candump and --bus together, found one of them");
     }
-    const Robot robot = read_chain(options);
+    const Robot robot = read_scenario_robot(options.robot, options.scenario);
     Scenario scenario = read_scenario(options.scenario, robot);
     scenario.seed = options.seed.value_or(scenario.seed);
     Simulation simulation(robot, scenario);

@@ -43,6 +43,7 @@ struct Robot {
     Eigen::Isometry3d tip_placement =
         Eigen::Isometry3d::Identity();    ///< of the tip's frame in the last link's
     Eigen::Vector3d gravity{0, 0, -9.81}; ///< m/s², in the base's frame
+    Eigen::Matrix3d base_in_root = Eigen::Matrix3d::Identity(); ///< turns the base's axes into those of the URDF's root
     std::optional<ForceTorqueSensor> sensor;
     std::vector<std::string> notes; ///< what the file has that is odd but usable; a line each
 };

@@ -26,11 +26,15 @@ Controller::Controller(const Robot& robot, const JointVector& rotor_inertia, con
 
 JointVector Controller::torque(const Reference& reference, const JointVector& position,
                                const JointVector& velocity) {
-    dynamics_.configure(position, configuration_);
+    const bool ahead = model_.kind == ControllerKind::feed_forward;
+    dynamics_.configure(ahead ? reference.position : position, configuration_);
     const JointVector correction = model_.position_gain.cwiseProduct(reference.position - position) +
                                    model_.velocity_gain.cwiseProduct(reference.velocity - velocity);
     if (model_.kind == ControllerKind::computed_torque) {
         return dynamics_.inverse(configuration_, velocity, reference.acceleration + correction);
+    }
+    if (ahead) {
+        return dynamics_.inverse(configuration_, reference.velocity, reference.acceleration) + correction;
     }
     const JointVector at_rest = JointVector::Zero(position.size());
     return dynamics_.inverse(configuration_, at_rest, at_rest) + correction;

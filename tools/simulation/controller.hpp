@@ -11,6 +11,7 @@ namespace dfdyn::tools {
 enum class ControllerKind {
     computed_torque,      ///< M(q)·(q̈ref + velocity_gain·ė + position_gain·e) + bias(q, q̇)
     gravity_compensation, ///< velocity_gain·ė + position_gain·e + gravity(q)
+    feed_forward, ///< velocity_gain·ė + position_gain·e + inverse dynamics of the reference's motion
 };
 
 struct ControllerModel {

@@ -72,7 +72,7 @@ TEST_CASE("a bad scenario is refused with the path of the field, what was expect
                StartsWith("actuators.friction.field \"colomb_nm\""));
     CHECK_THAT(error_with("/task/tones", 0), StartsWith("task.tones: expected a whole number from 1"));
     CHECK_THAT(error_with("/task/kind", "dance"),
-               StartsWith("task.kind: expected multisine, point_to_point or circle, found \"dance\""));
+               StartsWith("task.kind: expected multisine, tones, point_to_point or circle, found \"dance\""));
     CHECK_THAT(error_with("/task/highest_hz", 0.05),
                StartsWith("task.highest_hz: expected a number from 0.1"));
     CHECK_THAT(error_with("/controller/velocity_gain", {1, 2}),

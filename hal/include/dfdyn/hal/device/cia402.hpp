@@ -5,6 +5,8 @@
 #include "dfdyn/hal/device/decoded.hpp"
 #include "dfdyn/hal/device/heartbeat.hpp"
 
+#include <optional>
+
 namespace dfdyn::hal {
 
 /// A CANopen drive with the CiA 402 profile, as its TPDOs are mapped.
@@ -15,6 +17,7 @@ namespace dfdyn::hal {
 /// | 0x080 + N | 8 | EMCY: error code u16 (0: no error any more), error register, 5 bytes of the maker |
 /// | `position_pdo` + N | as mapped | position actual value (0x6064) and what else is mapped |
 /// | `effort_pdo` + N | as mapped | torque actual value (0x6077), perhaps in the same PDO |
+/// | 0x200 + N | 2 | to the drive: target torque (0x6071), in the unit of 0x6077 |
 /// | 0x700 + N | 1 | heartbeat: 0 boot-up, 4 stopped, 5 operational, 127 pre-operational |
 ///
 /// Scaling is per axis and arbitrary: it is in the signals. Values carry `device_not_operational` after a
@@ -104,10 +107,35 @@ class Cia402Drive {
         return frame;
     }
 
+    /// The command of this torque, N·m, saturated at what 16 bits hold; for drives whose efforts are mapped,
+    /// of which it has the unit.
+    [[nodiscard]] Frame encode_target_torque(double torque_Nm) const noexcept {
+        Frame frame = make_frame(target_torque_pdo + static_cast<std::uint32_t>(config_.node), 2);
+        target_torque().insert({frame.data.data(), 2}, torque_Nm);
+        return frame;
+    }
+
+    /// The torque that `frame` commands this drive, N·m; nothing where it is another frame.
+    [[nodiscard]] std::optional<double> decode_target_torque(const Frame& frame) const noexcept {
+        const std::uint32_t id = target_torque_pdo + static_cast<std::uint32_t>(config_.node);
+        if (!has_id(frame, id) || frame.remote || frame.fd || frame.length != 2) {
+            return std::nullopt;
+        }
+        return target_torque().extract({frame.data.data(), 2});
+    }
+
     [[nodiscard]] static constexpr Frame encode_sync() noexcept { return make_frame(sync_id, 0); }
 
   private:
     static constexpr std::uint32_t sync_id = 0x080;
+    static constexpr std::uint32_t target_torque_pdo = 0x200;
+
+    [[nodiscard]] constexpr Signal target_torque() const noexcept {
+        return {.start_bit = 0,
+                .length = 16,
+                .encoding = Encoding::signed_integer,
+                .factor = config_.effort.factor};
+    }
 
     [[nodiscard]] static constexpr bool restricted(std::uint32_t id) noexcept {
         const auto within = [id](std::uint32_t first, std::uint32_t last) {

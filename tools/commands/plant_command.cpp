@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/commands/command.hpp"
+#include "tools/commands/robot_options.hpp"
+#include "tools/commands/stop_signal.hpp"
+#include "tools/control/closed_loop.hpp"
+#include "tools/control/real_time_run.hpp"
+
+#include <iostream>
+#include <memory>
+
+namespace dfdyn::tools {
+
+namespace {
+
+struct PlantOptions {
+    std::filesystem::path robot, scenario, bus;
+    std::string interface;
+    double duration_s = 0;
+};
+
+int run(const PlantOptions& options) {
+    const Robot robot = read_scenario_robot(options.robot, options.scenario);
+    const Scenario scenario = read_scenario(options.scenario, robot);
+    const BusDescription bus = read_bus_description(options.bus);
+    check_bus(bus, robot, scenario);
+    const double period_s = 1 / bus.joints.rate_hz;
+    const JointVector start = make_task(scenario.task, robot, period_s, scenario.seed)->next().position;
+    SimulatedPlant plant(robot, scenario, start);
+    PlantPort port(bus);
+    const PaceOutcome pace =
+        run_plant(plant, port, options.interface, period_s, options.duration_s, stop_on_signals());
+    if (!pace.not_real_time.empty()) {
+        std::cerr << "note: the timing is that of an ordinary program (" << pace.not_real_time << ")\n";
+    }
+    std::cout << "plant: " << pace.ticks << " ticks, " << pace.late << " late, worst lateness "
+              << pace.worst_lateness_us << " us; " << port.commands() << " command frames, "
+              << port.timeouts() << " times without command, " << port.refused() << " frames refused\n";
+    return 0;
+}
+
+} // namespace
+
+void add_plant_command(CLI::App& app, Command& chosen) {
+    const auto options = std::make_shared<PlantOptions>();
+    CLI::App* command =
+        app.add_subcommand("plant", "A simulated arm on a CAN bus: sends its sensors, takes torques");
+    command->add_option("--robot", options->robot, "The arm")->required()->type_name("R.urdf");
+    command
+        ->add_option("--scenario", options->scenario,
+                     "Friction, payloads, sensors, and where it stands: docs/scenario.md")
+        ->required()
+        ->type_name("S.json");
+    command->add_option("--bus", options->bus, "Its devices: docs/can.md")->required()->type_name("bus.json");
+    command->add_option("--can", options->interface, "Where")->required()->type_name("IFACE");
+    command->add_option("--duration", options->duration_s, "Seconds; none: until Ctrl-C")
+        ->check(CLI::PositiveNumber)
+        ->type_name("S");
+    command->footer("Example:\n  dfdyn plant --robot arm.urdf --scenario s.json --bus bus.json --can vcan0\n"
+                    "Exit status: 0 done, 2 bad usage or input.");
+    command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/bus.hpp"
+
+#include <algorithm>
+#include <deque>
+
+namespace dfdyn::tools {
+
+/// One end of a wire within the program, on a clock that is told the time (hal::Bus). What is sent on one
+/// end waits at the other, stamped with its time.
+class MemoryBus {
+  public:
+    /// Joins two ends; both must outlive their use.
+    static void join(MemoryBus& one, MemoryBus& other) noexcept {
+        one.other_ = &other;
+        other.other_ = &one;
+    }
+
+    void set_time(std::int64_t now_ns) noexcept { now_ns_ = now_ns; }
+
+    std::span<const hal::Frame> drain(std::span<hal::Frame> into) noexcept {
+        const std::size_t count = std::min(into.size(), waiting_.size());
+        const auto end = waiting_.begin() + static_cast<std::ptrdiff_t>(count);
+        std::copy(waiting_.begin(), end, into.begin());
+        waiting_.erase(waiting_.begin(), end);
+        counters_.received += count;
+        return into.first(count);
+    }
+
+    hal::SendResult send(const hal::Frame& frame) noexcept {
+        other_->waiting_.push_back(frame);
+        other_->waiting_.back().stamp_ns = now_ns_;
+        ++counters_.sent;
+        return hal::SendResult::sent;
+    }
+
+    std::int64_t now_ns() const noexcept { return now_ns_; }
+    hal::BusState state() const noexcept { return hal::BusState::active; }
+    const hal::BusCounters& counters() const noexcept { return counters_; }
+
+  private:
+    MemoryBus* other_ = nullptr;
+    std::deque<hal::Frame> waiting_;
+    std::int64_t now_ns_ = 0;
+    hal::BusCounters counters_;
+};
+
+static_assert(hal::Bus<MemoryBus>);
+
+} // namespace dfdyn::tools

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/simulation/simulated_plant.hpp"
+
+#include "tools/common/error.hpp"
+#include "tools/common/number.hpp"
+
+#include <cmath>
+
+namespace dfdyn::tools {
+
+namespace {
+
+std::vector<bool> prismatic(const Robot& robot) {
+    std::vector<bool> result;
+    for (const RobotJoint& joint : robot.joints) {
+        result.push_back(joint.prismatic);
+    }
+    return result;
+}
+
+} // namespace
+
+SimulatedPlant::SimulatedPlant(const Robot& robot, const Scenario& scenario, const JointVector& position)
+    : period_s_(1 / scenario.integration_rate_hz),
+      encoder_steps_(std::llround(scenario.integration_rate_hz / scenario.encoders.rate_hz)),
+      arm_(real_robot(robot, scenario.robot_errors), scenario.actuators, position, scenario.loads),
+      payloads_(scenario.payloads, robot), encoders_(scenario.encoders, prismatic(robot), scenario.seed),
+      torque_sensor_(scenario.torque_sensor, period_s_, scenario.seed) {
+    if (scenario.force_torque) {
+        wrench_sensor_.emplace(*scenario.force_torque, period_s_, scenario.seed);
+    }
+    observe();
+}
+
+void SimulatedPlant::observe() {
+    payloads_.attach_due(time_s(), arm_);
+    if (step_ % encoder_steps_ == 0) {
+        encoders_.observe(arm_.state().motor_position);
+    }
+    torque_sensor_.observe(arm_.state().torque);
+    if (wrench_sensor_) {
+        wrench_sensor_->observe(time_s(), arm_.wrench());
+    }
+}
+
+void SimulatedPlant::advance_to(double time_s) {
+    const std::int64_t last = std::llround(time_s / period_s_);
+    while (step_ < last) {
+        arm_.advance(period_s_);
+        ++step_;
+        observe();
+    }
+    constexpr double runaway = 1e4; // rad/s
+    if (!arm_.state().position.allFinite() || arm_.state().velocity.cwiseAbs().maxCoeff() > runaway) {
+        throw InputError("t = " + number_text(time_s) +
+                         " s: expected the arm to stay under control, found it running away: gains, friction "
+                         "or integration_rate_hz do not fit");
+    }
+}
+
+} // namespace dfdyn::tools

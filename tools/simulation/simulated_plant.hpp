@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/simulation/scenario.hpp"
+
+#include <optional>
+
+namespace dfdyn::tools {
+
+/// The arm of a scenario without its controller: torques go in, readings of the sensors come out.
+class SimulatedPlant {
+  public:
+    /// At rest at `position`. Throws InputError as SimulatedArm does.
+    SimulatedPlant(const Robot& robot, const Scenario& scenario, const JointVector& position);
+
+    /// Holds this torque from now on, within the actuators' limit.
+    void apply(const JointVector& torque) { arm_.apply(torque); }
+
+    /// Goes on to `time_s`, in steps of the scenario's integration. Throws InputError, with the time, when
+    /// the arm runs away.
+    void advance_to(double time_s);
+
+    double time_s() const noexcept { return static_cast<double>(step_) * period_s_; }
+    const JointVector& position() const noexcept { return encoders_.reading(); } ///< as the encoders show it
+    /// As the torque sensors show it now: another noise in every call.
+    JointVector torque() { return torque_sensor_.read(arm_.state().torque); }
+    /// As the F/T sensor shows it; the scenario must have one.
+    const Wrench& wrench() const { return wrench_sensor_->reading(); }
+    const SimulatedArm::State& truth() const noexcept { return arm_.state(); }
+
+  private:
+    void observe();
+
+    double period_s_;
+    std::int64_t encoder_steps_;
+    SimulatedArm arm_;
+    PayloadSchedule payloads_;
+    Encoders encoders_;
+    std::optional<WrenchSensor> wrench_sensor_;
+    TorqueSensor torque_sensor_;
+    std::int64_t step_ = 0;
+};
+
+} // namespace dfdyn::tools
