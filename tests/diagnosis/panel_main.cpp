@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes recordings with hidden effects, and their answers.
+// Makes recordings with hidden effects, and their answers; and scores the diagnosis on them.
 #include "tests/diagnosis/panel_files.hpp"
+#include "tests/diagnosis/panel_table.hpp"
+#include "tests/diagnosis/run_panel.hpp"
+#include "tools/common/atomic_file.hpp"
 #include "tools/common/error.hpp"
 
 #include <CLI/CLI.hpp>
@@ -13,11 +16,13 @@ namespace {
 
 using namespace dfdyn::tests;
 
-struct GenerateOptions {
+struct PanelOptions {
     std::uint64_t seed = 1;
     int cases = 1;
-    std::filesystem::path directory;
     PanelMix mix;
+    std::filesystem::path directory; ///< of generate
+    int threads = 2;                 ///< of score
+    std::filesystem::path tables;    ///< of score
 };
 
 std::string case_name(int number) {
@@ -36,7 +41,7 @@ std::string in_words(const PanelCase& panel_case) {
     return text;
 }
 
-int generate(const GenerateOptions& options) {
+int generate(const PanelOptions& options) {
     std::filesystem::create_directories(options.directory);
     int redraws = 0;
     for (int number = 0; number < options.cases; ++number) {
@@ -57,25 +62,37 @@ int generate(const GenerateOptions& options) {
     return 0;
 }
 
-void add_generate(CLI::App& app, GenerateOptions& options) {
-    CLI::App* command = app.add_subcommand(
-        "generate", "Writes caseNNNN.csv, what may be seen, and caseNNNN.truth.json, the answer");
-    command->add_option("--seed", options.seed, "Of the first case; each further one has the next")
+int score(const PanelOptions& options) {
+    const std::vector<CaseScore> scores =
+        run_panel(options.seed, options.cases, options.mix, options.threads, [](const CaseScore& one) {
+            std::printf("%s\n", describe(one).c_str());
+            std::fflush(stdout);
+        });
+    const std::string tables = panel_tables(scores);
+    std::printf("%d recordings, seeds from %llu\n\n%s", options.cases,
+                static_cast<unsigned long long>(options.seed), tables.c_str());
+    if (!options.tables.empty()) {
+        dfdyn::tools::write_file(options.tables, tables);
+    }
+    return 0;
+}
+
+void add_mix(CLI::App& command, PanelOptions& options) {
+    command.add_option("--seed", options.seed, "Of the first case; each further one has the next")
         ->required();
-    command->add_option("--cases", options.cases, "How many")->required()->check(CLI::PositiveNumber);
-    command->add_option("-o,--output", options.directory, "Folder")->required();
-    command->add_option("--effect", options.mix.effect, "Always this effect");
-    command->add_option("--strength", options.mix.strength, "Always this strength")
+    command.add_option("--cases", options.cases, "How many")->required()->check(CLI::PositiveNumber);
+    command.add_option("--effect", options.mix.effect, "Always this effect");
+    command.add_option("--strength", options.mix.strength, "Always this strength")
         ->check(CLI::PositiveNumber);
-    command->add_option("--robot", options.mix.robot, "Always this arm")
+    command.add_option("--robot", options.mix.robot, "Always this arm")
         ->check(CLI::IsMember(panel_robot_names()));
-    command->add_option("--noise", options.mix.noise, "Always this noise")
+    command.add_option("--noise", options.mix.noise, "Always this noise")
         ->check(CLI::IsMember(panel_noise_names()));
-    command->add_option("--masses-off", options.mix.masses_off, "Nominal masses wrong: 0 never, 1 always");
-    command->add_option("--null-share", options.mix.null_share, "Share of cases without any effect");
-    command->add_option("--two-share", options.mix.two_effects_share, "Share with two effects");
-    command->add_option("--outside-share", options.mix.outside_share,
-                        "Share with effects outside the catalogue");
+    command.add_option("--masses-off", options.mix.masses_off, "Nominal masses wrong: 0 never, 1 always");
+    command.add_option("--null-share", options.mix.null_share, "Share of cases without any effect");
+    command.add_option("--two-share", options.mix.two_effects_share, "Share with two effects");
+    command.add_option("--outside-share", options.mix.outside_share,
+                       "Share with effects outside the catalogue");
 }
 
 } // namespace
@@ -83,11 +100,19 @@ void add_generate(CLI::App& app, GenerateOptions& options) {
 int main(int argc, char** argv) {
     CLI::App app("Recordings of simulated arms with hidden effects, to test who looks for them");
     app.require_subcommand(1);
-    GenerateOptions options;
-    add_generate(app, options);
+    PanelOptions options;
+    CLI::App* generating = app.add_subcommand(
+        "generate", "Writes caseNNNN.csv, what may be seen, and caseNNNN.truth.json, the answer");
+    add_mix(*generating, options);
+    generating->add_option("-o,--output", options.directory, "Folder")->required();
+    CLI::App* scoring =
+        app.add_subcommand("score", "Diagnoses the cases and tells what was found, as tables");
+    add_mix(*scoring, options);
+    scoring->add_option("--threads", options.threads, "Cases at the same time")->check(CLI::Range(1, 64));
+    scoring->add_option("-o,--output", options.tables, "The tables, as Markdown");
     CLI11_PARSE(app, argc, argv);
     try {
-        return generate(options);
+        return generating->parsed() ? generate(options) : score(options);
     } catch (const dfdyn::tools::InputError& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return 2;

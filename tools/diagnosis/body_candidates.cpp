@@ -9,6 +9,8 @@ namespace {
 
 using Parameters = InertialParameters;
 
+constexpr const char* last_body = "last body"; // a payload is part of the last link
+
 /// Point mass at `centre`, per kg; and its first moment moved by 1 kg·m along `axis` while the mass stays.
 Parameters point_mass(const Eigen::Vector3d& centre) {
     return body_parameters(1, centre, Eigen::Matrix3d::Zero());
@@ -35,6 +37,7 @@ Candidate payload(const DiagnosisSignals& signals) {
     Candidate result;
     result.effect = "payload";
     result.where = "tool";
+    result.span = last_body;
     const Eigen::Index last = signals.regressor.cols() / 10 - 1;
     result.columns = mass_columns(signals, last, Eigen::Vector3d::Zero(), signals.robot.tip_placement);
     const auto within_reach = [](const Eigen::VectorXd& coefficients) {
@@ -66,6 +69,7 @@ Candidate link_inertia(const DiagnosisSignals& signals, Eigen::Index number) {
     Candidate result;
     result.effect = "link_inertia_error";
     result.where = numbered("link", link);
+    result.span = number + 1 == bodies ? last_body : "";
     result.columns = mass_columns(signals, number, centre, Eigen::Isometry3d::Identity());
     const auto body = [mass](double delta_mass, const Eigen::VectorXd& moments) {
         constexpr double farthest = 0.3; // m that a centre of mass is off

@@ -38,7 +38,8 @@ struct EffectShape {
 struct Candidate {
     std::string effect, where;
     std::string detail;     ///< tells candidates of the same effect and place apart: axes, times
-    std::string family;     ///< of several candidates of one family at most one is chosen; empty: of none
+    std::string span;       ///< candidates of one span add the same columns in the end; empty: none
+    std::string family;     ///< of several candidates of one family at most one is chosen; empty: none
     double tried = 1;       ///< of how many alternatives this one was picked beforehand
     double extra_price = 0; ///< what it must explain, in units of the evidence, because others of its kind do
     std::vector<EffectColumn> columns;

@@ -11,8 +11,7 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
                                  const Eigen::MatrixXd& measured,
                                  const std::vector<std::string>& output_names);
 
-/// Calibrated probability from the logarithms of the odds against there being nothing, and against the best
-/// other cause.
-double calibrated_confidence(double margin_to_nothing, double margin_to_others);
+/// Calibrated probability from the finding's margins, ties and effect.
+double calibrated_confidence(const Finding& finding);
 
 } // namespace dfdyn::tools
