@@ -80,13 +80,15 @@ TEST_CASE("Stribeck friction is Coulomb's at speed, and reaches for the static l
         const double added = (sample.torque - rigid(trial, sample.truth))[trial.joint()];
         slid = velocity * past > 0 ? slid + std::abs(velocity) / 200 : 0;
         past = velocity;
-        largest = std::max(largest, std::abs(added));
+        if (slid > 0.02) { // the bristles have bent, their damping is over
+            largest = std::max(largest, std::abs(added));
+        }
         if (slid > 0.05 && std::abs(velocity) > 3 * trial.parameter("stribeck_velocity")) {
             REQUIRE(added == Approx(std::copysign(trial.parameter("coulomb"), velocity)).epsilon(1e-2));
         }
     }
-    CHECK(largest > trial.parameter("coulomb") * 1.05);
-    CHECK(largest < trial.parameter("static") * 1.2);
+    CHECK(largest > trial.parameter("coulomb") * 1.01);
+    CHECK(largest < trial.parameter("static") * 1.001);
 }
 
 TEST_CASE("load-dependent friction is a share of what the gear passes on, and opposes the motion") {
@@ -95,22 +97,22 @@ TEST_CASE("load-dependent friction is a share of what the gear passes on, and op
         const double mu = trial.parameter("mu");
         double past = 0;
         double slid = 0;
-        int sliding = 0;
+        double squares = 0;
+        double errors = 0;
         for (const SimulatedSample& sample : trial.samples) {
-            const JointVector load = rigid(trial, sample.truth);
+            const double load = rigid(trial, sample.truth)[trial.joint()];
             const double velocity = sample.truth.velocity[trial.joint()];
-            const double added = (sample.torque - load)[trial.joint()];
+            const double added = sample.torque[trial.joint()] - load;
             slid = velocity * past > 0 ? slid + std::abs(velocity) / 200 : 0;
             past = velocity;
-            if (slid > 0.05 && std::abs(velocity) > 0.1) {
-                // bristles follow a load that changes after a short way
-                REQUIRE(added == Approx(std::copysign(mu * std::abs(load[trial.joint()]), velocity))
-                                     .epsilon(0.05)
-                                     .margin(0.02 * mu * load.cwiseAbs().maxCoeff() + 1e-3));
-                ++sliding;
+            if (slid > 0.05) { // bristles follow a load that changes after a short way
+                squares += added * added;
+                errors += std::pow(added - std::copysign(mu * std::abs(load), velocity), 2);
             }
         }
-        CHECK(sliding > 100);
+        CAPTURE(trial.effect.where, mu);
+        CHECK(squares > 0);
+        CHECK(std::sqrt(errors / squares) < 0.12);
     }
 }
 
@@ -120,17 +122,20 @@ TEST_CASE("presliding friction is a spring that gives way at its break-away leve
     const double stiffness = trial.parameter("stiffness");
     double largest = 0;
     double start = 0;
+    double speed = 0;
     double steepest = 0;
     double past = 0;
     for (const SimulatedSample& sample : trial.samples) {
         const double added = (sample.torque - rigid(trial, sample.truth))[trial.joint()];
         const double position = sample.truth.position[trial.joint()];
+        const double velocity = sample.truth.velocity[trial.joint()];
         largest = std::max(largest, std::abs(added));
-        if (sample.time_s > 0 && std::abs(position - start) > 1e-5) {
-            steepest = std::max(steepest, std::abs((added - past) / (position - start)));
+        if (velocity * speed > 0 && std::abs(position - start) > 1e-4) {
+            steepest = std::max(steepest, (added - past) / (position - start));
         }
         past = added;
         start = position;
+        speed = velocity;
     }
     CHECK(largest <= level * (1 + 1e-9));
     CHECK(largest > 0.95 * level);
@@ -238,17 +243,43 @@ TEST_CASE("play lets the link lag behind its motor by half the gap either way") 
 }
 
 TEST_CASE("a soft gear twists by the torque it passes on, over its stiffness") {
-    const EffectTrial trial = try_effect("joint_flexibility", "ur5_torque", seed());
-    const double stiffness = trial.parameter("stiffness");
-    double squares = 0;
-    double error = 0;
-    for (const SimulatedSample& sample : trial.samples) {
-        const double twist = (sample.truth.motor_position - sample.truth.position)[trial.joint()];
-        const double torque = rigid(trial, sample.truth)[trial.joint()];
-        squares += torque * torque;
-        error += std::pow(stiffness * twist - torque, 2);
+    for (const std::string& robot : robots) {
+        EffectTrial trial = try_effect("joint_flexibility", robot, seed());
+        trial.effect.hide(trial.size, trial.setup.scenario);
+        trial.effect.rebuild(trial.setup.robot); // the links without the rotor
+        const double damping = trial.setup.scenario.actuators.gear.damping[trial.joint()];
+        double squares = 0;
+        double errors = 0;
+        for (const SimulatedSample& sample : trial.samples) {
+            const SimulatedTruth& truth = sample.truth;
+            const double twist = (truth.motor_position - truth.position)[trial.joint()];
+            const double rate = (truth.motor_velocity - truth.velocity)[trial.joint()];
+            const double torque = rigid(trial, truth)[trial.joint()];
+            squares += torque * torque;
+            errors += std::pow(trial.parameter("stiffness") * twist + damping * rate - torque, 2);
+        }
+        CHECK(std::sqrt(errors / squares) < 1e-6);
     }
-    // the rotor's share and the gear's losses are the difference
-    CHECK(std::sqrt(error / squares) < 0.35);
-    CHECK(stiffness > 0);
+}
+
+TEST_CASE("play and softness that vanish leave the arm that is described") {
+    EffectTrial trial = try_effect("joint_flexibility", "ur5_torque", seed());
+    Scenario scenario = trial.setup.scenario;
+    trial.effect.hide(trial.size, scenario);
+    // as stiff as the step can follow
+    scenario.actuators.gear.stiffness = 4e6 * scenario.actuators.rotor_inertia;
+    scenario.actuators.gear.damping = 2e3 * scenario.actuators.rotor_inertia;
+    scenario.integration_rate_hz = 8000;
+    Robot arm = trial.setup.robot;
+    trial.effect.rebuild(arm);
+    Simulation simulation(arm, scenario);
+    double squares = 0;
+    double errors = 0;
+    for (int row = 0; row < 1000; ++row) {
+        const SimulatedSample sample = simulation.next();
+        const JointVector expected = rigid(trial, sample.truth);
+        squares += expected.squaredNorm();
+        errors += (sample.torque - expected).squaredNorm();
+    }
+    CHECK(std::sqrt(errors / squares) < 0.01);
 }

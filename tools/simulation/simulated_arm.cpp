@@ -89,7 +89,8 @@ void SimulatedArm::rest_on_gears() {
     for (Eigen::Index i = 0; i < joint_count(); ++i) {
         if (soft(i)) {
             const Eigen::Index link = motor(i) + 1;
-            const double play = std::copysign(actuators_.gear.gap[i] / 2, weight[link]);
+            const double play =
+                weight[link] == 0 ? 0 : std::copysign(actuators_.gear.gap[i] / 2, weight[link]);
             position_[link] = -weight[link] / actuators_.gear.stiffness[i] - play;
         }
     }
