@@ -177,8 +177,8 @@ Robot read_robot(const std::filesystem::path& path, const ReadRobotOptions& opti
     robot.name = urdf.model->getName();
     robot.base = base->name;
     robot.tip = tip->name;
-    robot.gravity =
-        placement_along(joints_between(root, *base, file)).rotation().transpose() * options.gravity;
+    robot.base_in_root = placement_along(joints_between(root, *base, file)).rotation();
+    robot.gravity = robot.base_in_root.transpose() * options.gravity;
     robot.notes.insert(robot.notes.begin(), notes.begin(), notes.end());
     add_direction(robot, urdf.sensors, options.parent_to_child);
     note_oddities(*urdf.model, **first_moving, robot);

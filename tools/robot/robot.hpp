@@ -41,8 +41,9 @@ struct Robot {
     std::string name, base, tip;
     std::vector<RobotJoint> joints; ///< base to tip
     Eigen::Isometry3d tip_placement =
-        Eigen::Isometry3d::Identity();    ///< of the tip's frame in the last link's
-    Eigen::Vector3d gravity{0, 0, -9.81}; ///< m/s², in the base's frame
+        Eigen::Isometry3d::Identity();                          ///< of the tip's frame in the last link's
+    Eigen::Vector3d gravity{0, 0, -9.81};                       ///< m/s², in the base's frame
+    Eigen::Matrix3d base_in_root = Eigen::Matrix3d::Identity(); ///< base's axes into root's
     std::optional<ForceTorqueSensor> sensor;
     std::vector<std::string> notes; ///< what the file has that is odd but usable; a line each
 };

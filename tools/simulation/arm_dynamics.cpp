@@ -145,11 +145,23 @@ Wrench ArmDynamics::wrench(const Configuration& configuration, const JointVector
             force = force + net_force(configuration.inertia[i - 1], motion);
         }
     }
-    const Eigen::Isometry3d frame = place * sensor.placement;
-    const Eigen::Vector3d torque = force.torque - frame.translation().cross(force.force);
+    return at_sensor(force, place);
+}
+
+Wrench ArmDynamics::at_sensor(const SpatialForce& beyond, const Eigen::Isometry3d& sensor_link) const {
+    const Eigen::Isometry3d frame = sensor_link * robot_.sensor->placement;
+    const Eigen::Vector3d torque = beyond.torque - frame.translation().cross(beyond.force);
     Wrench result;
-    result << frame.linear().transpose() * force.force, frame.linear().transpose() * torque;
-    return sensor.parent_to_child ? result : -result;
+    result << frame.linear().transpose() * beyond.force, frame.linear().transpose() * torque;
+    return robot_.sensor->parent_to_child ? result : -result;
+}
+
+Wrench ArmDynamics::wrench_of_tip_force(const Configuration& configuration,
+                                        const Eigen::Vector3d& force) const {
+    const std::size_t link = robot_.sensor->link;
+    // what the surroundings carry the base's side need not
+    const SpatialForce spared{tip(configuration).cross(-force), -force};
+    return at_sensor(spared, link == 0 ? Eigen::Isometry3d::Identity() : configuration.place[link - 1]);
 }
 
 double ArmDynamics::energy(const Configuration& configuration, const JointVector& velocity) const {

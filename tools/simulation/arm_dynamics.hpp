@@ -48,6 +48,9 @@ class ArmDynamics {
     Wrench wrench(const Configuration& configuration, const JointVector& velocity,
                   const JointVector& acceleration) const;
 
+    /// What a force at the tip (N, in the base's frame) adds to that.
+    Wrench wrench_of_tip_force(const Configuration& configuration, const Eigen::Vector3d& force) const;
+
     /// Kinetic (rotors included) plus potential energy; the latter is zero at the base's origin. J.
     double energy(const Configuration& configuration, const JointVector& velocity) const;
 
@@ -64,6 +67,8 @@ class ArmDynamics {
                     double velocity, double acceleration) const;
     SpatialForce net_force(const SpatialInertia& inertia, const LinkMotion& motion) const;
     LinkMotion base_motion() const;
+    /// `beyond`: the force that the part on the sensor's base side exerts on the other.
+    Wrench at_sensor(const SpatialForce& beyond, const Eigen::Isometry3d& sensor_link) const;
 
     Robot robot_;
     JointVector rotor_inertia_;

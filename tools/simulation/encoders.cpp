@@ -21,6 +21,9 @@ double Encoders::count(std::size_t joint) const {
 
 void Encoders::observe(const JointVector& position) {
     reading_ = position;
+    if (model_.offset) {
+        reading_ += *model_.offset;
+    }
     for (Eigen::Index i = 0; i < position.size(); ++i) {
         reading_[i] += model_.eccentricity[i] * std::sin(position[i] + model_.eccentricity_phase[i]) +
                        model_.noise * noise_.next();

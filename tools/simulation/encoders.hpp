@@ -4,6 +4,7 @@
 #include "tools/simulation/joint_vector.hpp"
 #include "tools/training/random_source.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -11,14 +12,15 @@ namespace dfdyn::tools {
 /// What stands between the joint positions and their readings.
 struct EncoderModel {
     double rate_hz = 1000;
-    int bits_per_turn = 0;          ///< 0: no quantiser; a prismatic joint has 2^bits counts per metre
-    double noise = 0;               ///< rad, standard deviation, before the quantiser
-    JointVector eccentricity;       ///< rad, amplitude of one cycle per turn
-    JointVector eccentricity_phase; ///< rad
+    int bits_per_turn = 0;             ///< 0: no quantiser; a prismatic joint has 2^bits counts per metre
+    double noise = 0;                  ///< rad, standard deviation, before the quantiser
+    JointVector eccentricity;          ///< rad, amplitude of one cycle per turn
+    JointVector eccentricity_phase;    ///< rad
+    std::optional<JointVector> offset; ///< rad: reading minus position
 };
 
-/// Readings, held until the next: eccentricity (amplitude · sin(q + phase)), noise, rounding to the nearest
-/// count.
+/// Readings, held until the next: offset, eccentricity (amplitude · sin(q + phase)), noise, rounding to the
+/// nearest count.
 class Encoders {
   public:
     Encoders(EncoderModel model, std::vector<bool> prismatic, std::uint64_t seed);

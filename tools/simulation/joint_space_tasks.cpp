@@ -45,6 +45,26 @@ Reference Multisine::next() {
             amplitude * (size.acceleration * sum + 2 * size.rate * rate + size.value * acceleration)};
 }
 
+Reference Tones::next() {
+    const double time_s = static_cast<double>(step_++) * period_s_;
+    const SmoothStep size = smooth_step(time_s, model_.start_s);
+    Reference result{model_.centre, JointVector::Zero(model_.centre.size()),
+                     JointVector::Zero(model_.centre.size())};
+    for (Eigen::Index joint = 0; joint < result.position.size(); ++joint) {
+        for (const Tone& tone : model_.tones[static_cast<std::size_t>(joint)]) {
+            const double omega = 2 * std::numbers::pi * tone.hz;
+            const double angle = omega * time_s + tone.phase;
+            const double value = tone.amplitude * std::sin(angle);
+            const double rate = tone.amplitude * omega * std::cos(angle);
+            result.position[joint] += size.value * value;
+            result.velocity[joint] += size.rate * value + size.value * rate;
+            result.acceleration[joint] +=
+                size.acceleration * value + 2 * size.rate * rate - size.value * omega * omega * value;
+        }
+    }
+    return result;
+}
+
 Reference PointToPoint::next() {
     const double time_s = static_cast<double>(step_++) * period_s_;
     const double leg_s = model_.move_s + model_.dwell_s;

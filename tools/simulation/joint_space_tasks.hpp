@@ -21,6 +21,17 @@ class Multisine final : public Task {
     long step_ = 0;
 };
 
+class Tones final : public Task {
+  public:
+    Tones(TonesTask model, double period_s) : model_(std::move(model)), period_s_(period_s) {}
+    Reference next() override;
+
+  private:
+    TonesTask model_;
+    double period_s_;
+    long step_ = 0;
+};
+
 class PointToPoint final : public Task {
   public:
     PointToPoint(PointToPointTask model, double period_s) : model_(std::move(model)), period_s_(period_s) {}

@@ -1,13 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/simulation/lugre_friction.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dfdyn::tools {
 
+void LuGreFriction::set_conditions(double time_s, double load) noexcept {
+    drifted_ = std::max(0.0, 1 + parameters_.drift_per_s * time_s);
+    load_ = std::abs(load);
+}
+
 double LuGreFriction::level(double velocity) const noexcept {
+    constexpr double least = 1e-9; // N·m: bristles of no level at all would divide by it
     const double ratio = velocity / parameters_.stribeck_velocity;
-    return parameters_.coulomb + (parameters_.breakaway - parameters_.coulomb) * std::exp(-ratio * ratio);
+    const double unloaded = parameters_.coulomb +
+                            (parameters_.breakaway - parameters_.coulomb) * std::exp(-ratio * ratio) +
+                            (velocity < 0 ? parameters_.negative_excess : 0);
+    return std::max(least, drifted_ * unloaded + parameters_.load_coefficient * load_);
 }
 
 double LuGreFriction::deflection_rate(double velocity) const noexcept {
@@ -16,10 +26,11 @@ double LuGreFriction::deflection_rate(double velocity) const noexcept {
 
 double LuGreFriction::torque(double velocity) const noexcept {
     if (!(parameters_.stiffness > 0)) {
-        return parameters_.viscous * velocity;
+        return drifted_ * parameters_.viscous * velocity;
     }
-    return parameters_.stiffness * deflection_ + parameters_.damping * deflection_rate(velocity) +
-           parameters_.viscous * velocity;
+    const double viscous = drifted_ * parameters_.viscous;
+    const double rate = deflection_rate(velocity);
+    return parameters_.stiffness * deflection_ + parameters_.damping * rate + viscous * velocity;
 }
 
 void LuGreFriction::advance(double velocity, double duration) noexcept {

@@ -13,14 +13,22 @@ struct LuGreParameters {
     double coulomb = 0;           ///< kinetic friction, N·m
     double breakaway = 0;         ///< static friction, N·m; at least `coulomb`
     double stribeck_velocity = 1; ///< rad/s, positive
+    double negative_excess = 0;   ///< N·m: how much higher the level is while the joint moves backwards
+    double load_coefficient = 0;  ///< N·m of level per N·m of load, either sign of load alike; only without
+                                  ///< damping, which would blow up where the load vanishes
+    double drift_per_s = 0;       ///< 1/s: relative change of level and viscous friction since t = 0
 };
 
 /// The friction's own state: the mean deflection of the bristles. Equations, with v the joint's velocity:
 /// z' = v - σ0 |v| z / g(v),  g(v) = coulomb + (breakaway - coulomb) exp(-(v / stribeck_velocity)²),
-/// friction = σ0 z + σ1 z' + σ2 v.
+/// friction = σ0 z + σ1 z' + σ2 v. The level g has additions: an excess for negative v, a share of the load's
+/// magnitude; without the latter it drifts in time, and with it σ2.
 class LuGreFriction {
   public:
     explicit LuGreFriction(const LuGreParameters& parameters) noexcept : parameters_(parameters) {}
+
+    /// From now on: the time, and the torque that the joint's gear passes on.
+    void set_conditions(double time_s, double load) noexcept;
 
     /// What opposes the motion at `velocity`.
     double torque(double velocity) const noexcept;
@@ -37,6 +45,8 @@ class LuGreFriction {
 
     LuGreParameters parameters_;
     double deflection_ = 0;
+    double drifted_ = 1; ///< times what it was at t = 0, never negative
+    double load_ = 0;    ///< N·m, magnitude
 };
 
 } // namespace dfdyn::tools

@@ -33,7 +33,8 @@ std::vector<std::string> read_columns(const JsonReader& reader) {
 }
 
 RecordingModel read_recording_model(const ScenarioReader& reader) {
-    reader.allow_only({"rate_hz", "first_at_s", "samples", "instant_jitter_s", "stamp_jitter_s", "columns"});
+    reader.allow_only(
+        {"rate_hz", "first_at_s", "samples", "instant_jitter_s", "stamp_jitter_s", "columns", "noise"});
     RecordingModel model;
     model.rate_hz = reader.json().number_within("rate_hz", 1e-3, 1e5);
     model.first_at_s = reader.within("first_at_s", 0, 1e6, model.first_at_s);
@@ -43,66 +44,6 @@ RecordingModel read_recording_model(const ScenarioReader& reader) {
     model.instant_jitter_s = reader.within("instant_jitter_s", 0, most, 0);
     model.stamp_jitter_s = reader.within("stamp_jitter_s", 0, most, 0);
     model.columns = read_columns(reader.json());
-    return model;
-}
-
-LuGreParameters one_friction(const std::vector<JointVector>& values, Eigen::Index joint) {
-    LuGreParameters result;
-    result.stiffness = values[0][joint];
-    result.damping = values[1][joint];
-    result.viscous = values[2][joint];
-    result.coulomb = values[3][joint];
-    result.breakaway = values[4][joint];
-    result.stribeck_velocity = values[5][joint];
-    return result;
-}
-
-std::vector<LuGreParameters> read_friction(const ScenarioReader& reader) {
-    static constexpr const char* names[] = {
-        "stiffness_nm_per_rad", "damping_nms_per_rad", "viscous_nms_per_rad",
-        "coulomb_nm",           "static_nm",           "stribeck_velocity_rad_per_s"};
-    reader.allow_only({names[0], names[1], names[2], names[3], names[4], names[5]});
-    std::vector<JointVector> values;
-    for (const char* name : names) {
-        values.push_back(reader.per_joint(name, 0));
-    }
-    std::vector<LuGreParameters> friction;
-    for (Eigen::Index joint = 0; joint < values[0].size(); ++joint) {
-        const LuGreParameters one = one_friction(values, joint);
-        if (one.stiffness > 0 && !(one.coulomb > 0 && one.stribeck_velocity > 0)) {
-            throw reader.json().error("coulomb_nm",
-                                      "bristles to have a positive coulomb_nm and "
-                                      "stribeck_velocity_rad_per_s at every joint",
-                                      "0 or less");
-        }
-        if (one.breakaway < one.coulomb) {
-            throw reader.json().error("static_nm", "at least coulomb_nm at every joint", "less");
-        }
-        friction.push_back(one);
-    }
-    return friction;
-}
-
-ActuatorModel read_actuators(const ScenarioReader& reader) {
-    reader.allow_only(
-        {"rotor_inertia_kgm2", "torque_limit_nm", "torque_constant_nm_per_a", "torque_noise_nm", "friction"});
-    ActuatorModel model;
-    model.rotor_inertia = reader.per_joint("rotor_inertia_kgm2", 0);
-    if (reader.json().has("torque_limit_nm")) {
-        model.torque_limit = reader.positive_per_joint("torque_limit_nm");
-    }
-    model.friction = reader.json().has("friction")
-                         ? read_friction(reader.object("friction"))
-                         : std::vector<LuGreParameters>(static_cast<std::size_t>(reader.joint_count()));
-    return model;
-}
-
-TorqueSensorModel read_torque_sensor(const ScenarioReader& reader) {
-    TorqueSensorModel model;
-    model.noise = reader.per_joint("torque_noise_nm", 0);
-    if (reader.json().has("torque_constant_nm_per_a")) {
-        model.torque_constant = reader.positive_per_joint("torque_constant_nm_per_a");
-    }
     return model;
 }
 
@@ -127,33 +68,16 @@ ControllerModel read_controller(const ScenarioReader& reader) {
     return model;
 }
 
-std::vector<Payload> read_payloads(const JsonReader& reader) {
-    std::vector<Payload> payloads;
-    for (const JsonReader& entry : reader.objects("payloads", 0, 100)) {
-        const ScenarioReader one(entry, 0);
-        one.allow_only({"attached_s", "mass_kg", "centre_m"});
-        Payload payload;
-        payload.attached_s = one.within("attached_s", 0, 1e6, 0);
-        payload.mass = one.json().number_within("mass_kg", 1e-6, 1e4);
-        payload.centre = Eigen::Map<const Eigen::Vector3d>(one.json().numbers("centre_m", 3).data());
-        if (!payloads.empty() && payload.attached_s < payloads.back().attached_s) {
-            throw one.json().error("attached_s", "payloads in order of time",
-                                   number_text(payload.attached_s));
-        }
-        payloads.push_back(payload);
-    }
-    return payloads;
-}
-
 EncoderModel read_encoders(const ScenarioReader& reader) {
-    reader.allow_only(
-        {"rate_hz", "bits_per_turn", "noise_rad", "eccentricity_rad", "eccentricity_phase_rad"});
+    reader.allow_only({"rate_hz", "bits_per_turn", "noise_rad", "eccentricity_rad", "eccentricity_phase_rad",
+                       "offset_rad"});
     EncoderModel model;
     model.rate_hz = reader.within("rate_hz", 1, 1e5, model.rate_hz);
     model.bits_per_turn = reader.json().whole_or("bits_per_turn", 0, 0, 40);
     model.noise = reader.within("noise_rad", 0, 1, 0);
     model.eccentricity = reader.per_joint("eccentricity_rad", 0);
     model.eccentricity_phase = reader.per_joint("eccentricity_phase_rad", 0);
+    model.offset = reader.optional_per_joint("offset_rad");
     return model;
 }
 
@@ -170,7 +94,7 @@ DerivativeModel read_derivatives(const ScenarioReader& reader, double encoder_ra
 /// `robot`: for a message only.
 WrenchSensorModel read_force_torque(const ScenarioReader& reader, const Robot& robot) {
     reader.allow_only({"rate_hz", "bits", "range", "calibration", "noise", "bandwidth_hz", "order", "bias",
-                       "drift_per_s", "delay_s"});
+                       "drift_per_s", "delay_s", "rotation_rad"});
     if (!robot.sensor) {
         throw reader.json().error("range", "a robot with a force/torque sensor",
                                   "none on the chain " + robot.base + " to " + robot.tip);
@@ -179,6 +103,9 @@ WrenchSensorModel read_force_torque(const ScenarioReader& reader, const Robot& r
     model.rate_hz = reader.within("rate_hz", 1, 1e5, model.rate_hz);
     model.bits = reader.json().whole_or("bits", model.bits, 2, 40);
     model.range = Eigen::Map<const Wrench>(reader.json().positive_numbers("range", 6).data());
+    if (reader.json().has("rotation_rad")) {
+        model.rotation = Eigen::Map<const Eigen::Vector3d>(reader.json().numbers("rotation_rad", 3).data());
+    }
     if (reader.json().has("calibration")) {
         model.calibration = Eigen::Map<const WrenchMatrix>(reader.json().numbers("calibration", 36).data());
     }
@@ -265,7 +192,8 @@ Scenario read_scenario(const std::filesystem::path& path, const Robot& robot) {
     const nlohmann::json json = load(path);
     const ScenarioReader reader(JsonReader(json, shown(path)), static_cast<int>(robot.joints.size()));
     reader.allow_only({"schema", "chain", "seed", "integration_rate_hz", "recording", "task", "controller",
-                       "actuators", "payloads", "encoders", "derivatives", "force_torque"});
+                       "actuators", "arm", "contacts", "payloads", "encoders", "derivatives",
+                       "force_torque"});
     Scenario scenario;
     scenario.seed = reader.json().has("seed") ? reader.json().seed("seed") : scenario.seed;
     scenario.integration_rate_hz =
@@ -275,6 +203,11 @@ Scenario read_scenario(const std::filesystem::path& path, const Robot& robot) {
     scenario.controller = read_controller(reader.object("controller"));
     scenario.actuators = read_actuators(reader.object("actuators"));
     scenario.torque_sensor = read_torque_sensor(reader.object("actuators"));
+    scenario.robot_errors = read_robot_errors(reader);
+    scenario.loads = read_joint_loads(reader);
+    if (reader.object("recording").json().has("noise")) {
+        scenario.output_noise = read_output_noise(reader.object("recording").object("noise"));
+    }
     if (reader.json().has("payloads")) {
         scenario.payloads = read_payloads(reader.json());
     }

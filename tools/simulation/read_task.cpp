@@ -25,6 +25,24 @@ MultisineTask read_multisine(const ScenarioReader& reader) {
     return task;
 }
 
+TonesTask read_tones(const ScenarioReader& reader) {
+    reader.allow_only({"kind", "centre_rad", "joints", "start_s"});
+    TonesTask task;
+    task.centre = reader.per_joint("centre_rad");
+    for (const JsonReader& joint :
+         reader.json().objects("joints", reader.joint_count(), reader.joint_count())) {
+        std::vector<Tone>& tones = task.tones.emplace_back();
+        for (const JsonReader& entry : joint.objects("tones", 0, 1000)) {
+            const ScenarioReader tone(entry, 0);
+            tone.allow_only({"hz", "amplitude_rad", "phase_rad"});
+            tones.push_back({required(tone, "hz", 1e-4, 1e3), entry.number("amplitude_rad"),
+                             tone.within("phase_rad", -100, 100, 0)});
+        }
+    }
+    task.start_s = reader.within("start_s", 1e-3, longest_s, task.start_s);
+    return task;
+}
+
 PointToPointTask read_point_to_point(const ScenarioReader& reader) {
     reader.allow_only({"kind", "postures", "move_s", "dwell_s"});
     PointToPointTask task;
@@ -80,13 +98,16 @@ TaskModel read_task(const ScenarioReader& reader) {
     if (kind == "multisine") {
         return read_multisine(reader);
     }
+    if (kind == "tones") {
+        return read_tones(reader);
+    }
     if (kind == "point_to_point") {
         return read_point_to_point(reader);
     }
     if (kind == "circle") {
         return read_circle(reader);
     }
-    throw reader.json().error("kind", "multisine, point_to_point or circle", in_quotes(kind));
+    throw reader.json().error("kind", "multisine, tones, point_to_point or circle", in_quotes(kind));
 }
 
 } // namespace dfdyn::tools

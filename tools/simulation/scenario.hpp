@@ -4,9 +4,12 @@
 #include "tools/simulation/controller.hpp"
 #include "tools/simulation/derivative_estimator.hpp"
 #include "tools/simulation/encoders.hpp"
+#include "tools/simulation/output_noise.hpp"
 #include "tools/simulation/payload_schedule.hpp"
+#include "tools/simulation/robot_errors.hpp"
 #include "tools/simulation/simulated_arm.hpp"
 #include "tools/simulation/task.hpp"
+#include "tools/simulation/torque_sensor.hpp"
 #include "tools/simulation/wrench_sensor.hpp"
 
 #include <cstdint>
@@ -27,15 +30,6 @@ struct RecordingModel {
     std::vector<std::string> columns; ///< of q, qd, qdd, tau, i, wrench
 };
 
-/// Noise of the joints' torque readings, and what a current is.
-struct TorqueSensorModel {
-    JointVector noise;                          ///< N·m, standard deviation
-    std::optional<JointVector> torque_constant; ///< N·m/A, at the joint
-
-    /// A; only where there are torque constants.
-    JointVector current(const JointVector& torque) const { return torque.cwiseQuotient(*torque_constant); }
-};
-
 /// All that a simulation needs beside the robot. Its file: docs/scenario.md.
 struct Scenario {
     std::uint64_t seed = 1;
@@ -43,9 +37,12 @@ struct Scenario {
     RecordingModel recording;
     TaskModel task;
     ControllerModel controller;
+    RobotErrors robot_errors; ///< which no controller knows
+    JointLoads loads;         ///< likewise
     ActuatorModel actuators;
     std::vector<Payload> payloads; ///< in order of time
     TorqueSensorModel torque_sensor;
+    std::optional<OutputNoiseModel> output_noise;
     EncoderModel encoders;
     DerivativeModel derivatives;
     std::optional<WrenchSensorModel> force_torque;

@@ -39,6 +39,10 @@ JointVector ScenarioReader::positive_per_joint(const std::string& name) const {
     return result;
 }
 
+std::optional<JointVector> ScenarioReader::optional_per_joint(const std::string& name) const {
+    return json_.has(name) ? std::optional(per_joint(name)) : std::nullopt;
+}
+
 Wrench ScenarioReader::six(const std::string& name) const {
     if (!json_.has(name)) {
         return Wrench::Zero();

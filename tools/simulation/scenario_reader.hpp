@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tools/model/json_reader.hpp"
-#include "tools/simulation/task.hpp"
+#include "tools/simulation/scenario.hpp"
 
 #include <initializer_list>
 #include <string>
@@ -33,6 +33,7 @@ class ScenarioReader {
     JointVector per_joint(const std::string& name) const;
     JointVector per_joint(const std::string& name, double fallback) const;
     JointVector positive_per_joint(const std::string& name) const;
+    std::optional<JointVector> optional_per_joint(const std::string& name) const;
 
     /// Six numbers; zeros where the field is missing.
     Wrench six(const std::string& name) const;
@@ -44,5 +45,17 @@ class ScenarioReader {
 
 /// The section `task`.
 TaskModel read_task(const ScenarioReader& reader);
+
+/// The section `actuators`: what moves the joints, and what shows their torques.
+ActuatorModel read_actuators(const ScenarioReader& reader);
+TorqueSensorModel read_torque_sensor(const ScenarioReader& reader);
+
+/// Of the whole scenario: how the arm differs from its description, and what else acts on it.
+RobotErrors read_robot_errors(const ScenarioReader& reader);
+JointLoads read_joint_loads(const ScenarioReader& reader);
+std::vector<Payload> read_payloads(const JsonReader& reader);
+
+/// The section `recording.noise`.
+OutputNoiseModel read_output_noise(const ScenarioReader& reader);
 
 } // namespace dfdyn::tools

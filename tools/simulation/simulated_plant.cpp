@@ -3,7 +3,6 @@
 
 #include "tools/common/error.hpp"
 #include "tools/common/number.hpp"
-#include "tools/simulation/random_streams.hpp"
 
 #include <cmath>
 
@@ -22,11 +21,11 @@ std::vector<bool> prismatic(const Robot& robot) {
 } // namespace
 
 SimulatedPlant::SimulatedPlant(const Robot& robot, const Scenario& scenario, const JointVector& position)
-    : torque_noise_deviation_(scenario.torque_sensor.noise), period_s_(1 / scenario.integration_rate_hz),
+    : period_s_(1 / scenario.integration_rate_hz),
       encoder_steps_(std::llround(scenario.integration_rate_hz / scenario.encoders.rate_hz)),
-      arm_(robot, scenario.actuators, position), payloads_(scenario.payloads, robot),
-      encoders_(scenario.encoders, prismatic(robot), scenario.seed),
-      torque_noise_(scenario.seed, stream::torque_noise) {
+      arm_(real_robot(robot, scenario.robot_errors), scenario.actuators, position, scenario.loads),
+      payloads_(scenario.payloads, robot), encoders_(scenario.encoders, prismatic(robot), scenario.seed),
+      torque_sensor_(scenario.torque_sensor, period_s_, scenario.seed) {
     if (scenario.force_torque) {
         wrench_sensor_.emplace(*scenario.force_torque, period_s_, scenario.seed);
     }
@@ -36,8 +35,9 @@ SimulatedPlant::SimulatedPlant(const Robot& robot, const Scenario& scenario, con
 void SimulatedPlant::observe() {
     payloads_.attach_due(time_s(), arm_);
     if (step_ % encoder_steps_ == 0) {
-        encoders_.observe(arm_.state().position);
+        encoders_.observe(arm_.state().motor_position);
     }
+    torque_sensor_.observe(arm_.state().torque);
     if (wrench_sensor_) {
         wrench_sensor_->observe(time_s(), arm_.wrench());
     }
@@ -56,14 +56,6 @@ void SimulatedPlant::advance_to(double time_s) {
                          " s: expected the arm to stay under control, found it running away: gains, friction "
                          "or integration_rate_hz do not fit");
     }
-}
-
-JointVector SimulatedPlant::torque() {
-    JointVector reading = arm_.state().torque;
-    for (Eigen::Index i = 0; i < reading.size(); ++i) {
-        reading[i] += torque_noise_deviation_[i] * torque_noise_.next();
-    }
-    return reading;
 }
 
 } // namespace dfdyn::tools

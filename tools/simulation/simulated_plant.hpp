@@ -23,7 +23,7 @@ class SimulatedPlant {
     double time_s() const noexcept { return static_cast<double>(step_) * period_s_; }
     const JointVector& position() const noexcept { return encoders_.reading(); } ///< as the encoders show it
     /// As the torque sensors show it now: another noise in every call.
-    JointVector torque();
+    JointVector torque() { return torque_sensor_.read(arm_.state().torque); }
     /// As the F/T sensor shows it; the scenario must have one.
     const Wrench& wrench() const { return wrench_sensor_->reading(); }
     const SimulatedArm::State& truth() const noexcept { return arm_.state(); }
@@ -31,14 +31,13 @@ class SimulatedPlant {
   private:
     void observe();
 
-    JointVector torque_noise_deviation_;
     double period_s_;
     std::int64_t encoder_steps_;
     SimulatedArm arm_;
     PayloadSchedule payloads_;
     Encoders encoders_;
     std::optional<WrenchSensor> wrench_sensor_;
-    NormalSource torque_noise_;
+    TorqueSensor torque_sensor_;
     std::int64_t step_ = 0;
 };
 

@@ -36,7 +36,8 @@ Simulation::Simulation(const Robot& robot, const Scenario& scenario)
       derivative_steps_(std::llround(scenario.integration_rate_hz / scenario.derivatives.rate_hz)),
       control_steps_(std::llround(scenario.integration_rate_hz / scenario.controller.rate_hz)),
       task_(make_task(scenario.task, robot, 1 / scenario.controller.rate_hz, scenario.seed)),
-      reference_(task_->next()), arm_(robot, scenario.actuators, reference_.position),
+      reference_(task_->next()),
+      arm_(real_robot(robot, scenario.robot_errors), scenario.actuators, reference_.position, scenario.loads),
       payloads_(scenario.payloads, robot),
       controller_(robot, scenario.actuators.rotor_inertia, scenario.controller, scenario.seed),
       encoders_(scenario.encoders, prismatic(robot), scenario.seed),
@@ -44,8 +45,12 @@ Simulation::Simulation(const Robot& robot, const Scenario& scenario)
                            1 / scenario.encoders.rate_hz),
       derivatives_(scenario.derivatives, static_cast<int>(robot.joints.size()),
                    1 / scenario.derivatives.rate_hz),
-      wrench_sensor_(wrench_sensor(scenario)), torque_noise_(scenario.seed, stream::torque_noise),
+      wrench_sensor_(wrench_sensor(scenario)),
+      torque_sensor_(scenario.torque_sensor, period_s_, scenario.seed),
       jitter_(scenario.seed, stream::clock_jitter) {
+    if (scenario.output_noise) {
+        output_noise_.emplace(*scenario.output_noise, scenario.seed);
+    }
     observe();
 }
 
@@ -64,7 +69,7 @@ void Simulation::control() {
 void Simulation::observe() {
     payloads_.attach_due(static_cast<double>(step_) * period_s_, arm_);
     if (step_ % encoder_steps_ == 0) {
-        encoders_.observe(arm_.state().position);
+        encoders_.observe(arm_.state().motor_position);
         control_derivatives_.observe(encoders_.reading());
     }
     if (step_ % derivative_steps_ == 0) {
@@ -73,6 +78,7 @@ void Simulation::observe() {
     if (step_ % control_steps_ == 0) {
         control();
     }
+    torque_sensor_.observe(arm_.state().torque);
     if (wrench_sensor_) {
         wrench_sensor_->observe(static_cast<double>(step_) * period_s_, arm_.wrench());
     }
@@ -104,18 +110,22 @@ SimulatedSample Simulation::take() {
     sample.truth.acceleration = state.acceleration;
     sample.truth.torque = state.torque;
     sample.truth.friction = state.friction;
+    sample.truth.motor_position = state.motor_position;
+    sample.truth.motor_velocity = state.motor_velocity;
+    sample.truth.motor_acceleration = state.motor_acceleration;
     sample.truth.tip = arm_.dynamics().tip(arm_.configuration());
     sample.time_s = sample.truth.time_s;
     sample.position = encoders_.reading();
     sample.velocity = derivatives_.velocity();
     sample.acceleration = derivatives_.acceleration();
-    sample.torque = state.torque;
-    for (Eigen::Index i = 0; i < sample.torque.size(); ++i) {
-        sample.torque[i] += scenario_.torque_sensor.noise[i] * torque_noise_.next();
-    }
+    sample.torque = torque_sensor_.read(state.torque);
     if (wrench_sensor_) {
         sample.wrench = wrench_sensor_->reading();
         sample.truth.wrench = arm_.wrench();
+    }
+    if (output_noise_) {
+        sample.torque += output_noise_->torque();
+        sample.wrench += output_noise_->wrench();
     }
     return sample;
 }

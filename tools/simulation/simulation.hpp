@@ -14,6 +14,8 @@ struct SimulatedTruth {
     JointVector torque;   ///< of the actuators at the joint: inverse dynamics + rotor + friction
     JointVector friction; ///< what opposes the motion
     Wrench wrench = Wrench::Zero();
+    /// Of the motors, where the encoders sit: the joints' but where a joint is soft.
+    JointVector motor_position, motor_velocity, motor_acceleration;
     Eigen::Vector3d tip = Eigen::Vector3d::Zero(); ///< m, in the base's frame
 };
 
@@ -56,7 +58,9 @@ class Simulation {
     DerivativeEstimator control_derivatives_; ///< the controller's own, at the encoders' rate
     DerivativeEstimator derivatives_;         ///< recorded
     std::optional<WrenchSensor> wrench_sensor_;
-    NormalSource torque_noise_, jitter_;
+    TorqueSensor torque_sensor_;
+    std::optional<OutputNoise> output_noise_;
+    NormalSource jitter_;
     std::int64_t step_ = 0; ///< of the state at hand
     std::size_t taken_ = 0;
 };

@@ -27,6 +27,9 @@ struct Maker {
     std::unique_ptr<Task> operator()(const MultisineTask& model) const {
         return std::make_unique<Multisine>(model, period_s, seed);
     }
+    std::unique_ptr<Task> operator()(const TonesTask& model) const {
+        return std::make_unique<Tones>(model, period_s);
+    }
     std::unique_ptr<Task> operator()(const PointToPointTask& model) const {
         return std::make_unique<PointToPoint>(model, period_s);
     }

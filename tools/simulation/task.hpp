@@ -27,6 +27,18 @@ struct MultisineTask {
     double start_s = 2; ///< the motion grows from rest at the centre to its full size
 };
 
+/// A sine.
+struct Tone {
+    double hz = 1, amplitude = 0, phase = 0; ///< Hz, rad, rad
+};
+
+/// Per joint a sum of sines of its own.
+struct TonesTask {
+    JointVector centre;                   ///< rad
+    std::vector<std::vector<Tone>> tones; ///< per joint
+    double start_s = 2;                   ///< the motion grows from rest at the centre to its full size
+};
+
 /// From posture to posture on fifth-order polynomials, in turn, for ever.
 struct PointToPointTask {
     std::vector<JointVector> postures; ///< rad
@@ -50,7 +62,7 @@ struct CircleTask {
     double variation_time_s = 10;
 };
 
-using TaskModel = std::variant<MultisineTask, PointToPointTask, CircleTask>;
+using TaskModel = std::variant<MultisineTask, TonesTask, PointToPointTask, CircleTask>;
 
 /// The reference, step by step.
 class Task {

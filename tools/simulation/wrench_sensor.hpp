@@ -13,6 +13,7 @@ struct WrenchSensorModel {
     double rate_hz = 1000;
     Wrench range = Wrench::Zero(); ///< full scale to both sides; beyond it the reading saturates
     int bits = 16;                 ///< of the whole range, both signs
+    Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  ///< rad: roll, pitch, yaw that turn the true wrench
     WrenchMatrix calibration = WrenchMatrix::Identity(); ///< times the true wrench: gains and crosstalk
     Wrench noise = Wrench::Zero();                       ///< standard deviation of a reading
     double bandwidth_hz = 0;                             ///< -3 dB; 0: no filter
@@ -22,9 +23,9 @@ struct WrenchSensorModel {
     double delay_s = 0;                                  ///< on top of the filter's
 };
 
-/// The chain of a six-axis sensor: low pass, delay (fractions of a step by linear interpolation), error of
-/// calibration, bias and drift, noise, saturation, quantiser (to the nearest of 2^bits steps of the range),
-/// hold until the next reading.
+/// The chain of a six-axis sensor: low pass, delay (fractions of a step by linear interpolation), wrong
+/// mounting, error of calibration, bias and drift, noise, saturation, quantiser (to the nearest of 2^bits
+/// steps of the range), hold until the next reading.
 class WrenchSensor {
   public:
     /// `period_s`: of the simulation's steps, of which the sensor's period must be a multiple.
@@ -43,6 +44,7 @@ class WrenchSensor {
     Wrench delayed(const Wrench& wrench);
 
     WrenchSensorModel model_;
+    WrenchMatrix response_; ///< calibration after mounting
     std::int64_t steps_per_reading_;
     std::int64_t next_ = 0; ///< steps until the next reading
     LowPass filter_;

@@ -72,7 +72,7 @@ TEST_CASE("a bad scenario is refused with the path of the field, what was expect
                StartsWith("actuators.friction.field \"colomb_nm\""));
     CHECK_THAT(error_with("/task/tones", 0), StartsWith("task.tones: expected a whole number from 1"));
     CHECK_THAT(error_with("/task/kind", "dance"),
-               StartsWith("task.kind: expected multisine, point_to_point or circle, found \"dance\""));
+               StartsWith("task.kind: expected multisine, tones, point_to_point or circle, found \"dance\""));
     CHECK_THAT(error_with("/task/highest_hz", 0.05),
                StartsWith("task.highest_hz: expected a number from 0.1"));
     CHECK_THAT(error_with("/controller/velocity_gain", {1, 2}),
@@ -119,6 +119,59 @@ TEST_CASE("the F/T sensor's calibration is read row by row") {
     scenario["force_torque"]["calibration"] = numbers;
     CHECK_THROWS_WITH(read(scenario, robot),
                       Catch::Matchers::ContainsSubstring("force_torque.calibration: expected 36 numbers"));
+}
+
+TEST_CASE("what an arm has beyond its description is read, and refused where it cannot be") {
+    using Catch::Matchers::StartsWith;
+    json scenario = minimal();
+    scenario["recording"]["noise"] = {{"torque_nm", 0.2}, {"coefficient", 0.9}};
+    scenario["arm"] = {{"links", {{{"link", 1}, {"delta_mass_kg", 0.2}, {"delta_centre_m", {0, 0, 0.01}}}}},
+                       {"tilt_rad", {0.01, -0.02}},
+                       {"springs", {{"stiffness_nm_per_rad", 3}, {"rest_rad", 0.5}}}};
+    scenario["contacts"] = {{{"start_s", 1}, {"end_s", 2}, {"joint", 1}, {"peak_nm", -4}},
+                            {{"start_s", 3}, {"end_s", 5}, {"force_n", {1, 2, 3}}}};
+    json& actuators = scenario["actuators"];
+    actuators.update(
+        {{"rotor_inertia_kgm2", 0.1},
+         {"bandwidth_hz", 50},
+         {"torque_gain", 1.1},
+         {"torque_offset_nm", 0.3},
+         {"torque_delay_s", 0.002},
+         {"gear", {{"stiffness_nm_per_rad", 500}, {"damping_nms_per_rad", 1}, {"gap_rad", 0.01}}},
+         {"ripple", {{"amplitude_nm", 0.4}, {"cycles_per_turn", 6}, {"phase_rad", 1}}}});
+    actuators["friction"] = {{"stiffness_nm_per_rad", 100},
+                             {"coulomb_nm", 1},
+                             {"static_nm", 1},
+                             {"stribeck_velocity_rad_per_s", 0.1},
+                             {"coulomb_negative_nm", 1.5},
+                             {"load_coefficient", 0.2},
+                             {"drift_per_s", 0.01}};
+    scenario["encoders"]["offset_rad"] = 0.02;
+    const Scenario read_back = read(scenario);
+    CHECK(read_back.output_noise->coefficient == 0.9);
+    CHECK(read_back.robot_errors.links.at(0).delta_centre.z() == 0.01);
+    CHECK(read_back.robot_errors.tilt_y == -0.02);
+    CHECK(read_back.loads.springs->rest[0] == 0.5);
+    CHECK(read_back.loads.ripple->cycles[0] == 6);
+    CHECK(read_back.loads.contacts.at(0).joint == 0);
+    CHECK(read_back.loads.contacts.at(0).peak == -4);
+    CHECK_FALSE(read_back.loads.contacts.at(1).joint);
+    CHECK(read_back.loads.contacts.at(1).force.z() == 3);
+    CHECK(read_back.actuators.gear.gap[0] == 0.01);
+    CHECK(read_back.actuators.friction[0].negative_excess == 0.5);
+    CHECK(read_back.actuators.friction[0].load_coefficient == 0.2);
+    CHECK(read_back.torque_sensor.gain->operator[](0) == 1.1);
+    CHECK(read_back.torque_sensor.delay_s->operator[](0) == 0.002);
+    CHECK(read_back.encoders.offset->operator[](0) == 0.02);
+
+    CHECK_THAT(error_with("/contacts", {{{"start_s", 1}, {"end_s", 2}}}),
+               StartsWith("contacts[0].joint: expected either joint and peak_nm, or force_n"));
+    CHECK_THAT(error_with("/actuators/gear", {{"stiffness_nm_per_rad", 5}}),
+               StartsWith("actuators.gear.stiffness_nm_per_rad: expected a rotor_inertia_kgm2"));
+    CHECK_THAT(error_with("/actuators/gear", {{"gap_rad", 0.1}}), StartsWith("actuators.gear.gap_rad"));
+    CHECK_THAT(error_with("/actuators/torque_delay_s", -1), StartsWith("actuators.torque_delay_s"));
+    CHECK_THAT(error_with("/recording/noise", {{"series", {1, 2}}}), StartsWith("recording.noise.series"));
+    CHECK_THAT(error_with("/arm", {{"links", {{{"link", 2}}}}}), StartsWith("arm.links[0].link"));
 }
 
 TEST_CASE("a file that is no scenario is refused") {

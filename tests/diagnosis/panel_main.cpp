@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Makes recordings with hidden effects, and their answers; and scores the diagnosis on them.
+#include "tests/diagnosis/panel_files.hpp"
+#include "tests/diagnosis/panel_table.hpp"
+#include "tests/diagnosis/run_panel.hpp"
+#include "tools/common/atomic_file.hpp"
+#include "tools/common/error.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+namespace {
+
+using namespace dfdyn::tests;
+
+struct PanelOptions {
+    std::uint64_t seed = 1;
+    int cases = 1;
+    PanelMix mix;
+    std::filesystem::path directory; ///< of generate
+    int threads = 2;                 ///< of score
+    std::filesystem::path tables;    ///< of score
+};
+
+std::string case_name(int number) {
+    char text[32];
+    std::snprintf(text, sizeof text, "case%04d", number);
+    return text;
+}
+
+std::string in_words(const PanelCase& panel_case) {
+    std::string text = panel_case.hidden.empty() ? " nothing" : "";
+    for (const HiddenEffect& hidden : panel_case.hidden) {
+        char strength[32];
+        std::snprintf(strength, sizeof strength, " %.3g", hidden.strength);
+        text.append(" ").append(hidden.effect).append(" ").append(hidden.where).append(strength);
+    }
+    return text;
+}
+
+int generate(const PanelOptions& options) {
+    std::filesystem::create_directories(options.directory);
+    int redraws = 0;
+    for (int number = 0; number < options.cases; ++number) {
+        const auto start = std::chrono::steady_clock::now();
+        const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(number);
+        const PanelCase panel_case = make_panel_case(seed, options.mix);
+        write_panel_case(panel_case, options.directory, case_name(number));
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+        redraws += panel_case.redraws;
+        std::printf("%s seed %llu %s %s%s:%s; %d simulations, %d redraws, %.2f s\n",
+                    case_name(number).c_str(), static_cast<unsigned long long>(seed),
+                    panel_case.robot_name.c_str(), panel_case.noise.c_str(),
+                    panel_case.masses_off ? " masses off" : "", in_words(panel_case).c_str(),
+                    panel_case.simulations, panel_case.redraws, took.count());
+        std::fflush(stdout);
+    }
+    std::printf("%d cases, %d redraws\n", options.cases, redraws);
+    return 0;
+}
+
+int score(const PanelOptions& options) {
+    const std::vector<CaseScore> scores =
+        run_panel(options.seed, options.cases, options.mix, options.threads, [](const CaseScore& one) {
+            std::printf("%s\n", describe(one).c_str());
+            std::fflush(stdout);
+        });
+    const std::string tables = panel_tables(scores);
+    std::printf("%d recordings, seeds from %llu\n\n%s", options.cases,
+                static_cast<unsigned long long>(options.seed), tables.c_str());
+    if (!options.tables.empty()) {
+        dfdyn::tools::write_file(options.tables, tables);
+    }
+    return 0;
+}
+
+void add_mix(CLI::App& command, PanelOptions& options) {
+    command.add_option("--seed", options.seed, "Of the first case; each further one has the next")
+        ->required();
+    command.add_option("--cases", options.cases, "How many")->required()->check(CLI::PositiveNumber);
+    command.add_option("--effect", options.mix.effect, "Always this effect");
+    command.add_option("--strength", options.mix.strength, "Always this strength")
+        ->check(CLI::PositiveNumber);
+    command.add_option("--robot", options.mix.robot, "Always this arm")
+        ->check(CLI::IsMember(panel_robot_names()));
+    command.add_option("--noise", options.mix.noise, "Always this noise")
+        ->check(CLI::IsMember(panel_noise_names()));
+    command.add_option("--masses-off", options.mix.masses_off, "Nominal masses wrong: 0 never, 1 always");
+    command.add_option("--null-share", options.mix.null_share, "Share of cases without any effect");
+    command.add_option("--two-share", options.mix.two_effects_share, "Share with two effects");
+    command.add_option("--outside-share", options.mix.outside_share,
+                       "Share with effects outside the catalogue");
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("Recordings of simulated arms with hidden effects, to test who looks for them");
+    app.require_subcommand(1);
+    PanelOptions options;
+    CLI::App* generating = app.add_subcommand(
+        "generate", "Writes caseNNNN.csv, what may be seen, and caseNNNN.truth.json, the answer");
+    add_mix(*generating, options);
+    generating->add_option("-o,--output", options.directory, "Folder")->required();
+    CLI::App* scoring =
+        app.add_subcommand("score", "Diagnoses the cases and tells what was found, as tables");
+    add_mix(*scoring, options);
+    scoring->add_option("--threads", options.threads, "Cases at the same time")->check(CLI::Range(1, 64));
+    scoring->add_option("-o,--output", options.tables, "The tables, as Markdown");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        return generating->parsed() ? generate(options) : score(options);
+    } catch (const dfdyn::tools::InputError& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 2;
+    }
+}

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/diagnosis/panel_score.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace dfdyn::tests {
+
+namespace {
+
+constexpr std::size_t largest_class = 3;
+
+bool is(const tools::Finding& finding, const HiddenEffect& hidden) {
+    return finding.effect == hidden.effect && finding.where == hidden.where;
+}
+
+bool has(const tools::Finding& finding, const HiddenEffect& hidden) {
+    return finding.indistinguishable.size() < largest_class &&
+           std::any_of(finding.indistinguishable.begin(), finding.indistinguishable.end(),
+                       [&](const tools::OtherCause& cause) {
+                           return cause.effect == hidden.effect && cause.where == hidden.where;
+                       });
+}
+
+void score_parameter(EffectScore& score, const HiddenEffect& hidden, const tools::Finding& finding) {
+    if (hidden.parameters.empty()) {
+        return;
+    }
+    const auto& [name, value] = hidden.parameters.front();
+    const auto found = std::ranges::find(finding.parameters, name, &tools::FoundParameter::name);
+    if (found == finding.parameters.end()) {
+        return;
+    }
+    score.relative_error = std::abs(found->value - value) / std::abs(value);
+    score.in_interval = found->low <= value && value <= found->high;
+}
+
+std::string name_of(const tools::Finding& finding) { return finding.effect + "@" + finding.where; }
+
+EffectScore score_effect(const HiddenEffect& hidden, const tools::Diagnosis& diagnosis) {
+    EffectScore score{hidden.effect, hidden.where, hidden.strength, false, false, false, "nothing", {},
+                      false};
+    for (const tools::Finding& finding : diagnosis.findings) {
+        if (is(finding, hidden)) {
+            score.named = true;
+            score.alone = finding.indistinguishable.empty();
+            score.named_as = name_of(finding);
+            score_parameter(score, hidden, finding);
+            return score;
+        }
+    }
+    for (const tools::Finding& finding : diagnosis.findings) {
+        if (has(finding, hidden)) {
+            score.in_class = true;
+            score.named_as = name_of(finding);
+            return score;
+        }
+    }
+    if (!diagnosis.findings.empty()) {
+        score.named_as = name_of(diagnosis.findings.front());
+    }
+    return score;
+}
+
+FindingScore score_finding(const PanelCase& panel_case, const tools::Finding& finding) {
+    FindingScore score{finding.effect,
+                       finding.where,
+                       finding.confidence,
+                       finding.margin_to_nothing,
+                       finding.margin_to_others,
+                       finding.indistinguishable.size(),
+                       false,
+                       false};
+    score.own_name = (panel_case.masses_off && finding.effect == "link_inertia_error") ||
+                     std::any_of(panel_case.hidden.begin(), panel_case.hidden.end(),
+                                 [&](const HiddenEffect& hidden) { return is(finding, hidden); });
+    score.right =
+        score.own_name || std::any_of(panel_case.hidden.begin(), panel_case.hidden.end(),
+                                      [&](const HiddenEffect& hidden) { return has(finding, hidden); });
+    return score;
+}
+
+} // namespace
+
+CaseScore score_case(const PanelCase& panel_case, const tools::Diagnosis& diagnosis) {
+    CaseScore score;
+    score.seed = panel_case.seed;
+    score.robot = panel_case.robot_name;
+    score.noise = panel_case.noise;
+    score.masses_off = panel_case.masses_off;
+    score.outside = panel_case.outside_catalogue;
+    for (const HiddenEffect& hidden : panel_case.hidden) {
+        score.effects.push_back(score_effect(hidden, diagnosis));
+    }
+    for (const tools::Finding& finding : diagnosis.findings) {
+        score.findings.push_back(score_finding(panel_case, finding));
+    }
+    if (score.outside && !panel_case.hidden.empty()) {
+        score.unexplained_right =
+            std::ranges::any_of(diagnosis.unexplained, [&](const tools::Unexplained& entry) {
+                return diagnosis.output_names[static_cast<std::size_t>(entry.output)] ==
+                       panel_case.hidden.front().main_output;
+            });
+    }
+    return score;
+}
+
+std::string describe(const CaseScore& score) {
+    std::string text = std::to_string(score.seed) + " " + score.robot + " " + score.noise +
+                       (score.masses_off ? " off" : " exact");
+    std::array<char, 200> part{};
+    for (const EffectScore& effect : score.effects) {
+        std::snprintf(part.data(), part.size(), " | %s %s@%s x%.2g%s",
+                      effect.found() ? (effect.named ? "OK" : "ok-class") : "MISS", effect.effect.c_str(),
+                      effect.where.c_str(), effect.strength, score.outside ? " outside" : "");
+        text += part.data();
+        if (effect.relative_error) {
+            std::snprintf(part.data(), part.size(), " err %.0f%%%s", 100 * *effect.relative_error,
+                          effect.in_interval ? "" : " out");
+            text += part.data();
+        }
+    }
+    text += " ||";
+    for (const FindingScore& finding : score.findings) {
+        std::snprintf(part.data(), part.size(), " %s%s@%s(%.1f/%.1f,%zu)",
+                      finding.own_name ? ""
+                      : finding.right  ? "~"
+                                       : "!",
+                      finding.effect.c_str(), finding.where.c_str(), finding.margin_to_nothing,
+                      finding.margin_to_others, finding.ties);
+        text += part.data();
+    }
+    std::snprintf(part.data(), part.size(), "  [%.1fs]", score.seconds);
+    return text + part.data();
+}
+
+} // namespace dfdyn::tests

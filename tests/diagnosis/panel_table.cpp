@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/diagnosis/panel_table.hpp"
+
+#include "tools/report/report_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <map>
+#include <utility>
+
+namespace dfdyn::tests {
+
+namespace {
+
+using tools::ReportCell;
+using tools::ReportTable;
+
+constexpr double likely = 0.5;
+constexpr double confident = 0.9;
+constexpr double nominal_strength = 0.75; ///< drawn as 1, reached within 15 %
+
+std::string percent(const Rate& rate) {
+    std::array<char, 48> text{};
+    std::snprintf(text.data(), text.size(), "%.1f %% (%d of %d)", 100 * rate.share(), rate.count, rate.of);
+    return rate.of == 0 ? "–" : text.data();
+}
+
+void add_effect(PanelSummary& summary, const EffectScore& effect) {
+    if (effect.strength >= 2) {
+        summary.found_at_3.add(effect.found());
+    } else if (effect.strength >= nominal_strength) {
+        summary.found_at_1.add(effect.found());
+    } else {
+        summary.found_at_03.add(effect.found());
+        return;
+    }
+    if (effect.strength >= nominal_strength && (effect.alone || !effect.found())) {
+        summary.exact_name.add(effect.named);
+    }
+    if (effect.strength >= nominal_strength && effect.relative_error) {
+        summary.parameter_within_20.add(*effect.relative_error <= 0.2);
+        summary.parameter_in_interval.add(effect.in_interval);
+    }
+}
+
+bool wrong_name(const CaseScore& score) {
+    return std::any_of(score.findings.begin(), score.findings.end(), [](const FindingScore& finding) {
+        return finding.confidence >= likely && !finding.right;
+    });
+}
+
+ReportTable target_table(const PanelSummary& summary) {
+    struct Line {
+        const char* what;
+        const Rate& rate;
+        double target;
+        bool at_least;
+    };
+    const std::array lines{
+        Line{"right name and place, or its class: strength 3 and more", summary.found_at_3, 0.97, true},
+        Line{"the same at strength 1", summary.found_at_1, 0.92, true},
+        Line{"the same at strength 0.3", summary.found_at_03, 0.75, true},
+        Line{"exact name where nothing ties, strength 1 and more", summary.exact_name, 0.95, true},
+        Line{"main parameter within 20 %, strength 1 and more", summary.parameter_within_20, 0.90, true},
+        Line{"main parameter inside its 95 % interval", summary.parameter_in_interval, 0.90, true},
+        Line{"recordings without any effect that have a finding at 0.5 or more", summary.null_with_finding,
+             0.05, false},
+        Line{"findings at 0.9 or more that are wrong", summary.confident_and_wrong, 0.05, false},
+        Line{"two effects at once: both named", summary.both_named, 0.85, true},
+        Line{"effects outside the catalogue: no wrong name, reported as unexplained", summary.outside_silent,
+             0.80, true}};
+    ReportTable table{"What is asked for, and what was reached", {"", "reached", "target", "met"}, {}, ""};
+    for (const Line& line : lines) {
+        const bool met = line.at_least ? line.rate.share() >= line.target : line.rate.share() <= line.target;
+        std::array<char, 32> target{};
+        std::snprintf(target.data(), target.size(), "%s %.0f %%", line.at_least ? "≥" : "≤",
+                      100 * line.target);
+        table.rows.push_back({std::string(line.what), percent(line.rate), std::string(target.data()),
+                              std::string(line.rate.of == 0 ? "–"
+                                          : met             ? "yes"
+                                                            : "no")});
+    }
+    return table;
+}
+
+ReportTable effect_table(const std::vector<CaseScore>& scores) {
+    std::map<std::string, std::array<Rate, 3>> effects;
+    for (const CaseScore& score : scores) {
+        for (const EffectScore& effect : score.effects) {
+            if (!score.outside) {
+                const std::size_t column = effect.strength >= 2                  ? 2
+                                           : effect.strength >= nominal_strength ? 1
+                                                                                 : 0;
+                effects[effect.effect][column].add(effect.found());
+            }
+        }
+    }
+    ReportTable table{"Found, per effect and strength", {"effect", "0.3", "1", "3 and more"}, {}, ""};
+    for (const auto& [effect, rates] : effects) {
+        table.rows.push_back({effect, percent(rates[0]), percent(rates[1]), percent(rates[2])});
+    }
+    return table;
+}
+
+std::string kind_of(const std::string& name) { return name.substr(0, name.find('@')); }
+
+ReportTable confusion_table(const std::vector<CaseScore>& scores) {
+    std::map<std::pair<std::string, std::string>, int> confusions;
+    for (const CaseScore& score : scores) {
+        for (const EffectScore& effect : score.effects) {
+            if (!effect.found() && effect.strength >= nominal_strength) {
+                ++confusions[{effect.effect, kind_of(effect.named_as)}];
+            }
+        }
+    }
+    ReportTable table{"What was named in the place of what was hidden, strength 1 and more",
+                      {"hidden", "first finding", "recordings"},
+                      {},
+                      ""};
+    for (const auto& [names, count] : confusions) {
+        table.rows.push_back({names.first, names.second, static_cast<double>(count)});
+    }
+    return table;
+}
+
+ReportTable reliability_table(const std::vector<CaseScore>& scores) {
+    ReportTable table{"How often findings were right", {"confidence", "mean confidence", "right"}, {}, ""};
+    constexpr std::array edges{0.0, 0.2, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.01};
+    for (std::size_t bin = 0; bin + 1 < edges.size(); ++bin) {
+        Rate right;
+        double sum = 0;
+        for (const CaseScore& score : scores) {
+            for (const FindingScore& finding : score.findings) {
+                if (finding.confidence >= edges[bin] && finding.confidence < edges[bin + 1]) {
+                    right.add(finding.right);
+                    sum += finding.confidence;
+                }
+            }
+        }
+        std::array<char, 32> range{};
+        std::snprintf(range.data(), range.size(), "%.2f to %.2f", edges[bin], std::min(edges[bin + 1], 1.0));
+        table.rows.push_back(
+            {std::string(range.data()), right.of == 0 ? 0.0 : sum / right.of, percent(right)});
+    }
+    return table;
+}
+
+} // namespace
+
+PanelSummary summarise(const std::vector<CaseScore>& scores) {
+    PanelSummary summary;
+    for (const CaseScore& score : scores) {
+        if (score.effects.empty()) {
+            summary.null_with_finding.add(wrong_name(score));
+        }
+        if (score.outside) {
+            summary.outside_silent.add(!wrong_name(score) && score.unexplained_right);
+        } else {
+            for (const EffectScore& effect : score.effects) {
+                add_effect(summary, effect);
+            }
+            if (score.effects.size() == 2) {
+                summary.both_named.add(score.effects[0].found() && score.effects[1].found());
+            }
+        }
+        for (const FindingScore& finding : score.findings) {
+            if (finding.confidence >= confident) {
+                summary.confident_and_wrong.add(!finding.right);
+            }
+        }
+    }
+    return summary;
+}
+
+std::string panel_tables(const std::vector<CaseScore>& scores) {
+    std::string text;
+    for (const ReportTable& table : {target_table(summarise(scores)), reliability_table(scores),
+                                     effect_table(scores), confusion_table(scores)}) {
+        text += tools::table_markdown(table) + "\n";
+    }
+    return text;
+}
+
+} // namespace dfdyn::tests

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tests/diagnosis/panel_score.hpp"
+
+#include <string>
+#include <vector>
+
+namespace dfdyn::tests {
+
+/// How often something was so.
+struct Rate {
+    int count = 0, of = 0;
+
+    void add(bool yes) {
+        ++of;
+        count += yes ? 1 : 0;
+    }
+    double share() const { return of == 0 ? 0 : static_cast<double>(count) / of; }
+};
+
+/// What the diagnosis is to reach, and what it reached, over a panel.
+struct PanelSummary {
+    Rate found_at_3, found_at_1, found_at_03; ///< name and place, or a class of at most three that has it
+    Rate exact_name;                          ///< strength 1 and more, where the finding has no ties
+    Rate parameter_within_20, parameter_in_interval; ///< strength 1 and more
+    Rate null_with_finding;                          ///< with a confidence of 0.5 and more
+    Rate confident_and_wrong;                        ///< of all findings with a confidence of 0.9 and more
+    Rate both_named;
+    Rate outside_silent; ///< no wrong name at 0.5 and more, and an entry of what is unexplained on the right
+                         ///< output
+};
+
+PanelSummary summarise(const std::vector<CaseScore>& scores);
+
+/// Markdown: the summary against its targets; found or not per effect; what was named instead; how often
+/// findings of each confidence were right.
+std::string panel_tables(const std::vector<CaseScore>& scores);
+
+} // namespace dfdyn::tests

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// Columns of effects against what the effect does to the rigid body, by other means.
+#include "tools/diagnosis/candidates.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/tools/robot/arms.hpp"
+#include "tools/robot/firmware_chain.hpp"
+#include "tools/robot/regressor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace {
+
+using namespace dfdyn::tools;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Every joint swings with two frequencies; 20 s at 100 Hz, without any noise.
+MeasuredMotion swing(Index joints) {
+    constexpr Index rows = 2000;
+    MeasuredMotion measured;
+    measured.rate_hz = 100;
+    measured.time_s = VectorXd::LinSpaced(rows, 0, (rows - 1) / 100.0);
+    measured.motion = {MatrixXd(rows, joints), MatrixXd(rows, joints), MatrixXd(rows, joints)};
+    measured.smoothing_hz = VectorXd::Constant(joints, 20);
+    measured.velocity_noise = VectorXd::Zero(joints);
+    measured.stretches = {{0, rows}};
+    for (Index joint = 0; joint < joints; ++joint) {
+        const double omega = 1.1 + 0.37 * static_cast<double>(joint);
+        const Eigen::ArrayXd slow = omega * measured.time_s.array() + static_cast<double>(joint);
+        const Eigen::ArrayXd fast = 2.3 * omega * measured.time_s.array();
+        measured.motion.position.col(joint) = 0.6 * slow.sin() + 0.2 * fast.cos() + 0.3;
+        measured.motion.velocity.col(joint) = omega * (0.6 * slow.cos() - 0.46 * fast.sin());
+        measured.motion.acceleration.col(joint) = -omega * omega * (0.6 * slow.sin() + 1.058 * fast.cos());
+    }
+    return measured;
+}
+
+DiagnosisSignals signals_of(const Robot& robot, OutputKind kind) {
+    return diagnosis_signals(robot, kind, swing(static_cast<Index>(robot.joints.size())));
+}
+
+const Candidate& find(const std::vector<Candidate>& candidates, const std::string& effect,
+                      const std::string& where) {
+    const auto found = std::ranges::find_if(
+        candidates, [&](const Candidate& one) { return one.effect == effect && one.where == where; });
+    REQUIRE(found != candidates.end());
+    return *found;
+}
+
+MatrixXd contribution(const DiagnosisSignals& signals, const Candidate& candidate, std::size_t column) {
+    MatrixXd sum = MatrixXd::Zero(signals.rows(), signals.outputs());
+    for (const EffectColumn::Part& part : candidate.columns[column].parts) {
+        sum.col(part.output) += part.series;
+    }
+    return sum;
+}
+
+/// Away from the ends, where derivatives by differences are worse.
+void check_same(const MatrixXd& found, const MatrixXd& expected, double tolerance) {
+    const Index inner = found.rows() - 20;
+    CHECK((found - expected).middleRows(10, inner).cwiseAbs().maxCoeff() <
+          tolerance * expected.middleRows(10, inner).cwiseAbs().maxCoeff());
+}
+
+} // namespace
+
+TEST_CASE("the rigid body along a motion is the firmware's regressor times the nominal parameters") {
+    for (const OutputKind kind : {OutputKind::joint_torque, OutputKind::wrench}) {
+        const DiagnosisSignals signals = signals_of(dfdyn::tests::icub_right_arm(), kind);
+        const MatrixXd expected =
+            unstacked(signals.regressor * nominal_parameters(signals.robot, kind), signals.outputs());
+        CHECK((signals.nominal - expected).cwiseAbs().maxCoeff() < 1e-10);
+    }
+}
+
+TEST_CASE("a tilted base is one whose gravity points elsewhere: tilt_x, then tilt_y, about the root's axes") {
+    const DiagnosisSignals signals = signals_of(dfdyn::tests::ur5(), OutputKind::joint_torque);
+    const std::vector<Candidate> candidates = body_candidates(signals);
+    const Candidate& tilt = find(candidates, "gravity_tilt", "base");
+    constexpr double angle = 1e-4;
+    for (int axis = 0; axis < 2; ++axis) {
+        Robot tilted = signals.robot;
+        // the base turns by +angle: seen from it, gravity turns the other way
+        tilted.gravity = axis == 0 ? Eigen::Vector3d(0, -9.81 * std::sin(angle), -9.81 * std::cos(angle))
+                                   : Eigen::Vector3d(9.81 * std::sin(angle), 0, -9.81 * std::cos(angle));
+        const MatrixXd change =
+            (rigid_outputs(tilted, signals.kind, signals.measured.motion) - signals.nominal) / angle;
+        check_same(contribution(signals, tilt, static_cast<std::size_t>(axis)), change, 1e-3);
+    }
+}
+
+TEST_CASE("a payload is a point mass at the tip, and a link's error one at its centre of mass") {
+    const DiagnosisSignals signals = signals_of(dfdyn::tests::ur5(), OutputKind::joint_torque);
+    const std::vector<Candidate> candidates = body_candidates(signals);
+    const auto with_mass = [&](std::size_t joint, const Eigen::Vector3d& centre) {
+        Robot heavier = signals.robot;
+        heavier.joints[joint].inertia += body_parameters(1, centre, Eigen::Matrix3d::Zero());
+        return MatrixXd(rigid_outputs(heavier, signals.kind, signals.measured.motion) - signals.nominal);
+    };
+    check_same(contribution(signals, find(candidates, "payload", "tool"), 0),
+               with_mass(5, signals.robot.tip_placement.translation()), 1e-9);
+    const InertialParameters& third = signals.robot.joints[2].inertia;
+    check_same(contribution(signals, find(candidates, "link_inertia_error", "link3"), 0),
+               with_mass(2, third.segment<3>(1) / third[0]), 1e-9);
+}
+
+TEST_CASE("an encoder that reads too much puts the arm where it is not") {
+    const DiagnosisSignals signals = signals_of(dfdyn::tests::ur5(), OutputKind::joint_torque);
+    const std::vector<Candidate> candidates = position_candidates(signals);
+    constexpr double amount = 1e-4;
+    // what is measured is the swing; the true position is less by the encoder's error
+    const auto outputs_at = [&](const VectorXd& error, const VectorXd& error_rate,
+                                const VectorXd& error_acceleration) {
+        RobotMotion truth = signals.measured.motion;
+        truth.position.col(2) -= amount * error;
+        truth.velocity.col(2) -= amount * error_rate;
+        truth.acceleration.col(2) -= amount * error_acceleration;
+        return MatrixXd((rigid_outputs(signals.robot, signals.kind, truth) - signals.nominal) / amount);
+    };
+    const Index rows = signals.rows();
+    check_same(contribution(signals, find(candidates, "encoder_offset", "encoder3"), 0),
+               outputs_at(VectorXd::Ones(rows), VectorXd::Zero(rows), VectorXd::Zero(rows)), 1e-3);
+    const Eigen::ArrayXd q = signals.measured.motion.position.col(2);
+    const Eigen::ArrayXd v = signals.measured.motion.velocity.col(2);
+    const Eigen::ArrayXd a = signals.measured.motion.acceleration.col(2);
+    check_same(contribution(signals, find(candidates, "encoder_eccentricity", "encoder3"), 0),
+               outputs_at(q.sin(), q.cos() * v, q.cos() * a - q.sin() * v.square()), 5e-3);
+}
+
+TEST_CASE("friction opposes the motion, keeps its direction at rest, and builds up where it is presliding") {
+    DiagnosisSignals signals = signals_of(dfdyn::tests::ur5(), OutputKind::joint_torque);
+    // joint 1: forward, stand, back
+    auto position = signals.measured.motion.position.col(0);
+    auto velocity = signals.measured.motion.velocity.col(0);
+    for (Index row = 0; row < 2000; ++row) {
+        velocity[row] = row < 800 ? 0.5 : row < 1200 ? 0.0 : -0.5;
+        position[row] = row == 0 ? 0.0 : position[row - 1] + 0.01 * velocity[row];
+    }
+    const std::vector<Candidate> candidates = joint_candidates(signals);
+    const Candidate& coulomb = find(candidates, "coulomb_friction", "joint1");
+    const MatrixXd by_travel = contribution(signals, coulomb, 1);
+    CHECK(by_travel(500, 0) == Approx(1).margin(1e-3));
+    CHECK(by_travel(1000, 0) == Approx(1).margin(1e-3));
+    CHECK(by_travel(1800, 0) == Approx(-1).margin(1e-3));
+    const MatrixXd by_velocity = contribution(signals, coulomb, 0);
+    CHECK(by_velocity(500, 0) == Approx(1).margin(1e-3));
+    CHECK(std::abs(by_velocity(1000, 0)) < 1e-12);
+    const Candidate& presliding = find(candidates, "presliding_hysteresis", "joint1");
+    const EffectShape& shape = presliding.shapes.back();
+    const MatrixXd rising = contribution(signals, presliding, shape.columns[0]);
+    const double travel = position[100] - position[0];
+    CHECK(rising(100, 0) == Approx(1 - std::exp(-travel / shape.value)).margin(1e-6));
+    CHECK(by_travel.rightCols(5).isZero(0));
+}
+
+TEST_CASE("parameters follow the catalogue's signs and units") {
+    const DiagnosisSignals signals = signals_of(dfdyn::tests::icub_right_arm(), OutputKind::wrench);
+    const std::vector<Candidate> candidates = sensor_candidates(signals, signals.nominal, true);
+    const Candidate& delay = find(candidates, "delay", "ft_sensor");
+    // a reading that lags by 1 ms
+    const MatrixXd lagging = contribution(signals, delay, 0) * 1e-3;
+    MatrixXd later(signals.rows(), 6);
+    for (Index axis = 0; axis < 6; ++axis) {
+        later.col(axis) = -1e-3 * signals.rate(signals.nominal.col(axis));
+    }
+    check_same(lagging, later, 1e-9);
+    const auto gain =
+        std::ranges::find_if(candidates, [](const Candidate& one) { return one.effect == "ft_gain"; });
+    REQUIRE(gain != candidates.end());
+    CHECK(gain->parameters(VectorXd::Constant(1, 0.2), gain->shapes[0])[0].value == Approx(1.2));
+    const DiagnosisSignals torques = signals_of(dfdyn::tests::ur5(), OutputKind::joint_torque);
+    const std::vector<Candidate> actuators = sensor_candidates(torques, torques.nominal, true);
+    // true over assumed: the log has the true torque divided by it
+    CHECK(find(actuators, "actuator_gain", "actuator2")
+              .parameters(VectorXd::Constant(1, 0.25), EffectShape{})[0]
+              .value == Approx(0.8));
+    CHECK(std::ranges::none_of(sensor_candidates(torques, torques.nominal, false),
+                               [](const Candidate& one) { return one.effect == "actuator_gain"; }));
+}

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/effect_search.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <algorithm>
+#include <random>
+
+namespace {
+
+using namespace dfdyn::tools;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index rows = 2000;
+
+MatrixXd random_columns(Index count, std::mt19937_64& engine) {
+    std::normal_distribution<double> normal;
+    MatrixXd columns(rows, count);
+    for (Index i = 0; i < columns.size(); ++i) {
+        columns.data()[i] = normal(engine);
+    }
+    return columns;
+}
+
+bool anything(const VectorXd& /*coefficients*/) { return true; }
+bool positive(const VectorXd& coefficients) { return (coefficients.array() > 0).all(); }
+
+/// One candidate per column.
+SearchProblem problem_of(const MatrixXd& columns, const VectorXd& target) {
+    SearchProblem problem;
+    problem.sums = {columns.transpose() * columns, columns.transpose() * target, target.squaredNorm()};
+    for (Index column = 0; column < columns.cols(); ++column) {
+        SearchCandidate candidate;
+        candidate.shapes.push_back({{column}, anything});
+        candidate.rows = rows;
+        problem.candidates.push_back(candidate);
+    }
+    return problem;
+}
+
+std::vector<std::size_t> found(const SearchProblem& problem) {
+    std::vector<std::size_t> result;
+    for (const ChosenShape& one : search_effects(problem, {})) {
+        result.push_back(one.candidate);
+    }
+    std::ranges::sort(result);
+    return result;
+}
+
+} // namespace
+
+TEST_CASE("what was planted is found, with its coefficients; noise alone yields nothing") {
+    DFDYN_SEEDED_ENGINE(engine);
+    for (int trial = 0; trial < 20; ++trial) {
+        const MatrixXd columns = random_columns(60, engine);
+        const VectorXd noise = random_columns(1, engine);
+        CHECK(found(problem_of(columns, noise)).empty());
+        const VectorXd target = 0.5 * columns.col(7) - 0.2 * columns.col(31) + noise;
+        const SearchProblem problem = problem_of(columns, target);
+        const std::vector<ChosenShape> chosen = search_effects(problem, {});
+        CHECK(found(problem) == std::vector<std::size_t>{7, 31});
+        const EffectFit fit = fit_effects(problem, chosen);
+        const VectorXd exact = columns(Eigen::all, fit.columns).colPivHouseholderQr().solve(target);
+        CHECK((fit.coefficients - exact).cwiseAbs().maxCoeff() < 1e-8);
+    }
+}
+
+TEST_CASE("a column that stood in for two others goes when they come") {
+    DFDYN_SEEDED_ENGINE(engine);
+    MatrixXd columns = random_columns(10, engine);
+    columns.col(9) += 3 * columns.col(0) + 3 * columns.col(1); // explains most, but not all
+    const VectorXd target = 2 * columns.col(0) + 2 * columns.col(1) + random_columns(1, engine);
+    CHECK(found(problem_of(columns, target)) == std::vector<std::size_t>{0, 1});
+}
+
+TEST_CASE("of a family one is chosen at most, and a coefficient that may not be is not") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const MatrixXd columns = random_columns(4, engine);
+    const VectorXd target =
+        columns.col(0) + 0.8 * columns.col(1) - columns.col(2) + random_columns(1, engine);
+    SearchProblem problem = problem_of(columns, target);
+    problem.candidates[0].family = problem.candidates[1].family = 1;
+    problem.candidates[2].shapes[0].allowed = positive;
+    CHECK(found(problem) == std::vector<std::size_t>{0});
+}
+
+TEST_CASE("a copy of a chosen column is no addition, and a near copy is the closest alternative") {
+    DFDYN_SEEDED_ENGINE(engine);
+    MatrixXd columns = random_columns(5, engine);
+    columns.col(3) = columns.col(0);
+    columns.col(4) = columns.col(0) + 0.1 * columns.col(1);
+    const VectorXd target = columns.col(0) + random_columns(1, engine);
+    const SearchProblem problem = problem_of(columns, target);
+    const std::vector<ChosenShape> chosen{{0, 0}};
+    const std::vector<Replacement> more = additions(problem, chosen);
+    CHECK(std::ranges::none_of(more, [](const Replacement& one) { return one.with.candidate == 3; }));
+    const std::vector<Replacement> instead = additions(problem, {});
+    CHECK(std::abs(instead[0].score - instead[1].score) < 1e-9);
+    CHECK(instead[2].with.candidate == 4);
+}
+
+TEST_CASE("nuisance is paid for by what it was before anything was measured") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const MatrixXd columns = random_columns(3, engine);
+    const VectorXd target = 0.05 * columns.col(0) + 0.5 * columns.col(1) + random_columns(1, engine);
+    SearchProblem problem = problem_of(columns, target);
+    problem.nuisance = {{0, 0.058}};
+    problem.candidates.erase(problem.candidates.begin());
+    const EffectFit fit = fit_effects(problem, search_effects(problem, {}));
+    REQUIRE(fit.columns.size() == 2);
+    MatrixXd system = (columns.leftCols(2).transpose() * columns.leftCols(2)).eval();
+    system(0, 0) += 1 / (0.058 * 0.058);
+    const VectorXd exact = system.ldlt().solve(columns.leftCols(2).transpose() * target);
+    CHECK((fit.coefficients - exact).cwiseAbs().maxCoeff() < 1e-9);
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/lapped_transform.hpp"
+#include "tools/diagnosis/spectral_rows.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace {
+
+using namespace dfdyn::tools;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+VectorXd white_noise(Index count, std::mt19937_64& engine) {
+    std::normal_distribution<double> normal;
+    VectorXd noise(count);
+    for (double& value : noise) {
+        value = normal(engine);
+    }
+    return noise;
+}
+
+} // namespace
+
+TEST_CASE("the lapped transform is orthonormal: coefficients become a signal and come back") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const LappedTransform transform(32, 32);
+    const Index samples = 32 * 12;
+    const Index frames = transform.frames(samples);
+    REQUIRE(frames == 11);
+    const MatrixXd coefficients = white_noise(32 * frames, engine).reshaped(32, frames);
+    const MatrixXd again = transform.analyse(transform.synthesise(coefficients, samples));
+    CHECK((again - coefficients).cwiseAbs().maxCoeff() < 1e-12);
+}
+
+TEST_CASE("a sine has its energy at its frequency, and hardly any elsewhere") {
+    constexpr double cycles_per_sample = 10.5 / 128; // between the bins
+    const LappedTransform transform(64, 64);
+    const VectorXd time = VectorXd::LinSpaced(64 * 20, 0, 64 * 20 - 1);
+    const VectorXd sine = (2 * std::numbers::pi * cycles_per_sample * time.array()).sin();
+    const VectorXd power = transform.analyse(sine).rowwise().squaredNorm();
+    Index peak = 0;
+    power.maxCoeff(&peak);
+    CHECK(std::abs(peak - 10) <= 1);
+    CHECK(power.tail(64 - 24).sum() < 1e-6 * power.sum());
+}
+
+TEST_CASE("the spectrum of a first-order autoregressive noise is the one of the textbook") {
+    DFDYN_SEEDED_ENGINE(engine);
+    constexpr double memory = 0.9;
+    VectorXd noise = white_noise(40000, engine);
+    for (Index i = 1; i < noise.size(); ++i) {
+        noise[i] += memory * noise[i - 1];
+    }
+    const LappedTransform transform(200, 200);
+    const VectorXd spectrum = noise_spectrum(transform.analyse(noise), 0);
+    for (Index bin = 4; bin < 190; bin += 5) {
+        const double phase = std::numbers::pi * (static_cast<double>(bin) + 0.5) / 200;
+        const double expected = 1 / (1 - 2 * memory * std::cos(phase) + memory * memory);
+        INFO("bin " << bin);
+        CHECK(spectrum[bin] == Approx(expected).epsilon(0.25)); // 200 frames: deviation 10 % and less
+    }
+}
+
+TEST_CASE("a burst makes its frames uncertain, and no others") {
+    DFDYN_SEEDED_ENGINE(engine);
+    VectorXd noise = white_noise(100 * 40, engine);
+    noise.segment(2000, 100) *= 8;
+    const LappedTransform transform(100, 60);
+    const MatrixXd coefficients = transform.analyse(noise);
+    const MatrixXd unrest = noise_unrest(coefficients, VectorXd::Ones(60));
+    CHECK(unrest.col(20).minCoeff() > 5);
+    CHECK(unrest.leftCols(18).maxCoeff() < 3);
+    CHECK(unrest.rightCols(16).maxCoeff() < 3);
+}

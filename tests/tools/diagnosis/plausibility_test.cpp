@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recordings that cannot answer: the diagnosis says so in words, and names nothing.
+#include "tools/diagnosis/diagnosis.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/tools/robot/arms.hpp"
+#include "tools/diagnosis/rigid_model.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace {
+
+using namespace dfdyn::tools;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// The UR5 without any error: what each test below spoils.
+struct CleanRecording {
+    double duration_s = 30, rate_hz = 100;
+    MatrixXd position, torque;
+
+    explicit CleanRecording(double seconds = 30, double amplitude = 0.6) : duration_s(seconds) {
+        const auto rows = static_cast<Index>(duration_s * rate_hz);
+        RobotMotion motion{MatrixXd(rows, 6), MatrixXd(rows, 6), MatrixXd(rows, 6)};
+        const Eigen::ArrayXd time = VectorXd::LinSpaced(rows, 0, static_cast<double>(rows - 1) / rate_hz);
+        for (Index joint = 0; joint < 6; ++joint) {
+            const double omega = 0.9 + 0.31 * static_cast<double>(joint);
+            motion.position.col(joint) = amplitude * (omega * time + static_cast<double>(joint)).sin() - 0.4;
+            motion.velocity.col(joint) =
+                amplitude * omega * (omega * time + static_cast<double>(joint)).cos();
+            motion.acceleration.col(joint) =
+                -amplitude * omega * omega * (omega * time + static_cast<double>(joint)).sin();
+        }
+        position = motion.position;
+        torque = rigid_outputs(dfdyn::tests::ur5(), OutputKind::joint_torque, motion);
+    }
+
+    Recording recording(double time_scale = 1) const {
+        Recording result;
+        result.source = "run.csv";
+        for (int joint = 1; joint <= 6; ++joint) {
+            result.position.names.push_back("q" + std::to_string(joint));
+            result.output.names.push_back("tau" + std::to_string(joint));
+        }
+        for (Index row = 0; row < position.rows(); ++row) {
+            result.time_s.push_back(time_scale * static_cast<double>(row) / rate_hz);
+            result.time_ns.push_back(std::llround(1e9 * result.time_s.back()));
+            result.gap_before.push_back(row == 0 ? 1 : 0);
+            for (Index joint = 0; joint < 6; ++joint) {
+                result.position.values.push_back(position(row, joint));
+                result.output.values.push_back(torque(row, joint));
+            }
+        }
+        return result;
+    }
+};
+
+Diagnosis diagnosis_of(const Recording& recording) {
+    DiagnosisOptions options;
+    options.measure = false;
+    return diagnose(dfdyn::tests::ur5(), recording, options).diagnosis;
+}
+
+void check_refused(const Diagnosis& diagnosis, const std::string& words) {
+    INFO("expected: " << words);
+    REQUIRE_FALSE(diagnosis.suspicions.empty());
+    bool said = false;
+    for (const std::string& sentence : diagnosis.suspicions) {
+        INFO(sentence);
+        said = said || sentence.find(words) != std::string::npos;
+    }
+    CHECK(said);
+    CHECK(diagnosis.findings.empty());
+}
+
+} // namespace
+
+TEST_CASE("a recording without errors raises no suspicion and has no finding of weight") {
+    const Diagnosis diagnosis = diagnosis_of(CleanRecording().recording());
+    CHECK(diagnosis.suspicions.empty());
+    CHECK(diagnosis.nominal.nrmse.maxCoeff() < 0.01);
+}
+
+TEST_CASE("units: degrees, thousandths, milliseconds, mN·m") {
+    CleanRecording degrees;
+    degrees.position *= 180 / std::numbers::pi;
+    check_refused(diagnosis_of(degrees.recording()), "looks like degrees");
+    CleanRecording thousandths;
+    thousandths.position *= 1000;
+    check_refused(diagnosis_of(thousandths.recording()), "looks like thousandths");
+    check_refused(diagnosis_of(CleanRecording().recording(1000)), "looks like milliseconds");
+    CleanRecording torques;
+    torques.torque *= 1000;
+    check_refused(diagnosis_of(torques.recording()), "another unit");
+}
+
+TEST_CASE("columns exchanged, of positions and of outputs") {
+    CleanRecording positions;
+    positions.position.col(1).swap(positions.position.col(2));
+    check_refused(diagnosis_of(positions.recording()), "positions 2 and 3 look exchanged");
+    CleanRecording torques;
+    torques.torque.col(0).swap(torques.torque.col(3));
+    check_refused(diagnosis_of(torques.recording()), "outputs 1 and 4 look exchanged");
+}
+
+TEST_CASE("outputs of something else, an arm that stands, one joint alone, two seconds") {
+    CleanRecording other; // outputs that do not belong to this motion
+    other.torque = other.torque.colwise().reverse().eval();
+    check_refused(diagnosis_of(other.recording()), "next to nothing in common");
+    check_refused(diagnosis_of(CleanRecording(30, 0.001).recording()), "the arm stands still");
+    check_refused(diagnosis_of(CleanRecording(2).recording()), "s long: causes need");
+    CleanRecording one;
+    for (Index joint = 1; joint < 6; ++joint) {
+        one.position.col(joint).setConstant(one.position(0, joint));
+    }
+    const Diagnosis diagnosis = diagnosis_of(one.recording());
+    REQUIRE_FALSE(diagnosis.suspicions.empty());
+    CHECK(diagnosis.suspicions.front().find("only one joint moves") != std::string::npos);
+}

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/candidate_parts.hpp"
+#include "tools/diagnosis/candidates.hpp"
+#include "tools/robot/firmware_chain.hpp"
+
+namespace dfdyn::tools {
+
+namespace {
+
+using Parameters = InertialParameters;
+
+constexpr const char* last_body = "last body"; // a payload is part of the last link
+
+/// Point mass at `centre`, per kg; and its first moment moved by 1 kg·m along `axis` while the mass stays.
+Parameters point_mass(const Eigen::Vector3d& centre) {
+    return body_parameters(1, centre, Eigen::Matrix3d::Zero());
+}
+Parameters first_moment(const Eigen::Vector3d& centre, Eigen::Index axis) {
+    constexpr double step = 1e-4; // m: linear in it up to this
+    const Eigen::Vector3d shift = step * Eigen::Vector3d::Unit(axis);
+    return (point_mass(centre + shift) - point_mass(centre - shift)) / (2 * step);
+}
+
+/// Mass at `centre`, then the three first moments about it, of body `body`; seen in a frame at `placement` of
+/// it.
+std::vector<EffectColumn> mass_columns(const DiagnosisSignals& signals, Eigen::Index body,
+                                       const Eigen::Vector3d& centre, const Eigen::Isometry3d& placement) {
+    std::vector<EffectColumn> columns{
+        on_outputs(signals.of_body(body, moved(point_mass(centre), placement)))};
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        columns.push_back(on_outputs(signals.of_body(body, moved(first_moment(centre, axis), placement))));
+    }
+    return columns;
+}
+
+Candidate payload(const DiagnosisSignals& signals) {
+    Candidate result;
+    result.effect = "payload";
+    result.where = "tool";
+    result.span = last_body;
+    const Eigen::Index last = signals.regressor.cols() / 10 - 1;
+    result.columns = mass_columns(signals, last, Eigen::Vector3d::Zero(), signals.robot.tip_placement);
+    const auto within_reach = [](const Eigen::VectorXd& coefficients) {
+        constexpr double farthest = 0.5; // m from the tip
+        return coefficients[0] > 0 &&
+               coefficients.tail(coefficients.size() - 1).norm() <= farthest * coefficients[0];
+    };
+    result.shapes = {{{0}, within_reach, 0}, {{0, 1, 2, 3}, within_reach, 0}};
+    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
+        std::vector<EffectParameter> values{{"mass", "kg", coefficients[0]}};
+        constexpr std::array names{"com_x", "com_y", "com_z"};
+        for (Eigen::Index axis = 0; axis < 3; ++axis) {
+            const bool fitted = coefficients.size() == 4;
+            values.push_back({names[static_cast<std::size_t>(axis)], "m",
+                              fitted ? coefficients[axis + 1] / coefficients[0] : 0.0});
+        }
+        return values;
+    };
+    return result;
+}
+
+Candidate link_inertia(const DiagnosisSignals& signals, Eigen::Index number) {
+    const Eigen::VectorXd nominal = nominal_parameters(signals.robot, signals.kind);
+    const Eigen::Index bodies = nominal.size() / 10;
+    const auto link = signals.joints() - static_cast<std::size_t>(bodies - number);
+    const double mass = nominal[10 * number];
+    const Eigen::Vector3d centre =
+        mass > 0 ? Eigen::Vector3d(nominal.segment<3>(10 * number + 1) / mass) : Eigen::Vector3d::Zero();
+    Candidate result;
+    result.effect = "link_inertia_error";
+    result.where = numbered("link", link);
+    result.span = number + 1 == bodies ? last_body : "";
+    result.columns = mass_columns(signals, number, centre, Eigen::Isometry3d::Identity());
+    const auto body = [mass](double delta_mass, const Eigen::VectorXd& moments) {
+        constexpr double farthest = 0.3; // m that a centre of mass is off
+        return mass + delta_mass > 0 && moments.norm() <= farthest * (mass + delta_mass);
+    };
+    result.shapes = {
+        {{0}, [body](const Eigen::VectorXd& c) { return body(c[0], Eigen::VectorXd::Zero(3)); }, 0},
+        {{1, 2, 3}, [body](const Eigen::VectorXd& c) { return body(0, c); }, 0},
+        {{0, 1, 2, 3}, [body](const Eigen::VectorXd& c) { return body(c[0], c.tail(3)); }, 0}};
+    result.parameters = [mass](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
+        const bool with_mass = shape.columns.front() == 0;
+        const double delta_mass = with_mass ? coefficients[0] : 0;
+        std::vector<EffectParameter> values{{"delta_mass", "kg", delta_mass}};
+        constexpr std::array names{"delta_com_x", "delta_com_y", "delta_com_z"};
+        for (Eigen::Index axis = 0; axis < 3 && shape.columns.size() > 1; ++axis) {
+            values.push_back({names[static_cast<std::size_t>(axis)], "m",
+                              coefficients[axis + (with_mass ? 1 : 0)] / (mass + delta_mass)});
+        }
+        return values;
+    };
+    return result;
+}
+
+Candidate tilt(const DiagnosisSignals& signals) {
+    Candidate result;
+    result.effect = "gravity_tilt";
+    result.where = "base";
+    constexpr double step = 1e-4; // rad
+    for (const Eigen::Vector3d& axis : {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitY().eval()}) {
+        // a base that turns by +step sees gravity turned by -step
+        const auto tilted = [&](double angle) {
+            Robot robot = signals.robot;
+            robot.gravity = Eigen::AngleAxisd(-angle, axis) * robot.gravity;
+            return rigid_outputs(robot, signals.kind, signals.measured.motion);
+        };
+        result.columns.push_back(on_outputs((tilted(step) - tilted(-step)) / (2 * step)));
+    }
+    result.shapes = {whole_shape(result, up_to(0.6))};
+    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
+        return std::vector<EffectParameter>{{"tilt_x", "rad", coefficients[0]},
+                                            {"tilt_y", "rad", coefficients[1]}};
+    };
+    return result;
+}
+
+} // namespace
+
+std::vector<Candidate> body_candidates(const DiagnosisSignals& signals) {
+    std::vector<Candidate> result{payload(signals), tilt(signals)};
+    for (Eigen::Index body = 0; body < signals.regressor.cols() / 10; ++body) {
+        result.push_back(link_inertia(signals, body));
+    }
+    return result;
+}
+
+} // namespace dfdyn::tools

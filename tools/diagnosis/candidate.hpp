@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// What one unit of a coefficient adds to the outputs: a series for each output that it acts on.
+struct EffectColumn {
+    struct Part {
+        Eigen::Index output = 0;
+        Eigen::VectorXd series; ///< T
+    };
+    std::vector<Part> parts;
+};
+
+struct EffectParameter {
+    std::string name, unit;
+    double value = 0;
+};
+
+/// Whether a machine can have these coefficients.
+using CoefficientRule = std::function<bool(const Eigen::VectorXd& coefficients)>;
+
+/// One way in which a candidate can act: some of its columns, and what their coefficients may be.
+struct EffectShape {
+    std::vector<std::size_t> columns; ///< of the candidate
+    CoefficientRule allowed;
+    double value = 0; ///< the shape's own parameter, where the effect has one
+};
+
+/// A named cause at a place: an effect of the catalogue. Its contribution is linear in the coefficients of
+/// one of its shapes.
+struct Candidate {
+    std::string effect, where;
+    std::string detail;     ///< tells candidates of the same effect and place apart: axes, times
+    std::string span;       ///< candidates of one span add the same columns in the end; empty: none
+    std::string family;     ///< of several candidates of one family at most one is chosen; empty: none
+    double tried = 1;       ///< of how many alternatives this one was picked beforehand
+    double extra_price = 0; ///< what it must explain, in units of the evidence, because others of its kind do
+    std::vector<EffectColumn> columns;
+    std::vector<EffectShape> shapes;
+    /// The last column of a shape for another value of its parameter; empty where there is none, or only the
+    /// listed ones make sense.
+    std::function<EffectColumn(const EffectShape& shape, double value)> at_value;
+    /// The catalogue's parameters, the main one first, from the coefficients of a shape.
+    std::function<std::vector<EffectParameter>(const Eigen::VectorXd& coefficients, const EffectShape& shape)>
+        parameters;
+
+    std::string key() const { return effect + '@' + where + ' ' + detail; }
+};
+
+} // namespace dfdyn::tools

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/diagnosis.hpp"
+
+#include "tools/diagnosis/findings.hpp"
+#include "tools/diagnosis/plausibility.hpp"
+#include "tools/diagnosis/unexplained.hpp"
+#include "tools/physics/torque_constants.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr double fitted_share = 2.0 / 3; ///< of the time, for the figures on held-out time
+
+/// Measured unit per N·m (N).
+Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOptions& options) {
+    Eigen::VectorXd gains = Eigen::VectorXd::Ones(signals.outputs());
+    if (options.outputs != OutputKind::motor_current) {
+        return gains;
+    }
+    if (!options.torque_constants.empty()) {
+        return Eigen::Map<const Eigen::VectorXd>(options.torque_constants.data(), gains.size())
+            .cwiseInverse();
+    }
+    TrainingData data;
+    data.positions = signals.measured.motion.position;
+    data.velocities = signals.measured.motion.velocity;
+    data.accelerations = signals.measured.motion.acceleration;
+    data.outputs = signals.measured.outputs;
+    const std::vector<TorqueGain> found =
+        estimate_torque_gains(signals.robot, data, signals.sign_velocity.maxCoeff());
+    for (Eigen::Index joint = 0; joint < gains.size(); ++joint) {
+        gains[joint] = found[static_cast<std::size_t>(joint)].gain;
+    }
+    return gains;
+}
+
+double rms(const Eigen::Ref<const Eigen::VectorXd>& series) {
+    return std::sqrt(series.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(series.size(), 1)));
+}
+
+ErrorMeasure error_measure(const Eigen::MatrixXd& error, const Eigen::MatrixXd& measured) {
+    ErrorMeasure result{Eigen::VectorXd(error.cols()), Eigen::VectorXd(error.cols())};
+    for (Eigen::Index output = 0; output < error.cols(); ++output) {
+        const Eigen::VectorXd centred = measured.col(output).array() - measured.col(output).mean();
+        result.rms[output] = rms(error.col(output));
+        result.nrmse[output] = result.rms[output] / rms(centred);
+    }
+    return result;
+}
+
+/// Errors on the last third, of a model that was chosen and fitted without it.
+void measure_on_held_out(DiagnosisWork& work, ExplanationOptions options) {
+    options.fitted_share = fitted_share;
+    const DiagnosisSignals& signals = *work.signals;
+    const Explanation earlier = explain(signals, work.measured, options);
+    const Eigen::Index first = std::llround(fitted_share * static_cast<double>(signals.rows()));
+    const Eigen::Index count = signals.rows() - first;
+    const Eigen::MatrixXd nominal_error = work.measured - signals.nominal;
+    const Eigen::MatrixXd scaled = work.measured.bottomRows(count) * work.torque_gains.asDiagonal();
+    const auto measure = [&](const Eigen::MatrixXd& error) {
+        return error_measure(error.bottomRows(count) * work.torque_gains.asDiagonal(), scaled);
+    };
+    Diagnosis& diagnosis = work.diagnosis;
+    diagnosis.nominal = measure(nominal_error);
+    diagnosis.extended = measure(nominal_error - earlier.all(signals));
+    diagnosis.heldout_from_s = signals.measured.time_s[first];
+    diagnosis.heldout_to_s = signals.measured.time_s[signals.rows() - 1];
+}
+
+} // namespace
+
+DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const DiagnosisOptions& options) {
+    DiagnosisWork work;
+    work.diagnosis.output_names = recording.output.names;
+    Suspicions suspicions = suspicions_of_file(robot, recording);
+    work.diagnosis.suspicions = std::move(suspicions.sentences);
+    if (suspicions.fatal) {
+        return work;
+    }
+    auto signals = std::make_shared<DiagnosisSignals>(
+        diagnosis_signals(robot, options.outputs, measured_motion(recording)));
+    work.signals = signals;
+    work.torque_gains = torque_gains(*signals, options);
+    work.measured = signals->measured.outputs * work.torque_gains.cwiseInverse().asDiagonal();
+    const bool gains_known =
+        options.outputs != OutputKind::motor_current || !options.torque_constants.empty();
+    suspicions = suspicions_of_motion(*signals, work.measured, gains_known);
+    work.diagnosis.suspicions.insert(work.diagnosis.suspicions.end(), suspicions.sentences.begin(),
+                                     suspicions.sentences.end());
+    const Eigen::MatrixXd nominal_error = work.measured - signals->nominal;
+    work.diagnosis.nominal =
+        error_measure(nominal_error * work.torque_gains.asDiagonal(), signals->measured.outputs);
+    work.diagnosis.extended = work.diagnosis.nominal;
+    if (suspicions.fatal) {
+        return work;
+    }
+    ExplanationOptions how{gains_known, 1, options.progress};
+    work.explanation = explain(*signals, work.measured, how);
+    work.diagnosis.findings =
+        findings_of(*signals, work.explanation, work.measured, work.diagnosis.output_names);
+    const Eigen::MatrixXd rest = nominal_error - work.explanation.all(*signals);
+    work.diagnosis.noise_rms = error_measure(rest, work.measured).rms;
+    work.diagnosis.unexplained = unexplained_rest(*signals, work.measured, rest, work.explanation.noise);
+    if (options.measure) {
+        measure_on_held_out(work, how);
+    }
+    return work;
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/diagnosis/explanation.hpp"
+#include "tools/diagnosis/signals.hpp"
+#include "tools/recording/recording.hpp"
+#include "tools/robot/robot.hpp"
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// A parameter with its 95 % interval.
+struct FoundParameter {
+    std::string name, unit;
+    double value = 0, low = 0, high = 0;
+};
+
+struct OtherCause {
+    std::string effect, where, why_not;
+};
+
+/// A cause that is named.
+struct Finding {
+    std::string effect, where, detail;
+    std::vector<FoundParameter> parameters; ///< the main one first
+    double confidence = 0;                  ///< calibrated probability that this cause at this place is there
+    Eigen::Index output = 0;                ///< where it shows most
+    double rms_before = 0, rms_after = 0;   ///< of the error there, without and with it
+    std::string evidence;
+    std::vector<OtherCause> indistinguishable, alternatives;
+    std::string confirm;
+    double margin_to_nothing = 0, margin_to_others = 0; ///< logarithms of the odds behind the confidence
+};
+
+/// What no name of the catalogue explains.
+struct Unexplained {
+    Eigen::Index output = 0;
+    double nrmse = 0; ///< what could still be predicted, of the output's standard deviation
+    std::vector<std::string> depends_on;
+    std::string note;
+};
+
+struct ErrorMeasure {
+    Eigen::VectorXd rms, nrmse; ///< per output
+};
+
+/// What a recording says of a robot's model. Interfaces: diagnosis.json.
+struct Diagnosis {
+    std::vector<std::string> output_names;
+    std::vector<std::string> suspicions; ///< why the recording may not answer at all; a sentence each
+    Eigen::VectorXd noise_rms;           ///< per output, of what is left, within the analysed band
+    ErrorMeasure nominal, extended;      ///< on the held-out time
+    double heldout_from_s = 0, heldout_to_s = 0;
+    std::vector<Finding> findings; ///< by gain
+    std::vector<Unexplained> unexplained;
+};
+
+struct DiagnosisOptions {
+    OutputKind outputs = OutputKind::joint_torque;
+    std::vector<double>
+        torque_constants; ///< N·m/A per joint; empty: unknown, each joint has a factor of its own
+    bool measure = true;  ///< whether the held-out error is measured, which takes as long again
+    std::function<void(int round)> progress = {};
+};
+
+/// Everything behind a diagnosis, for the report and the extended model.
+struct DiagnosisWork {
+    std::shared_ptr<const DiagnosisSignals> signals; ///< null where the recording could not be asked
+    Eigen::MatrixXd measured;                        ///< T x m, as torques where currents were measured
+    Eigen::VectorXd torque_gains; ///< per output: measured unit per N·m (N); 1 but for currents
+    Explanation explanation;
+    Diagnosis diagnosis;
+};
+
+/// Throws InputError when the recording is too short, or not of this robot.
+DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const DiagnosisOptions& options);
+
+} // namespace dfdyn::tools

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/diagnosis_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <vector>
+
+namespace dfdyn::tools {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json numbers(const Eigen::VectorXd& values) {
+    return std::vector<double>(values.data(), values.data() + values.size());
+}
+
+ordered_json to_json(const ErrorMeasure& error) {
+    return {{"rms", numbers(error.rms)}, {"nrmse", numbers(error.nrmse)}};
+}
+
+ordered_json causes(const std::vector<OtherCause>& list, bool reasons) {
+    ordered_json result = ordered_json::array();
+    for (const OtherCause& cause : list) {
+        ordered_json entry{{"effect", cause.effect}, {"where", cause.where}};
+        if (reasons) {
+            entry["why_not"] = cause.why_not;
+        }
+        result.push_back(std::move(entry));
+    }
+    return result;
+}
+
+/// Axes are named, not numbered.
+ordered_json value_of(const FoundParameter& parameter) {
+    static const std::array names{"fx", "fy", "fz", "mx", "my", "mz"};
+    if (parameter.name == "axis" || parameter.name == "from_axis" || parameter.name == "to_axis") {
+        return names.at(static_cast<std::size_t>(parameter.value));
+    }
+    return parameter.value;
+}
+
+ordered_json to_json(const Finding& finding, const std::string& output) {
+    ordered_json parameters = ordered_json::array();
+    for (const FoundParameter& parameter : finding.parameters) {
+        ordered_json entry{{"name", parameter.name}, {"value", value_of(parameter)}};
+        if (!entry["value"].is_string()) {
+            entry["unit"] = parameter.unit;
+            entry["ci95"] = {parameter.low, parameter.high};
+        }
+        parameters.push_back(std::move(entry));
+    }
+    return {
+        {"effect", finding.effect},
+        {"where", finding.where},
+        {"parameters", std::move(parameters)},
+        {"confidence", finding.confidence},
+        {"gain", {{"output", output}, {"rms_before", finding.rms_before}, {"rms_after", finding.rms_after}}},
+        {"evidence", finding.evidence},
+        {"indistinguishable", causes(finding.indistinguishable, false)},
+        {"alternatives", causes(finding.alternatives, true)},
+        {"confirm", finding.confirm}};
+}
+
+} // namespace
+
+std::string diagnosis_to_json(const Diagnosis& diagnosis) {
+    ordered_json json{{"schema", "dfdyn.diagnosis/1"},
+                      {"outputs", diagnosis.output_names},
+                      {"suspicions", diagnosis.suspicions},
+                      {"nominal", to_json(diagnosis.nominal)},
+                      {"extended", to_json(diagnosis.extended)},
+                      {"heldout",
+                       {{"from", diagnosis.heldout_from_s},
+                        {"to", diagnosis.heldout_to_s},
+                        {"note", "these figures are on data that fitted nothing"}}}};
+    ordered_json findings = ordered_json::array();
+    for (const Finding& finding : diagnosis.findings) {
+        findings.push_back(
+            to_json(finding, diagnosis.output_names[static_cast<std::size_t>(finding.output)]));
+    }
+    json["findings"] = std::move(findings);
+    ordered_json unexplained = ordered_json::array();
+    for (const Unexplained& entry : diagnosis.unexplained) {
+        unexplained.push_back({{"output", diagnosis.output_names[static_cast<std::size_t>(entry.output)]},
+                               {"nrmse", entry.nrmse},
+                               {"depends_on", entry.depends_on},
+                               {"note", entry.note}});
+    }
+    json["unexplained"] = std::move(unexplained);
+    return json.dump(2) + "\n";
+}
+
+} // namespace dfdyn::tools

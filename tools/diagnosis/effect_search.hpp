@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/diagnosis/effect_regression.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// A candidate as the search sees it: columns of the regression.
+struct SearchCandidate {
+    struct Shape {
+        std::vector<Eigen::Index> columns; ///< of the normal equations
+        CoefficientRule allowed;
+    };
+    std::vector<Shape> shapes;
+    std::size_t family = 0; ///< of those with the same number, one at most; 0: of none
+    double tried = 1;       ///< how many alternatives it was picked from beforehand
+    double extra_price = 0; ///< what it costs beside
+    double rows = 1;        ///< how many rows it acts on: what its parameters are paid for by
+};
+
+/// A candidate in one of its shapes.
+struct ChosenShape {
+    std::size_t candidate = 0, shape = 0;
+    bool operator==(const ChosenShape&) const = default;
+};
+
+/// Columns that are always there, with the standard deviation of their coefficients before anything was
+/// measured.
+struct NuisanceColumn {
+    Eigen::Index column = 0;
+    double deviation = 1;
+};
+
+struct SearchProblem {
+    NormalEquations sums;
+    std::vector<SearchCandidate> candidates;
+    std::vector<NuisanceColumn> nuisance;
+};
+
+/// A model: nuisance and chosen shapes, with their coefficients.
+struct EffectFit {
+    std::vector<Eigen::Index> columns; ///< nuisance first, then the chosen shapes' in order
+    Eigen::VectorXd coefficients;      ///< of `columns`
+    Eigen::MatrixXd covariance;        ///< of them, were the noise just as weighed
+    double explained = 0;              ///< sum of squares that it explains, weighed
+    double score = 0;                  ///< logarithm of the evidence, up to a constant
+    bool allowed = true;               ///< every coefficient has the sign it must have
+};
+
+/// Evidence of unit-information priors (Schwarz) for the effects' coefficients, of the given deviations for
+/// the nuisance; one in so many candidates is there, and any of its shapes is as likely.
+EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShape>& chosen);
+
+/// What replacing nothing, or one of the chosen, by each other candidate would give.
+struct Replacement {
+    ChosenShape with;
+    double score = 0; ///< of the whole model; candidates that are not allowed or not excited are left out
+};
+
+/// Every candidate that is not in `chosen`, in its best shape, added to it; best first.
+std::vector<Replacement> additions(const SearchProblem& problem, const std::vector<ChosenShape>& chosen);
+
+/// Adds, drops and exchanges, always the best step, until none raises the evidence.
+std::vector<ChosenShape> search_effects(const SearchProblem& problem, std::vector<ChosenShape> start);
+
+} // namespace dfdyn::tools

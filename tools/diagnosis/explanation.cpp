@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/explanation.hpp"
+
+#include "tools/diagnosis/candidate_parts.hpp"
+#include "tools/diagnosis/candidates.hpp"
+#include "tools/diagnosis/scans.hpp"
+#include "tools/robot/firmware_chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr int most_rounds = 10;
+constexpr int white_rounds = 3;
+constexpr double mass_deviation = 0.058; ///< of a link's relative mass error that is uniform within ±10 %
+
+/// A candidate with its columns as spectral rows.
+struct Entry {
+    Candidate candidate;
+    std::vector<SpectralColumnPointer> columns;
+    std::size_t own_columns, own_shapes; ///< before refinement
+
+    Entry(const SpectralRows& rows, Candidate one)
+        : candidate(std::move(one)), own_columns(candidate.columns.size()),
+          own_shapes(candidate.shapes.size()) {
+        complete(rows);
+    }
+
+    /// Shapes around the value of one of its shapes, in the place of earlier ones; returns where that shape
+    /// now is.
+    std::size_t refine(std::size_t chosen, const SpectralRows& rows) {
+        const EffectShape shape = candidate.shapes[chosen];
+        candidate.columns.resize(own_columns);
+        candidate.shapes.resize(own_shapes);
+        columns.resize(own_columns);
+        for (const double factor : {1.0, 0.75, 0.87, 0.95, 1.05, 1.15, 1.33}) {
+            EffectShape near = shape;
+            near.value = factor * shape.value;
+            near.columns.back() = candidate.columns.size();
+            candidate.columns.push_back(candidate.at_value(shape, near.value));
+            candidate.shapes.push_back(std::move(near));
+        }
+        // so close to each other they do not count as alternatives
+        candidate.tried = static_cast<double>(own_shapes) / static_cast<double>(candidate.shapes.size());
+        complete(rows);
+        return own_shapes;
+    }
+
+    /// Rows of the columns that have none yet.
+    void complete(const SpectralRows& rows) {
+        for (std::size_t i = columns.size(); i < candidate.columns.size(); ++i) {
+            columns.push_back(std::make_shared<const SpectralColumn>(rows, candidate.columns[i]));
+        }
+    }
+};
+
+bool is_friction(const Candidate& candidate) {
+    return candidate.effect == "viscous_friction" || candidate.effect == "coulomb_friction" ||
+           candidate.effect == "stribeck_friction" || candidate.effect == "presliding_hysteresis" ||
+           candidate.effect == "load_dependent_friction";
+}
+
+bool is_of_the_arm(const Candidate& candidate) {
+    return candidate.where != "ft_sensor" && candidate.where.rfind("actuator", 0) != 0 &&
+           candidate.effect != "external_contact";
+}
+
+bool is_scanned(const Candidate& candidate) {
+    return candidate.effect == "torque_ripple" || candidate.effect == "external_contact";
+}
+
+class Search {
+  public:
+    Search(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
+           const ExplanationOptions& options)
+        : signals_(signals), options_(options), rows_(signals.measured),
+          regression_(rows_, measured - signals.nominal,
+                      std::max<Eigen::Index>(
+                          1, std::llround(options.fitted_share * static_cast<double>(rows_.frames())))) {
+        add_nuisance();
+        for (auto* make : {&joint_candidates, &body_candidates, &position_candidates}) {
+            for (Candidate& candidate : (*make)(signals_)) {
+                lasting_.emplace_back(rows_, std::move(candidate));
+            }
+        }
+        gather({});
+        at_.fit = fit_effects(at_.problem, {});
+        estimate_noise(true);
+    }
+
+    Explanation run() {
+        std::vector<std::string> last;
+        for (int round = 0; round < most_rounds; ++round) {
+            if (options_.progress) {
+                options_.progress(round);
+            }
+            std::vector<Entry> dependent = passing();
+            refine();
+            gather(std::move(dependent));
+            at_.chosen = search_effects(at_.problem, at_.chosen);
+            at_.fit = fit_effects(at_.problem, at_.chosen);
+            // weighed by the spectrum of what is not explained yet, an effect would be taken for noise
+            estimate_noise(round + 1 < white_rounds);
+            std::vector<std::string> keys = chosen_keys();
+            if (keys == last && round > white_rounds) {
+                break;
+            }
+            last = std::move(keys);
+        }
+        decide_masses();
+        return std::move(at_);
+    }
+
+  private:
+    void add_nuisance();
+    std::vector<Candidate> demanding_as_chosen(std::vector<Candidate> contacts) const;
+    std::vector<Entry> passing() const;
+    void refine();
+    void gather(std::vector<Entry> passing);
+    void estimate_noise(bool white);
+    void decide_masses();
+    std::vector<std::string> chosen_keys() const;
+    Eigen::VectorXd all_coefficients() const;
+
+    const DiagnosisSignals& signals_;
+    const ExplanationOptions& options_;
+    SpectralRows rows_;
+    EffectRegression regression_;
+    std::vector<Entry> lasting_; ///< candidates that do not depend on the model at hand
+    std::vector<SpectralColumnPointer> nuisance_;
+    std::vector<double> nuisance_deviation_;
+    Explanation at_;
+};
+
+/// Links whose masses are a little off, and joints whose torque constants nobody knows.
+void Search::add_nuisance() {
+    const auto add = [this](EffectColumn column, double deviation) {
+        nuisance_.push_back(std::make_shared<const SpectralColumn>(rows_, column));
+        nuisance_deviation_.push_back(deviation);
+        at_.nuisance.push_back(std::move(column));
+    };
+    const Eigen::VectorXd parameters = nominal_parameters(signals_.robot, signals_.kind);
+    for (Eigen::Index body = 0; body < parameters.size() / 10; ++body) {
+        add(on_outputs(signals_.of_body(body, parameters.segment<10>(10 * body))), mass_deviation);
+    }
+    for (Eigen::Index joint = 0; !options_.gains_known && joint < signals_.outputs(); ++joint) {
+        add(on_output(joint, signals_.nominal.col(joint)), 10);
+    }
+    at_.masses_uncertain = true;
+}
+
+/// Once the largest events are chosen, those left stand out less against each other: they are judged as the
+/// first were.
+std::vector<Candidate> Search::demanding_as_chosen(std::vector<Candidate> contacts) const {
+    for (Candidate& contact : contacts) {
+        for (const ChosenShape& one : at_.chosen) {
+            const Candidate& chosen = at_.candidates[one.candidate];
+            if (chosen.effect == contact.effect && chosen.where == contact.where) {
+                contact.extra_price = std::max(contact.extra_price, chosen.extra_price);
+            }
+        }
+    }
+    return contacts;
+}
+
+/// Candidates that depend on the model at hand. Ripples and contacts that were chosen stay as they are.
+std::vector<Entry> Search::passing() const {
+    std::vector<Candidate> found;
+    const auto add = [&](std::vector<Candidate> more) {
+        for (Candidate& candidate : more) {
+            if (std::ranges::find(found, candidate.key(), &Candidate::key) == found.end()) {
+                found.push_back(std::move(candidate));
+            }
+        }
+    };
+    add(sensor_candidates(signals_, signals_.nominal + at_.effects(signals_, is_of_the_arm),
+                          options_.gains_known));
+    if (!signals_.wrench()) {
+        add(drift_candidates(signals_, at_.effects(signals_, is_friction)));
+    }
+    for (const ChosenShape& one : at_.chosen) {
+        if (is_scanned(at_.candidates[one.candidate])) {
+            add({at_.candidates[one.candidate]});
+        }
+    }
+    const Eigen::MatrixXd weighed = weighed_residual(regression_, all_coefficients());
+    add(scan_ripples(signals_, regression_, weighed));
+    add(demanding_as_chosen(scan_contacts(signals_, regression_, weighed)));
+    std::vector<Entry> result;
+    for (Candidate& candidate : found) {
+        result.emplace_back(rows_, std::move(candidate));
+    }
+    return result;
+}
+
+/// Chosen candidates with a continuous shape get shapes around the chosen one.
+void Search::refine() {
+    for (ChosenShape& one : at_.chosen) {
+        const Candidate& chosen = at_.candidates[one.candidate];
+        if (chosen.at_value) {
+            const auto entry = std::find_if(lasting_.begin(), lasting_.end(), [&](const Entry& candidate) {
+                return candidate.candidate.key() == chosen.key();
+            });
+            one.shape = entry->refine(one.shape, rows_);
+        }
+    }
+}
+
+/// The problem of all candidates with the noise at hand; chosen ones stay chosen where they are still there.
+void Search::gather(std::vector<Entry> passing) {
+    std::vector<std::pair<std::string, std::size_t>> chosen;
+    for (const ChosenShape& one : at_.chosen) {
+        chosen.emplace_back(at_.candidates[one.candidate].key(), one.shape);
+    }
+    std::vector<SpectralColumnPointer> columns = nuisance_;
+    std::map<std::string, std::size_t> families{{"", 0}};
+    at_.candidates.clear();
+    at_.problem.candidates.clear();
+    const auto add = [&](const Entry& entry) {
+        SearchCandidate candidate;
+        candidate.family = families.emplace(entry.candidate.family, families.size()).first->second;
+        candidate.tried = entry.candidate.tried;
+        candidate.extra_price = entry.candidate.extra_price;
+        candidate.rows = static_cast<double>(rows_.bins() * regression_.fitted_frames());
+        for (const EffectShape& shape : entry.candidate.shapes) {
+            SearchCandidate::Shape one{{}, shape.allowed};
+            for (const std::size_t column : shape.columns) {
+                one.columns.push_back(static_cast<Eigen::Index>(columns.size() + column));
+            }
+            candidate.shapes.push_back(std::move(one));
+        }
+        columns.insert(columns.end(), entry.columns.begin(), entry.columns.end());
+        at_.problem.candidates.push_back(std::move(candidate));
+        at_.candidates.push_back(entry.candidate);
+    };
+    std::ranges::for_each(lasting_, add);
+    std::ranges::for_each(passing, add);
+    at_.problem.nuisance.clear();
+    for (std::size_t i = 0; i < nuisance_.size(); ++i) {
+        at_.problem.nuisance.push_back({static_cast<Eigen::Index>(i), nuisance_deviation_[i]});
+    }
+    regression_.set_columns(std::move(columns));
+    at_.problem.sums = regression_.normal_equations();
+    at_.chosen.clear();
+    for (const auto& [key, shape] : chosen) {
+        const auto found = std::ranges::find(at_.candidates, key, &Candidate::key);
+        if (found != at_.candidates.end()) {
+            at_.chosen.push_back({static_cast<std::size_t>(found - at_.candidates.begin()), shape});
+        }
+    }
+}
+
+Eigen::VectorXd Search::all_coefficients() const {
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(regression_.columns());
+    all(at_.fit.columns) = at_.fit.coefficients;
+    return all;
+}
+
+void Search::estimate_noise(bool white) {
+    const Eigen::VectorXd coefficients = all_coefficients();
+    Eigen::MatrixXd noise(rows_.bins(), regression_.outputs());
+    std::vector<Eigen::MatrixXd> unrest;
+    for (Eigen::Index output = 0; output < noise.cols(); ++output) {
+        const Eigen::MatrixXd left = regression_.residual(output, coefficients);
+        noise.col(output) = noise_spectrum(left, static_cast<double>(at_.fit.columns.size()) /
+                                                     static_cast<double>(noise.cols()));
+        unrest.push_back(white ? Eigen::MatrixXd::Ones(left.rows(), left.cols()).eval()
+                               : noise_unrest(left, noise.col(output)));
+    }
+    if (white) {
+        noise = noise.colwise().mean().replicate(noise.rows(), 1).eval();
+    }
+    regression_.set_noise(noise, unrest);
+    at_.noise = std::move(noise);
+}
+
+std::vector<std::string> Search::chosen_keys() const {
+    std::vector<std::string> keys;
+    for (const ChosenShape& one : at_.chosen) {
+        keys.push_back(at_.candidates[one.candidate].key());
+    }
+    std::ranges::sort(keys);
+    return keys;
+}
+
+/// Are the links' masses as the robot's file says? The search went on as if they need not be.
+void Search::decide_masses() {
+    at_.problem.sums = regression_.normal_equations();
+    at_.chosen = search_effects(at_.problem, at_.chosen);
+    at_.fit = fit_effects(at_.problem, at_.chosen);
+    SearchProblem exact = at_.problem;
+    const auto bodies = static_cast<std::ptrdiff_t>(signals_.regressor.cols() / 10);
+    exact.nuisance.erase(exact.nuisance.begin(), exact.nuisance.begin() + bodies);
+    const std::vector<ChosenShape> chosen = search_effects(exact, at_.chosen);
+    const EffectFit fit = fit_effects(exact, chosen);
+    if (fit.score >= at_.fit.score) {
+        at_.problem = std::move(exact);
+        at_.chosen = chosen;
+        at_.fit = fit;
+        at_.masses_uncertain = false;
+        at_.nuisance.erase(at_.nuisance.begin(), at_.nuisance.begin() + bodies);
+    }
+}
+
+void accumulate(Eigen::MatrixXd& sum, double coefficient, const EffectColumn& column) {
+    for (const EffectColumn::Part& part : column.parts) {
+        sum.col(part.output) += coefficient * part.series;
+    }
+}
+
+} // namespace
+
+Eigen::Index Explanation::first_column(std::size_t chosen_index) const {
+    auto first = static_cast<Eigen::Index>(problem.nuisance.size());
+    for (std::size_t i = 0; i < chosen_index; ++i) {
+        first +=
+            static_cast<Eigen::Index>(candidates[chosen[i].candidate].shapes[chosen[i].shape].columns.size());
+    }
+    return first;
+}
+
+Eigen::VectorXd Explanation::coefficients(std::size_t chosen_index) const {
+    const Eigen::Index first = first_column(chosen_index);
+    return fit.coefficients.segment(first, first_column(chosen_index + 1) - first);
+}
+
+Eigen::MatrixXd Explanation::covariance(std::size_t chosen_index) const {
+    const Eigen::Index first = first_column(chosen_index);
+    const Eigen::Index count = first_column(chosen_index + 1) - first;
+    return fit.covariance.block(first, first, count, count);
+}
+
+Eigen::MatrixXd Explanation::effects(const DiagnosisSignals& signals,
+                                     const std::function<bool(const Candidate&)>& wanted) const {
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(signals.rows(), signals.outputs());
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const Candidate& candidate = candidates[chosen[i].candidate];
+        if (!wanted(candidate)) {
+            continue;
+        }
+        const Eigen::VectorXd values = coefficients(i);
+        for (Eigen::Index k = 0; k < values.size(); ++k) {
+            const std::size_t column = candidate.shapes[chosen[i].shape].columns[static_cast<std::size_t>(k)];
+            accumulate(sum, values[k], candidate.columns[column]);
+        }
+    }
+    return sum;
+}
+
+Eigen::MatrixXd Explanation::all(const DiagnosisSignals& signals) const {
+    Eigen::MatrixXd sum = effects(signals, [](const Candidate&) { return true; });
+    for (std::size_t i = 0; i < nuisance.size(); ++i) {
+        accumulate(sum, fit.coefficients[static_cast<Eigen::Index>(i)], nuisance[i]);
+    }
+    return sum;
+}
+
+Explanation explain(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
+                    const ExplanationOptions& options) {
+    return Search(signals, measured, options).run();
+}
+
+} // namespace dfdyn::tools

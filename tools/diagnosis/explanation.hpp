@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/diagnosis/candidate.hpp"
+#include "tools/diagnosis/effect_regression.hpp"
+#include "tools/diagnosis/effect_search.hpp"
+#include "tools/diagnosis/signals.hpp"
+
+#include <functional>
+#include <vector>
+
+namespace dfdyn::tools {
+
+struct ExplanationOptions {
+    bool gains_known = true; ///< false: every joint has a factor of its own, which is no finding
+    double fitted_share = 1; ///< of the recording's time, from its beginning; the rest may only be predicted
+    std::function<void(int round)> progress = {};
+};
+
+/// What explains the difference between a measurement and the rigid body.
+struct Explanation {
+    std::vector<Candidate> candidates;
+    std::vector<ChosenShape> chosen; ///< of `candidates`
+    SearchProblem problem;
+    EffectFit fit;
+    bool masses_uncertain = false; ///< every link's mass is a little off: the first columns of the nuisance
+    Eigen::MatrixXd noise;         ///< bins x m: spectra of what is left
+    std::vector<EffectColumn> nuisance;
+
+    /// T x m: what those of the chosen effects that are `wanted` add to the rigid body's outputs.
+    Eigen::MatrixXd effects(const DiagnosisSignals& signals,
+                            const std::function<bool(const Candidate&)>& wanted) const;
+    /// T x m: all effects and the nuisance.
+    Eigen::MatrixXd all(const DiagnosisSignals& signals) const;
+    /// The coefficients of a chosen candidate's shape, and their covariance.
+    Eigen::VectorXd coefficients(std::size_t chosen_index) const;
+    Eigen::MatrixXd covariance(std::size_t chosen_index) const;
+
+  private:
+    Eigen::Index first_column(std::size_t chosen_index) const; ///< of `fit`
+};
+
+/// Searches among all candidates at once, in rounds: the noise is what the model at hand leaves, candidates
+/// that depend on the model (delays, gains, drifts, ripples, contacts) are made anew, shapes are refined,
+/// until nothing changes. `measured`: T x m, in N·m (N) also for currents.
+Explanation explain(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
+                    const ExplanationOptions& options);
+
+} // namespace dfdyn::tools

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/findings.hpp"
+
+#include "tools/common/number.hpp"
+#include "tools/diagnosis/effect_words.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr double tie = 3; ///< odds of 20 to 1: closer than this the data cannot tell two causes apart
+constexpr double price_of_shapes = 12; ///< what the three coefficients of a centre of mass cost
+constexpr std::size_t listed = 3;      ///< alternatives that a finding tells of
+constexpr double two_sided_95 = 1.96;
+constexpr double coloured =
+    1.7; ///< how much wider intervals must be than their formula says: measured, docs/diagnosis.md
+
+double rms(const Eigen::VectorXd& series) {
+    return std::sqrt(series.squaredNorm() / static_cast<double>(series.size()));
+}
+
+std::vector<ChosenShape> without(std::vector<ChosenShape> chosen, std::size_t index) {
+    chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(index));
+    return chosen;
+}
+
+/// Intervals by the gradient of each parameter with respect to the coefficients.
+std::vector<FoundParameter> found_parameters(const Candidate& candidate, const EffectShape& shape,
+                                             const Eigen::VectorXd& coefficients,
+                                             const Eigen::MatrixXd& covariance) {
+    const std::vector<EffectParameter> values = candidate.parameters(coefficients, shape);
+    Eigen::MatrixXd gradient(static_cast<Eigen::Index>(values.size()), coefficients.size());
+    for (Eigen::Index i = 0; i < coefficients.size(); ++i) {
+        const double step = 1e-3 * std::sqrt(covariance(i, i)) + 1e-12;
+        Eigen::VectorXd changed = coefficients;
+        changed[i] += step;
+        const std::vector<EffectParameter> moved = candidate.parameters(changed, shape);
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            gradient(static_cast<Eigen::Index>(k), i) = (moved[k].value - values[k].value) / step;
+        }
+    }
+    const Eigen::VectorXd deviation =
+        (gradient * covariance * gradient.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
+    std::vector<FoundParameter> result;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        const double reach = two_sided_95 * coloured * deviation[static_cast<Eigen::Index>(k)];
+        result.push_back({values[k].name, values[k].unit, values[k].value, values[k].value - reach,
+                          values[k].value + reach});
+    }
+    return result;
+}
+
+std::string rounded(double value) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.3g", value);
+    return text.data();
+}
+
+/// What else could stand in the place of a chosen effect, and how much less likely that is.
+void weigh_alternatives(Finding& finding, const Explanation& explanation, std::size_t index) {
+    const std::vector<ChosenShape> others = without(explanation.chosen, index);
+    const double own = explanation.fit.score;
+    const Candidate& own_candidate = explanation.candidates[explanation.chosen[index].candidate];
+    finding.margin_to_nothing = own - fit_effects(explanation.problem, others).score;
+    finding.margin_to_others = std::numeric_limits<double>::infinity();
+    for (const Replacement& other : additions(explanation.problem, others)) {
+        const Candidate& candidate = explanation.candidates[other.with.candidate];
+        const double margin = own - other.score;
+        if (other.with.candidate == explanation.chosen[index].candidate ||
+            (candidate.effect == finding.effect && candidate.where == finding.where)) {
+            continue;
+        }
+        OtherCause cause{candidate.effect, candidate.where, {}};
+        const bool same_span = !candidate.span.empty() && candidate.span == own_candidate.span;
+        if (margin < (same_span ? tie + price_of_shapes : tie)) {
+            finding.indistinguishable.push_back(std::move(cause));
+            continue;
+        }
+        finding.margin_to_others = std::min(finding.margin_to_others, margin);
+        if (finding.alternatives.size() < listed && margin < finding.margin_to_nothing) {
+            const double gap = finding.margin_to_nothing - margin;
+            cause.why_not = "explains " + rounded(100 * std::max(0.0, gap) / finding.margin_to_nothing) +
+                            " % of what this cause does (odds 1 to e^" + rounded(margin) + ")";
+            finding.alternatives.push_back(std::move(cause));
+        }
+    }
+}
+
+/// The output on which the effect is largest against the noise there, and the errors with and without it.
+void measure_gain(Finding& finding, const Eigen::MatrixXd& contribution, const Eigen::MatrixXd& left) {
+    double largest = -1;
+    for (Eigen::Index output = 0; output < left.cols(); ++output) {
+        const double ratio = rms(contribution.col(output)) / rms(left.col(output));
+        if (ratio > largest) {
+            largest = ratio;
+            finding.output = output;
+        }
+    }
+    finding.rms_after = rms(left.col(finding.output));
+    finding.rms_before = rms(left.col(finding.output) + contribution.col(finding.output));
+}
+
+bool same_contact(const Finding& one, const Finding& other) {
+    constexpr double apart_s = 0.5;
+    const auto start_s = [](const Finding& finding) { return finding.parameters[0].value; };
+    const auto end_s = [](const Finding& finding) { return finding.parameters[1].value; };
+    return one.effect == "external_contact" && other.effect == one.effect && one.where == other.where &&
+           start_s(one) < end_s(other) + apart_s && start_s(other) < end_s(one) + apart_s;
+}
+
+/// A contact shows on several axes, and by more than one pulse: the strongest of them tells of it.
+std::vector<Finding> without_repeated_contacts(std::vector<Finding> findings) {
+    std::vector<Finding> kept;
+    for (Finding& finding : findings) {
+        if (std::none_of(kept.begin(), kept.end(),
+                         [&](const Finding& one) { return same_contact(one, finding); })) {
+            kept.push_back(std::move(finding));
+        }
+    }
+    return kept;
+}
+
+} // namespace
+
+double calibrated_confidence(const Finding& finding) {
+    // Logistic regression on what was right and wrong in 410 simulated recordings: docs/diagnosis.md.
+    const double to_nothing = std::log(std::max(finding.margin_to_nothing, 0.1));
+    const double to_others = std::log(std::clamp(finding.margin_to_others, 0.1, 1e4));
+    const double tied = finding.indistinguishable.empty() ? 0 : 0.39;
+    const double burst =
+        finding.effect == "external_contact" ? 3.3 : 0; // real noise has bursts that look like pushes
+    return 1 / (1 + std::exp(-(-2.8 + 0.68 * to_nothing + 0.145 * to_others + tied - burst)));
+}
+
+std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanation& explanation,
+                                 const Eigen::MatrixXd& measured,
+                                 const std::vector<std::string>& output_names) {
+    const Eigen::MatrixXd left = measured - signals.nominal - explanation.all(signals);
+    std::vector<Finding> findings;
+    for (std::size_t i = 0; i < explanation.chosen.size(); ++i) {
+        const std::size_t number = explanation.chosen[i].candidate;
+        const Candidate& candidate = explanation.candidates[number];
+        const EffectShape& shape = candidate.shapes[explanation.chosen[i].shape];
+        Finding finding;
+        finding.effect = candidate.effect;
+        finding.where = candidate.where;
+        finding.detail = candidate.detail;
+        finding.parameters =
+            found_parameters(candidate, shape, explanation.coefficients(i), explanation.covariance(i));
+        weigh_alternatives(finding, explanation, i);
+        const Eigen::MatrixXd contribution =
+            explanation.effects(signals, [&](const Candidate& one) { return one.key() == candidate.key(); });
+        measure_gain(finding, contribution, left);
+        finding.confidence = calibrated_confidence(finding);
+        finding.evidence = "the error of " + output_names[static_cast<std::size_t>(finding.output)] + " " +
+                           effect_signature(finding.effect) + ": with it the error falls from " +
+                           rounded(finding.rms_before) + " to " + rounded(finding.rms_after);
+        finding.confirm = confirming_experiment(finding.effect, finding.where);
+        findings.push_back(std::move(finding));
+    }
+    std::ranges::sort(findings, std::greater<>{},
+                      [](const Finding& finding) { return finding.margin_to_nothing; });
+    return without_repeated_contacts(std::move(findings));
+}
+
+} // namespace dfdyn::tools

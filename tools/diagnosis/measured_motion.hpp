@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/recording/recording.hpp"
+#include "tools/robot/motion.hpp"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// Rows that follow each other at the same distance in time.
+struct Stretch {
+    Eigen::Index first = 0, count = 0;
+};
+
+/// A recording on a uniform clock, its positions smoothed, with derivatives: zero phase, so for use offline
+/// only.
+struct MeasuredMotion {
+    double rate_hz = 0;           ///< of the rows below
+    Eigen::VectorXd smoothing_hz; ///< n: positions were low-passed here, before they sink into their noise
+    Eigen::VectorXd time_s;       ///< T
+    RobotMotion motion;           ///< T x n
+    Eigen::MatrixXd outputs;      ///< T x m, low-passed only against aliasing
+    Eigen::VectorXd
+        velocity_noise; ///< n, rad/s: standard deviation that the positions' noise leaves in the velocities
+    std::vector<Stretch> stretches; ///< in order; none shorter than `shortest_stretch_s`
+
+    static constexpr double shortest_stretch_s = 4;
+};
+
+/// Puts a recording on a uniform clock of its median rate, or an integer part of it (60 to 130 Hz) where that
+/// is higher, by cubic interpolation. Stretches end at gaps (`gap_before`, or steps above three times the
+/// median). The positions' own noise level (of quantiser and encoder, taken from the top of their spectrum)
+/// decides up to which frequency they are trusted. Throws InputError when no stretch is long enough.
+MeasuredMotion measured_motion(const Recording& recording);
+
+} // namespace dfdyn::tools
