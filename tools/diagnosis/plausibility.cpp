@@ -3,6 +3,8 @@
 
 #include "tools/common/quantile.hpp"
 
+#include <Eigen/QR>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -221,6 +223,7 @@ Suspicions suspicions_of_motion(const DiagnosisSignals& signals, const Eigen::Ma
     }
     if (!result.fatal) {
         suspect_exchange(signals, measured, result);
+        suspect_robot(signals, measured, result);
     }
     return result;
 }
