@@ -21,6 +21,7 @@ int run(int argc, char** argv) {
     dfdyn::tools::add_simulate_command(app, command);
     dfdyn::tools::add_convert_command(app, command);
     dfdyn::tools::add_play_command(app, command);
+    dfdyn::tools::add_diagnose_command(app, command);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
