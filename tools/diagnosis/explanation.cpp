@@ -103,8 +103,9 @@ class Search {
             if (options_.progress) {
                 options_.progress(round);
             }
+            std::vector<Entry> dependent = passing();
             refine();
-            gather(passing());
+            gather(std::move(dependent));
             at_.chosen = search_effects(at_.problem, at_.chosen);
             at_.fit = fit_effects(at_.problem, at_.chosen);
             // weighed by the spectrum of what is not explained yet, an effect would be taken for noise

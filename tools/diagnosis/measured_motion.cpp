@@ -97,17 +97,23 @@ Resampled resampled(const Recording& recording, const Stretch& stretch, double s
     return result;
 }
 
-/// Power of the positions per bin (column: joint), mean over the frames of all stretches.
+/// Power of the positions per bin (column: joint), mean over the frames of all stretches. Of their second differences,
+/// because the motion itself would leak into all bins; divided by what differencing does to each frequency.
 Eigen::MatrixXd position_power(const std::vector<Resampled>& stretches, const LappedTransform& transform) {
     Eigen::MatrixXd power = Eigen::MatrixXd::Zero(transform.bins(), stretches.front().position.cols());
     Eigen::Index frames = 0;
     for (const Resampled& stretch : stretches) {
+        const Eigen::Index rows = stretch.position.rows() - 2;
         for (Eigen::Index joint = 0; joint < power.cols(); ++joint) {
-            const Eigen::VectorXd centred =
-                stretch.position.col(joint).array() - stretch.position.col(joint).mean();
-            power.col(joint) += transform.analyse(centred).rowwise().squaredNorm();
+            const Eigen::VectorXd position = stretch.position.col(joint);
+            const Eigen::VectorXd second = position.tail(rows) - 2 * position.segment(1, rows) + position.head(rows);
+            power.col(joint) += transform.analyse(second).rowwise().squaredNorm();
         }
-        frames += transform.frames(stretch.time_s.size());
+        frames += transform.frames(rows);
+    }
+    for (Eigen::Index bin = 0; bin < power.rows(); ++bin) {
+        const double phase = std::numbers::pi * (static_cast<double>(bin) + 0.5) / static_cast<double>(transform.hop());
+        power.row(bin) /= std::pow(2 * std::sin(phase / 2), 4);
     }
     return power / static_cast<double>(std::max<Eigen::Index>(frames, 1));
 }
@@ -128,11 +134,12 @@ PositionNoise position_noise(const std::vector<Resampled>& stretches, double rat
     for (Eigen::Index joint = 0; joint < power.cols(); ++joint) {
         const Eigen::VectorXd top = power.col(joint).tail(hop / 3);
         noise.power[joint] = median(std::vector<double>(top.begin(), top.end()));
-        for (Eigen::Index bin = 0; bin + 2 < hop; ++bin) {
-            if (power.col(joint).segment(bin, 3).mean() > 4 * noise.power[joint]) {
-                noise.trusted_hz = std::max(noise.trusted_hz, static_cast<double>(bin + 2) * bin_hz);
-            }
+        const auto window = std::min<Eigen::Index>(hop / 4, std::llround(1.5 / bin_hz));
+        Eigen::Index bin = 0;
+        while (bin + window < hop && power.col(joint).segment(bin, window).mean() > 3 * noise.power[joint]) {
+            ++bin;
         }
+        noise.trusted_hz = std::max(noise.trusted_hz, static_cast<double>(bin) * bin_hz);
     }
     return noise;
 }
@@ -193,7 +200,7 @@ MeasuredMotion measured_motion(const Recording& recording) {
     const auto decimation = std::max<Eigen::Index>(1, std::llround(std::ceil(rate_hz / highest_rate_hz)));
     MeasuredMotion result;
     result.rate_hz = rate_hz / static_cast<double>(decimation);
-    result.smoothing_hz = std::clamp(1.2 * noise.trusted_hz, 5.0, 0.3 * result.rate_hz);
+    result.smoothing_hz = std::clamp(noise.trusted_hz, 3.0, 0.3 * result.rate_hz);
     // white noise of variance s² per sample at `rate`, low-passed at f and differentiated: (2π)² s² · 2/rate
     // · f³/3
     const double f = result.smoothing_hz;
