@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 namespace dfdyn::tools {
 
@@ -61,13 +62,14 @@ std::string causes_sentence(const Diagnosis& diagnosis) {
                "name.";
     }
     const Finding& first = diagnosis.findings.front();
+    const std::string parameter = main_parameter_words(first);
     std::string text = std::to_string(diagnosis.findings.size());
     return text
         .append(diagnosis.findings.size() == 1 ? " cause is named: " : " causes are named, first of all ")
         .append(cause_words(first))
-        .append(first.parameters.empty() ? "" : " (" + parameter_words(first.parameters.front()) + ")")
+        .append(parameter.empty() ? "" : " (" + parameter + ")")
         .append(", with confidence ")
-        .append(rounded_text(first.confidence))
+        .append(confidence_text(first.confidence))
         .append(".");
 }
 
@@ -137,7 +139,12 @@ std::string carried_words(const DiagnosisCase& one, const Finding& finding) {
     if (found == one.extension.carried.end()) {
         return "–";
     }
-    return found->how == CarriedFinding::How::left_out ? "left out: " + found->words : found->words;
+    static const std::map<CarriedFinding::How, const char*> words{
+        {CarriedFinding::How::adapting, "adapting"},
+        {CarriedFinding::How::fixed, "constant"},
+        {CarriedFinding::How::approximated, "as Coulomb"},
+        {CarriedFinding::How::left_out, "left out"}};
+    return words.at(found->how);
 }
 
 ReportTable findings_table(const DiagnosisCase& one) {
@@ -149,11 +156,14 @@ ReportTable findings_table(const DiagnosisCase& one) {
                       {}};
     table.note =
         "Confidence: of all causes that are given 0.9, about nine in ten are right. Errors: rms over "
-        "the whole recording without and with this one effect, in N·m or N.";
+        "the whole recording without and with this one effect, in N·m or N. Extended model: adapting, as "
+        "coefficients that start here and go on being learned; constant, in its geometry, gravity or "
+        "gains; as Coulomb friction of the same level, for the model's columns have no memory; left "
+        "out, where the effect is no function of the motion of one instant that the firmware has a "
+        "column for.";
     for (const Finding& finding : diagnosis.findings) {
-        table.rows.push_back({cause_words(finding),
-                              finding.parameters.empty() ? "" : parameter_words(finding.parameters.front()),
-                              rounded_text(finding.confidence),
+        table.rows.push_back({cause_words(finding), main_parameter_words(finding),
+                              confidence_text(finding.confidence),
                               diagnosis.output_names[static_cast<std::size_t>(finding.output)],
                               finding.rms_before, finding.rms_after, carried_words(one, finding)});
     }

@@ -50,11 +50,10 @@ void print_errors(std::ostream& out, const Diagnosis& diagnosis) {
 
 void print_finding(std::ostream& out, const Diagnosis& diagnosis, const Finding& finding) {
     const std::string& output = diagnosis.output_names[static_cast<std::size_t>(finding.output)];
-    out << "  " << std::fixed << std::setprecision(2) << finding.confidence << std::defaultfloat << "  "
-        << cause_words(finding) << ": ";
-    if (!finding.parameters.empty()) {
-        out << parameter_words(finding.parameters.front()) << ", ";
-    }
+    out << "  " << std::setw(6) << confidence_text(finding.confidence) << "  " << cause_words(finding)
+        << ": ";
+    const std::string parameter = main_parameter_words(finding);
+    out << parameter << (parameter.empty() ? "" : ", ");
     out << output << " error " << rounded_text(finding.rms_before) << " -> "
         << rounded_text(finding.rms_after) << '\n';
     if (!finding.indistinguishable.empty()) {
@@ -107,14 +106,24 @@ void print_unexplained(std::ostream& out, const Diagnosis& diagnosis) {
     }
 }
 
-void print_carried(std::ostream& out, const std::vector<CarriedFinding>& carried) {
+/// Those of one kind on one line.
+void print_not_whole(std::ostream& out, const std::vector<CarriedFinding>& carried, CarriedFinding::How how,
+                     const char* lead) {
+    std::string list;
     for (const CarriedFinding& one : carried) {
-        const bool whole = one.how == CarriedFinding::How::adapting || one.how == CarriedFinding::How::fixed;
-        if (!whole) {
-            out << "the extended model has " << cause_words(OtherCause{one.effect, one.where, {}})
-                << (one.how == CarriedFinding::How::left_out ? " not: " : " only ") << one.words << '\n';
+        if (one.how == how) {
+            list.append(list.empty() ? "" : "; ").append(cause_words(OtherCause{one.effect, one.where, {}}));
         }
     }
+    if (!list.empty()) {
+        out << lead << list << '\n';
+    }
+}
+
+void print_carried(std::ostream& out, const std::vector<CarriedFinding>& carried) {
+    print_not_whole(out, carried, CarriedFinding::How::approximated,
+                    "the extended model has, as Coulomb friction only: ");
+    print_not_whole(out, carried, CarriedFinding::How::left_out, "the extended model leaves out: ");
 }
 
 } // namespace

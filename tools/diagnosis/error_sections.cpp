@@ -145,15 +145,14 @@ PageSection comparison_section(const DiagnosisWork& work) {
         const std::string& name = work.diagnosis.output_names[static_cast<std::size_t>(output)];
         XyChart chart{name, "time (s)", std::string(name).append(" (").append(output_unit(name)).append(")")};
         chart.height = 220;
-        chart.lines = {over_time(work, "measured", measured.col(output), rows),
-                       over_time(work, "simulated", nominal.col(output), rows),
+        chart.reference = over_time(work, "measured", measured.col(output), rows);
+        chart.lines = {over_time(work, "simulated", nominal.col(output), rows),
                        over_time(work, "extended", extended.col(output), rows)};
         section.charts.push_back({"outputs_" + name, name, xy_chart(chart)});
         XyChart error{std::string("error of ").append(name), "time (s)",
                       std::string("error (").append(output_unit(name)).append(")")};
         error.height = 220;
-        error.lines = {over_time(work, "of the measured", Eigen::VectorXd::Zero(measured.rows()), rows),
-                       over_time(work, "of the simulated", measured.col(output) - nominal.col(output), rows),
+        error.lines = {over_time(work, "of the simulated", measured.col(output) - nominal.col(output), rows),
                        over_time(work, "of the extended", measured.col(output) - extended.col(output), rows)};
         section.charts.push_back({"errors_" + name, error.title, xy_chart(error)});
     }

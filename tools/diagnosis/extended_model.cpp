@@ -11,7 +11,7 @@
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/robot/regressor.hpp"
 #include "tools/training/covariance_start.hpp"
-#include "tools/training/motion.hpp"
+#include "tools/training/derivative_rows.hpp"
 #include "tools/training/recorded_data.hpp"
 
 #include <algorithm>
@@ -29,29 +29,25 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::array window_s{0.024, 0.04, 0.064, 0.1, 0.15, 0.2};
+constexpr double window_s = 0.2;
 constexpr int most_lags = 100;
-constexpr std::size_t rows_for_windows = 1500; ///< that windows are compared on
+constexpr std::array filter_poles{0.0, 0.3, 0.5, 0.65, 0.75, 0.83, 0.9, 0.95}; ///< that are tried
+constexpr std::size_t rows_for_filters = 1500; ///< that filters are compared on
 constexpr double limit_factor = 10;
 
-/// Velocity and acceleration row of the parabola through a window.
-MatrixXd parabola(int lags, double period_s) {
-    return polynomial_motion(lags, period_s)->evaluate(VectorXd(0));
-}
-
-/// Windows of velocity and acceleration as rows of R: parabolas through each joint's last positions.
-InputModel parabolas(int velocity_lags, int acceleration_lags, double period_s, std::size_t joints) {
+/// Velocity and acceleration as weighted means of first and second differences, a pole each.
+InputModel filters(double velocity_pole, double acceleration_pole, const TrainingData& data) {
     InputModel motion;
     motion.kind = InputKind::DFR;
-    motion.lags = std::max(velocity_lags, acceleration_lags);
+    motion.lags = std::clamp(static_cast<int>(std::lround(window_s / data.sample_period_s)), 4, most_lags);
     motion.rows_per_joint = 3;
-    motion.scale.assign(3 * joints, 1);
-    Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> rows =
-        Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>::Zero(3, motion.lags + 1);
+    motion.scale.assign(3 * static_cast<std::size_t>(data.positions.cols()), 1);
+    MatrixXd rows = MatrixXd::Zero(motion.lags + 1, 3);
     rows(0, 0) = 1;
-    rows.row(1).head(velocity_lags + 1) = parabola(velocity_lags, period_s).row(0);
-    rows.row(2).head(acceleration_lags + 1) = parabola(acceleration_lags, period_s).row(1);
-    motion.rows.assign(rows.data(), rows.data() + rows.size());
+    rows.col(1) = mean_difference_row(1, velocity_pole, motion.lags) / data.sample_period_s;
+    rows.col(2) = mean_difference_row(2, acceleration_pole, motion.lags) /
+                  (data.sample_period_s * data.sample_period_s);
+    motion.rows = to_vector(rows);
     return motion;
 }
 
@@ -103,36 +99,24 @@ VectorXd variance(const MatrixXd& outputs) {
     return mean_square(outputs.rowwise() - outputs.colwise().mean()).cwiseMax(1e-12);
 }
 
-std::vector<int> window_lags(double period_s) {
-    std::vector<int> lags;
-    for (const double window : window_s) {
-        const int count = std::clamp(static_cast<int>(std::lround(window / period_s)), 3, most_lags);
-        if (lags.empty() || lags.back() != count) {
-            lags.push_back(count);
-        }
-    }
-    return lags;
-}
-
-InputModel best_windows(const Prediction& prediction, const TrainingData& data) {
-    const std::vector<int> lags = window_lags(data.sample_period_s);
-    const RowList usable = usable_rows(data.gap_before, lags.back());
+InputModel best_filters(const Prediction& prediction, const TrainingData& data) {
+    const int lags = filters(0, 0, data).lags;
+    const RowList usable = usable_rows(data.gap_before, lags);
     if (usable.empty()) {
-        throw InputError("recording: expected stretches of more than " + std::to_string(lags.back()) +
+        throw InputError("recording: expected stretches of more than " + std::to_string(lags) +
                          " rows without a gap, found none");
     }
     RowList rows;
-    for (std::size_t i = 0; i < usable.size();
-         i += std::max<std::size_t>(1, usable.size() / rows_for_windows)) {
+    const std::size_t step = std::max<std::size_t>(1, usable.size() / rows_for_filters);
+    for (std::size_t i = 0; i < usable.size(); i += step) {
         rows.push_back(usable[i]);
     }
     const VectorXd weight = variance(data.outputs).cwiseInverse();
     InputModel best;
     double least = std::numeric_limits<double>::infinity();
-    for (const int velocity : lags) {
-        for (const int acceleration : lags) {
-            InputModel motion = parabolas(velocity, acceleration, data.sample_period_s,
-                                          static_cast<std::size_t>(data.positions.cols()));
+    for (const double velocity : filter_poles) {
+        for (const double acceleration : filter_poles) {
+            InputModel motion = filters(velocity, acceleration, data);
             const double error = mean_square(prediction.error(motion, rows)).dot(weight);
             if (error < least) {
                 least = error;
@@ -223,7 +207,7 @@ TrainedModel extended_model(const Extension& extension, std::span<const Recordin
     physics.chain = prediction.chain();
     physics.effects = prediction.effects();
     physics.output_gain = to_vector(extension.output_gain);
-    physics.motion = best_windows(prediction, data);
+    physics.motion = best_filters(prediction, data);
     physics.motion_limit = motion_limits(physics.motion, data);
     set_start(physics, starting_point(extension, prediction));
     const RowList rows = usable_rows(data.gap_before, physics.motion.lags);

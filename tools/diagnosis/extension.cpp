@@ -35,21 +35,6 @@ const std::map<std::string, Add>& additions_of() {
     return known;
 }
 
-std::string words_for(CarriedFinding::How how, const std::string& effect) {
-    if (how == CarriedFinding::How::adapting) {
-        return "adapts from the value found";
-    }
-    if (how == CarriedFinding::How::fixed) {
-        return "a constant of the model";
-    }
-    if (how == CarriedFinding::How::approximated) {
-        return "as Coulomb friction of the same level: a model's columns have no memory";
-    }
-    return effect == "external_contact"
-               ? "an event, not a property of the arm"
-               : "no function of the motion at one instant that the firmware has a column for";
-}
-
 /// What the diagnosis granted without calling it a finding: masses a little off, torque constants.
 void add_nuisance(Extension& extension, const DiagnosisWork& work) {
     const Explanation& explanation = work.explanation;
@@ -89,8 +74,7 @@ Extension extension_of(const DiagnosisWork& work) {
         const auto add = additions_of().find(candidate.effect);
         const CarriedFinding::How how =
             add == additions_of().end() ? CarriedFinding::How::left_out : add->second(extension, chosen);
-        extension.carried.push_back(
-            {candidate.effect, candidate.where, how, words_for(how, candidate.effect)});
+        extension.carried.push_back({candidate.effect, candidate.where, how});
     }
     add_nuisance(extension, work);
     sort_columns(extension);

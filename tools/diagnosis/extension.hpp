@@ -27,7 +27,6 @@ struct CarriedFinding {
     };
     std::string effect, where;
     How how = How::left_out;
-    std::string words; ///< what was done, or why nothing was
 };
 
 /// A robot's rigid body with what a diagnosis found, as a parametric model holds it.

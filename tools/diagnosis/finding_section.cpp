@@ -104,7 +104,7 @@ PageSection finding_section(const DiagnosisWork& work, const Finding& finding, s
     PageSection section;
     section.heading = std::to_string(number) + ". " + cause_words(finding);
     section.paragraphs.push_back(std::string("Confidence ")
-                                     .append(rounded_text(finding.confidence))
+                                     .append(confidence_text(finding.confidence))
                                      .append(": ")
                                      .append(finding.evidence)
                                      .append(" ")

@@ -26,6 +26,15 @@ std::string rounded_text(double value) {
     return text.data();
 }
 
+std::string confidence_text(double confidence) {
+    if (confidence > 0.99) {
+        return "> 0.99";
+    }
+    std::array<char, 16> text{};
+    std::snprintf(text.data(), text.size(), "%.2f", confidence);
+    return text.data();
+}
+
 std::string parameter_words(const FoundParameter& parameter) {
     std::string text = parameter.name;
     if (is_axis(parameter)) {
@@ -44,6 +53,12 @@ std::string parameter_words(const FoundParameter& parameter) {
         .append(" … ")
         .append(rounded_text(parameter.high))
         .append(")");
+}
+
+std::string main_parameter_words(const Finding& finding) {
+    const auto measured = std::ranges::find_if(
+        finding.parameters, [](const FoundParameter& parameter) { return parameter.low < parameter.high; });
+    return measured == finding.parameters.end() ? "" : parameter_words(*measured);
 }
 
 std::string cause_words(const Finding& finding) {

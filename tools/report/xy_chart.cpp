@@ -59,6 +59,7 @@ std::string path_of(const XyLine& curve, const LinearAxis& x, const LinearAxis& 
 
 std::vector<double> all_x(const XyChart& chart) {
     std::vector<double> values = chart.points.x;
+    values.insert(values.end(), chart.reference.x.begin(), chart.reference.x.end());
     values.insert(values.end(), chart.bins.x.begin(), chart.bins.x.end());
     for (const XyLine& one : chart.lines) {
         values.insert(values.end(), one.x.begin(), one.x.end());
@@ -68,6 +69,7 @@ std::vector<double> all_x(const XyChart& chart) {
 
 std::vector<double> all_y(const XyChart& chart) {
     std::vector<double> values = chart.points.y;
+    values.insert(values.end(), chart.reference.y.begin(), chart.reference.y.end());
     for (std::size_t i = 0; i < chart.bins.x.size(); ++i) {
         values.push_back(chart.bins.mean[i] - chart.bins.deviation[i]);
         values.push_back(chart.bins.mean[i] + chart.bins.deviation[i]);
@@ -100,6 +102,9 @@ std::string layer_svg(const Layer& layer, std::size_t index, double legend_x) {
 
 std::vector<Layer> layers_of(const XyChart& chart, const LinearAxis& x, const LinearAxis& y) {
     std::vector<Layer> layers;
+    if (!chart.reference.x.empty()) {
+        layers.push_back({chart.reference.name, "reference", path_of(chart.reference, x, y), true});
+    }
     if (!chart.points.x.empty()) {
         layers.push_back({chart.points.name, "cloud", dots(chart.points, x, y)});
     }

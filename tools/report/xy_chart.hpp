@@ -24,10 +24,11 @@ struct XyPoints {
     std::vector<double> x, y;
 };
 
-/// What a chart over two linear axes shows, the first below the next: dots, binned means, lines. Those
+/// What a chart over two linear axes shows, the first below the next. Those
 /// without an x are left out.
 struct XyChart {
     std::string title, x_label, y_label;
+    XyLine reference{}; ///< wide and grey below the others: what was measured
     XyPoints points{};
     XyBins bins{};
     std::vector<XyLine> lines{};
