@@ -187,10 +187,13 @@ PageSection overview_section(const DiagnosisCase& one) {
 PageSection online_section(const OnlineView& online, const Diagnosis& diagnosis) {
     PageSection section{"As an online learner sees it", {}, {}, {}};
     section.paragraphs.emplace_back(
-        "Parametric learners that see positions only, as the firmware does, run over the recording tick by "
-        "tick: each predicts a sample, then learns it. The extended model has seen this recording; the other "
-        "two have not. Models with random features (NP, SPK) are not run here: their training takes minutes "
-        "(dfdyn train, then dfdyn replay).");
+        "Learners that see positions only, as the firmware does, run over the recording tick by tick: each "
+        "predicts a sample, then learns it. P starts at the robot's own parameters, NP and SPK (100 random "
+        "features) from nothing; the extended model starts where this recording put it.");
+    if (!online.left_out.empty()) {
+        section.paragraphs.push_back("Some learners with random features were not run: " + online.left_out +
+                                     ".");
+    }
     ReportTable table{"One-step error, of the measured output's deviation", {"learner"}, {}, {}};
     table.note = "First third of the recording: the transient; the rest: steady.";
     for (const std::string& name : diagnosis.output_names) {

@@ -67,15 +67,18 @@ ExplainingVariable over_driven_load(const Place& at) {
                     (load.abs() * velocity.sign()).matrix());
 }
 
-/// One turn; for a fine ripple one wave of it, which a turn would show as a blur.
+/// One turn, or what the joint covers of it; for a fine ripple one wave of it, which a turn would show as a
+/// blur.
 ExplainingVariable over_angle(const Place& at) {
     constexpr double most_waves = 12;
     const double cycles = std::max(1.0, at.parameter("cycles_per_rev"));
     const double period = cycles > most_waves ? turn / cycles : turn;
     const Eigen::ArrayXd position = at.signals.measured.motion.position.col(at.joint());
-    const std::string label =
-        cycles > most_waves ? at.named("angle within one wave") : at.named("angle within one turn");
-    return at.whole(label + " (rad)", (position - period * (position / period).floor()).matrix());
+    if (position.maxCoeff() - position.minCoeff() < period) {
+        return at.whole(at.named("angle") + " (rad)", position.matrix());
+    }
+    const char* const within = cycles > most_waves ? "angle within one wave" : "angle within one turn";
+    return at.whole(at.named(within) + " (rad)", (position - period * (position / period).floor()).matrix());
 }
 
 /// How far the joint has travelled since it last reversed, with the sign of the direction.
