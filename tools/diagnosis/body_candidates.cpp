@@ -37,7 +37,12 @@ Candidate payload(const DiagnosisSignals& signals) {
     result.where = "tool";
     const Eigen::Index last = signals.regressor.cols() / 10 - 1;
     result.columns = mass_columns(signals, last, Eigen::Vector3d::Zero(), signals.robot.tip_placement);
-    result.shapes = {{{0}, {true}, 0}, {{0, 1, 2, 3}, {true, false, false, false}, 0}};
+    const auto within_reach = [](const Eigen::VectorXd& coefficients) {
+        constexpr double farthest = 0.5; // m from the tip
+        return coefficients[0] > 0 &&
+               coefficients.tail(coefficients.size() - 1).norm() <= farthest * coefficients[0];
+    };
+    result.shapes = {{{0}, within_reach, 0}, {{0, 1, 2, 3}, within_reach, 0}};
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
         std::vector<EffectParameter> values{{"mass", "kg", coefficients[0]}};
         constexpr std::array names{"com_x", "com_y", "com_z"};
@@ -51,20 +56,25 @@ Candidate payload(const DiagnosisSignals& signals) {
     return result;
 }
 
-Candidate link_inertia(const DiagnosisSignals& signals, Eigen::Index body) {
+Candidate link_inertia(const DiagnosisSignals& signals, Eigen::Index number) {
     const Eigen::VectorXd nominal = nominal_parameters(signals.robot, signals.kind);
     const Eigen::Index bodies = nominal.size() / 10;
-    const auto link = signals.joints() - static_cast<std::size_t>(bodies - body);
-    const double mass = nominal[10 * body];
+    const auto link = signals.joints() - static_cast<std::size_t>(bodies - number);
+    const double mass = nominal[10 * number];
     const Eigen::Vector3d centre =
-        mass > 0 ? Eigen::Vector3d(nominal.segment<3>(10 * body + 1) / mass) : Eigen::Vector3d::Zero();
+        mass > 0 ? Eigen::Vector3d(nominal.segment<3>(10 * number + 1) / mass) : Eigen::Vector3d::Zero();
     Candidate result;
     result.effect = "link_inertia_error";
     result.where = numbered("link", link);
-    result.columns = mass_columns(signals, body, centre, Eigen::Isometry3d::Identity());
-    result.shapes = {{{0}, {false}, 0},
-                     {{1, 2, 3}, {false, false, false}, 0},
-                     {{0, 1, 2, 3}, {false, false, false, false}, 0}};
+    result.columns = mass_columns(signals, number, centre, Eigen::Isometry3d::Identity());
+    const auto body = [mass](double delta_mass, const Eigen::VectorXd& moments) {
+        constexpr double farthest = 0.3; // m that a centre of mass is off
+        return mass + delta_mass > 0 && moments.norm() <= farthest * (mass + delta_mass);
+    };
+    result.shapes = {
+        {{0}, [body](const Eigen::VectorXd& c) { return body(c[0], Eigen::VectorXd::Zero(3)); }, 0},
+        {{1, 2, 3}, [body](const Eigen::VectorXd& c) { return body(0, c); }, 0},
+        {{0, 1, 2, 3}, [body](const Eigen::VectorXd& c) { return body(c[0], c.tail(3)); }, 0}};
     result.parameters = [mass](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
         const bool with_mass = shape.columns.front() == 0;
         const double delta_mass = with_mass ? coefficients[0] : 0;
@@ -93,7 +103,7 @@ Candidate tilt(const DiagnosisSignals& signals) {
         };
         result.columns.push_back(on_outputs((tilted(step) - tilted(-step)) / (2 * step)));
     }
-    result.shapes = {whole_shape(result, false)};
+    result.shapes = {whole_shape(result, up_to(0.6))};
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
         return std::vector<EffectParameter>{{"tilt_x", "rad", coefficients[0]},
                                             {"tilt_y", "rad", coefficients[1]}};

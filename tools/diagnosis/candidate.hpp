@@ -23,20 +23,24 @@ struct EffectParameter {
     double value = 0;
 };
 
-/// One way in which a candidate can act: some of its columns, and what a coefficient may not be.
+/// Whether a machine can have these coefficients.
+using CoefficientRule = std::function<bool(const Eigen::VectorXd& coefficients)>;
+
+/// One way in which a candidate can act: some of its columns, and what their coefficients may be.
 struct EffectShape {
     std::vector<std::size_t> columns; ///< of the candidate
-    std::vector<bool> positive;       ///< per entry of `columns`: the coefficient must be
-    double value = 0;                 ///< the shape's own parameter, where the effect has one
+    CoefficientRule allowed;
+    double value = 0; ///< the shape's own parameter, where the effect has one
 };
 
 /// A named cause at a place: an effect of the catalogue. Its contribution is linear in the coefficients of
 /// one of its shapes.
 struct Candidate {
     std::string effect, where;
-    std::string detail; ///< tells candidates of the same effect and place apart: axes, times
-    std::string family; ///< of several candidates of one family at most one is chosen; empty: of none
-    double tried = 1;   ///< of how many alternatives this one was picked beforehand
+    std::string detail;     ///< tells candidates of the same effect and place apart: axes, times
+    std::string family;     ///< of several candidates of one family at most one is chosen; empty: of none
+    double tried = 1;       ///< of how many alternatives this one was picked beforehand
+    double extra_price = 0; ///< what it must explain, in units of the evidence, because others of its kind do
     std::vector<EffectColumn> columns;
     std::vector<EffectShape> shapes;
     /// Columns for another value of the shape's parameter; empty where there is none, or only the listed ones

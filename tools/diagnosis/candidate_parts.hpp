@@ -29,23 +29,39 @@ inline EffectColumn on_outputs(const Eigen::MatrixXd& series) {
     return column;
 }
 
-/// All columns of the candidate together, with the same sign rule.
-inline EffectShape whole_shape(const Candidate& candidate, bool positive) {
+/// Coefficients from zero to `largest`, or of either sign up to it.
+inline CoefficientRule positive_up_to(double largest) {
+    return [largest](const Eigen::VectorXd& coefficients) {
+        return (coefficients.array() > 0).all() && coefficients.maxCoeff() <= largest;
+    };
+}
+inline CoefficientRule up_to(double largest) {
+    return [largest](const Eigen::VectorXd& coefficients) { return coefficients.norm() <= largest; };
+}
+/// Positive without a limit; any number at all.
+inline bool is_positive(const Eigen::VectorXd& coefficients) { return (coefficients.array() > 0).all(); }
+inline bool is_anything(const Eigen::VectorXd& /*coefficients*/) { return true; }
+/// The first one positive, the others anything.
+inline bool first_is_positive(const Eigen::VectorXd& coefficients) { return coefficients[0] > 0; }
+
+/// All columns of the candidate together.
+inline EffectShape whole_shape(const Candidate& candidate, CoefficientRule allowed) {
     EffectShape shape;
     shape.columns.resize(candidate.columns.size());
     std::iota(shape.columns.begin(), shape.columns.end(), std::size_t{0});
-    shape.positive.assign(candidate.columns.size(), positive);
+    shape.allowed = std::move(allowed);
     return shape;
 }
 
 /// A candidate of one column and one coefficient, which is its parameter.
-inline Candidate single_column(std::string effect, std::string where, EffectColumn column, bool positive,
-                               std::string parameter, std::string unit, double scale = 1, double offset = 0) {
+inline Candidate single_column(std::string effect, std::string where, EffectColumn column,
+                               CoefficientRule allowed, std::string parameter, std::string unit,
+                               double scale = 1, double offset = 0) {
     Candidate candidate;
     candidate.effect = std::move(effect);
     candidate.where = std::move(where);
     candidate.columns.push_back(std::move(column));
-    candidate.shapes.push_back(whole_shape(candidate, positive));
+    candidate.shapes.push_back(whole_shape(candidate, std::move(allowed)));
     candidate.parameters = [parameter = std::move(parameter), unit = std::move(unit), scale,
                             offset](const Eigen::VectorXd& coefficients, const EffectShape&) {
         return std::vector<EffectParameter>{{parameter, unit, scale * coefficients[0] + offset}};

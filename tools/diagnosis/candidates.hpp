@@ -30,8 +30,16 @@ std::vector<Candidate> drift_candidates(const DiagnosisSignals& signals, const E
 Candidate ripple_candidate(const DiagnosisSignals& signals, std::size_t joint,
                            const std::vector<int>& cycles);
 
-/// A torque or force from outside on `output` from `start_s` to `end_s`, rising and falling smoothly.
-Candidate contact_candidate(const DiagnosisSignals& signals, Eigen::Index output, double start_s,
-                            double end_s);
+/// A push: from start to end, rising and falling within `rise_s`.
+struct ContactPulse {
+    double start_s = 0, end_s = 0, rise_s = 0;
+};
+
+/// A torque or force from outside on `output`, with a pulse per shape; the first one names it.
+Candidate contact_candidate(const DiagnosisSignals& signals, Eigen::Index output,
+                            const std::vector<ContactPulse>& pulses);
+
+/// The pulse over the recording, T; its height is one.
+Eigen::VectorXd pulse_series(const DiagnosisSignals& signals, const ContactPulse& pulse);
 
 } // namespace dfdyn::tools

@@ -24,12 +24,23 @@ EffectRegression::EffectRegression(const SpectralRows& rows, const Eigen::Matrix
       noise_(Eigen::MatrixXd::Ones(rows.bins(), unexplained.cols())) {
     for (Eigen::Index output = 0; output < unexplained.cols(); ++output) {
         target_.push_back(rows.analyse(unexplained.col(output)));
+        weight_.emplace_back(Eigen::MatrixXd::Ones(rows.bins(), fitted_frames));
+    }
+}
+
+void EffectRegression::set_noise(Eigen::MatrixXd spectra, const std::vector<Eigen::MatrixXd>& unrest) {
+    noise_ = std::move(spectra);
+    weight_.clear();
+    for (Eigen::Index output = 0; output < outputs(); ++output) {
+        const Eigen::MatrixXd variance =
+            noise_.col(output).asDiagonal() * unrest[static_cast<std::size_t>(output)];
+        weight_.push_back(variance.cwiseSqrt().cwiseInverse());
     }
 }
 
 Eigen::VectorXd EffectRegression::weighed(const Eigen::MatrixXd& rows, Eigen::Index output) const {
-    const Eigen::VectorXd weight = noise_.col(output).cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd result = weight.asDiagonal() * rows.leftCols(fitted_frames_);
+    const Eigen::MatrixXd result =
+        weight_[static_cast<std::size_t>(output)].cwiseProduct(rows.leftCols(fitted_frames_));
     return result.reshaped();
 }
 

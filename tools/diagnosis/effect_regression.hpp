@@ -48,11 +48,17 @@ class EffectRegression {
 
     void set_columns(std::vector<SpectralColumnPointer> columns) { columns_ = std::move(columns); }
 
-    /// The noise's spectra (bins x m), whose inverses are the weights.
-    void set_noise(Eigen::MatrixXd spectra) { noise_ = std::move(spectra); }
+    /// The noise's spectra (bins x m), and per output how much larger than that it is where (bins x fitted
+    /// frames): the inverses of both are the weights.
+    void set_noise(Eigen::MatrixXd spectra, const std::vector<Eigen::MatrixXd>& unrest);
     const Eigen::MatrixXd& noise() const noexcept { return noise_; }
 
     NormalEquations normal_equations() const;
+
+    /// Per output, the weights of squares (bins x fitted frames).
+    Eigen::MatrixXd weight(Eigen::Index output) const {
+        return weight_[static_cast<std::size_t>(output)].array().square();
+    }
 
     /// What `coefficients` of all columns leave of an output: bins x fitted frames, not weighed.
     Eigen::MatrixXd residual(Eigen::Index output, const Eigen::VectorXd& coefficients) const;
@@ -65,6 +71,7 @@ class EffectRegression {
     std::vector<Eigen::MatrixXd> target_; ///< per output, bins x frames
     std::vector<SpectralColumnPointer> columns_;
     Eigen::MatrixXd noise_;
+    std::vector<Eigen::MatrixXd> weight_; ///< per output, bins x fitted frames: square roots
 };
 
 } // namespace dfdyn::tools

@@ -13,7 +13,7 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr double least_gain = 1e-6;        ///< of the evidence: below it nothing changes
-constexpr double least_independent = 1e-5; ///< share of a column that the others must leave
+constexpr double least_independent = 1e-3; ///< share of a column that the others must leave
 constexpr std::size_t most_effects = 48;
 
 const SearchCandidate::Shape& shape_of(const SearchProblem& problem, const ChosenShape& chosen) {
@@ -24,7 +24,8 @@ const SearchCandidate::Shape& shape_of(const SearchProblem& problem, const Chose
 double price(const SearchProblem& problem, const ChosenShape& chosen) {
     const SearchCandidate& candidate = problem.candidates[chosen.candidate];
     const auto parameters = static_cast<double>(candidate.shapes[chosen.shape].columns.size());
-    return std::log(static_cast<double>(problem.candidates.size() * candidate.shapes.size()) *
+    return candidate.extra_price +
+           std::log(static_cast<double>(problem.candidates.size() * candidate.shapes.size()) *
                     candidate.tried) +
            0.5 * parameters * std::log1p(candidate.rows);
 }
@@ -39,15 +40,6 @@ std::vector<Eigen::Index> columns_of(const SearchProblem& problem, const std::ve
         columns.insert(columns.end(), own.begin(), own.end());
     }
     return columns;
-}
-
-bool signs_allowed(const std::vector<bool>& positive, const Eigen::Ref<const Eigen::VectorXd>& coefficients) {
-    for (std::size_t i = 0; i < positive.size(); ++i) {
-        if (positive[i] && !(coefficients[static_cast<Eigen::Index>(i)] > 0)) {
-            return false;
-        }
-    }
-    return true;
 }
 
 /// The normal equations' matrix of a model, with the nuisance's priors.
@@ -101,7 +93,7 @@ double gain_of(const SearchProblem& problem, const Projection& projection,
         return never;
     }
     const Eigen::VectorXd coefficients = factor.solve(moment);
-    return signs_allowed(shape.positive, coefficients) ? coefficients.dot(moment) : never;
+    return shape.allowed(coefficients) ? coefficients.dot(moment) : never;
 }
 
 bool excludes(const std::vector<SearchCandidate>& candidates, std::size_t one, std::size_t other) {
@@ -151,9 +143,9 @@ EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShap
     fit.score = 0.5 * fit.explained - nuisance_price(problem, system);
     auto at = static_cast<Eigen::Index>(problem.nuisance.size());
     for (const ChosenShape& one : chosen) {
-        const std::vector<bool>& positive = shape_of(problem, one).positive;
-        const auto count = static_cast<Eigen::Index>(positive.size());
-        fit.allowed = fit.allowed && signs_allowed(positive, fit.coefficients.segment(at, count));
+        const SearchCandidate::Shape& shape = shape_of(problem, one);
+        const auto count = static_cast<Eigen::Index>(shape.columns.size());
+        fit.allowed = fit.allowed && shape.allowed(fit.coefficients.segment(at, count));
         fit.score -= price(problem, one);
         at += count;
     }

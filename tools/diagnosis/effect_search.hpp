@@ -13,11 +13,12 @@ namespace dfdyn::tools {
 struct SearchCandidate {
     struct Shape {
         std::vector<Eigen::Index> columns; ///< of the normal equations
-        std::vector<bool> positive;
+        CoefficientRule allowed;
     };
     std::vector<Shape> shapes;
     std::size_t family = 0; ///< of those with the same number, one at most; 0: of none
     double tried = 1;       ///< how many alternatives it was picked from beforehand
+    double extra_price = 0; ///< what it costs beside
     double rows = 1;        ///< how many rows it acts on: what its parameters are paid for by
 };
 

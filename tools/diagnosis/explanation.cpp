@@ -214,9 +214,10 @@ void Search::gather(std::vector<Entry> passing) {
         SearchCandidate candidate;
         candidate.family = families.emplace(entry.candidate.family, families.size()).first->second;
         candidate.tried = entry.candidate.tried;
+        candidate.extra_price = entry.candidate.extra_price;
         candidate.rows = static_cast<double>(rows_.bins() * regression_.fitted_frames());
         for (const EffectShape& shape : entry.candidate.shapes) {
-            SearchCandidate::Shape one{{}, shape.positive};
+            SearchCandidate::Shape one{{}, shape.allowed};
             for (const std::size_t column : shape.columns) {
                 one.columns.push_back(static_cast<Eigen::Index>(columns.size() + column));
             }
@@ -252,15 +253,18 @@ Eigen::VectorXd Search::all_coefficients() const {
 void Search::estimate_noise(bool white) {
     const Eigen::VectorXd coefficients = all_coefficients();
     Eigen::MatrixXd noise(rows_.bins(), regression_.outputs());
+    std::vector<Eigen::MatrixXd> unrest;
     for (Eigen::Index output = 0; output < noise.cols(); ++output) {
-        noise.col(output) =
-            noise_spectrum(regression_.residual(output, coefficients),
-                           static_cast<double>(at_.fit.columns.size()) / static_cast<double>(noise.cols()));
+        const Eigen::MatrixXd left = regression_.residual(output, coefficients);
+        noise.col(output) = noise_spectrum(left, static_cast<double>(at_.fit.columns.size()) /
+                                                     static_cast<double>(noise.cols()));
+        unrest.push_back(white ? Eigen::MatrixXd::Ones(left.rows(), left.cols()).eval()
+                               : noise_unrest(left, noise.col(output)));
     }
     if (white) {
         noise = noise.colwise().mean().replicate(noise.rows(), 1).eval();
     }
-    regression_.set_noise(noise);
+    regression_.set_noise(noise, unrest);
     at_.noise = std::move(noise);
 }
 

@@ -32,8 +32,8 @@ struct JointSignals {
 };
 
 Candidate viscous(const JointSignals& joint) {
-    return single_column("viscous_friction", joint.where, joint.column(joint.velocity), true, "viscous",
-                         "N·m·s/rad");
+    return single_column("viscous_friction", joint.where, joint.column(joint.velocity), is_positive,
+                         "viscous", "N·m·s/rad");
 }
 
 /// Dahl's friction of level 1 that builds up over `distance` (rad): df/dq = (1 - f sgn q') / distance, exact
@@ -61,7 +61,8 @@ Candidate coulomb(const JointSignals& joint) {
     result.columns = {joint.column(joint.direction), joint.column(dahl(joint, shortest_presliding / 8)),
                       joint.column(dahl(joint, shortest_presliding / 3)),
                       joint.column(joint.direction.array().square().matrix())};
-    result.shapes = {{{0}, {true}, 0}, {{1}, {true}, 1}, {{2}, {true}, 2}, {{0, 3}, {true, false}, 3}};
+    result.shapes = {
+        {{0}, is_positive, 0}, {{1}, is_positive, 1}, {{2}, is_positive, 2}, {{0, 3}, first_is_positive, 3}};
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
         if (shape.columns.size() == 1) {
             return std::vector<EffectParameter>{{"coulomb", "N·m", coefficients[0]}};
@@ -83,7 +84,7 @@ Candidate stribeck(const JointSignals& joint) {
     const double slowest = joint.all.sign_velocity[joint.output];
     for (const double stribeck_velocity : {0.01, 0.02, 0.04, 0.08, 0.16, 0.32}) {
         if (stribeck_velocity > 1.5 * slowest) {
-            result.shapes.push_back({{0, result.columns.size()}, {true, true}, stribeck_velocity});
+            result.shapes.push_back({{0, result.columns.size()}, is_positive, stribeck_velocity});
             result.columns.push_back(faded(stribeck_velocity));
         }
     }
@@ -102,7 +103,7 @@ Candidate presliding(const JointSignals& joint) {
     Candidate result = joint.candidate("presliding_hysteresis");
     result.family = "sliding at " + joint.where;
     for (double distance = 1.4 * shortest_presliding; distance < 0.3; distance *= 1.7) {
-        result.shapes.push_back({{result.columns.size()}, {true}, distance});
+        result.shapes.push_back({{result.columns.size()}, is_positive, distance});
         result.columns.push_back(joint.column(dahl(joint, distance)));
     }
     result.at_value = [joint](double distance) {
@@ -119,7 +120,7 @@ Candidate spring(const JointSignals& joint) {
     Candidate result = joint.candidate("joint_spring");
     result.columns = {joint.column(joint.position),
                       joint.column(Eigen::VectorXd::Ones(joint.position.size()))};
-    result.shapes = {{{0, 1}, {true, false}, 0}};
+    result.shapes = {{{0, 1}, first_is_positive, 0}};
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
         return std::vector<EffectParameter>{{"stiffness", "N·m/rad", coefficients[0]},
                                             {"rest", "rad", -coefficients[1] / coefficients[0]}};
@@ -143,13 +144,14 @@ std::vector<Candidate> joint_candidates(const DiagnosisSignals& signals) {
         result.push_back(presliding(joint));
         result.push_back(spring(joint));
         result.push_back(single_column("load_dependent_friction", joint.where,
-                                       joint.column(load.cwiseProduct(joint.direction)), true, "mu", "1"));
+                                       joint.column(load.cwiseProduct(joint.direction)), positive_up_to(1),
+                                       "mu", "1"));
         result.push_back(single_column("torque_offset", joint.where,
-                                       joint.column(Eigen::VectorXd::Ones(signals.rows())), false, "offset",
-                                       "N·m"));
+                                       joint.column(Eigen::VectorXd::Ones(signals.rows())), is_anything,
+                                       "offset", "N·m"));
         result.push_back(single_column("rotor_inertia", joint.where,
                                        joint.column(signals.measured.motion.acceleration.col(joint.output)),
-                                       true, "inertia", "kg·m²"));
+                                       is_positive, "inertia", "kg·m²"));
     }
     return result;
 }
@@ -161,7 +163,7 @@ Candidate ripple_candidate(const DiagnosisSignals& signals, std::size_t number,
     for (const int count : cycles) {
         const Eigen::ArrayXd angle = joint.position.array() * count;
         result.shapes.push_back(
-            {{result.columns.size(), result.columns.size() + 1}, {false, false}, static_cast<double>(count)});
+            {{result.columns.size(), result.columns.size() + 1}, is_anything, static_cast<double>(count)});
         result.columns.push_back(joint.column(angle.sin()));
         result.columns.push_back(joint.column(angle.cos()));
     }
@@ -180,7 +182,7 @@ std::vector<Candidate> drift_candidates(const DiagnosisSignals& signals, const E
         if (friction.col(joint).any()) {
             result.push_back(single_column(
                 "friction_drift", numbered("joint", static_cast<std::size_t>(joint)),
-                on_output(joint, friction.col(joint).cwiseProduct(elapsed)), false, "rate", "1/s"));
+                on_output(joint, friction.col(joint).cwiseProduct(elapsed)), is_anything, "rate", "1/s"));
         }
     }
     return result;

@@ -97,8 +97,9 @@ Resampled resampled(const Recording& recording, const Stretch& stretch, double s
     return result;
 }
 
-/// Power of the positions per bin (column: joint), mean over the frames of all stretches. Of their second differences,
-/// because the motion itself would leak into all bins; divided by what differencing does to each frequency.
+/// Power of the positions per bin (column: joint), mean over the frames of all stretches. Of their second
+/// differences, because the motion itself would leak into all bins; divided by what differencing does to each
+/// frequency.
 Eigen::MatrixXd position_power(const std::vector<Resampled>& stretches, const LappedTransform& transform) {
     Eigen::MatrixXd power = Eigen::MatrixXd::Zero(transform.bins(), stretches.front().position.cols());
     Eigen::Index frames = 0;
@@ -106,40 +107,42 @@ Eigen::MatrixXd position_power(const std::vector<Resampled>& stretches, const La
         const Eigen::Index rows = stretch.position.rows() - 2;
         for (Eigen::Index joint = 0; joint < power.cols(); ++joint) {
             const Eigen::VectorXd position = stretch.position.col(joint);
-            const Eigen::VectorXd second = position.tail(rows) - 2 * position.segment(1, rows) + position.head(rows);
+            const Eigen::VectorXd second =
+                position.tail(rows) - 2 * position.segment(1, rows) + position.head(rows);
             power.col(joint) += transform.analyse(second).rowwise().squaredNorm();
         }
         frames += transform.frames(rows);
     }
     for (Eigen::Index bin = 0; bin < power.rows(); ++bin) {
-        const double phase = std::numbers::pi * (static_cast<double>(bin) + 0.5) / static_cast<double>(transform.hop());
+        const double phase =
+            std::numbers::pi * (static_cast<double>(bin) + 0.5) / static_cast<double>(transform.hop());
         power.row(bin) /= std::pow(2 * std::sin(phase / 2), 4);
     }
     return power / static_cast<double>(std::max<Eigen::Index>(frames, 1));
 }
 
 struct PositionNoise {
-    Eigen::VectorXd power; ///< per joint and bin, i.e. the variance of white noise
-    double trusted_hz = 0;
+    Eigen::VectorXd power;      ///< per joint and bin, i.e. the variance of white noise
+    Eigen::VectorXd trusted_hz; ///< per joint
 };
 
-/// The noise is white: what is at the top of the spectrum. Positions are trusted up to where the last joint
-/// sinks into it.
+/// The noise is white: what is at the top of the spectrum. A position is trusted while it is well above it:
+/// further up, accelerations would be noise, and look like inertia that is not there.
 PositionNoise position_noise(const std::vector<Resampled>& stretches, double rate_hz) {
     const auto hop = std::max<Eigen::Index>(16, std::llround(rate_hz));
     const LappedTransform transform(hop, hop);
     const Eigen::MatrixXd power = position_power(stretches, transform);
     const double bin_hz = rate_hz / (2 * static_cast<double>(hop));
-    PositionNoise noise{Eigen::VectorXd(power.cols()), 0};
+    PositionNoise noise{Eigen::VectorXd(power.cols()), Eigen::VectorXd(power.cols())};
     for (Eigen::Index joint = 0; joint < power.cols(); ++joint) {
         const Eigen::VectorXd top = power.col(joint).tail(hop / 3);
         noise.power[joint] = median(std::vector<double>(top.begin(), top.end()));
         const auto window = std::min<Eigen::Index>(hop / 4, std::llround(1.5 / bin_hz));
         Eigen::Index bin = 0;
-        while (bin + window < hop && power.col(joint).segment(bin, window).mean() > 3 * noise.power[joint]) {
+        while (bin + window < hop && power.col(joint).segment(bin, window).mean() > 8 * noise.power[joint]) {
             ++bin;
         }
-        noise.trusted_hz = std::max(noise.trusted_hz, static_cast<double>(bin) * bin_hz);
+        noise.trusted_hz[joint] = static_cast<double>(bin) * bin_hz;
     }
     return noise;
 }
@@ -149,7 +152,6 @@ void append(MeasuredMotion& result, const Resampled& stretch, double rate_hz, Ei
         const double cutoff = cutoff_hz / rate_hz;
         return low_pass_kernel(cutoff, std::llround(std::ceil(2 / cutoff)));
     };
-    const Eigen::VectorXd smoothing = kernel_for(result.smoothing_hz);
     const Eigen::Index first = result.time_s.size();
     const Eigen::Index rows = (stretch.time_s.size() + step - 1) / step;
     const auto grow = [&](Eigen::MatrixXd& matrix, Eigen::Index columns) {
@@ -161,7 +163,8 @@ void append(MeasuredMotion& result, const Resampled& stretch, double rate_hz, Ei
     grow(motion.acceleration, stretch.position.cols());
     grow(result.outputs, stretch.output.cols());
     for (Eigen::Index joint = 0; joint < stretch.position.cols(); ++joint) {
-        const Eigen::VectorXd smooth = filtered(stretch.position.col(joint), smoothing);
+        const Eigen::VectorXd smooth =
+            filtered(stretch.position.col(joint), kernel_for(result.smoothing_hz[joint]));
         const Eigen::VectorXd velocity = differentiated(smooth) * rate_hz;
         const Eigen::VectorXd acceleration = differentiated(velocity) * rate_hz;
         const Eigen::VectorXi kept = Eigen::VectorXi::LinSpaced(rows, 0, static_cast<int>((rows - 1) * step));
@@ -200,12 +203,12 @@ MeasuredMotion measured_motion(const Recording& recording) {
     const auto decimation = std::max<Eigen::Index>(1, std::llround(std::ceil(rate_hz / highest_rate_hz)));
     MeasuredMotion result;
     result.rate_hz = rate_hz / static_cast<double>(decimation);
-    result.smoothing_hz = std::clamp(noise.trusted_hz, 3.0, 0.3 * result.rate_hz);
+    result.smoothing_hz = noise.trusted_hz.cwiseMax(3.0).cwiseMin(0.3 * result.rate_hz);
     // white noise of variance s² per sample at `rate`, low-passed at f and differentiated: (2π)² s² · 2/rate
     // · f³/3
-    const double f = result.smoothing_hz;
     result.velocity_noise =
-        (2 * std::numbers::pi * std::sqrt(2 * step * f * f * f / 3) * noise.power.array().sqrt()).matrix();
+        2 * std::numbers::pi *
+        (2 * step / 3 * result.smoothing_hz.array().cube() * noise.power.array()).sqrt().matrix();
     for (const Resampled& stretch : stretches) {
         append(result, stretch, rate_hz, decimation);
     }

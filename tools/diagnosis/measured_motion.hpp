@@ -18,11 +18,11 @@ struct Stretch {
 /// A recording on a uniform clock, its positions smoothed, with derivatives: zero phase, so for use offline
 /// only.
 struct MeasuredMotion {
-    double rate_hz = 0;      ///< of the rows below
-    double smoothing_hz = 0; ///< positions were low-passed here: where they sink into their noise
-    Eigen::VectorXd time_s;  ///< T
-    RobotMotion motion;      ///< T x n
-    Eigen::MatrixXd outputs; ///< T x m, low-passed only against aliasing
+    double rate_hz = 0;           ///< of the rows below
+    Eigen::VectorXd smoothing_hz; ///< n: positions were low-passed here, before they sink into their noise
+    Eigen::VectorXd time_s;       ///< T
+    RobotMotion motion;           ///< T x n
+    Eigen::MatrixXd outputs;      ///< T x m, low-passed only against aliasing
     Eigen::VectorXd
         velocity_noise; ///< n, rad/s: standard deviation that the positions' noise leaves in the velocities
     std::vector<Stretch> stretches; ///< in order; none shorter than `shortest_stretch_s`

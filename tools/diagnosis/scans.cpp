@@ -69,8 +69,39 @@ struct Window {
     Eigen::Index output = 0;
 };
 
-bool overlap(const Window& one, const Window& other) {
-    return one.output == other.output && one.start_s < other.end_s && other.start_s < one.end_s;
+constexpr double apart_s = 2; ///< windows closer than this tell of the same event
+
+bool same_event(const Window& one, const Window& other) {
+    return one.output == other.output && one.start_s < other.end_s + apart_s &&
+           other.start_s < one.end_s + apart_s;
+}
+
+/// The best window of each event on one output, the best event first.
+std::vector<Window> events_of(std::vector<Window> windows) {
+    std::ranges::sort(windows, std::greater<>{}, &Window::gain);
+    std::vector<Window> events;
+    for (const Window& window : windows) {
+        if (std::none_of(events.begin(), events.end(),
+                         [&](const Window& one) { return same_event(one, window); })) {
+            events.push_back(window);
+        }
+    }
+    return events;
+}
+
+/// Pulses around a window: its ends moved, its flanks steeper and softer.
+std::vector<ContactPulse> pulses_around(const Window& window) {
+    const double length = window.end_s - window.start_s;
+    std::vector<ContactPulse> pulses;
+    for (const double rise : {0.15, 0.3, 0.5}) {
+        for (const double early : {0.0, -0.15, 0.15}) {
+            for (const double late : {0.0, -0.15, 0.15}) {
+                pulses.push_back(
+                    {window.start_s + early * length, window.end_s + late * length, rise * length});
+            }
+        }
+    }
+    return pulses;
 }
 
 /// All windows of one length over one output; counted by `tried`.
@@ -83,8 +114,8 @@ void scan_windows(const DiagnosisSignals& signals, const EffectRegression& regre
     if (middle + length >= time.size()) {
         return;
     }
-    const Candidate pulse = contact_candidate(signals, window.output, time[middle], time[middle + length]);
-    const Eigen::VectorXd& series = pulse.columns.front().parts.front().series;
+    const Eigen::VectorXd series =
+        pulse_series(signals, {time[middle], time[middle + length], std::min(0.15, length_s / 2)});
     const Eigen::VectorXd weight = regression.noise().col(window.output).cwiseSqrt().cwiseInverse();
     const double energy = (weight.asDiagonal() * regression.rows().analyse(series)).squaredNorm();
     const Eigen::VectorXd shape = series.segment(middle, length);
@@ -124,8 +155,7 @@ Eigen::MatrixXd weighed_residual(const EffectRegression& regression, const Eigen
     for (Eigen::Index output = 0; output < regression.outputs(); ++output) {
         Eigen::MatrixXd left = Eigen::MatrixXd::Zero(rows.bins(), rows.frames());
         left.leftCols(regression.fitted_frames()) =
-            regression.noise().col(output).cwiseInverse().asDiagonal() *
-            regression.residual(output, coefficients);
+            regression.weight(output).cwiseProduct(regression.residual(output, coefficients));
         series.push_back(rows.synthesise(left));
     }
     Eigen::MatrixXd result(series.front().size(), regression.outputs());
@@ -151,27 +181,20 @@ std::vector<Candidate> scan_ripples(const DiagnosisSignals& signals, const Effec
 
 std::vector<Candidate> scan_contacts(const DiagnosisSignals& signals, const EffectRegression& regression,
                                      const Eigen::MatrixXd& weighed) {
-    constexpr std::size_t most = 4;
-    std::vector<Window> windows;
+    constexpr std::size_t usual = 3; // an event must stand out against this one of its kind
+    std::vector<Candidate> result;
     for (Eigen::Index output = 0; output < regression.outputs(); ++output) {
         const Eigen::VectorXd calm = away_from_reversals(signals, weighed.col(output), output);
+        std::vector<Window> windows;
         for (const double length_s : {0.5, 0.75, 1.1, 1.7, 2.5, 3.75}) {
             scan_windows(signals, regression, calm, {0, 0, 0, output}, length_s, windows);
         }
-    }
-    std::ranges::sort(windows, std::greater<>{}, &Window::gain);
-    std::vector<Window> kept;
-    for (const Window& window : windows) {
-        const bool seen =
-            std::any_of(kept.begin(), kept.end(), [&](const Window& one) { return overlap(one, window); });
-        if (!seen && kept.size() < most) {
-            kept.push_back(window);
+        const std::vector<Window> events = events_of(windows);
+        if (events.size() > usual) {
+            result.push_back(contact_candidate(signals, output, pulses_around(events.front())));
+            result.back().tried = static_cast<double>(windows.size());
+            result.back().extra_price = events[usual].gain;
         }
-    }
-    std::vector<Candidate> result;
-    for (const Window& window : kept) {
-        result.push_back(contact_candidate(signals, window.output, window.start_s, window.end_s));
-        result.back().tried = static_cast<double>(windows.size()) / static_cast<double>(most);
     }
     return result;
 }

@@ -21,12 +21,12 @@ Candidate per_axis(const char* effect, const Eigen::VectorXd& series, const char
     result.where = "ft_sensor";
     for (Eigen::Index axis = 0; axis < 6; ++axis) {
         result.columns.push_back(on_output(axis, series));
-        result.shapes.push_back({{static_cast<std::size_t>(axis)}, {false}, 0});
+        result.shapes.push_back({{static_cast<std::size_t>(axis)}, is_anything, 0});
     }
     for (const std::size_t first : {0U, 3U}) {
-        result.shapes.push_back({{first, first + 1, first + 2}, {false, false, false}, 0});
+        result.shapes.push_back({{first, first + 1, first + 2}, is_anything, 0});
     }
-    result.shapes.push_back(whole_shape(result, false));
+    result.shapes.push_back(whole_shape(result, is_anything));
     result.parameters = [per = std::string(per)](const Eigen::VectorXd& coefficients,
                                                  const EffectShape& shape) {
         std::vector<EffectParameter> values;
@@ -47,8 +47,8 @@ Candidate axis_gain(const Eigen::MatrixXd& wrench, Eigen::Index from, Eigen::Ind
     const auto sink = static_cast<std::size_t>(to);
     const std::string unit = std::string(axis_units[sink]) + "/" + axis_units[source];
     Candidate result =
-        single_column(own ? "ft_gain" : "ft_crosstalk", "ft_sensor", on_output(to, wrench.col(from)), false,
-                      "gain", own ? "1" : unit, 1, own ? 1 : 0);
+        single_column(own ? "ft_gain" : "ft_crosstalk", "ft_sensor", on_output(to, wrench.col(from)),
+                      is_anything, "gain", own ? "1" : unit, 1, own ? 1 : 0);
     result.detail = std::string(axes[source]) + " to " + axes[sink];
     result.parameters = [own, from, to, unit](const Eigen::VectorXd& coefficients, const EffectShape&) {
         const auto axis_from = static_cast<double>(from);
@@ -76,9 +76,9 @@ Candidate rotation(const Eigen::MatrixXd& wrench) {
             change.row(row) << unit.cross(force).transpose(), unit.cross(torque).transpose();
         }
         result.columns.push_back(on_outputs(change));
-        result.shapes.push_back({{static_cast<std::size_t>(axis)}, {false}, 0});
+        result.shapes.push_back({{static_cast<std::size_t>(axis)}, up_to(0.6), 0});
     }
-    result.shapes.push_back(whole_shape(result, false));
+    result.shapes.push_back(whole_shape(result, up_to(0.6)));
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
         constexpr std::array names{"roll", "pitch", "yaw"};
         std::vector<EffectParameter> values;
@@ -103,7 +103,8 @@ std::vector<Candidate> wrench_candidates(const DiagnosisSignals& signals, const 
     for (Eigen::Index axis = 0; axis < 6; ++axis) {
         rates.col(axis) = -signals.rate(modelled.col(axis));
     }
-    result.push_back(single_column("delay", "ft_sensor", on_outputs(rates), true, "delay", "s"));
+    result.push_back(
+        single_column("delay", "ft_sensor", on_outputs(rates), positive_up_to(0.1), "delay", "s"));
     return result;
 }
 
@@ -119,10 +120,11 @@ std::vector<Candidate> sensor_candidates(const DiagnosisSignals& signals, const 
         const auto output = static_cast<Eigen::Index>(joint);
         const std::string where = numbered("actuator", joint);
         const Eigen::VectorXd own = modelled.col(output);
-        result.push_back(
-            single_column("delay", where, on_output(output, -signals.rate(own)), true, "delay", "s"));
+        result.push_back(single_column("delay", where, on_output(output, -signals.rate(own)),
+                                       positive_up_to(0.1), "delay", "s"));
         if (gains_known) {
-            Candidate gain = single_column("actuator_gain", where, on_output(output, own), false, "", "");
+            Candidate gain =
+                single_column("actuator_gain", where, on_output(output, own), up_to(0.8), "", "");
             gain.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
                 return std::vector<EffectParameter>{{"gain", "1", 1 / (1 + coefficients[0])}};
             };
@@ -132,28 +134,34 @@ std::vector<Candidate> sensor_candidates(const DiagnosisSignals& signals, const 
     return result;
 }
 
-Candidate contact_candidate(const DiagnosisSignals& signals, Eigen::Index output, double start_s,
-                            double end_s) {
-    const double rise_s = std::min(0.15, (end_s - start_s) / 2);
-    Eigen::VectorXd pulse(signals.rows());
-    for (Eigen::Index row = 0; row < pulse.size(); ++row) {
-        const double inside =
-            std::min(signals.measured.time_s[row] - start_s, end_s - signals.measured.time_s[row]);
-        const double share = std::clamp(inside / rise_s, 0.0, 1.0);
-        pulse[row] = (1 - std::cos(std::numbers::pi * share)) / 2;
+Eigen::VectorXd pulse_series(const DiagnosisSignals& signals, const ContactPulse& pulse) {
+    Eigen::VectorXd series(signals.rows());
+    for (Eigen::Index row = 0; row < series.size(); ++row) {
+        const double time_s = signals.measured.time_s[row];
+        const double inside = std::min(time_s - pulse.start_s, pulse.end_s - time_s);
+        series[row] = (1 - std::cos(std::numbers::pi * std::clamp(inside / pulse.rise_s, 0.0, 1.0))) / 2;
     }
+    return series;
+}
+
+Candidate contact_candidate(const DiagnosisSignals& signals, Eigen::Index output,
+                            const std::vector<ContactPulse>& pulses) {
     Candidate result;
     result.effect = "external_contact";
     result.where = signals.wrench() ? "ft_sensor" : numbered("joint", static_cast<std::size_t>(output));
-    result.detail =
-        number_text(start_s) + " to " + number_text(end_s) + " s on output " + std::to_string(output);
-    // what the surroundings exert, the actuators need not
-    result.columns = {on_output(output, signals.wrench() ? pulse : Eigen::VectorXd(-pulse))};
-    result.shapes = {whole_shape(result, false)};
-    result.parameters = [start_s, end_s, unit = std::string(signals.wrench() && output < 3 ? "N" : "N·m")](
-                            const Eigen::VectorXd& coefficients, const EffectShape&) {
+    result.detail = number_text(pulses.front().start_s) + " s on output " + std::to_string(output);
+    for (const ContactPulse& pulse : pulses) {
+        result.shapes.push_back(
+            {{result.columns.size()}, is_anything, static_cast<double>(result.shapes.size())});
+        // what the surroundings exert, the actuators need not
+        const double sign = signals.wrench() ? 1 : -1;
+        result.columns.push_back(on_output(output, sign * pulse_series(signals, pulse)));
+    }
+    const std::string unit(signals.wrench() && output < 3 ? "N" : "N·m");
+    result.parameters = [pulses, unit](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
+        const ContactPulse& pulse = pulses[static_cast<std::size_t>(shape.value)];
         return std::vector<EffectParameter>{
-            {"start", "s", start_s}, {"end", "s", end_s}, {"peak", unit, coefficients[0]}};
+            {"start", "s", pulse.start_s}, {"end", "s", pulse.end_s}, {"peak", unit, coefficients[0]}};
     };
     return result;
 }

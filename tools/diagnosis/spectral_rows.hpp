@@ -43,4 +43,9 @@ class SpectralRows {
 /// over all frames and neighbouring bins. `parameters`: how many were fitted to them.
 Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, double parameters);
 
+/// How much larger than its spectrum a noise is in each frame and frequency band (bins x frames; 1 where it
+/// is as usual): the scale of Student's t with few degrees of freedom, so that no short disturbance weighs
+/// much.
+Eigen::MatrixXd noise_unrest(const Eigen::MatrixXd& coefficients, const Eigen::VectorXd& spectrum);
+
 } // namespace dfdyn::tools
