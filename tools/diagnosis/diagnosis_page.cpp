@@ -220,8 +220,9 @@ std::vector<ReportFact> facts(const DiagnosisCase& one) {
         const MeasuredMotion& measured = one.work.signals->measured;
         result.push_back({"Looked at", std::to_string(measured.time_s.size()) + " rows at " +
                                            rounded_text(measured.rate_hz) + " Hz; positions low-passed at " +
-                                           rounded_text(measured.smoothing_hz) +
-                                           " Hz, where they sink into their noise"});
+                                           rounded_text(measured.smoothing_hz.minCoeff()) + " to " +
+                                           rounded_text(measured.smoothing_hz.maxCoeff()) +
+                                           " Hz, before they sink into their noise"});
     }
     result.push_back({"Build", build_flags()});
     return result;

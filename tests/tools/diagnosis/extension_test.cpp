@@ -27,7 +27,7 @@ MeasuredMotion swinging(const Robot& robot, std::mt19937_64& engine) {
     std::uniform_real_distribution<double> uniform(0.5, 1.5);
     MeasuredMotion measured;
     measured.rate_hz = 100;
-    measured.smoothing_hz = 20;
+    measured.smoothing_hz = VectorXd::Constant(joints, 20);
     measured.time_s = VectorXd::LinSpaced(rows, 0, 7.99);
     measured.motion = {MatrixXd(rows, joints), MatrixXd(rows, joints), MatrixXd(rows, joints)};
     measured.outputs = MatrixXd::Zero(rows, 6);
