@@ -115,11 +115,6 @@ ExplainingVariable around_contact(const Place& at) {
     return variable;
 }
 
-ExplainingVariable over_rate(const Place& at) {
-    const Eigen::VectorXd output = at.signals.nominal.col(at.finding.output);
-    return at.whole("rate of the simulated output (1/s)", at.signals.rate(output));
-}
-
 ExplainingVariable over_output(const Place& at) {
     return at.whole("simulated output", at.signals.nominal.col(at.finding.output));
 }
@@ -149,7 +144,6 @@ ExplainingVariable explaining_variable(const DiagnosisSignals& signals, const Fi
                                                    {"ft_gain", over_output},
                                                    {"ft_bias", over_time},
                                                    {"ft_drift", over_time},
-                                                   {"delay", over_rate},
                                                    {"external_contact", around_contact}};
     const auto make = known.find(finding.effect);
     const Place place{signals, finding, share};

@@ -8,8 +8,9 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/commands/run_program.hpp"
 
+#include <algorithm>
 #include <cstdlib>
-#include <fstream>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -138,8 +139,12 @@ TEST_CASE("diagnose names friction and rotors, and writes report, figures and mo
         run_program(directory, "replay --model " + folder + "/extended_model.json --log " + log);
     CAPTURE(replayed.error);
     CHECK(replayed.status == 0);
-    const std::string check = std::string(DFDYN_CXX) + " -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I " +
-                              DFDYN_FIRMWARE_INCLUDE + " -x c++ " + folder + "/m.hpp 2>/dev/null";
+    const std::string use =
+        directory.write("use.cpp", "#include \"out/m.hpp\"\n"
+                                   "dfdyn::Estimator<m::Model> estimator(m::constants);\n");
+    const std::string check = std::string(DFDYN_CXX) +
+                              " -std=c++20 -Wall -Wextra -Werror -fno-exceptions -fsyntax-only -I " +
+                              DFDYN_FIRMWARE_INCLUDE + " " + use;
     CHECK(std::system(check.c_str()) == 0);
 }
 

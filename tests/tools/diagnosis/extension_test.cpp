@@ -91,9 +91,10 @@ MatrixXd added_by(const DiagnosisSignals& signals, const Candidate& candidate, c
     return sum;
 }
 
-/// Friction that builds up over a travel is no function of the motion: its columns are approximated.
+/// Friction that builds up over a travel is no function of the motion, and of two levels it is a level and an
+/// offset but at reversals: those columns are approximated.
 bool carried_exactly(const Candidate& candidate, std::size_t shape) {
-    return candidate.effect != "coulomb_friction" || shape == 0 || shape == 3;
+    return candidate.effect != "coulomb_friction" || shape == 0;
 }
 
 /// Every candidate that the model carries, by a small amount: the model changes as the diagnosis says.
@@ -111,6 +112,9 @@ std::map<std::string, int> check_all(const std::shared_ptr<const DiagnosisSignal
             for (double& coefficient : coefficients) {
                 coefficient = uniform(engine);
             }
+            if (candidate.effect == "payload" && coefficients.size() == 4) {
+                coefficients.tail<3>() *= 0.01; // a centimetre from the tip
+            }
             const Extension extension = extension_of(work_with(signals, candidate, shape, coefficients));
             const CarriedFinding::How how = extension.carried.front().how;
             if ((how != CarriedFinding::How::adapting && how != CarriedFinding::How::fixed) ||
@@ -121,7 +125,10 @@ std::map<std::string, int> check_all(const std::shared_ptr<const DiagnosisSignal
             const MatrixXd expected = added_by(*signals, candidate, one, coefficients);
             const MatrixXd found = outputs_of(extension, signals->measured.motion) - nominal;
             CAPTURE(candidate.key(), shape, expected.norm(), found.norm());
-            CHECK((found - expected).norm() <= 3e-3 * expected.norm() + 1e-7);
+            // columns are slopes, the model is exact: they differ by the square of what was changed
+            const double square =
+                10 * coefficients.squaredNorm() * std::sqrt(static_cast<double>(expected.size()));
+            CHECK((found - expected).norm() <= 3e-3 * expected.norm() + square);
         }
     }
     return carried;
