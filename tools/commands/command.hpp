@@ -17,6 +17,7 @@ void add_identify_command(CLI::App& app, Command& chosen);
 void add_evaluate_command(CLI::App& app, Command& chosen);
 void add_simulate_command(CLI::App& app, Command& chosen);
 void add_convert_command(CLI::App& app, Command& chosen);
+void add_diagnose_command(CLI::App& app, Command& chosen);
 void add_play_command(CLI::App& app, Command& chosen);
 void add_loop_command(CLI::App& app, Command& chosen);
 void add_plant_command(CLI::App& app, Command& chosen);

@@ -44,8 +44,8 @@ Eigen::VectorXd EffectRegression::weighed(const Eigen::MatrixXd& rows, Eigen::In
     return result.reshaped();
 }
 
-NormalEquations EffectRegression::normal_equations() const {
-    NormalEquations sums{Eigen::MatrixXd::Zero(columns(), columns()), Eigen::VectorXd::Zero(columns()), 0};
+WeighedSums EffectRegression::weighed_sums() const {
+    WeighedSums sums{Eigen::MatrixXd::Zero(columns(), columns()), Eigen::VectorXd::Zero(columns()), 0};
     for (Eigen::Index output = 0; output < outputs(); ++output) {
         std::vector<Eigen::Index> acting;
         for (Eigen::Index column = 0; column < columns(); ++column) {

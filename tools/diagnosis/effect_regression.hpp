@@ -13,7 +13,7 @@
 namespace dfdyn::tools {
 
 /// Sums of squares and products of weighed rows: all that selection among columns needs.
-struct NormalEquations {
+struct WeighedSums {
     Eigen::MatrixXd gram;   ///< p x p
     Eigen::VectorXd moment; ///< p
     double energy = 0;      ///< of what is to be explained
@@ -53,7 +53,7 @@ class EffectRegression {
     void set_noise(Eigen::MatrixXd spectra, const std::vector<Eigen::MatrixXd>& unrest);
     const Eigen::MatrixXd& noise() const noexcept { return noise_; }
 
-    NormalEquations normal_equations() const;
+    WeighedSums weighed_sums() const;
 
     /// Per output, the weights of squares (bins x fitted frames).
     Eigen::MatrixXd weight(Eigen::Index output) const {

@@ -36,7 +36,7 @@ struct NuisanceColumn {
 };
 
 struct SearchProblem {
-    NormalEquations sums;
+    WeighedSums sums;
     std::vector<SearchCandidate> candidates;
     std::vector<NuisanceColumn> nuisance;
 };

@@ -246,7 +246,7 @@ void Search::gather(std::vector<Entry> passing) {
         at_.problem.nuisance.push_back({static_cast<Eigen::Index>(i), nuisance_deviation_[i]});
     }
     regression_.set_columns(std::move(columns));
-    at_.problem.sums = regression_.normal_equations();
+    at_.problem.sums = regression_.weighed_sums();
     at_.chosen.clear();
     for (const auto& [key, shape] : chosen) {
         const auto found = std::ranges::find(at_.candidates, key, &Candidate::key);
@@ -291,7 +291,7 @@ std::vector<std::string> Search::chosen_keys() const {
 
 /// Are the links' masses as the robot's file says? The search went on as if they need not be.
 void Search::decide_masses() {
-    at_.problem.sums = regression_.normal_equations();
+    at_.problem.sums = regression_.weighed_sums();
     at_.chosen = search_effects(at_.problem, at_.chosen);
     at_.fit = fit_effects(at_.problem, at_.chosen);
     SearchProblem exact = at_.problem;

@@ -17,7 +17,7 @@ constexpr double price_of_shapes = 12; ///< what the three coefficients of a cen
 constexpr std::size_t listed = 3;      ///< alternatives that a finding tells of
 constexpr double two_sided_95 = 1.96;
 constexpr double coloured =
-    1.7; ///< how much wider intervals must be than their formula says: measured, docs/diagnosis.md
+    1.7; ///< how much wider intervals must be than their formula says: measured, docs/diagnosis-panel.md
 
 double rms(const Eigen::VectorXd& series) {
     return std::sqrt(series.squaredNorm() / static_cast<double>(series.size()));
@@ -84,7 +84,7 @@ void weigh_alternatives(Finding& finding, const Explanation& explanation, std::s
         if (finding.alternatives.size() < listed && margin < finding.margin_to_nothing) {
             const double gap = finding.margin_to_nothing - margin;
             cause.why_not = "explains " + rounded(100 * std::max(0.0, gap) / finding.margin_to_nothing) +
-                            " % of what this cause does (odds 1 to e^" + rounded(margin) + ")";
+                            " % of what this cause does";
             finding.alternatives.push_back(std::move(cause));
         }
     }
@@ -127,13 +127,12 @@ std::vector<Finding> without_repeated_contacts(std::vector<Finding> findings) {
 } // namespace
 
 double calibrated_confidence(const Finding& finding) {
-    // Logistic regression on what was right and wrong in 410 simulated recordings: docs/diagnosis.md.
+    // Logistic regression on what was right and wrong in 500 simulated recordings: docs/diagnosis-panel.md.
+    // How far the next cause is behind did not tell more.
     const double to_nothing = std::log(std::max(finding.margin_to_nothing, 0.1));
-    const double to_others = std::log(std::clamp(finding.margin_to_others, 0.1, 1e4));
-    const double tied = finding.indistinguishable.empty() ? 0 : 0.39;
     const double burst =
-        finding.effect == "external_contact" ? 3.3 : 0; // real noise has bursts that look like pushes
-    return 1 / (1 + std::exp(-(-2.8 + 0.68 * to_nothing + 0.145 * to_others + tied - burst)));
+        finding.effect == "external_contact" ? 2.3 : 0; // real noise has bursts that look like pushes
+    return 1 / (1 + std::exp(2.45 + burst - 0.62 * to_nothing));
 }
 
 std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanation& explanation,
@@ -160,10 +159,12 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
                            effect_signature(finding.effect) + ": with it the error falls from " +
                            rounded(finding.rms_before) + " to " + rounded(finding.rms_after);
         finding.confirm = confirming_experiment(finding.effect, finding.where);
-        findings.push_back(std::move(finding));
+        if (finding.rms_after < finding.rms_before) {
+            findings.push_back(std::move(finding));
+        }
     }
     std::ranges::sort(findings, std::greater<>{},
-                      [](const Finding& finding) { return finding.margin_to_nothing; });
+                      [](const Finding& finding) { return finding.rms_before / finding.rms_after; });
     return without_repeated_contacts(std::move(findings));
 }
 

@@ -14,8 +14,9 @@ constexpr double margin = 3;
 constexpr double quantile = 0.999;
 constexpr double patience_s = 1;
 
-std::vector<double> settled_innovations(const TrainedModel& model, std::span<const Recording> recordings) {
-    const auto estimator = make_estimator(model, true);
+std::vector<double> settled_innovations(const TrainedModel& model, std::span<const Recording> recordings,
+                                        bool from_prior) {
+    const auto estimator = make_estimator(model, from_prior);
     std::vector<double> innovations;
     for (const Recording& recording : recordings) {
         const ReplayedRecording replayed = replay(*estimator, {&model, 1}, recording, 0, [](std::size_t) {});
@@ -48,10 +49,10 @@ std::vector<Contradiction> find_contradictions(const ReplayedRecording& replayed
     return found;
 }
 
-void calibrate_innovation_limit(TrainedModel& model, std::span<const Recording> recordings) {
+void calibrate_innovation_limit(TrainedModel& model, std::span<const Recording> recordings, bool from_prior) {
     model.limits.innovation = std::numeric_limits<float>::max();
     model.limits.innovation_patience = static_cast<int>(std::ceil(patience_s / model.sample_period_s));
-    const std::vector<double> innovations = settled_innovations(model, recordings);
+    const std::vector<double> innovations = settled_innovations(model, recordings, from_prior);
     if (!innovations.empty()) {
         model.limits.innovation = margin * quantile_of(innovations, quantile);
     }

@@ -20,10 +20,11 @@ struct Contradiction {
 /// second apart counts as one, less than two ticks as none.
 std::vector<Contradiction> find_contradictions(const ReplayedRecording& replayed, double limit);
 
-/// Sets the model's limit of the normalised innovation squared from what learning its own training rows from
-/// nothing showed: three times the value that 99.9 % of the innovations of their second half do not exceed.
-/// Residuals of a real arm are neither white nor Gaussian, so a chi-square bound would refuse good samples.
-/// The patience becomes one second.
-void calibrate_innovation_limit(TrainedModel& model, std::span<const Recording> recordings);
+/// Sets the model's limit of the normalised innovation squared from what learning its own training rows
+/// showed, from nothing or (`from_prior` false) from its own start: three times the value that 99.9 % of the
+/// innovations of their second half do not exceed. Residuals of a real arm are neither white nor Gaussian, so
+/// a chi-square bound would refuse good samples. The patience becomes one second.
+void calibrate_innovation_limit(TrainedModel& model, std::span<const Recording> recordings,
+                                bool from_prior = true);
 
 } // namespace dfdyn::tools

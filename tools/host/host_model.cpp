@@ -106,6 +106,11 @@ void set_effect(Constants& constants, const std::vector<EffectModel>& columns) {
         using Scalar = std::remove_cvref_t<decltype(constants.stribeck_velocity[0])>;
         constants.stribeck_velocity = gathered<Scalar>(columns, &EffectModel::stribeck_velocity);
     }
+    if constexpr (requires { constants.cycles_per_rev; }) {
+        using Scalar = std::remove_cvref_t<decltype(constants.cycles_per_rev[0])>;
+        constants.cycles_per_rev = gathered<Scalar>(columns, &EffectModel::cycles_per_rev);
+        constants.phase = gathered<Scalar>(columns, &EffectModel::phase);
+    }
 }
 
 template <class Scalar>
@@ -121,6 +126,8 @@ typename HostPhysics::template EffectConstants<Scalar> host_effects(const Physic
         result, columns_of(physics, "rotor_inertia"));
     set_effect<typename JointSpring<dynamic>::template Constants<Scalar>>(
         result, columns_of(physics, "joint_spring"));
+    set_effect<typename TorqueRipple<dynamic>::template Constants<Scalar>>(
+        result, columns_of(physics, "torque_ripple"));
     set_effect<typename OutputOffset<dynamic>::template Constants<Scalar>>(
         result, columns_of(physics, offset_effect(physics.chain)));
     return result;

@@ -10,9 +10,9 @@
 namespace dfdyn::tools {
 
 /// The physics of the firmware with sizes that are known at run time, in every effect.
-using HostPhysics =
-    Physics<AnyInput<3>, dynamic, ViscousFriction<dynamic>, CoulombFriction<dynamic>,
-            StribeckFriction<dynamic>, RotorInertia<dynamic>, JointSpring<dynamic>, OutputOffset<dynamic>>;
+using HostPhysics = Physics<AnyInput<3>, dynamic, ViscousFriction<dynamic>, CoulombFriction<dynamic>,
+                            StribeckFriction<dynamic>, RotorInertia<dynamic>, JointSpring<dynamic>,
+                            TorqueRipple<dynamic>, OutputOffset<dynamic>>;
 
 using TorqueArm = Chain<dynamic, JointTorques>;
 using WrenchArm = Chain<dynamic, WrenchAtSensor<dynamic>>;

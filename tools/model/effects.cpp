@@ -11,12 +11,13 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr std::array<EffectKind, 7> kinds{
+constexpr std::array<EffectKind, 8> kinds{
     {{"viscous_friction", "ViscousFriction", "viscous", "N·m·s/rad", true},
      {"coulomb_friction", "CoulombFriction", "coulomb", "N·m", true},
      {"stribeck_friction", "StribeckFriction", "static - coulomb", "N·m", true},
      {"rotor_inertia", "RotorInertia", "inertia", "kg·m²", true},
      {"joint_spring", "JointSpring", "stiffness", "N·m/rad", true},
+     {"torque_ripple", "TorqueRipple", "ripple", "N·m", true},
      {"torque_offset", "OutputOffset", "offset", "N·m", false},
      {"ft_bias", "OutputOffset", "bias", "N or N·m", false}}};
 

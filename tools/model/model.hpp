@@ -97,6 +97,8 @@ struct EffectModel {
     int row = 0;                  ///< output that it acts on, from 0
     double sign_velocity = 0;     ///< coulomb_friction, stribeck_friction (rad/s)
     double stribeck_velocity = 0; ///< stribeck_friction (rad/s)
+    double cycles_per_rev = 0;    ///< torque_ripple
+    double phase = 0;             ///< torque_ripple (rad)
 };
 
 /// The physics of P, SP, SP2 and SPK: y = psi pi + …, psi of all columns - ten per body, base to tip, then

@@ -45,8 +45,23 @@ std::string chain_constants(const ChainModel& chain) {
 /// The columns of one kind of effect.
 struct EffectColumns {
     const EffectKind* kind;
-    std::vector<int> rows;
-    std::vector<double> sign_velocity, stribeck_velocity;
+    std::vector<EffectModel> columns;
+
+    std::vector<int> rows() const {
+        std::vector<int> result;
+        for (const EffectModel& column : columns) {
+            result.push_back(column.row);
+        }
+        return result;
+    }
+    /// `, .NAME = {{…}}`.
+    std::string field(const char* name, double EffectModel::*member) const {
+        std::vector<double> values;
+        for (const EffectModel& column : columns) {
+            values.push_back(column.*member);
+        }
+        return std::string(", .").append(name).append(" = ").append(braced(values));
+    }
 };
 
 std::vector<EffectColumns> by_kind(const PhysicsModel& physics) {
@@ -54,23 +69,25 @@ std::vector<EffectColumns> by_kind(const PhysicsModel& physics) {
     for (const EffectModel& effect : physics.effects) {
         const EffectKind& kind = effect_kind(effect.name);
         if (result.empty() || result.back().kind != &kind) {
-            result.push_back({&kind, {}, {}, {}});
+            result.push_back({&kind, {}});
         }
-        result.back().rows.push_back(effect.row);
-        result.back().sign_velocity.push_back(effect.sign_velocity);
-        result.back().stribeck_velocity.push_back(effect.stribeck_velocity);
+        result.back().columns.push_back(effect);
     }
     return result;
 }
 
 std::string effect_constants(const EffectColumns& effect) {
     const std::string name = effect.kind->name;
-    std::string fields = ".row = " + integers(effect.rows);
+    std::string fields = ".row = " + integers(effect.rows());
     if (name == "coulomb_friction" || name == "stribeck_friction") {
-        fields += ", .sign_velocity = " + braced(effect.sign_velocity);
+        fields += effect.field("sign_velocity", &EffectModel::sign_velocity);
     }
     if (name == "stribeck_friction") {
-        fields += ", .stribeck_velocity = " + braced(effect.stribeck_velocity);
+        fields += effect.field("stribeck_velocity", &EffectModel::stribeck_velocity);
+    }
+    if (name == "torque_ripple") {
+        fields += effect.field("cycles_per_rev", &EffectModel::cycles_per_rev);
+        fields += effect.field("phase", &EffectModel::phase);
     }
     return "{" + fields + "}";
 }
@@ -80,7 +97,7 @@ std::string effect_constants(const EffectColumns& effect) {
 std::string physics_type(const PhysicsModel& physics) {
     std::vector<std::string> parts{input_type(physics.motion), std::to_string(physics.selected.size())};
     for (const EffectColumns& effect : by_kind(physics)) {
-        parts.push_back(type(effect.kind->firmware_type, {std::to_string(effect.rows.size())}));
+        parts.push_back(type(effect.kind->firmware_type, {std::to_string(effect.columns.size())}));
     }
     return type("Physics", parts);
 }

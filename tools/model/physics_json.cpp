@@ -45,10 +45,15 @@ ordered_json chain_to_json(const ChainModel& chain) {
 ordered_json effects_to_json(const std::vector<EffectModel>& effects) {
     ordered_json json = ordered_json::array();
     for (const EffectModel& effect : effects) {
-        json.push_back({{"effect", effect.name},
-                        {"row", effect.row},
-                        {"sign_velocity", single(effect.sign_velocity)},
-                        {"stribeck_velocity", single(effect.stribeck_velocity)}});
+        ordered_json entry{{"effect", effect.name},
+                           {"row", effect.row},
+                           {"sign_velocity", single(effect.sign_velocity)},
+                           {"stribeck_velocity", single(effect.stribeck_velocity)}};
+        if (effect.name == "torque_ripple") {
+            entry["cycles_per_rev"] = single(effect.cycles_per_rev);
+            entry["phase"] = single(effect.phase);
+        }
+        json.push_back(std::move(entry));
     }
     return json;
 }
@@ -95,8 +100,12 @@ ChainModel read_chain(const JsonReader& reader, int joints) {
 }
 
 EffectModel read_effect(const JsonReader& reader, const ChainModel& chain, int outputs) {
-    EffectModel effect{reader.text("effect"), reader.whole_number("row", 0, outputs - 1),
-                       reader.number("sign_velocity"), reader.number("stribeck_velocity")};
+    EffectModel effect{reader.text("effect"),
+                       reader.whole_number("row", 0, outputs - 1),
+                       reader.number("sign_velocity"),
+                       reader.number("stribeck_velocity"),
+                       0,
+                       0};
     const EffectKind* const kind = find_effect_kind(effect.name);
     if (kind == nullptr) {
         throw reader.error("effect", "one of " + effect_names(), in_quotes(effect.name));
@@ -113,6 +122,10 @@ EffectModel read_effect(const JsonReader& reader, const ChainModel& chain, int o
     if (stribeck && effect.stribeck_velocity <= 0) {
         throw reader.error("stribeck_velocity", "a positive number",
                            std::to_string(effect.stribeck_velocity));
+    }
+    if (effect.name == "torque_ripple") {
+        effect.cycles_per_rev = reader.positive_number("cycles_per_rev");
+        effect.phase = reader.number("phase");
     }
     return effect;
 }

@@ -2,6 +2,7 @@
 #include "tools/physics/chain_model.hpp"
 
 #include "tools/common/error.hpp"
+#include "tools/common/number.hpp"
 #include "tools/common/text.hpp"
 #include "tools/model/effects.hpp"
 #include "tools/robot/firmware_chain.hpp"
@@ -66,8 +67,13 @@ std::vector<EffectModel> effect_models(const std::vector<std::string>& names, co
             throw InputError("effect " + in_quotes(name) + ": expected once, found twice");
         }
         const int rows = rows_of(effect_kind(name), chain);
+        if (name == "torque_ripple") {
+            throw InputError("effect " + in_quotes(name) +
+                             ": expected one whose shape needs no search, found "
+                             "one whose cycles dfdyn diagnose has to find");
+        }
         for (int row = 0; row < rows; ++row) {
-            effects.push_back({name, row, sign_velocity, stribeck_over_sign_velocity * sign_velocity});
+            effects.push_back({name, row, sign_velocity, stribeck_over_sign_velocity * sign_velocity, 0, 0});
         }
     }
     return in_column_order(std::move(effects));
@@ -86,7 +92,12 @@ std::vector<std::string> column_names(const Robot& robot, const ChainModel& chai
         const EffectKind& kind = effect_kind(effect.name);
         const std::string where = chain.sensor ? axes[static_cast<std::size_t>(effect.row)]
                                                : "joint" + std::to_string(effect.row + 1);
-        names.push_back(where + " " + kind.parameter + " (" + kind.unit + ")");
+        std::string parameter = kind.parameter;
+        if (effect.name == "torque_ripple") {
+            parameter +=
+                " sin(" + number_text(effect.cycles_per_rev) + " q + " + number_text(effect.phase) + ")";
+        }
+        names.push_back(where + " " + parameter + " (" + kind.unit + ")");
     }
     return names;
 }

@@ -7,7 +7,7 @@
 #include "tools/model/model_file.hpp"
 #include "tools/physics/chain_model.hpp"
 #include "tools/physics/robot_regressor.hpp"
-#include "tools/training/input_map.hpp"
+#include "tools/physics/stored_motion.hpp"
 #include "tools/training/recorded_data.hpp"
 #include "tools/training/start_state.hpp"
 #include "tools/training/training_options.hpp"
@@ -122,17 +122,6 @@ PhysicsModel physics_model(const TrainedModel& model, const TrainedPhysics& trai
     return physics;
 }
 
-/// The largest position, velocity and acceleration of each joint that the physics saw in training, times
-/// `margin`: as wide as the limits of positions and outputs, for differentiated counts have tails.
-std::vector<double> motion_limits(const PhysicsModel& physics, const TrainingData& data) {
-    constexpr double margin = 10;
-    constexpr double least = 1e-3; // of a joint that was held still
-    const RowList rows = usable_rows(data.gap_before, physics.motion.lags);
-    const MatrixXd xi = stored_inputs(physics.motion, data, rows);
-    const VectorXd limits = (margin * xi.cwiseAbs().colwise().maxCoeff().transpose()).cwiseMax(least);
-    return to_vector(limits);
-}
-
 /// Input STD takes what the recording has, sample by sample, without a window.
 void set_derivatives(TrainedModel& model, const PreparedTraining& prepared) {
     if (model.input.kind != InputKind::STD || prepared.derivatives == Derivatives::estimated) {
@@ -143,22 +132,13 @@ void set_derivatives(TrainedModel& model, const PreparedTraining& prepared) {
     model.input.position_noise_bound = 0;
 }
 
-/// (q, qd, qdd) of the samples `rows` as the model's physics sees them.
-MotionSamples motion_of(const PhysicsModel& physics, const TrainingData& data, const RowList& rows) {
-    const MatrixXd xi = stored_inputs(physics.motion, data, rows);
-    const auto part = [&xi](Index first) {
-        return MatrixXd(xi(Eigen::all, Eigen::seq(first, Eigen::last, 3)));
-    };
-    return {part(0), part(1), part(2)};
-}
-
 /// The selected columns in their units, N x (m p), as PhysicsColumns orders them.
 MatrixXd columns_of(const PhysicsModel& physics, const TrainingData& data, const RowList& rows) {
     const auto regressor = robot_regressor(physics.chain, physics.effects, physics.output_gain);
     const ColumnChoice choice{{physics.selected.begin(), physics.selected.end()},
                               Eigen::Map<const VectorXd>(physics.column_scale.data(),
                                                          static_cast<Index>(physics.column_scale.size()))};
-    return chosen_columns(*regressor, motion_of(physics, data, rows), choice);
+    return chosen_columns(*regressor, stored_motion(physics.motion, data, rows), choice);
 }
 
 JointStart joint_start_of(const TrainedModel& model, const PhysicsProblem& problem) {
@@ -232,7 +212,7 @@ ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind out
     TrainedModel model = std::move(result.model);
     set_derivatives(model, prepared);
     model.physics = physics_model(model, *result.physics, columns, robot.robot);
-    model.physics->motion_limit = motion_limits(*model.physics, prepared.data);
+    model.physics->motion_limit = motion_limits(model.physics->motion, prepared.data);
     if (!has_features(model.structure)) {
         model.input = {};
     }

@@ -64,12 +64,12 @@ LogAxis log_axis(const std::vector<double>& values, double low_pixel, double hig
     return {low, high > low ? high : 2 * low, low_pixel, high_pixel};
 }
 
-std::vector<LogTick> ticks_of(const LogAxis& axis) {
+std::vector<AxisTick> ticks_of(const LogAxis& axis) {
     const double decades = std::log10(axis.high / axis.low);
     const bool crowded = decades > 8;
     const auto first = static_cast<int>(std::floor(std::log10(axis.low) + nearly));
     const auto last = static_cast<int>(std::floor(std::log10(axis.high) + nearly));
-    std::vector<LogTick> ticks;
+    std::vector<AxisTick> ticks;
     for (int exponent = first; exponent <= last; ++exponent) {
         for (int digit = 1; digit <= 9; ++digit) {
             const double value = digit * std::pow(10, exponent);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
+#include "tools/report/axis_tick.hpp"
+
 #include <vector>
 
 namespace dfdyn::tools {
@@ -15,11 +16,6 @@ struct LogAxis {
     double pixel(double value) const;
 };
 
-struct LogTick {
-    double value;
-    std::string label; ///< SVG text; empty: a line only
-};
-
 /// An axis that holds the positive, finite ones of `values`, with ends at 1, 2 or 5 times a power of ten; of
 /// 0.1 … 1 if there are none.
 LogAxis log_axis(const std::vector<double>& values, double low_pixel, double high_pixel);
@@ -27,6 +23,6 @@ LogAxis log_axis(const std::vector<double>& values, double low_pixel, double hig
 /// The multiples 1 … 9 of the powers of ten within the axis, those of 1 labelled; those of 2 and 5 too where
 /// the axis has less than two decades; where it has more than eight, only every other power, and no
 /// multiples.
-std::vector<LogTick> ticks_of(const LogAxis& axis);
+std::vector<AxisTick> ticks_of(const LogAxis& axis);
 
 } // namespace dfdyn::tools

@@ -49,6 +49,20 @@ TEST_CASE("each effect is its formula") {
           Approx(std::tanh(4) * std::exp(-0.25)).epsilon(1e-14));
     CHECK(StribeckFriction<2>::value(stribeck, 0, xi) ==
           Approx(std::tanh(-7) * std::exp(-1.96)).epsilon(1e-14));
+    const TorqueRipple<2>::Constants<double> ripple{{{1, 0}}, {{7, 3}}, {{0.5, 0}}};
+    CHECK(TorqueRipple<2>::value(ripple, 0, xi) == Approx(std::sin(0.5 - 7 * 1.1)).epsilon(1e-14));
+    CHECK(TorqueRipple<2>::value(ripple, 1, xi) == Approx(std::sin(0.9)).epsilon(1e-14));
+}
+
+TEST_CASE("in single precision a ripple of 200 cycles per turn keeps its phase") {
+    const TorqueRipple<1>::Constants<float> single{{{0}}, {{200}}, {{0.3F}}};
+    const TorqueRipple<1>::Constants<double> exact{{{0}}, {{200}}, {{static_cast<double>(0.3F)}}};
+    for (float q = -3.1F; q < 3.1F; q += 0.0137F) {
+        const float motion[] = {q, 0, 0};
+        const double same[] = {static_cast<double>(q), 0, 0};
+        CHECK(static_cast<double>(TorqueRipple<1>::value(single, 0, motion)) ==
+              Approx(TorqueRipple<1>::value(exact, 0, same)).margin(1e-4));
+    }
 }
 
 TEST_CASE("at three times its velocity the smooth sign is within half a percent of the sign") {
@@ -81,12 +95,16 @@ TEST_CASE("effects fill their columns after the bodies', each in the row that it
 
 TEST_CASE("a scalar that carries derivatives gives those of the effects") {
     using Arm = Chain<2>;
-    using Effects = Physics<StandardMeasured, 12, ViscousFriction<2>, CoulombFriction<2>, StribeckFriction<2>,
-                            RotorInertia<2>, JointSpring<2>, OutputOffset<2>>;
+    using Effects = Physics<StandardMeasured, 14, ViscousFriction<2>, CoulombFriction<2>, StribeckFriction<2>,
+                            RotorInertia<2>, JointSpring<2>, TorqueRipple<2>, OutputOffset<2>>;
     Effects::Constants<double, Arm> constants{};
-    constants.effects = {
-        {{{0, 1}}}, {{{0, 1}}, {{0.5, 0.8}}}, {{{0, 1}}, {{0.5, 0.8}}, {{0.6, 0.9}}}, {{{0, 1}}}, {{{0, 1}}},
-        {{{0, 1}}}};
+    constants.effects = {{{{0, 1}}},
+                         {{{0, 1}}, {{0.5, 0.8}}},
+                         {{{0, 1}}, {{0.5, 0.8}}, {{0.6, 0.9}}},
+                         {{{0, 1}}},
+                         {{{0, 1}}},
+                         {{{0, 1}}, {{2, 5}}, {{0, 1}}},
+                         {{{0, 1}}}};
     std::iota(constants.selected.begin(), constants.selected.end(), 20);
     std::iota(constants.column_scale.begin(), constants.column_scale.end(), 1);
     constants.output_gain = {{2, 3}};
@@ -95,18 +113,18 @@ TEST_CASE("a scalar that carries derivatives gives those of the effects") {
     for (int i = 0; i < 6; ++i) {
         dual[i] = Dual(xi[i], 6, i);
     }
-    Dual psi[24];
+    Dual psi[28];
     Effects::evaluate_rows(constants, {}, dual, psi);
     for (int i = 0; i < 6; ++i) {
         double motion[6];
-        double ahead[24];
-        double behind[24];
+        double ahead[28];
+        double behind[28];
         std::copy_n(xi, 6, motion);
         motion[i] = xi[i] + 1e-5;
         Effects::evaluate_rows(constants, {}, motion, ahead);
         motion[i] = xi[i] - 1e-5;
         Effects::evaluate_rows(constants, {}, motion, behind);
-        for (int entry = 0; entry < 24; ++entry) {
+        for (int entry = 0; entry < 28; ++entry) {
             CAPTURE(i, entry);
             CHECK(psi[entry].derivatives()[i] ==
                   Approx((ahead[entry] - behind[entry]) / 2e-5).epsilon(1e-7).margin(1e-7));

@@ -18,7 +18,7 @@ using namespace dfdyn;
 using namespace dfdyn::tests;
 
 constexpr int joints = 3;
-constexpr int all_columns = 10 * joints + 12;
+constexpr int all_columns = 10 * joints + 14;
 
 using Arm = Chain<joints>;
 using HostArm = Chain<dynamic>;
@@ -26,12 +26,12 @@ using HostArm = Chain<dynamic>;
 /// Some effects, of joints of the arm.
 template <class Motion, int p>
 using FirmwarePhysics = Physics<Motion, p, ViscousFriction<3>, CoulombFriction<2>, StribeckFriction<1>,
-                                RotorInertia<2>, JointSpring<1>, OutputOffset<3>>;
+                                RotorInertia<2>, JointSpring<1>, TorqueRipple<2>, OutputOffset<3>>;
 /// Every effect there is, of as many joints as there may be.
 template <class Motion>
 using HostPhysics =
     Physics<Motion, dynamic, ViscousFriction<dynamic>, CoulombFriction<dynamic>, StribeckFriction<dynamic>,
-            RotorInertia<dynamic>, JointSpring<dynamic>, OutputOffset<dynamic>>;
+            RotorInertia<dynamic>, JointSpring<dynamic>, TorqueRipple<dynamic>, OutputOffset<dynamic>>;
 
 template <class T, int count>
 void assign(Storage<T, count>& storage, const std::vector<double>& values) {
@@ -80,9 +80,13 @@ template <class Motion, int p>
 auto firmware_constants(const tools::Robot& robot, const std::vector<double>& selected) {
     typename FirmwarePhysics<Motion, p>::template Constants<float, Arm> constants{};
     set_common(constants, robot, selected);
-    constants.effects = {
-        {{{0, 1, 2}}}, {{{0, 2}}, {{0.1F, 0.2F}}}, {{{1}}, {{0.1F}}, {{0.5F}}}, {{{0, 2}}}, {{{1}}},
-        {{{0, 1, 2}}}};
+    constants.effects = {{{{0, 1, 2}}},
+                         {{{0, 2}}, {{0.1F, 0.2F}}},
+                         {{{1}}, {{0.1F}}, {{0.5F}}},
+                         {{{0, 2}}},
+                         {{{1}}},
+                         {{{2, 2}}, {{4, 4}}, {{0, 1.5F}}},
+                         {{{0, 1, 2}}}};
     return constants;
 }
 
@@ -99,6 +103,9 @@ auto host_constants(const tools::Robot& robot, const std::vector<double>& select
     assign(constants_of<StribeckFriction, dynamic>(effects).stribeck_velocity, {0.5});
     assign(constants_of<RotorInertia, dynamic>(effects).row, {0, 2});
     assign(constants_of<JointSpring, dynamic>(effects).row, {1});
+    assign(constants_of<TorqueRipple, dynamic>(effects).row, {2, 2});
+    assign(constants_of<TorqueRipple, dynamic>(effects).cycles_per_rev, {4, 4});
+    assign(constants_of<TorqueRipple, dynamic>(effects).phase, {0, 1.5});
     assign(constants_of<OutputOffset, dynamic>(effects).row, {0, 1, 2});
     return constants;
 }
@@ -169,7 +176,7 @@ TEST_CASE("all columns are the rigid body's and then the effects', in the order 
     float rigid[joints][10 * joints];
     All::evaluate_rows(constants, All::Sizes<Arm>{}, xi.data(), psi[0]);
     rigid_body_regressor<Arm>(constants.chain, {}, xi.data(), rigid[0], 10 * joints);
-    const int rows[] = {0, 1, 2, 0, 2, 1, 0, 2, 1, 0, 1, 2};
+    const int rows[] = {0, 1, 2, 0, 2, 1, 0, 2, 1, 2, 2, 0, 1, 2};
     const float entries[] = {xi[1],
                              xi[4],
                              xi[7],
@@ -179,6 +186,8 @@ TEST_CASE("all columns are the rigid body's and then the effects', in the order 
                              xi[2],
                              xi[8],
                              xi[3],
+                             std::sin(4 * xi[6]),
+                             std::sin(4 * xi[6] + 1.5F),
                              1,
                              1,
                              1};

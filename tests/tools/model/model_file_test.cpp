@@ -65,7 +65,7 @@ TEST_CASE("a model with physics that cannot be is refused") {
     using Catch::Matchers::StartsWith;
     CHECK_THAT(refusal_of("/physics/selected/1", 1),
                StartsWith("m.json: physics.selected: expected ascending"));
-    CHECK_THAT(refusal_of("/physics/selected/7", 25), StartsWith("m.json: physics.selected: expected"));
+    CHECK_THAT(refusal_of("/physics/selected/8", 26), StartsWith("m.json: physics.selected: expected"));
     CHECK_THAT(refusal_of("/physics/column_scale/0", 0), StartsWith("m.json: physics.column_scale"));
     CHECK_THAT(refusal_of("/physics/effects/0/effect", "magic"),
                StartsWith("m.json: physics.effects[0].effect: expected one of"));
@@ -73,6 +73,8 @@ TEST_CASE("a model with physics that cannot be is refused") {
                StartsWith("m.json: physics.effects[0].effect: expected an effect on joint torques"));
     CHECK_THAT(refusal_of("/physics/effects/2/sign_velocity", 0),
                StartsWith("m.json: physics.effects[2].sign_velocity: expected a positive"));
+    CHECK_THAT(refusal_of("/physics/effects/4/cycles_per_rev", 0),
+               StartsWith("m.json: physics.effects[4].cycles_per_rev: expected a positive"));
     CHECK_THAT(refusal_of("/physics/chain/joints/1/axis", {1, 1, 0}),
                StartsWith("m.json: physics.chain.joints[1].axis: expected a vector of length 1"));
     CHECK_THAT(refusal_of("/physics/chain/joints/0/placement/rotation/0", 2),

@@ -13,7 +13,7 @@ namespace {
 
 std::vector<std::string> labels_of(const tools::LogAxis& axis) {
     std::vector<std::string> labels;
-    for (const tools::LogTick& tick : tools::ticks_of(axis)) {
+    for (const tools::AxisTick& tick : tools::ticks_of(axis)) {
         if (!tick.label.empty()) {
             labels.push_back(tick.label);
         }

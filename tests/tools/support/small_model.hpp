@@ -71,15 +71,13 @@ inline tools::TrainedModel small_physics_model(std::mt19937_64& engine, const st
     physics.chain.gravity = {0.5, -2, -9};
     if (wrench) {
         physics.chain.sensor = {"ft", 1, turned, false};
-        physics.effects = {{"ft_bias", 0, 0, 0}, {"ft_bias", 4, 0, 0}};
+        physics.effects = {{"ft_bias", 0, 0, 0, 0, 0}, {"ft_bias", 4, 0, 0, 0, 0}};
         physics.selected = {0, 3, 7, 10, 11, 20, 21};
     } else {
-        physics.effects = {{"viscous_friction", 0, 0, 0},
-                           {"viscous_friction", 1, 0, 0},
-                           {"coulomb_friction", 1, 0.3, 0},
-                           {"stribeck_friction", 0, 0.3, 0.7},
-                           {"torque_offset", 1, 0, 0}};
-        physics.selected = {1, 9, 10, 20, 21, 22, 23, 24};
+        physics.effects = {{"viscous_friction", 0, 0, 0, 0, 0},   {"viscous_friction", 1, 0, 0, 0, 0},
+                           {"coulomb_friction", 1, 0.3, 0, 0, 0}, {"stribeck_friction", 0, 0.3, 0.7, 0, 0},
+                           {"torque_ripple", 1, 0, 0, 3, 0.5},    {"torque_offset", 1, 0, 0, 0, 0}};
+        physics.selected = {1, 9, 10, 20, 21, 22, 23, 24, 25};
     }
     physics.motion = model.input;
     if (kind != tools::InputKind::STD) {

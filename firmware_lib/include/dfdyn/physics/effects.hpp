@@ -108,6 +108,27 @@ struct RotorInertia : detail::MotionColumns<RotorInertia, count, 2> {};
 template <int count>
 struct JointSpring : detail::MotionColumns<JointSpring, count, 0> {};
 
+/// `torque_ripple`: sin(c q + phase). Two columns of phases 0 and pi/2 are a wave of any phase; the
+/// parameters are N·m.
+template <int count>
+struct TorqueRipple {
+    static constexpr bool at_joint = true;
+
+    template <class Scalar>
+    struct Constants {
+        Storage<std::int32_t, count> row;
+        Storage<Scalar, count> cycles_per_rev; ///< c > 0: a float's angle is good to 1e-4 rad up to c = 200
+        Storage<Scalar, count> phase;          ///< rad
+    };
+
+    template <class Real, class Scalar>
+    static Scalar value(const Constants<Real>& constants, int column, const Scalar* xi) noexcept {
+        using std::sin;
+        const Scalar angle = xi[3 * constants.row[column]] * constants.cycles_per_rev[column];
+        return sin(Scalar(angle + constants.phase[column]));
+    }
+};
+
 /// `torque_offset` or `ft_bias`: 1; the parameter is what is added to the output (N·m, N).
 template <int count>
 struct OutputOffset {
@@ -124,7 +145,7 @@ struct OutputOffset {
     }
 };
 
-/// The most expensive effect's multiply-adds per column, tanh and exp counted as 30 each.
+/// The most expensive effect's multiply-adds per column, tanh, exp and sin counted as 30 each.
 inline constexpr int effect_cost = 65;
 
 } // namespace dfdyn

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/extension.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/robot/arms.hpp"
+#include "tools/common/to_vector.hpp"
+#include "tools/diagnosis/candidates.hpp"
+#include "tools/physics/chain_model.hpp"
+#include "tools/physics/robot_regressor.hpp"
+
+#include <cmath>
+#include <map>
+#include <random>
+
+namespace {
+
+using namespace dfdyn::tools;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// 8 s at 100 Hz: every joint swings with frequencies of its own.
+MeasuredMotion swinging(const Robot& robot, std::mt19937_64& engine) {
+    constexpr Index rows = 800;
+    const auto joints = static_cast<Index>(robot.joints.size());
+    std::uniform_real_distribution<double> uniform(0.5, 1.5);
+    MeasuredMotion measured;
+    measured.rate_hz = 100;
+    measured.smoothing_hz = VectorXd::Constant(joints, 20);
+    measured.time_s = VectorXd::LinSpaced(rows, 0, 7.99);
+    measured.motion = {MatrixXd(rows, joints), MatrixXd(rows, joints), MatrixXd(rows, joints)};
+    measured.outputs = MatrixXd::Zero(rows, 6);
+    measured.velocity_noise = VectorXd::Constant(joints, 0.01);
+    measured.stretches = {{0, rows}};
+    for (Index joint = 0; joint < joints; ++joint) {
+        const double rate = 2 * uniform(engine);
+        const double phase = 6 * uniform(engine);
+        const Eigen::ArrayXd angle = rate * measured.time_s.array() + phase;
+        measured.motion.position.col(joint) = angle.sin();
+        measured.motion.velocity.col(joint) = rate * angle.cos();
+        measured.motion.acceleration.col(joint) = -rate * rate * angle.sin();
+    }
+    return measured;
+}
+
+/// What the extended model's columns give along the motion: the firmware's code.
+MatrixXd outputs_of(const Extension& extension, const RobotMotion& motion) {
+    std::vector<EffectModel> effects;
+    VectorXd parameters(extension.bodies.size() + static_cast<Index>(extension.columns.size()));
+    parameters.head(extension.bodies.size()) = extension.bodies;
+    for (const ExtensionColumn& column : extension.columns) {
+        parameters[extension.bodies.size() + static_cast<Index>(effects.size())] = column.value;
+        effects.push_back(column.effect);
+    }
+    const auto regressor = robot_regressor(chain_model(extension.robot, extension.kind), effects,
+                                           to_vector(extension.output_gain));
+    MatrixXd outputs(motion.rows(), extension.output_gain.size());
+    MatrixXd values;
+    for (Index row = 0; row < motion.rows(); ++row) {
+        regressor->evaluate({motion.position.row(row).transpose(), motion.velocity.row(row).transpose(),
+                             motion.acceleration.row(row).transpose()},
+                            values);
+        outputs.row(row) = (values * parameters).transpose();
+    }
+    return outputs;
+}
+
+/// A diagnosis that chose this candidate in this shape.
+DiagnosisWork work_with(const std::shared_ptr<const DiagnosisSignals>& signals, const Candidate& candidate,
+                        std::size_t shape, const VectorXd& coefficients) {
+    DiagnosisWork work;
+    work.signals = signals;
+    work.torque_gains = VectorXd::Ones(signals->outputs());
+    work.explanation.candidates = {candidate};
+    work.explanation.chosen = {{0, shape}};
+    work.explanation.fit.coefficients = coefficients;
+    work.explanation.fit.covariance = 1e-12 * MatrixXd::Identity(coefficients.size(), coefficients.size());
+    return work;
+}
+
+/// What the diagnosis' own columns say that the candidate adds.
+MatrixXd added_by(const DiagnosisSignals& signals, const Candidate& candidate, const EffectShape& shape,
+                  const VectorXd& coefficients) {
+    MatrixXd sum = MatrixXd::Zero(signals.rows(), signals.outputs());
+    for (std::size_t i = 0; i < shape.columns.size(); ++i) {
+        for (const EffectColumn::Part& part : candidate.columns[shape.columns[i]].parts) {
+            sum.col(part.output) += coefficients[static_cast<Index>(i)] * part.series;
+        }
+    }
+    return sum;
+}
+
+/// Friction that builds up over a travel is no function of the motion, and of two levels it is a level and an
+/// offset but at reversals: those columns are approximated.
+bool carried_exactly(const Candidate& candidate, std::size_t shape) {
+    return candidate.effect != "coulomb_friction" || shape == 0;
+}
+
+/// Every candidate that the model carries, by a small amount: the model changes as the diagnosis says.
+std::map<std::string, int> check_all(const std::shared_ptr<const DiagnosisSignals>& signals,
+                                     const std::vector<Candidate>& candidates, std::mt19937_64& engine) {
+    std::map<std::string, int> carried;
+    const MatrixXd nominal =
+        outputs_of(nominal_extension({signals, {}, VectorXd::Ones(signals->outputs()), {}, {}}),
+                   signals->measured.motion);
+    std::uniform_real_distribution<double> uniform(0.5e-4, 1e-4);
+    for (const Candidate& candidate : candidates) {
+        for (std::size_t shape = 0; shape < candidate.shapes.size(); ++shape) {
+            const EffectShape& one = candidate.shapes[shape];
+            VectorXd coefficients(static_cast<Index>(one.columns.size()));
+            for (double& coefficient : coefficients) {
+                coefficient = uniform(engine);
+            }
+            if (candidate.effect == "payload" && coefficients.size() == 4) {
+                coefficients.tail<3>() *= 0.01; // a centimetre from the tip
+            }
+            const Extension extension = extension_of(work_with(signals, candidate, shape, coefficients));
+            const CarriedFinding::How how = extension.carried.front().how;
+            if ((how != CarriedFinding::How::adapting && how != CarriedFinding::How::fixed) ||
+                !carried_exactly(candidate, shape)) {
+                continue;
+            }
+            ++carried[candidate.effect];
+            const MatrixXd expected = added_by(*signals, candidate, one, coefficients);
+            const MatrixXd found = outputs_of(extension, signals->measured.motion) - nominal;
+            CAPTURE(candidate.key(), shape, expected.norm(), found.norm());
+            // columns are slopes, the model is exact: they differ by the square of what was changed
+            const double square =
+                10 * coefficients.squaredNorm() * std::sqrt(static_cast<double>(expected.size()));
+            CHECK((found - expected).norm() <= 3e-3 * expected.norm() + square);
+        }
+    }
+    return carried;
+}
+
+} // namespace
+
+TEST_CASE("what the extended model adds for torques is what the diagnosis' columns say") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Robot robot = dfdyn::tests::ur5();
+    const auto signals = std::make_shared<const DiagnosisSignals>(
+        diagnosis_signals(robot, OutputKind::joint_torque, swinging(robot, engine)));
+    std::vector<Candidate> candidates = joint_candidates(*signals);
+    for (auto more : {body_candidates(*signals), position_candidates(*signals),
+                      sensor_candidates(*signals, signals->nominal, true)}) {
+        candidates.insert(candidates.end(), more.begin(), more.end());
+    }
+    candidates.push_back(ripple_candidate(*signals, 2, {3, 40}));
+    const std::map<std::string, int> carried = check_all(signals, candidates, engine);
+    for (const char* effect : {"viscous_friction", "coulomb_friction", "stribeck_friction", "torque_offset",
+                               "rotor_inertia", "joint_spring", "torque_ripple", "actuator_gain", "payload",
+                               "link_inertia_error", "gravity_tilt", "encoder_offset"}) {
+        CAPTURE(effect);
+        CHECK(carried.contains(effect));
+    }
+}
+
+TEST_CASE("what it adds for a wrench is what they say, too") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Robot robot = dfdyn::tests::icub_right_arm();
+    const auto signals = std::make_shared<const DiagnosisSignals>(
+        diagnosis_signals(robot, OutputKind::wrench, swinging(robot, engine)));
+    std::vector<Candidate> candidates = sensor_candidates(*signals, signals->nominal, true);
+    for (auto more : {body_candidates(*signals), position_candidates(*signals)}) {
+        candidates.insert(candidates.end(), more.begin(), more.end());
+    }
+    const std::map<std::string, int> carried = check_all(signals, candidates, engine);
+    for (const char* effect : {"ft_bias", "ft_gain", "ft_rotation", "payload", "link_inertia_error",
+                               "gravity_tilt", "encoder_offset"}) {
+        CAPTURE(effect);
+        CHECK(carried.contains(effect));
+    }
+    CHECK_FALSE(carried.contains("ft_crosstalk"));
+}
+
+TEST_CASE("columns of the same effect at the same place become one") {
+    std::mt19937_64 engine(1);
+    const Robot robot = dfdyn::tests::ur5();
+    const auto signals = std::make_shared<const DiagnosisSignals>(
+        diagnosis_signals(robot, OutputKind::joint_torque, swinging(robot, engine)));
+    DiagnosisWork work;
+    work.signals = signals;
+    work.torque_gains = VectorXd::Ones(6);
+    for (const Candidate& candidate : joint_candidates(*signals)) {
+        if (candidate.where == "joint2" &&
+            (candidate.effect == "joint_spring" || candidate.effect == "torque_offset")) {
+            work.explanation.chosen.push_back({work.explanation.candidates.size(), 0});
+            work.explanation.candidates.push_back(candidate);
+        }
+    }
+    work.explanation.fit.coefficients =
+        VectorXd::LinSpaced(3, 1, 3); // stiffness and its offset, then the offset
+    work.explanation.fit.covariance = MatrixXd::Identity(3, 3);
+    const Extension extension = extension_of(work);
+    REQUIRE(extension.columns.size() == 2);
+    CHECK(extension.columns[0].effect.name == "joint_spring");
+    CHECK(extension.columns[0].value == 1);
+    CHECK(extension.columns[1].effect.name == "torque_offset");
+    CHECK(extension.columns[1].effect.row == 1);
+    CHECK(extension.columns[1].value == 5);
+    CHECK(extension.columns[1].deviation == Approx(std::sqrt(2.0)));
+    const Extension names = names_only(work, extension);
+    CHECK(names.columns[1].value == 0);
+    CHECK(names.columns[1].deviation == 5);
+}

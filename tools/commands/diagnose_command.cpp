@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/commands/command.hpp"
+#include "tools/commands/options.hpp"
+#include "tools/commands/robot_options.hpp"
+#include "tools/common/atomic_file.hpp"
+#include "tools/common/error.hpp"
+#include "tools/common/progress.hpp"
+#include "tools/common/text.hpp"
+#include "tools/diagnosis/diagnosis_json.hpp"
+#include "tools/diagnosis/diagnosis_page.hpp"
+#include "tools/diagnosis/diagnosis_summary.hpp"
+#include "tools/diagnosis/extended_model.hpp"
+#include "tools/diagnosis/joined_recording.hpp"
+#include "tools/diagnosis/online_view.hpp"
+#include "tools/model/model_file.hpp"
+#include "tools/model/model_header.hpp"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+namespace dfdyn::tools {
+
+namespace {
+
+struct DiagnoseOptions {
+    RobotOptions robot;
+    RecordingOptions recordings;
+    std::string outputs;
+    std::vector<double> torque_constants;
+    std::filesystem::path folder;
+    std::filesystem::path header;
+    bool quick = false;
+
+    std::filesystem::path json() const { return folder / "diagnosis.json"; }
+    std::filesystem::path page() const { return folder / "report.html"; }
+    std::filesystem::path model() const { return folder / "extended_model.json"; }
+};
+
+void check_torque_constants(const DiagnoseOptions& options, OutputKind outputs, std::size_t joints) {
+    const std::vector<double>& constants = options.torque_constants;
+    if (constants.empty()) {
+        return;
+    }
+    if (outputs != OutputKind::motor_current) {
+        throw InputError("--torque-constants: expected with --outputs i, found with --outputs " +
+                         options.outputs);
+    }
+    if (constants.size() != joints) {
+        throw InputError("--torque-constants: expected " + std::to_string(joints) +
+                         ", one per joint, found " + std::to_string(constants.size()));
+    }
+    if (!std::ranges::all_of(constants, [](double constant) { return constant > 0; })) {
+        throw InputError("--torque-constants: expected positive numbers, found another");
+    }
+}
+
+DiagnosisWork run_diagnosis(const Robot& robot, const std::vector<Recording>& recordings,
+                            const DiagnoseOptions& options, OutputKind outputs) {
+    Progress progress("searching for causes, round", 0);
+    std::size_t rounds = 0;
+    DiagnosisOptions how;
+    how.outputs = outputs;
+    how.torque_constants = options.torque_constants;
+    how.measure = !options.quick;
+    how.progress = [&](int) { progress.update(++rounds); };
+    return diagnose(robot, joined_recording(recordings), how);
+}
+
+/// Whether a model can be made of what the diagnosis worked with.
+bool answered(const DiagnosisWork& work) {
+    return work.signals != nullptr && !work.explanation.candidates.empty();
+}
+
+/// The model is of the recordings' own rows, with their gaps, not of the joined one.
+std::optional<TrainedModel> make_model(const DiagnosisWork& work, const Extension& extension,
+                                       const std::vector<Recording>& recordings) {
+    const Progress progress("building the extended model", 0);
+    return answered(work) ? std::optional(extended_model(extension, recordings)) : std::nullopt;
+}
+
+void write_model(const DiagnoseOptions& options, const TrainedModel& model) {
+    const std::string json = model_to_json(model);
+    model_from_json(json, shown(options.model())); // nothing is written that `replay` would refuse
+    write_file(options.model(), json);
+    if (!options.header.empty()) {
+        write_file(options.header, model_to_header(model, to_identifier(options.header.stem().string())));
+    }
+}
+
+/// A model of an earlier run would be taken for this one's.
+void remove_model(const DiagnoseOptions& options) {
+    std::error_code ignored;
+    std::filesystem::remove(options.model(), ignored);
+}
+
+int run(const DiagnoseOptions& options) {
+    std::vector<std::filesystem::path> inputs = options.recordings.logs;
+    inputs.push_back(options.robot.urdf);
+    check_distinct({options.json(), options.page(), options.model(), options.header}, std::move(inputs));
+    const OutputKind outputs = parse_output_kind(options.outputs);
+    const Robot robot = options.robot.read(outputs);
+    check_torque_constants(options, outputs, robot.joints.size());
+    const std::vector<Recording> recordings = options.recordings.read(robot.joints.size(), outputs);
+    make_folder(options.folder);
+    const DiagnosisWork work = run_diagnosis(robot, recordings, options, outputs);
+    const Extension extension = answered(work) ? extension_of(work) : Extension{};
+    const std::optional<TrainedModel> model = make_model(work, extension, recordings);
+    const OnlineView online = model ? online_view(work, extension, *model, recordings) : OnlineView{};
+    write_file(options.json(), diagnosis_to_json(work.diagnosis));
+    write_file(options.page(), diagnosis_page({robot, recordings, work, extension, online}));
+    if (model) {
+        write_model(options, *model);
+    } else {
+        remove_model(options);
+    }
+    print_diagnosis(std::cout, work.diagnosis, extension.carried);
+    std::cout << "report: " << options.page().string() << '\n';
+    return 0;
+}
+
+} // namespace
+
+void add_diagnose_command(CLI::App& app, Command& chosen) {
+    const auto options = std::make_shared<DiagnoseOptions>();
+    CLI::App* command = app.add_subcommand(
+        "diagnose", "Shows what a robot's simulation gets wrong, names the causes, extends the model");
+    options->robot.add_to(*command, true);
+    options->recordings.add_to(*command);
+    command
+        ->add_option("--outputs", options->outputs,
+                     "What was measured: tau (torques), i (motor currents), wrench")
+        ->required()
+        ->type_name("tau|i|wrench");
+    command
+        ->add_option("--torque-constants", options->torque_constants,
+                     "N m/A at each joint, for --outputs i; else each joint has an unknown factor")
+        ->delimiter(',')
+        ->type_name("K1,K2...");
+    command
+        ->add_option("-o,--output", options->folder,
+                     "Folder for diagnosis.json, report.html and extended_model.json")
+        ->required()
+        ->type_name("DIR");
+    command->add_option("--header", options->header, "The extended model as C++ constants for flash")
+        ->type_name("M.hpp");
+    command->add_flag("--no-held-out", options->quick,
+                      "Leave out the error on held-out time, which takes half of the run");
+    command->footer(
+        "Example:\n  dfdyn diagnose --robot arm.urdf --tip tool0 --log run.csv --outputs tau -o diagnosis\n"
+        "  dfdyn replay --model diagnosis/extended_model.json --log other.csv\n"
+        "A recording that cannot answer gets a report that says why, and no model. Exit status: 0 the report "
+        "is written, whether or not it names a cause; 2 bad usage or input.");
+    command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/diagnosis_page.hpp"
+
+#include "tools/build_flags.hpp"
+#include "tools/diagnosis/error_sections.hpp"
+#include "tools/diagnosis/finding_section.hpp"
+#include "tools/diagnosis/finding_words.hpp"
+#include "tools/report/figure_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+namespace dfdyn::tools {
+
+namespace {
+
+std::string percent(double share) { return rounded_text(100 * share) + " %"; }
+
+std::string recording_names(const std::vector<Recording>& recordings) {
+    std::string names;
+    for (const Recording& recording : recordings) {
+        names.append(names.empty() ? "" : ", ")
+            .append(std::filesystem::path(recording.source).filename().string());
+    }
+    return names;
+}
+
+/// The output whose error is the largest share of its deviation.
+Eigen::Index worst_output(const ErrorMeasure& error) {
+    Eigen::Index worst = 0;
+    error.nrmse.maxCoeff(&worst);
+    return worst;
+}
+
+std::string errors_sentence(const DiagnosisCase& one) {
+    const Diagnosis& diagnosis = one.work.diagnosis;
+    const Eigen::Index worst = worst_output(diagnosis.nominal);
+    const std::string& name = diagnosis.output_names[static_cast<std::size_t>(worst)];
+    return std::string("The rigid body of ")
+        .append(one.robot.name)
+        .append(" misses what was measured in ")
+        .append(recording_names(one.recordings))
+        .append(" by ")
+        .append(percent(diagnosis.nominal.nrmse.minCoeff()))
+        .append(" to ")
+        .append(percent(diagnosis.nominal.nrmse.maxCoeff()))
+        .append(" of the outputs' deviation, most on ")
+        .append(name)
+        .append(" (")
+        .append(rounded_text(diagnosis.nominal.rms[worst]))
+        .append(" ")
+        .append(output_unit(name))
+        .append(" rms).");
+}
+
+std::string causes_sentence(const Diagnosis& diagnosis) {
+    if (diagnosis.findings.empty()) {
+        return "No cause of the catalogue is needed to explain that: what is left looks like noise, or has "
+               "no "
+               "name.";
+    }
+    const Finding& first = diagnosis.findings.front();
+    const std::string parameter = main_parameter_words(first);
+    std::string text = std::to_string(diagnosis.findings.size());
+    return text
+        .append(diagnosis.findings.size() == 1 ? " cause is named: " : " causes are named, first of all ")
+        .append(cause_words(first))
+        .append(parameter.empty() ? "" : " (" + parameter + ")")
+        .append(", with confidence ")
+        .append(confidence_text(first.confidence))
+        .append(".");
+}
+
+std::string gain_sentence(const Diagnosis& diagnosis) {
+    const bool held_out = diagnosis.heldout_to_s > diagnosis.heldout_from_s;
+    const Eigen::Index worst = worst_output(diagnosis.nominal);
+    if (!held_out) {
+        return "The error on held-out time was not measured.";
+    }
+    return std::string("On time that fitted nothing, the error with them is ")
+        .append(percent(diagnosis.extended.nrmse.minCoeff()))
+        .append(" to ")
+        .append(percent(diagnosis.extended.nrmse.maxCoeff()))
+        .append(" of the outputs' deviation; on ")
+        .append(diagnosis.output_names[static_cast<std::size_t>(worst)])
+        .append(" it falls from ")
+        .append(rounded_text(diagnosis.nominal.rms[worst]))
+        .append(" to ")
+        .append(rounded_text(diagnosis.extended.rms[worst]))
+        .append(".");
+}
+
+/// Three sentences.
+std::string summary(const DiagnosisCase& one) {
+    const Diagnosis& diagnosis = one.work.diagnosis;
+    if (diagnosis.nominal.rms.size() == 0 || one.work.explanation.candidates.empty()) {
+        return "The recording " + recording_names(one.recordings) +
+               " cannot answer what the simulation gets wrong. The reasons are below. No cause is named, and "
+               "no model was written.";
+    }
+    return errors_sentence(one) + " " + causes_sentence(diagnosis) + " " + gain_sentence(diagnosis);
+}
+
+PageSection suspicion_section(const Diagnosis& diagnosis) {
+    PageSection section{"First of all: is the recording what it should be?", {}, {}, {}};
+    for (const std::string& suspicion : diagnosis.suspicions) {
+        section.paragraphs.push_back("Suspicion: " + suspicion + ".");
+    }
+    return section;
+}
+
+ReportTable error_table(const Diagnosis& diagnosis) {
+    ReportTable table{"Error per output",
+                      {"output", "unit", "simulated, rms", "of deviation", "extended, rms", "of deviation "},
+                      {},
+                      {}};
+    const bool held_out = diagnosis.heldout_to_s > diagnosis.heldout_from_s;
+    table.note = held_out
+                     ? "On " + rounded_text(diagnosis.heldout_from_s) + " to " +
+                           rounded_text(diagnosis.heldout_to_s) +
+                           " s, which neither chose nor fitted anything: the effects behind these figures "
+                           "were found in the time before."
+                     : std::string("Over the whole recording; the extended model was not measured.");
+    for (std::size_t k = 0; k < diagnosis.output_names.size(); ++k) {
+        const auto row = static_cast<Eigen::Index>(k);
+        table.rows.push_back({diagnosis.output_names[k], output_unit(diagnosis.output_names[k]),
+                              diagnosis.nominal.rms[row], percent(diagnosis.nominal.nrmse[row]),
+                              diagnosis.extended.rms[row], percent(diagnosis.extended.nrmse[row])});
+    }
+    return table;
+}
+
+std::string carried_words(const DiagnosisCase& one, const Finding& finding) {
+    const auto found = std::ranges::find_if(one.extension.carried, [&](const CarriedFinding& carried) {
+        return carried.effect == finding.effect && carried.where == finding.where;
+    });
+    if (found == one.extension.carried.end()) {
+        return "–";
+    }
+    static const std::map<CarriedFinding::How, const char*> words{
+        {CarriedFinding::How::adapting, "adapting"},
+        {CarriedFinding::How::fixed, "constant"},
+        {CarriedFinding::How::approximated, "as Coulomb"},
+        {CarriedFinding::How::left_out, "left out"}};
+    return words.at(found->how);
+}
+
+ReportTable findings_table(const DiagnosisCase& one) {
+    const Diagnosis& diagnosis = one.work.diagnosis;
+    ReportTable table{"Causes, by gain",
+                      {"cause", "main parameter (95 % interval)", "confidence", "output", "error before",
+                       "after", "in the extended model"},
+                      {},
+                      {}};
+    table.note =
+        "Confidence: of all causes that are given 0.9, about nine in ten are right. Errors: rms over "
+        "the whole recording without and with this one effect, in N·m or N. Extended model: adapting, as "
+        "coefficients that start here and go on being learned; constant, in its geometry, gravity or "
+        "gains; as Coulomb friction of the same level, for the model's columns have no memory; left "
+        "out, where the effect is no function of the motion of one instant that the firmware has a "
+        "column for.";
+    for (const Finding& finding : diagnosis.findings) {
+        table.rows.push_back({cause_words(finding), main_parameter_words(finding),
+                              confidence_text(finding.confidence),
+                              diagnosis.output_names[static_cast<std::size_t>(finding.output)],
+                              finding.rms_before, finding.rms_after, carried_words(one, finding)});
+    }
+    return table;
+}
+
+PageSection overview_section(const DiagnosisCase& one) {
+    PageSection section{"What is wrong, and what it brings to know it", {}, {}, {}};
+    section.tables.push_back(error_table(one.work.diagnosis));
+    if (!one.work.diagnosis.findings.empty()) {
+        section.tables.push_back(findings_table(one));
+    }
+    if (one.work.explanation.masses_uncertain) {
+        section.paragraphs.emplace_back("The links' masses fit better when each may be a few percent off; "
+                                        "the extended model starts at the "
+                                        "fitted ones. That is no finding: no single link stands out.");
+    }
+    return section;
+}
+
+PageSection online_section(const OnlineView& online, const Diagnosis& diagnosis) {
+    PageSection section{"As an online learner sees it", {}, {}, {}};
+    section.paragraphs.emplace_back(
+        "Learners that see positions only, as the firmware does, run over the recording tick by tick: each "
+        "predicts a sample, then learns it. P starts at the robot's own parameters, NP and SPK (100 random "
+        "features) from nothing; the extended model starts where this recording put it.");
+    if (!online.left_out.empty()) {
+        section.paragraphs.push_back("Some learners with random features were not run: " + online.left_out +
+                                     ".");
+    }
+    ReportTable table{"One-step error, of the measured output's deviation", {"learner"}, {}, {}};
+    table.note = "First third of the recording: the transient; the rest: steady.";
+    for (const std::string& name : diagnosis.output_names) {
+        table.columns.push_back(name + " first third");
+        table.columns.push_back(name + " rest");
+    }
+    for (const OnlineError& learner : online.learners) {
+        std::vector<ReportCell> row{learner.learner};
+        for (Eigen::Index output = 0; output < learner.steady.size(); ++output) {
+            row.emplace_back(learner.transient[output]);
+            row.emplace_back(learner.steady[output]);
+        }
+        table.rows.push_back(std::move(row));
+    }
+    section.tables.push_back(std::move(table));
+    return section;
+}
+
+std::vector<ReportFact> facts(const DiagnosisCase& one) {
+    std::vector<ReportFact> result{{"Robot", one.robot.name + ", " + one.robot.base + " to " + one.robot.tip +
+                                                 ", " + std::to_string(one.robot.joints.size()) + " joints"},
+                                   {"Recordings", recording_names(one.recordings)}};
+    if (one.work.signals != nullptr) {
+        const MeasuredMotion& measured = one.work.signals->measured;
+        result.push_back({"Looked at", std::to_string(measured.time_s.size()) + " rows at " +
+                                           rounded_text(measured.rate_hz) + " Hz; positions low-passed at " +
+                                           rounded_text(measured.smoothing_hz.minCoeff()) + " to " +
+                                           rounded_text(measured.smoothing_hz.maxCoeff()) +
+                                           " Hz, before they sink into their noise"});
+    }
+    result.push_back({"Build", build_flags()});
+    return result;
+}
+
+} // namespace
+
+std::string diagnosis_page(const DiagnosisCase& one) {
+    const Diagnosis& diagnosis = one.work.diagnosis;
+    FigurePage page{"What the simulation of " + one.robot.name + " gets wrong", summary(one), {}, facts(one)};
+    if (!diagnosis.suspicions.empty()) {
+        page.sections.push_back(suspicion_section(diagnosis));
+    }
+    if (!one.work.explanation.candidates.empty()) {
+        page.sections.push_back(overview_section(one));
+        page.sections.push_back(comparison_section(one.work));
+        for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
+            page.sections.push_back(finding_section(one.work, diagnosis.findings[i], i + 1));
+        }
+        page.sections.push_back(rest_section(one.work));
+        page.sections.push_back(online_section(one.online, diagnosis));
+    }
+    return render_figure_page(page);
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/extension.hpp"
+
+#include "tools/diagnosis/extension_parts.hpp"
+#include "tools/robot/firmware_chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+using Add = CarriedFinding::How (*)(Extension&, const ChosenEffect&);
+
+const std::map<std::string, Add>& additions_of() {
+    static const std::map<std::string, Add> known{{"viscous_friction", add_viscous},
+                                                  {"coulomb_friction", add_coulomb},
+                                                  {"stribeck_friction", add_stribeck},
+                                                  {"presliding_hysteresis", add_presliding},
+                                                  {"torque_offset", add_offset},
+                                                  {"rotor_inertia", add_rotor},
+                                                  {"joint_spring", add_spring},
+                                                  {"torque_ripple", add_ripple},
+                                                  {"actuator_gain", add_gain},
+                                                  {"payload", add_payload},
+                                                  {"link_inertia_error", add_link_error},
+                                                  {"gravity_tilt", add_tilt},
+                                                  {"encoder_offset", add_encoder_offset},
+                                                  {"ft_bias", add_bias},
+                                                  {"ft_gain", add_gain},
+                                                  {"ft_rotation", add_rotation}};
+    return known;
+}
+
+/// What the diagnosis granted without calling it a finding: masses a little off, torque constants.
+void add_nuisance(Extension& extension, const DiagnosisWork& work) {
+    const Explanation& explanation = work.explanation;
+    const Eigen::Index bodies = explanation.masses_uncertain ? extension.bodies.size() / 10 : 0;
+    const auto count = static_cast<Eigen::Index>(explanation.nuisance.size());
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const double coefficient = explanation.fit.coefficients[i];
+        if (i < bodies) {
+            extension.bodies.segment<10>(10 * i) *= 1 + coefficient;
+        } else if (coefficient > -0.9) {
+            scale_output(extension, i - bodies, 1 + coefficient, false);
+        }
+    }
+}
+
+} // namespace
+
+Extension nominal_extension(const DiagnosisWork& work) {
+    const DiagnosisSignals& signals = *work.signals;
+    return {signals.robot,
+            signals.kind,
+            nominal_parameters(signals.robot, signals.kind),
+            {},
+            work.torque_gains,
+            {}};
+}
+
+Extension extension_of(const DiagnosisWork& work) {
+    Extension extension = nominal_extension(work);
+    const Explanation& explanation = work.explanation;
+    for (std::size_t i = 0; i < explanation.chosen.size(); ++i) {
+        const Candidate& candidate = explanation.candidates[explanation.chosen[i].candidate];
+        const EffectShape& shape = candidate.shapes[explanation.chosen[i].shape];
+        const Eigen::VectorXd coefficients = explanation.coefficients(i);
+        const Eigen::VectorXd deviations = explanation.covariance(i).diagonal().cwiseMax(0).cwiseSqrt();
+        const ChosenEffect chosen{*work.signals, candidate, shape, coefficients, deviations};
+        const auto add = additions_of().find(candidate.effect);
+        const CarriedFinding::How how =
+            add == additions_of().end() ? CarriedFinding::How::left_out : add->second(extension, chosen);
+        extension.carried.push_back({candidate.effect, candidate.where, how});
+    }
+    add_nuisance(extension, work);
+    sort_columns(extension);
+    return extension;
+}
+
+Extension names_only(const DiagnosisWork& work, const Extension& extension) {
+    Extension result = nominal_extension(work);
+    result.columns = extension.columns;
+    for (ExtensionColumn& column : result.columns) {
+        column.deviation = std::max(std::abs(column.value), column.deviation);
+        column.value = 0;
+    }
+    return result;
+}
+
+} // namespace dfdyn::tools

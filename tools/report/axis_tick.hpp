@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace dfdyn::tools {
+
+/// A line of an axis.
+struct AxisTick {
+    double value;
+    std::string label; ///< SVG text; empty: a line only
+};
+
+} // namespace dfdyn::tools

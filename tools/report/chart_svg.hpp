@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/report/axis_tick.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What the charts are drawn with.
+namespace dfdyn::tools::svg {
+
+constexpr double plot_width = 520;
+constexpr double curve_height = 330;
+constexpr double top = 34;
+constexpr double axis_height = 46;
+constexpr double value_axis_width = 66;
+constexpr double letter_width = 7.4; ///< of the chart's font, on the safe side
+constexpr double legend_line = 34;
+constexpr double legend_height = 20;
+
+/// One decimal: a tenth of a pixel.
+std::string number(double value);
+
+/// The parts behind each other. (GCC 12 warns falsely about a literal + a string.)
+std::string joined(std::initializer_list<std::string_view> parts);
+
+std::string attribute(std::string_view name, double value);
+std::string line(std::string_view kind, double x1, double y1, double x2, double y2);
+
+/// `content`: escaped already.
+std::string text(std::string_view kind, double x, double y, std::string_view content);
+
+/// The start of a chart with its title, which is plain text.
+std::string opening(const std::string& title, double width, double height);
+
+/// Colour and, beyond the first four, dashes: `index` counts the curves or boxes of a chart.
+std::string appearance(std::size_t index);
+
+/// Letters, not bytes.
+std::size_t length_of(const std::string& utf8);
+
+template <class Named>
+double width_of_names(const std::vector<Named>& named) {
+    std::size_t longest = 0;
+    for (const Named& one : named) {
+        longest = std::max(longest, length_of(one.name));
+    }
+    return letter_width * static_cast<double>(longest);
+}
+
+std::string x_label(double middle, double y_bottom, const std::string& label);
+std::string y_label(double middle, const std::string& label);
+
+/// Lines and labels of a horizontal axis, whose ticks are `ticks_of(x)`.
+template <class Axis>
+std::string vertical_grid(const Axis& x, double y_top, double y_bottom, const std::string& label) {
+    std::string all;
+    for (const AxisTick& tick : ticks_of(x)) {
+        const double at = x.pixel(tick.value);
+        all += line(tick.label.empty() ? "grid minor" : "grid", at, y_top, at, y_bottom);
+        all += tick.label.empty() ? "" : text("tick", at, y_bottom + 17, tick.label);
+    }
+    return all + x_label((x.low_pixel + x.high_pixel) / 2, y_bottom, label);
+}
+
+/// Of a vertical axis.
+template <class Axis>
+std::string horizontal_grid(const Axis& y, double x_left, double x_right, const std::string& label) {
+    std::string all;
+    for (const AxisTick& tick : ticks_of(y)) {
+        const double at = y.pixel(tick.value);
+        all += line(tick.label.empty() ? "grid minor" : "grid", x_left, at, x_right, at);
+        all += tick.label.empty() ? "" : text("tick y", x_left - 7, at + 4, tick.label);
+    }
+    return all + y_label((y.low_pixel + y.high_pixel) / 2, label);
+}
+
+} // namespace dfdyn::tools::svg
