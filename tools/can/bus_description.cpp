@@ -123,7 +123,7 @@ void read_pairing(const JsonReader& reader, BusDescription& description) {
 
 void read_sensor(const JsonReader& reader, const std::filesystem::path& folder, BusDescription& description) {
     description.outputs = OutputKind::wrench;
-    const WrenchSensor sensor = read_wrench_sensor(reader, folder);
+    const DescribedWrenchSensor sensor = read_wrench_sensor(reader, folder);
     description.sensor = sensor.device;
     for (const double limit : sensor.limit) {
         description.output_range.push_back({-limit, limit});

@@ -141,7 +141,7 @@ std::array<double, 6> limit_or(const JsonReader& reader, double force, double to
                                : std::array<double, 6>{force, force, force, torque, torque, torque};
 }
 
-WrenchSensor read_strain(const JsonReader& output) {
+DescribedWrenchSensor read_strain(const JsonReader& output) {
     allow_only(output, sensor_fields, {"address", "full_scale"});
     hal::icub::StrainBoard board(output.whole_number("address", 1, 14));
     std::array<double, 6> limit = limit_or(output, 10'000, 1'000); // of any board of this kind
@@ -164,7 +164,7 @@ WrenchSensor read_strain(const JsonReader& output) {
     return {AnySensor(board), limit};
 }
 
-WrenchSensor read_robotous(const JsonReader& output) {
+DescribedWrenchSensor read_robotous(const JsonReader& output) {
     allow_only(output, sensor_fields,
                {"first_id", "second_id", "counts_per_newton", "counts_per_newton_metre"});
     hal::RobotousRft::Config config;
@@ -181,7 +181,7 @@ WrenchSensor read_robotous(const JsonReader& output) {
             limit_or(output, 32768 / config.counts_per_newton, 32768 / config.counts_per_newton_metre)};
 }
 
-WrenchSensor read_ati(const JsonReader& output) {
+DescribedWrenchSensor read_ati(const JsonReader& output) {
     allow_only(output, sensor_fields, {"base", "matrix", "counts_per_newton", "counts_per_newton_metre"});
     hal::AtiNetcan::Config config;
     config.base = static_cast<std::uint32_t>(output.whole_or("base", 0x20, 0, 0x7E));
@@ -277,7 +277,7 @@ bool measures_efforts(const std::vector<BusBoard>& boards) {
     return std::ranges::all_of(boards, measures);
 }
 
-WrenchSensor read_wrench_sensor(const JsonReader& output, const std::filesystem::path& folder) {
+DescribedWrenchSensor read_wrench_sensor(const JsonReader& output, const std::filesystem::path& folder) {
     const std::string family = output.text("family");
     if (family == "icub_strain") {
         return read_strain(output);

@@ -25,12 +25,12 @@ void read_boards(const JsonReader& joints, const std::filesystem::path& folder, 
 /// Whether the boards' frames carry efforts.
 bool measures_efforts(const std::vector<BusBoard>& boards);
 
-struct WrenchSensor {
+struct DescribedWrenchSensor {
     AnySensor device;
     std::array<double, 6> limit; ///< what it can measure, ±
 };
 
 /// `family` and what belongs to it; files likewise.
-WrenchSensor read_wrench_sensor(const JsonReader& output, const std::filesystem::path& folder);
+DescribedWrenchSensor read_wrench_sensor(const JsonReader& output, const std::filesystem::path& folder);
 
 } // namespace dfdyn::tools

@@ -194,10 +194,37 @@ void suspect_exchange(const DiagnosisSignals& signals, const Eigen::MatrixXd& me
         result.sentences.push_back(words + " look exchanged: the other way round the model leaves " +
                                    in_words(100 * best) + " % of the variance instead of " +
                                    in_words(100 * now) + " %");
-    } else if (now > 0.8) {
+    }
+}
+
+/// Share of the outputs' variance that is left when each may be a sum of the rigid body's, of a friction and
+/// of a spring.
+double foreign_share(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured) {
+    double share = 0;
+    for (Eigen::Index output = 0; output < measured.cols(); ++output) {
+        Eigen::MatrixXd columns(measured.rows(), signals.wrench() ? 2 : 5);
+        columns.col(0).setOnes();
+        columns.col(1) = signals.nominal.col(output);
+        if (!signals.wrench()) {
+            const RobotMotion& motion = signals.measured.motion;
+            columns.col(2) = motion.position.col(output);
+            columns.col(3) = motion.velocity.col(output);
+            columns.col(4) = (motion.velocity.col(output).array() / signals.sign_velocity[output]).tanh();
+        }
+        const Eigen::VectorXd centred = measured.col(output).array() - measured.col(output).mean();
+        const Eigen::VectorXd fit = columns.colPivHouseholderQr().solve(centred);
+        share += (centred - columns * fit).squaredNorm() / centred.squaredNorm();
+    }
+    return share / static_cast<double>(measured.cols());
+}
+
+void suspect_robot(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured, Suspicions& result) {
+    const double left = foreign_share(signals, measured);
+    if (left > 0.6) {
         result.fatal = true;
         result.sentences.push_back(
-            "the robot's model has next to nothing in common with the outputs (" + in_words(100 * now) +
+            "the robot's model, with friction, has next to nothing in common with the outputs (" +
+            in_words(100 * left) +
             " % of their variance is left): another robot, tip, base, mounting or output");
     }
 }

@@ -164,7 +164,7 @@ std::vector<ComparisonOutcome> compare_all(std::span<const Comparison> compariso
 
 std::vector<FindingOutcome> judge_findings(const Plan& plan, std::span<const UnitResult> units) {
     std::vector<FindingOutcome> outcomes;
-    for (const Finding& finding : plan.findings) {
+    for (const ExpectedFinding& finding : plan.findings) {
         std::vector<ComparisonOutcome> comparisons = compare_all(finding.comparisons, plan, units);
         const FindingVerdict verdict = verdict_of(comparisons);
         outcomes.push_back({&finding, std::move(comparisons), verdict});

@@ -34,7 +34,7 @@ ComparisonOutcome compare(const Comparison& comparison, const Plan& plan, std::s
 enum class FindingVerdict { reproduced, partly, not_reproduced, undecided };
 
 struct FindingOutcome {
-    const Finding* finding;
+    const ExpectedFinding* finding;
     std::vector<ComparisonOutcome> comparisons;
     FindingVerdict verdict;
 };

@@ -72,7 +72,7 @@ struct Comparison {
 };
 
 /// A statement in words and the comparisons that it stands or falls with.
-struct Finding {
+struct ExpectedFinding {
     std::string name, statement;
     std::string if_not; ///< shown with the verdict unless it is reproduced; may be empty
     std::vector<Comparison> comparisons;
@@ -102,7 +102,7 @@ struct Plan {
     std::vector<Case> cases;
     std::vector<Figure> figures;
     std::vector<Comparison> comparisons;
-    std::vector<Finding> findings;
+    std::vector<ExpectedFinding> findings;
 };
 
 std::string to_string(Phase phase);

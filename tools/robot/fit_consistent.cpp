@@ -76,7 +76,7 @@ void add_start(const Eigen::VectorXd& nominal, Problem& problem) {
 }
 
 /// The weighted samples as p equations.
-void add_data(const FitData& data, const OutputNoise& noise, Problem& problem) {
+void add_data(const FitData& data, const FitNoise& noise, Problem& problem) {
     const Eigen::VectorXd weight =
         (noise.deviation.array() * noise.correlation_length.array().sqrt()).inverse().matrix();
     const Eigen::VectorXd weights = weight.replicate(data.outputs.rows(), 1);
@@ -92,7 +92,7 @@ void add_data(const FitData& data, const OutputNoise& noise, Problem& problem) {
 
 } // namespace
 
-Eigen::VectorXd fit_consistent_parameters(const FitData& data, const OutputNoise& noise) {
+Eigen::VectorXd fit_consistent_parameters(const FitData& data, const FitNoise& noise) {
     Problem problem(data.nominal.size());
     add_start(data.nominal, problem);
     add_data(data, noise, problem);

@@ -19,10 +19,10 @@ Eigen::MatrixXd errors(const FitData& data, const Eigen::VectorXd& parameters) {
     return data.outputs - unstacked(data.regressor * parameters, data.outputs.cols());
 }
 
-OutputNoise noise_of(const Eigen::MatrixXd& left) {
+FitNoise noise_of(const Eigen::MatrixXd& left) {
     const Eigen::Index rows = left.rows();
-    OutputNoise noise{left.colwise().norm().transpose() / std::sqrt(static_cast<double>(rows)),
-                      Eigen::VectorXd::Ones(left.cols())};
+    FitNoise noise{left.colwise().norm().transpose() / std::sqrt(static_cast<double>(rows)),
+                   Eigen::VectorXd::Ones(left.cols())};
     // An output that is met exactly must not weigh infinitely.
     const double least = std::max(1e-9 * noise.deviation.maxCoeff(), 1e-15);
     noise.deviation = noise.deviation.cwiseMax(least);
@@ -46,7 +46,7 @@ struct Solution {
 };
 
 /// Least change that explains `error` best, and its standard deviations.
-Solution solve(const Eigen::MatrixXd& columns, const Eigen::VectorXd& error, const OutputNoise& noise) {
+Solution solve(const Eigen::MatrixXd& columns, const Eigen::VectorXd& error, const FitNoise& noise) {
     const Eigen::Index samples = columns.rows() / noise.deviation.size();
     const Eigen::VectorXd weight = row_weights(noise.deviation.cwiseInverse(), samples);
     Eigen::MatrixXd weighted = weight.asDiagonal() * columns;
@@ -88,7 +88,7 @@ BaseFit fit_base_parameters(const FitData& data, const BaseParameters& base) {
     const Eigen::MatrixXd columns = data.regressor(Eigen::all, base.independent);
     const Eigen::MatrixXd error = errors(data, data.nominal);
     const Eigen::VectorXd stacked_error = stacked(error);
-    const OutputNoise unweighted{Eigen::VectorXd::Ones(error.cols()), Eigen::VectorXd::Ones(error.cols())};
+    const FitNoise unweighted{Eigen::VectorXd::Ones(error.cols()), Eigen::VectorXd::Ones(error.cols())};
     const Solution first = solve(columns, stacked_error, unweighted);
     BaseFit fit;
     fit.noise = noise_of(errors(data, changed(data, base, first.change)));

@@ -17,7 +17,7 @@ struct FitData {
 };
 
 /// How well each output is known: the fit weighs it by 1/deviation².
-struct OutputNoise {
+struct FitNoise {
     Eigen::VectorXd deviation; ///< of what the fit leaves, per output
     /// How many neighbouring samples tell as much as one independent one: (1 + ρ)/(1 − ρ) for the lag-one
     /// correlation ρ of what the fit leaves, at least 1.
@@ -34,7 +34,7 @@ struct BaseFit {
     double condition =
         0; ///< of the weighted regressor of the base parameters, its columns of the same length
     Eigen::VectorXd parameters; ///< all p: the nominal ones, changed where the base parameters change
-    OutputNoise noise;
+    FitNoise noise;
 };
 
 /// Least squares of the base parameters, outputs weighed by what an unweighted fit leaves of each. Where the
@@ -45,7 +45,7 @@ BaseFit fit_base_parameters(const FitData& data, const BaseParameters& base);
 /// squares weighed as `noise` says, drawn weakly towards the nominal ones (masses and sizes within a factor
 /// e, centres of mass within a body's size), which settles what the recording does not determine. Nominal
 /// bodies that cannot be are replaced by near ones that can.
-Eigen::VectorXd fit_consistent_parameters(const FitData& data, const OutputNoise& noise);
+Eigen::VectorXd fit_consistent_parameters(const FitData& data, const FitNoise& noise);
 
 /// Root mean square of outputs − regressor · parameters, per output.
 Eigen::VectorXd rms_error(const FitData& data, const Eigen::VectorXd& parameters);

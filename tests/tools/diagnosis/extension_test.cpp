@@ -94,7 +94,11 @@ MatrixXd added_by(const DiagnosisSignals& signals, const Candidate& candidate, c
 /// Friction that builds up over a travel is no function of the motion, and of two levels it is a level and an
 /// offset but at reversals: those columns are approximated.
 bool carried_exactly(const Candidate& candidate, std::size_t shape) {
-    return candidate.effect != "coulomb_friction" || shape == 0;
+    const std::vector<std::size_t>& columns = candidate.shapes[shape].columns;
+    if (candidate.effect == "coulomb_friction") {
+        return columns == std::vector<std::size_t>{0};
+    }
+    return candidate.effect != "stribeck_friction" || columns.front() == 0; // by velocity, not by travel
 }
 
 /// Every candidate that the model carries, by a small amount: the model changes as the diagnosis says.

@@ -156,6 +156,6 @@ TEST_CASE("where the data say nothing, consistent parameters are the nominal one
     const tools::Robot robot = dfdyn::tests::icub_right_arm();
     const VectorXd nominal = tools::nominal_parameters(robot, OutputKind::wrench);
     const tools::FitData data{MatrixXd::Zero(60, nominal.size()), MatrixXd::Zero(10, 6), nominal};
-    const tools::OutputNoise noise{VectorXd::Ones(6), VectorXd::Ones(6)};
+    const tools::FitNoise noise{VectorXd::Ones(6), VectorXd::Ones(6)};
     CHECK((tools::fit_consistent_parameters(data, noise) - nominal).norm() < 1e-9 * nominal.norm());
 }
