@@ -33,7 +33,7 @@ run_tests() {
 }
 
 build_release() { build release; }
-test_units() { run_tests release --label-regex '^(firmware|hal|tools|embedding|truth|headers)$'; }
+test_units() { run_tests release --label-regex '^(firmware|hal|tools|embedding|truth|headers|panel)$'; }
 test_promises() { run_tests release --label-regex '^acceptance$'; }
 test_can() { run_tests release --label-regex '^vcan$'; }
 test_elsewhere() { run_tests release --label-regex '^(consumer|cortex_m7)$' --verbose; }
