@@ -137,6 +137,6 @@ void empty(hal::SocketCanBus& bus) {
     }
 }
 
-hal::SocketCanOptions on_vcan0() { return {.interface = "vcan0", .filters = {}, .receive_own = false}; }
+hal::SocketCanOptions on_vcan0() { return {.interface = "vcan0"}; }
 
 } // namespace dfdyn::tests

@@ -28,17 +28,11 @@ void read_through(const PlayOptions& options) {
     }
 }
 
-hal::SocketCanOptions bus_options(const std::string& interface) {
-    hal::SocketCanOptions options;
-    options.interface = interface;
-    return options;
-}
-
 /// Plays a log whose frames are known to be sound.
 class Player {
   public:
     Player(const PlayOptions& options, const std::atomic<bool>& stop)
-        : log_(options.log, options.log_interface), bus_(bus_options(options.interface)), stop_(stop),
+        : log_(options.log, options.log_interface), bus_({.interface = options.interface}), stop_(stop),
           times_(bus_.now_ns() + start_delay_ns, options.rate) {}
 
     PlayOutcome run() {

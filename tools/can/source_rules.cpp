@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What can be wrong with one source on a bus, one rule each, and what a person does about it.
 #include "tools/can/bus_check.hpp"
+#include "tools/common/number.hpp"
 
 #include <array>
 #include <cmath>
@@ -36,15 +37,9 @@ struct Source {
     bool keeps_rate() const { return runs() && ratio() >= least_rate && ratio() <= largest_rate; }
 };
 
-std::string number(const char* format, double value) {
-    std::array<char, 64> text{};
-    std::snprintf(text.data(), text.size(), format, value);
-    return text.data();
-}
-
 std::string rates(const Source& source) {
-    return number("%.4g frames/s", source.stream.rate_hz()) +
-           number(" where %.4g are described", source.stream.expected_hz);
+    return formatted("%.4g frames/s", source.stream.rate_hz()) +
+           formatted(" where %.4g are described", source.stream.expected_hz);
 }
 
 /// An identifier that nobody described and that looks like a silent one's; null for none.
@@ -74,19 +69,19 @@ constexpr std::array<Rule, 9> rules{{
      [](const Source& s) { return s.silent() && impostor(s) != nullptr; },
      [](const Source& s) {
          const auto& [key, stream] = *impostor(s);
-         return id_text(key) + number(", which nobody described, sends %.4g frames/s", stream.rate_hz()) +
+         return id_text(key) + formatted(", which nobody described, sends %.4g frames/s", stream.rate_hz()) +
                 " of " + std::to_string(stream.length) + " bytes, as this one should";
      },
      "move the joint, or load the sensor, by hand: the bytes of those frames change (candump -c IFACE)",
      "correct the address in the description, or in the device"},
     {"silent_source", "is never sent", [](const Source& s) { return s.silent() && impostor(s) == nullptr; },
-     [](const Source& s) { return number("no frame in %.3g s", s.check.duration_s()); },
+     [](const Source& s) { return formatted("no frame in %.3g s", s.check.duration_s()); },
      "candump -n 1 IFACE,ID:MASK waits for one frame of it",
      "check the device's power and cable; start its transmission; check its address in the description"},
     {"source_stopped", "is not sent any more", [](const Source& s) { return s.stopped(); },
      [](const Source& s) {
-         return number("last frame %.3g s before the end", s.check.age_s(s.stream)) +
-                number(", %.4g frames/s before", s.stream.rate_hz());
+         return formatted("last frame %.3g s before the end", s.check.age_s(s.stream)) +
+                formatted(", %.4g frames/s before", s.stream.rate_hz());
      },
      "candump -n 1 IFACE,ID:MASK waits for one frame of it",
      "check the device's power and cable: no bus error tells of a node that is gone"},
@@ -101,7 +96,7 @@ constexpr std::array<Rule, 9> rules{{
      [](const Source& s) { return s.runs() && s.ratio() < least_rate; },
      [](const Source& s) {
          return rates(s) +
-                number("; longest pause %.3g ms", 1e-6 * static_cast<double>(s.stream.longest_gap_ns));
+                formatted("; longest pause %.3g ms", 1e-6 * static_cast<double>(s.stream.longest_gap_ns));
      },
      "even intervals (candump -t d IFACE,ID:MASK) mean a slow device, gaps of whole periods lost frames",
      "set the device's period, or rate_hz; against losses lower the load, or read at a real-time priority"},
@@ -111,8 +106,8 @@ constexpr std::array<Rule, 9> rules{{
                 s.periods(1e-9 * static_cast<double>(s.stream.longest_gap_ns)) > largest_gap;
      },
      [](const Source& s) {
-         return number("%.3g ms without a frame", 1e-6 * static_cast<double>(s.stream.longest_gap_ns)) +
-                number(", where they come every %.3g ms", 1e3 / s.stream.expected_hz);
+         return formatted("%.3g ms without a frame", 1e-6 * static_cast<double>(s.stream.longest_gap_ns)) +
+                formatted(", where they come every %.3g ms", 1e3 / s.stream.expected_hz);
      },
      "ip -details -statistics link show IFACE: dropped and overrun frames are this computer's losses",
      "read at a real-time priority, lower the load; else look for a loose cable or a device that restarts"},
@@ -122,8 +117,8 @@ constexpr std::array<Rule, 9> rules{{
                 s.periods(1e-9 * static_cast<double>(s.stream.longest_gap_ns)) <= largest_gap;
      },
      [](const Source& s) {
-         return number("intervals of standard deviation %.3g ms", 1e3 * s.stream.jitter_s()) +
-                number(" about %.3g ms", 1e3 / s.stream.expected_hz);
+         return formatted("intervals of standard deviation %.3g ms", 1e3 * s.stream.jitter_s()) +
+                formatted(" about %.3g ms", 1e3 / s.stream.expected_hz);
      },
      "record on another computer: if it is steady there, this one's stamps are late",
      "give it a lower identifier, lower the load, let drives measure at SYNC; or trigger on timer"},

@@ -41,9 +41,7 @@ void check_log(const BusCheckOptions& options, BusCheck& check) {
 }
 
 void check_interface(const BusCheckOptions& options, BusCheck& check) try {
-    hal::SocketCanOptions bus_options;
-    bus_options.interface = options.interface;
-    hal::SocketCanBus bus(bus_options);
+    hal::SocketCanBus bus({.interface = options.interface});
     const std::atomic<bool>& stop = stop_on_signals();
     std::array<hal::Frame, 64> room{};
     const std::int64_t end_ns = bus.now_ns() + std::llround(options.duration_s * 1e9);

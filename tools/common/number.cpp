@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <system_error>
 
 namespace dfdyn::tools {
@@ -30,5 +31,13 @@ std::string number_text(double value) {
     static_cast<void>(fault);
     return {buffer.data(), end};
 }
+
+std::string formatted(const char* format, double value) {
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), format, value);
+    return text.data();
+}
+
+std::string rounded_text(double value) { return formatted("%.3g", value); }
 
 } // namespace dfdyn::tools

@@ -22,4 +22,10 @@ ParsedNumber parse_number(std::string_view text) noexcept;
 /// not finite.
 std::string number_text(double value);
 
+/// `value` as printf's `format` of one double writes it, up to 63 characters.
+std::string formatted(const char* format, double value);
+
+/// Three significant digits: `0.0123`, `8.02`, `1.2e+04`.
+std::string rounded_text(double value);
+
 } // namespace dfdyn::tools

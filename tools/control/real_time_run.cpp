@@ -13,17 +13,11 @@ namespace dfdyn::tools {
 
 namespace {
 
-hal::SocketCanOptions bus_options(const std::string& interface) {
-    hal::SocketCanOptions options;
-    options.interface = interface;
-    return options;
-}
-
 /// Calls `tick(bus, due_ns, missed, over)` once per period, at absolute times, until it returns false;
 /// `over`: whether the run is to end.
 template <class Tick>
 PaceOutcome keep_pace(const RealTimeRun& run, const Tick& tick) try {
-    hal::SocketCanBus bus(bus_options(run.interface));
+    hal::SocketCanBus bus({.interface = run.interface});
     PaceOutcome outcome;
     outcome.not_real_time = become_real_time();
     const std::int64_t start_ns = bus.now_ns();

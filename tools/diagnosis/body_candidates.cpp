@@ -7,15 +7,13 @@ namespace dfdyn::tools {
 
 namespace {
 
-using Parameters = InertialParameters;
-
 constexpr const char* last_body = "last body"; // a payload is part of the last link
 
 /// Point mass at `centre`, per kg; and its first moment moved by 1 kg·m along `axis` while the mass stays.
-Parameters point_mass(const Eigen::Vector3d& centre) {
+InertialParameters point_mass(const Eigen::Vector3d& centre) {
     return body_parameters(1, centre, Eigen::Matrix3d::Zero());
 }
-Parameters first_moment(const Eigen::Vector3d& centre, Eigen::Index axis) {
+InertialParameters first_moment(const Eigen::Vector3d& centre, Eigen::Index axis) {
     constexpr double step = 1e-4; // m: linear in it up to this
     const Eigen::Vector3d shift = step * Eigen::Vector3d::Unit(axis);
     return (point_mass(centre + shift) - point_mass(centre - shift)) / (2 * step);

@@ -53,18 +53,25 @@ inline EffectShape whole_shape(const Candidate& candidate, CoefficientRule allow
     return shape;
 }
 
-/// A candidate of one column and one coefficient, which is its parameter.
+/// A candidate of one column. Its parameters are still to be said.
 inline Candidate single_column(std::string effect, std::string where, EffectColumn column,
-                               CoefficientRule allowed, std::string parameter, std::string unit,
-                               double scale = 1, double offset = 0) {
+                               CoefficientRule allowed) {
     Candidate candidate;
     candidate.effect = std::move(effect);
     candidate.where = std::move(where);
     candidate.columns.push_back(std::move(column));
     candidate.shapes.push_back(whole_shape(candidate, std::move(allowed)));
-    candidate.parameters = [parameter = std::move(parameter), unit = std::move(unit), scale,
-                            offset](const Eigen::VectorXd& coefficients, const EffectShape&) {
-        return std::vector<EffectParameter>{{parameter, unit, scale * coefficients[0] + offset}};
+    return candidate;
+}
+
+/// The same where the coefficient is the parameter.
+inline Candidate single_column(std::string effect, std::string where, EffectColumn column,
+                               CoefficientRule allowed, std::string parameter, std::string unit) {
+    Candidate candidate =
+        single_column(std::move(effect), std::move(where), std::move(column), std::move(allowed));
+    candidate.parameters = [parameter = std::move(parameter),
+                            unit = std::move(unit)](const Eigen::VectorXd& coefficients, const EffectShape&) {
+        return std::vector<EffectParameter>{{parameter, unit, coefficients[0]}};
     };
     return candidate;
 }

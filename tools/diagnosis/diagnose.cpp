@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/diagnosis.hpp"
 
+#include "tools/common/root_mean_square.hpp"
 #include "tools/diagnosis/findings.hpp"
 #include "tools/diagnosis/plausibility.hpp"
 #include "tools/diagnosis/unexplained.hpp"
@@ -39,16 +40,12 @@ Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOpt
     return gains;
 }
 
-double rms(const Eigen::Ref<const Eigen::VectorXd>& series) {
-    return std::sqrt(series.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(series.size(), 1)));
-}
-
 ErrorMeasure error_measure(const Eigen::MatrixXd& error, const Eigen::MatrixXd& measured) {
     ErrorMeasure result{Eigen::VectorXd(error.cols()), Eigen::VectorXd(error.cols())};
     for (Eigen::Index output = 0; output < error.cols(); ++output) {
         const Eigen::VectorXd centred = measured.col(output).array() - measured.col(output).mean();
-        result.rms[output] = rms(error.col(output));
-        result.nrmse[output] = result.rms[output] / rms(centred);
+        result.rms[output] = root_mean_square(error.col(output));
+        result.nrmse[output] = result.rms[output] / root_mean_square(centred);
     }
     return result;
 }
@@ -104,7 +101,6 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     work.diagnosis.findings =
         findings_of(*signals, work.explanation, work.measured, work.diagnosis.output_names);
     const Eigen::MatrixXd rest = nominal_error - work.explanation.all(*signals);
-    work.diagnosis.noise_rms = error_measure(rest, work.measured).rms;
     work.diagnosis.unexplained = unexplained_rest(*signals, work.measured, rest, work.explanation.noise);
     if (options.measure) {
         measure_on_held_out(work, how);

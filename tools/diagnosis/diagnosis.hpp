@@ -54,7 +54,6 @@ struct ErrorMeasure {
 struct Diagnosis {
     std::vector<std::string> output_names;
     std::vector<std::string> suspicions; ///< why the recording may not answer at all; a sentence each
-    Eigen::VectorXd noise_rms;           ///< per output, of what is left, within the analysed band
     ErrorMeasure nominal, extended;      ///< on the held-out time
     double heldout_from_s = 0, heldout_to_s = 0;
     std::vector<Finding> findings; ///< by gain

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/diagnosis_json.hpp"
 
+#include "tools/common/to_vector.hpp"
+#include "tools/diagnosis/finding_words.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <vector>
@@ -11,12 +14,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json numbers(const Eigen::VectorXd& values) {
-    return std::vector<double>(values.data(), values.data() + values.size());
-}
-
 ordered_json to_json(const ErrorMeasure& error) {
-    return {{"rms", numbers(error.rms)}, {"nrmse", numbers(error.nrmse)}};
+    return {{"rms", to_vector(error.rms)}, {"nrmse", to_vector(error.nrmse)}};
 }
 
 ordered_json causes(const std::vector<OtherCause>& list, bool reasons) {
@@ -33,11 +32,8 @@ ordered_json causes(const std::vector<OtherCause>& list, bool reasons) {
 
 /// Axes are named, not numbered.
 ordered_json value_of(const FoundParameter& parameter) {
-    static const std::array names{"fx", "fy", "fz", "mx", "my", "mz"};
-    if (parameter.name == "axis" || parameter.name == "from_axis" || parameter.name == "to_axis") {
-        return names.at(static_cast<std::size_t>(parameter.value));
-    }
-    return parameter.value;
+    const std::optional<std::string> axis = axis_of(parameter);
+    return axis ? ordered_json(*axis) : ordered_json(parameter.value);
 }
 
 ordered_json to_json(const Finding& finding, const std::string& output) {

@@ -16,8 +16,6 @@ namespace dfdyn::tools {
 
 namespace {
 
-std::string percent(double share) { return rounded_text(100 * share) + " %"; }
-
 std::string recording_names(const std::vector<Recording>& recordings) {
     std::string names;
     for (const Recording& recording : recordings) {

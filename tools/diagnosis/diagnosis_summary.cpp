@@ -23,8 +23,6 @@ void print_suspicions(std::ostream& out, const Diagnosis& diagnosis) {
     }
 }
 
-std::string percent(double share) { return rounded_text(100 * share) + " %"; }
-
 void print_errors(std::ostream& out, const Diagnosis& diagnosis) {
     const bool held_out = diagnosis.heldout_to_s > diagnosis.heldout_from_s;
     out << "error, rms and share of the output's deviation, ";

@@ -101,11 +101,6 @@ bool excludes(const std::vector<SearchCandidate>& candidates, std::size_t one, s
            (candidates[one].family != 0 && candidates[one].family == candidates[other].family);
 }
 
-std::vector<ChosenShape> without(std::vector<ChosenShape> chosen, std::size_t index) {
-    chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(index));
-    return chosen;
-}
-
 struct Step {
     std::vector<ChosenShape> chosen;
     double score;
@@ -130,6 +125,11 @@ void try_addition(Step& best, const SearchProblem& problem, const std::vector<Ch
 }
 
 } // namespace
+
+std::vector<ChosenShape> without(std::vector<ChosenShape> chosen, std::size_t index) {
+    chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(index));
+    return chosen;
+}
 
 EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShape>& chosen) {
     EffectFit fit;

@@ -55,6 +55,9 @@ struct EffectFit {
 /// the nuisance; one in so many candidates is there, and any of its shapes is as likely.
 EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShape>& chosen);
 
+/// `chosen` less the one at `index`.
+std::vector<ChosenShape> without(std::vector<ChosenShape> chosen, std::size_t index);
+
 /// What replacing nothing, or one of the chosen, by each other candidate would give.
 struct Replacement {
     ChosenShape with;

@@ -2,6 +2,7 @@
 #include "tools/diagnosis/error_sections.hpp"
 
 #include "tools/common/quantile.hpp"
+#include "tools/common/root_mean_square.hpp"
 #include "tools/common/to_vector.hpp"
 #include "tools/diagnosis/finding_words.hpp"
 #include "tools/diagnosis/spectral_rows.hpp"
@@ -71,10 +72,6 @@ double autocorrelation(const DiagnosisSignals& signals, const Eigen::VectorXd& s
     return square > 0 ? product / square : 0;
 }
 
-double rms(const Eigen::VectorXd& series) {
-    return std::sqrt(series.squaredNorm() / static_cast<double>(series.size()));
-}
-
 ChartCurve spectrum(const SpectralRows& rows, std::string name, const Eigen::VectorXd& series) {
     const Eigen::VectorXd variance = noise_spectrum(rows.analyse(series), 0);
     ChartCurve curve{std::move(name), {}, {}, {}, {}};
@@ -107,8 +104,8 @@ ReportTable rest_table(const DiagnosisWork& work, const Eigen::MatrixXd& rest) {
     for (Eigen::Index output = 0; output < rest.cols(); ++output) {
         const std::string& name = work.diagnosis.output_names[static_cast<std::size_t>(output)];
         const Eigen::VectorXd centred = measured.col(output).array() - measured.col(output).mean();
-        table.rows.push_back({name, output_unit(name), rms(rest.col(output)),
-                              rms(rest.col(output)) / std::max(rms(centred), 1e-12),
+        table.rows.push_back({name, output_unit(name), root_mean_square(rest.col(output)),
+                              root_mean_square(rest.col(output)) / std::max(root_mean_square(centred), 1e-12),
                               autocorrelation(*work.signals, rest.col(output))});
     }
     return table;

@@ -70,11 +70,9 @@ ReportTable parameter_table(const Finding& finding) {
     ReportTable table{"Parameters", {"parameter", "value", "95 % interval", "unit"}, {}, {}};
     for (const FoundParameter& parameter : finding.parameters) {
         const bool measured = parameter.low < parameter.high;
-        const bool axis = parameter.unit.empty();
+        const std::optional<std::string> axis = axis_of(parameter);
         table.rows.push_back(
-            {parameter.name,
-             axis ? parameter_words(parameter).substr(parameter.name.size() + 1)
-                  : rounded_text(parameter.value),
+            {parameter.name, axis.value_or(rounded_text(parameter.value)),
              measured ? rounded_text(parameter.low).append(" … ").append(rounded_text(parameter.high))
                       : std::string("–"),
              parameter.unit == "1" ? "" : parameter.unit});

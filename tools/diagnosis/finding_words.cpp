@@ -2,8 +2,6 @@
 #include "tools/diagnosis/finding_words.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
 namespace dfdyn::tools {
 
@@ -14,32 +12,25 @@ std::string words(std::string effect, const std::string& where) {
     return effect.append(" at ").append(where);
 }
 
-bool is_axis(const FoundParameter& parameter) {
-    return parameter.name == "axis" || parameter.name == "from_axis" || parameter.name == "to_axis";
-}
-
 } // namespace
 
-std::string rounded_text(double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.3g", value);
-    return text.data();
+std::string confidence_text(double confidence) {
+    return confidence > 0.99 ? "> 0.99" : formatted("%.2f", confidence);
 }
 
-std::string confidence_text(double confidence) {
-    if (confidence > 0.99) {
-        return "> 0.99";
+std::string percent(double share) { return rounded_text(100 * share) + " %"; }
+
+std::optional<std::string> axis_of(const FoundParameter& parameter) {
+    if (parameter.name != "axis" && parameter.name != "from_axis" && parameter.name != "to_axis") {
+        return std::nullopt;
     }
-    std::array<char, 16> text{};
-    std::snprintf(text.data(), text.size(), "%.2f", confidence);
-    return text.data();
+    return output_names(OutputKind::wrench, 0).at(static_cast<std::size_t>(parameter.value));
 }
 
 std::string parameter_words(const FoundParameter& parameter) {
     std::string text = parameter.name;
-    if (is_axis(parameter)) {
-        const std::vector<std::string> axes = output_names(OutputKind::wrench, 0);
-        return text.append(" ").append(axes.at(static_cast<std::size_t>(parameter.value)));
+    if (const std::optional<std::string> axis = axis_of(parameter)) {
+        return text.append(" ").append(*axis);
     }
     text.append(" ").append(rounded_text(parameter.value));
     if (parameter.unit != "1") {

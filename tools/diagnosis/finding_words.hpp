@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/common/number.hpp"
 #include "tools/diagnosis/diagnosis.hpp"
 
+#include <optional>
 #include <string>
 
 namespace dfdyn::tools {
 
-/// Three significant digits: `0.0123`, `8.02`, `1.2e+04`.
-std::string rounded_text(double value);
-
 /// Two decimals, and no certainty: `> 0.99` above that.
 std::string confidence_text(double confidence);
+
+/// `12.3 %`.
+std::string percent(double share);
+
+/// The axis of an F/T sensor that a parameter stands for; none for a parameter that is a quantity.
+std::optional<std::string> axis_of(const FoundParameter& parameter);
 
 /// `coulomb 8.02 N·m (7.95 … 8.09)`, with the 95 % interval; `axis fz` of a sensor's axis.
 std::string parameter_words(const FoundParameter& parameter);

@@ -2,6 +2,7 @@
 #include "tools/diagnosis/findings.hpp"
 
 #include "tools/common/number.hpp"
+#include "tools/common/root_mean_square.hpp"
 #include "tools/diagnosis/effect_words.hpp"
 
 #include <algorithm>
@@ -18,15 +19,6 @@ constexpr std::size_t listed = 3;      ///< alternatives that a finding tells of
 constexpr double two_sided_95 = 1.96;
 constexpr double coloured =
     1.7; ///< how much wider intervals must be than their formula says: measured, docs/diagnosis-panel.md
-
-double rms(const Eigen::VectorXd& series) {
-    return std::sqrt(series.squaredNorm() / static_cast<double>(series.size()));
-}
-
-std::vector<ChosenShape> without(std::vector<ChosenShape> chosen, std::size_t index) {
-    chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(index));
-    return chosen;
-}
 
 /// Intervals by the gradient of each parameter with respect to the coefficients.
 std::vector<FoundParameter> found_parameters(const Candidate& candidate, const EffectShape& shape,
@@ -54,12 +46,6 @@ std::vector<FoundParameter> found_parameters(const Candidate& candidate, const E
     return result;
 }
 
-std::string rounded(double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.3g", value);
-    return text.data();
-}
-
 /// What else could stand in the place of a chosen effect, and how much less likely that is.
 void weigh_alternatives(Finding& finding, const Explanation& explanation, std::size_t index) {
     const std::vector<ChosenShape> others = without(explanation.chosen, index);
@@ -83,7 +69,7 @@ void weigh_alternatives(Finding& finding, const Explanation& explanation, std::s
         finding.margin_to_others = std::min(finding.margin_to_others, margin);
         if (finding.alternatives.size() < listed && margin < finding.margin_to_nothing) {
             const double gap = finding.margin_to_nothing - margin;
-            cause.why_not = "explains " + rounded(100 * std::max(0.0, gap) / finding.margin_to_nothing) +
+            cause.why_not = "explains " + rounded_text(100 * std::max(0.0, gap) / finding.margin_to_nothing) +
                             " % of what this cause does";
             finding.alternatives.push_back(std::move(cause));
         }
@@ -94,14 +80,14 @@ void weigh_alternatives(Finding& finding, const Explanation& explanation, std::s
 void measure_gain(Finding& finding, const Eigen::MatrixXd& contribution, const Eigen::MatrixXd& left) {
     double largest = -1;
     for (Eigen::Index output = 0; output < left.cols(); ++output) {
-        const double ratio = rms(contribution.col(output)) / rms(left.col(output));
+        const double ratio = root_mean_square(contribution.col(output)) / root_mean_square(left.col(output));
         if (ratio > largest) {
             largest = ratio;
             finding.output = output;
         }
     }
-    finding.rms_after = rms(left.col(finding.output));
-    finding.rms_before = rms(left.col(finding.output) + contribution.col(finding.output));
+    finding.rms_after = root_mean_square(left.col(finding.output));
+    finding.rms_before = root_mean_square(left.col(finding.output) + contribution.col(finding.output));
 }
 
 bool same_contact(const Finding& one, const Finding& other) {
@@ -157,7 +143,7 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
         finding.confidence = calibrated_confidence(finding);
         finding.evidence = "the error of " + output_names[static_cast<std::size_t>(finding.output)] + " " +
                            effect_signature(finding.effect) + ": with it the error falls from " +
-                           rounded(finding.rms_before) + " to " + rounded(finding.rms_after);
+                           rounded_text(finding.rms_before) + " to " + rounded_text(finding.rms_after);
         finding.confirm = confirming_experiment(finding.effect, finding.where);
         if (finding.rms_after < finding.rms_before) {
             findings.push_back(std::move(finding));

@@ -6,6 +6,7 @@
 #include "tools/common/quantile.hpp"
 #include "tools/diagnosis/lapped_transform.hpp"
 #include "tools/diagnosis/low_pass_kernel.hpp"
+#include "tools/recording/columns_matrix.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,38 +18,6 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr double highest_rate_hz = 130;
-
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using Signals = Eigen::Map<const RowMajor>;
-
-Signals signals(const Columns& columns) {
-    const auto count = static_cast<Eigen::Index>(columns.names.size());
-    return {columns.values.data(), static_cast<Eigen::Index>(columns.values.size()) / count, count};
-}
-
-double step_s(const Recording& recording, std::size_t row) {
-    return 1e-9 * static_cast<double>(recording.time_ns[row] - recording.time_ns[row - 1]);
-}
-
-double median_step_s(const Recording& recording) {
-    std::vector<double> steps;
-    for (std::size_t row = 1; row < recording.row_count(); ++row) {
-        steps.push_back(step_s(recording, row));
-    }
-    return median(std::move(steps));
-}
-
-std::vector<Stretch> recorded_stretches(const Recording& recording, double step) {
-    std::vector<Stretch> result;
-    for (std::size_t row = 0; row < recording.row_count(); ++row) {
-        const bool gap = row == 0 || recording.gap_before[row] != 0 || step_s(recording, row) > 3 * step;
-        if (gap) {
-            result.push_back({static_cast<Eigen::Index>(row), 0});
-        }
-        ++result.back().count;
-    }
-    return result;
-}
 
 /// Weights of the four samples from `first` on, of the cubic (Lagrange) through them, at `time_s`.
 Eigen::Vector4d cubic_weights(const Recording& recording, std::size_t first, double time_s) {
@@ -77,8 +46,8 @@ Resampled resampled(const Recording& recording, const Stretch& stretch, double s
     const double start_s = recording.time_s[begin];
     const auto rows =
         static_cast<Eigen::Index>(std::floor((recording.time_s[end - 1] - start_s) / step + 1e-6)) + 1;
-    const Signals position = signals(recording.position);
-    const Signals output = signals(recording.output);
+    const auto position = columns_matrix(recording.position);
+    const auto output = columns_matrix(recording.output);
     Resampled result{Eigen::VectorXd(rows), Eigen::MatrixXd(rows, position.cols()),
                      Eigen::MatrixXd(rows, output.cols())};
     std::size_t next = begin;
@@ -189,7 +158,7 @@ void append(MeasuredMotion& result, const Resampled& stretch, double rate_hz, Ei
 MeasuredMotion measured_motion(const Recording& recording) {
     const double step = median_step_s(recording);
     std::vector<Resampled> stretches;
-    for (const Stretch& stretch : recorded_stretches(recording, step)) {
+    for (const Stretch& stretch : recorded_stretches(recording)) {
         if (static_cast<double>(stretch.count) * step >= MeasuredMotion::shortest_stretch_s) {
             stretches.push_back(resampled(recording, stretch, step));
         }

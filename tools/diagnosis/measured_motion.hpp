@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/recording/recording.hpp"
+#include "tools/recording/stretches.hpp"
 #include "tools/robot/motion.hpp"
 
 #include <Eigen/Core>
@@ -9,11 +9,6 @@
 #include <vector>
 
 namespace dfdyn::tools {
-
-/// Rows that follow each other at the same distance in time.
-struct Stretch {
-    Eigen::Index first = 0, count = 0;
-};
 
 /// A recording on a uniform clock, its positions smoothed, with derivatives: zero phase, so for use offline
 /// only.

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/plausibility.hpp"
 
+#include "tools/common/number.hpp"
 #include "tools/common/quantile.hpp"
+#include "tools/recording/stretches.hpp"
 
 #include <Eigen/QR>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 namespace dfdyn::tools {
@@ -18,12 +18,6 @@ namespace {
 constexpr double degrees = 180 / std::numbers::pi;
 constexpr double least_travel = 0.05; ///< rad (m): a joint that moves less stands
 constexpr double least_duration_s = 10;
-
-std::string in_words(double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.3g", value);
-    return text.data();
-}
 
 double correlation(const Eigen::VectorXd& one, const Eigen::VectorXd& other) {
     const Eigen::VectorXd a = one.array() - one.mean();
@@ -71,7 +65,7 @@ void suspect_position_unit(const Robot& robot, const Recording& recording, Suspi
     constexpr double another_unit = 5; // an encoder's error is less than that
     result.fatal = factor > another_unit;
     std::string text("positions of joint ");
-    text += joint_list(beyond) + " are up to " + in_words(factor) + " times beyond the joints' limits: ";
+    text += joint_list(beyond) + " are up to " + rounded_text(factor) + " times beyond the joints' limits: ";
     text += factor > 2 * degrees    ? "looks like thousandths (mrad, mm)"
             : factor > another_unit ? "looks like degrees"
                                     : "another zero, or another robot";
@@ -79,26 +73,22 @@ void suspect_position_unit(const Robot& robot, const Recording& recording, Suspi
 }
 
 void suspect_clock(const Recording& recording, Suspicions& result) {
-    std::vector<double> steps;
-    for (std::size_t row = 1; row < recording.row_count(); ++row) {
-        steps.push_back(recording.time_s[row] - recording.time_s[row - 1]);
-    }
-    const double step = steps.empty() ? 0 : median(std::move(steps));
+    const double step = recording.row_count() < 2 ? 0 : median_step_s(recording);
     if (step > 0.2) {
         result.fatal = true;
-        result.sentences.push_back(std::string("rows are ") + in_words(step) +
+        result.sentences.push_back(std::string("rows are ") + rounded_text(step) +
                                    " s apart: the column t looks like milliseconds");
     } else if (step > 0 && step < 2e-5) {
         result.fatal = true;
-        result.sentences.push_back(std::string("rows are ") + in_words(1e6 * step) +
+        result.sentences.push_back(std::string("rows are ") + rounded_text(1e6 * step) +
                                    " µs apart: the column t does not look like seconds");
     }
     const double duration_s =
         recording.row_count() == 0 ? 0 : recording.time_s.back() - recording.time_s.front();
     if (duration_s < least_duration_s) {
         result.fatal = true;
-        result.sentences.push_back(std::string("the recording is ") + in_words(duration_s) +
-                                   " s long: causes need " + in_words(least_duration_s) +
+        result.sentences.push_back(std::string("the recording is ") + rounded_text(duration_s) +
+                                   " s long: causes need " + rounded_text(least_duration_s) +
                                    " s at least, better 60");
     }
 }
@@ -154,7 +144,7 @@ void suspect_output_unit(const DiagnosisSignals& signals, const Eigen::MatrixXd&
     if (factor > 30 || factor < 1.0 / 30) {
         result.fatal = true;
         result.sentences.push_back(
-            "the outputs are " + in_words(factor) +
+            "the outputs are " + rounded_text(factor) +
             " times the model's with the same course: another unit, such as mN·m or N·cm");
     }
 }
@@ -192,8 +182,8 @@ void suspect_exchange(const DiagnosisSignals& signals, const Eigen::MatrixXd& me
     if (clear) {
         result.fatal = true;
         result.sentences.push_back(words + " look exchanged: the other way round the model leaves " +
-                                   in_words(100 * best) + " % of the variance instead of " +
-                                   in_words(100 * now) + " %");
+                                   rounded_text(100 * best) + " % of the variance instead of " +
+                                   rounded_text(100 * now) + " %");
     }
 }
 
@@ -224,7 +214,7 @@ void suspect_robot(const DiagnosisSignals& signals, const Eigen::MatrixXd& measu
         result.fatal = true;
         result.sentences.push_back(
             "the robot's model, with friction, has next to nothing in common with the outputs (" +
-            in_words(100 * left) +
+            rounded_text(100 * left) +
             " % of their variance is left): another robot, tip, base, mounting or output");
     }
 }

@@ -66,7 +66,7 @@ std::vector<Candidate> position_candidates(const DiagnosisSignals& signals) {
             single_column("joint_flexibility", where,
                           on_outputs(signals.of_position(
                               joint, -smooth(signals, joint, signals.joint_torque.col(index), 0.5))),
-                          is_positive, "", "");
+                          is_positive);
         flexibility.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
             return std::vector<EffectParameter>{{"stiffness", "N·m/rad", 1 / coefficients[0]}};
         };

@@ -46,9 +46,8 @@ Candidate axis_gain(const Eigen::MatrixXd& wrench, Eigen::Index from, Eigen::Ind
     const auto source = static_cast<std::size_t>(from);
     const auto sink = static_cast<std::size_t>(to);
     const std::string unit = std::string(axis_units[sink]) + "/" + axis_units[source];
-    Candidate result =
-        single_column(own ? "ft_gain" : "ft_crosstalk", "ft_sensor", on_output(to, wrench.col(from)),
-                      is_anything, "gain", own ? "1" : unit, 1, own ? 1 : 0);
+    Candidate result = single_column(own ? "ft_gain" : "ft_crosstalk", "ft_sensor",
+                                     on_output(to, wrench.col(from)), is_anything);
     result.detail = std::string(axes[source]) + " to " + axes[sink];
     result.parameters = [own, from, to, unit](const Eigen::VectorXd& coefficients, const EffectShape&) {
         const auto axis_from = static_cast<double>(from);
@@ -123,8 +122,7 @@ std::vector<Candidate> sensor_candidates(const DiagnosisSignals& signals, const 
         result.push_back(single_column("delay", where, on_output(output, -signals.rate(own)),
                                        positive_up_to(0.1), "delay", "s"));
         if (gains_known) {
-            Candidate gain =
-                single_column("actuator_gain", where, on_output(output, own), up_to(0.8), "", "");
+            Candidate gain = single_column("actuator_gain", where, on_output(output, own), up_to(0.8));
             gain.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
                 return std::vector<EffectParameter>{{"gain", "1", 1 / (1 + coefficients[0])}};
             };

@@ -15,12 +15,6 @@ namespace dfdyn::tools {
 
 namespace {
 
-std::string formatted(const char* format, double value) {
-    std::array<char, 48> text{};
-    std::snprintf(text.data(), text.size(), format, value);
-    return text.data();
-}
-
 template <class Value>
 double median_over(const std::vector<const UnitResult*>& draws, const Value& value) {
     std::vector<double> values;

@@ -15,17 +15,11 @@ namespace dfdyn::tools {
 
 namespace {
 
-hal::SocketCanOptions bus_options(const std::string& interface) {
-    hal::SocketCanOptions options;
-    options.interface = interface;
-    return options;
-}
-
 /// Hands what an interface receives to a sampler and a recorder, with the same stamps.
 class Reception {
   public:
     Reception(const InterfaceOptions& options, BusSampler& sampler)
-        : sampler_(sampler), bus_(bus_options(options.interface)), end_ns_(end_of(options)) {
+        : sampler_(sampler), bus_({.interface = options.interface}), end_ns_(end_of(options)) {
         if (!options.record.empty()) {
             recorder_.emplace(options.record, options.interface);
         }

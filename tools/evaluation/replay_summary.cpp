@@ -2,6 +2,7 @@
 #include "tools/evaluation/replay_summary.hpp"
 
 #include "tools/build_flags.hpp"
+#include "tools/common/number.hpp"
 #include "tools/model/model_file.hpp"
 
 #include <algorithm>
@@ -57,13 +58,9 @@ std::string describe_model(const TrainedModel& model) {
            (model.features.orthogonal ? "orthogonal " : "") + "Fourier columns";
 }
 
-std::string formatted(const char* format, double value) {
-    if (std::isnan(value)) {
-        return "-";
-    }
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), format, value);
-    return text.data();
+/// As `formatted`; a dash for what there is none of.
+std::string formatted_or_dash(const char* format, double value) {
+    return std::isnan(value) ? "-" : formatted(format, value);
 }
 
 void print_line(std::ostream& out, const std::string& label, std::span<const std::string> cells) {
@@ -77,7 +74,7 @@ void print_line(std::ostream& out, const std::string& label, std::span<const std
 void print_values(std::ostream& out, const std::string& label, const std::vector<double>& values) {
     std::vector<std::string> cells;
     for (const double value : values) {
-        cells.push_back(formatted("%.3f", value));
+        cells.push_back(formatted_or_dash("%.3f", value));
     }
     print_line(out, label, cells);
 }
@@ -124,9 +121,9 @@ void print_summary(std::ostream& out, const ReplaySummary& summary) {
         print_values(out, "nRMSE, second half", recording.normalised_error_second_half);
         print_values(out, "share within 2 sigma", recording.within_two_deviations);
         for (const Contradiction& contradiction : recording.contradictions) {
-            out << "  contradicts the model from " << formatted("%.2f", contradiction.start_s) << " to "
-                << formatted("%.2f", contradiction.end_s) << " s (nis up to "
-                << formatted("%.0f", contradiction.peak) << ")\n";
+            out << "  contradicts the model from " << formatted_or_dash("%.2f", contradiction.start_s)
+                << " to " << formatted_or_dash("%.2f", contradiction.end_s) << " s (nis up to "
+                << formatted_or_dash("%.0f", contradiction.peak) << ")\n";
         }
         if (summary.horizon > 0) {
             const std::string index = "epsilon (T=" + std::to_string(summary.horizon) + ")";
@@ -134,9 +131,11 @@ void print_summary(std::ostream& out, const ReplaySummary& summary) {
             print_values(out, index + ", after", recording.horizon_steady);
         }
     }
-    out << "time of a tick that learns, on this machine: median " << formatted("%.1f", summary.median_us)
-        << " us, 99 % " << formatted("%.1f", summary.p99_us) << " us, longest "
-        << formatted("%.1f", summary.longest_us) << " us (" << summary.operations << " multiply-adds)\n"
+    out << "time of a tick that learns, on this machine: median "
+        << formatted_or_dash("%.1f", summary.median_us) << " us, 99 % "
+        << formatted_or_dash("%.1f", summary.p99_us) << " us, longest "
+        << formatted_or_dash("%.1f", summary.longest_us) << " us (" << summary.operations
+        << " multiply-adds)\n"
         << "learned state: " << summary.state_bytes << " bytes\n"
         << "build: " << build_flags() << '\n';
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/recording/zero_phase_derivatives.hpp"
 
-#include "tools/common/quantile.hpp"
+#include "tools/recording/columns_matrix.hpp"
+#include "tools/recording/stretches.hpp"
 
 #include <Eigen/QR>
 
@@ -11,23 +12,11 @@ namespace dfdyn::tools {
 
 namespace {
 
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-double step_s(const Recording& recording, std::size_t row) {
-    return 1e-9 * static_cast<double>(recording.time_ns[row] - recording.time_ns[row - 1]);
-}
-
-/// Per row the first row of the stretch without gaps that it belongs to.
-std::vector<std::size_t> stretches(const Recording& recording) {
-    std::vector<double> steps;
-    for (std::size_t row = 1; row < recording.row_count(); ++row) {
-        steps.push_back(step_s(recording, row));
-    }
-    const double longest = 3 * median(std::move(steps)); // not used where there is no step
-    std::vector<std::size_t> first(recording.row_count(), 0);
-    for (std::size_t row = 1; row < recording.row_count(); ++row) {
-        const bool gap = recording.gap_before[row] != 0 || step_s(recording, row) > longest;
-        first[row] = gap ? row : first[row - 1];
+/// Per row the first row of the stretch that it belongs to.
+std::vector<Eigen::Index> beginnings(const Recording& recording) {
+    std::vector<Eigen::Index> first;
+    for (const Stretch& stretch : recorded_stretches(recording)) {
+        first.insert(first.end(), static_cast<std::size_t>(stretch.count), stretch.first);
     }
     return first;
 }
@@ -61,13 +50,13 @@ SampledDerivatives zero_phase_derivatives(const Recording& recording, const Colu
                                           const ZeroPhaseWindow& window) {
     const auto rows = static_cast<Eigen::Index>(recording.row_count());
     const auto signals = static_cast<Eigen::Index>(columns.names.size());
-    const Eigen::Map<const RowMajor> values(columns.values.data(), rows, signals);
-    const std::vector<std::size_t> stretch = stretches(recording);
+    const auto values = columns_matrix(columns);
+    const std::vector<Eigen::Index> beginning = beginnings(recording);
     const auto half = static_cast<std::size_t>(window.half_width);
     SampledDerivatives result{Eigen::MatrixXd::Zero(rows, signals), Eigen::MatrixXd::Zero(rows, signals),
                               std::vector<std::uint8_t>(recording.row_count(), 0)};
     for (std::size_t row = half; row + half < recording.row_count(); ++row) {
-        if (stretch[row - half] != stretch[row + half]) {
+        if (beginning[row - half] != beginning[row + half]) {
             continue;
         }
         const Eigen::MatrixXd weights = polynomial_weights(recording, row - half, row, window);

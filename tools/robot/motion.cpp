@@ -2,6 +2,7 @@
 #include "tools/robot/motion.hpp"
 
 #include "tools/common/error.hpp"
+#include "tools/recording/columns_matrix.hpp"
 
 #include <algorithm>
 #include <numbers>
@@ -16,14 +17,6 @@ double uniform(std::mt19937_64& engine, double low, double high) {
     return low + (high - low) * 0x1p-53 * static_cast<double>(engine() >> 11U);
 }
 
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-Eigen::MatrixXd matrix(const Columns& columns) {
-    const auto count = static_cast<Eigen::Index>(columns.names.size());
-    return Eigen::Map<const RowMajor>(columns.values.data(),
-                                      static_cast<Eigen::Index>(columns.values.size()) / count, count);
-}
-
 struct States {
     RecordedMotion all;
     std::vector<std::uint8_t> valid;
@@ -32,15 +25,15 @@ struct States {
 States states_of(const Recording& recording, const ZeroPhaseWindow& window) {
     States states;
     RobotMotion& motion = states.all.motion;
-    motion.position = matrix(recording.position);
-    states.all.outputs = matrix(recording.output);
+    motion.position = columns_matrix(recording.position);
+    states.all.outputs = columns_matrix(recording.output);
     if (recording.velocity.present() && recording.acceleration.present()) {
-        motion.velocity = matrix(recording.velocity);
-        motion.acceleration = matrix(recording.acceleration);
+        motion.velocity = columns_matrix(recording.velocity);
+        motion.acceleration = columns_matrix(recording.acceleration);
         states.valid.assign(recording.row_count(), 1);
     } else if (recording.velocity.present()) {
         SampledDerivatives derivatives = zero_phase_derivatives(recording, recording.velocity, window);
-        motion.velocity = matrix(recording.velocity);
+        motion.velocity = columns_matrix(recording.velocity);
         motion.acceleration = std::move(derivatives.first);
         states.valid = std::move(derivatives.valid);
     } else {

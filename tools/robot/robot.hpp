@@ -48,4 +48,7 @@ struct Robot {
     std::vector<std::string> notes; ///< what the file has that is odd but usable; a line each
 };
 
+/// Per joint, whether it slides.
+std::vector<bool> prismatic_joints(const Robot& robot);
+
 } // namespace dfdyn::tools

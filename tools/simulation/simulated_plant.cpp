@@ -8,23 +8,12 @@
 
 namespace dfdyn::tools {
 
-namespace {
-
-std::vector<bool> prismatic(const Robot& robot) {
-    std::vector<bool> result;
-    for (const RobotJoint& joint : robot.joints) {
-        result.push_back(joint.prismatic);
-    }
-    return result;
-}
-
-} // namespace
-
 SimulatedPlant::SimulatedPlant(const Robot& robot, const Scenario& scenario, const JointVector& position)
     : period_s_(1 / scenario.integration_rate_hz),
       encoder_steps_(std::llround(scenario.integration_rate_hz / scenario.encoders.rate_hz)),
       arm_(real_robot(robot, scenario.robot_errors), scenario.actuators, position, scenario.loads),
-      payloads_(scenario.payloads, robot), encoders_(scenario.encoders, prismatic(robot), scenario.seed),
+      payloads_(scenario.payloads, robot),
+      encoders_(scenario.encoders, prismatic_joints(robot), scenario.seed),
       torque_sensor_(scenario.torque_sensor, period_s_, scenario.seed) {
     if (scenario.force_torque) {
         wrench_sensor_.emplace(*scenario.force_torque, period_s_, scenario.seed);

@@ -13,14 +13,6 @@ namespace dfdyn::tools {
 
 namespace {
 
-std::vector<bool> prismatic(const Robot& robot) {
-    std::vector<bool> result;
-    for (const RobotJoint& joint : robot.joints) {
-        result.push_back(joint.prismatic);
-    }
-    return result;
-}
-
 std::optional<WrenchSensor> wrench_sensor(const Scenario& scenario) {
     if (!scenario.force_torque) {
         return std::nullopt;
@@ -40,7 +32,7 @@ Simulation::Simulation(const Robot& robot, const Scenario& scenario)
       arm_(real_robot(robot, scenario.robot_errors), scenario.actuators, reference_.position, scenario.loads),
       payloads_(scenario.payloads, robot),
       controller_(robot, scenario.actuators.rotor_inertia, scenario.controller, scenario.seed),
-      encoders_(scenario.encoders, prismatic(robot), scenario.seed),
+      encoders_(scenario.encoders, prismatic_joints(robot), scenario.seed),
       control_derivatives_(scenario.derivatives, static_cast<int>(robot.joints.size()),
                            1 / scenario.encoders.rate_hz),
       derivatives_(scenario.derivatives, static_cast<int>(robot.joints.size()),

@@ -29,9 +29,9 @@ struct IdFilter {
 };
 
 struct SocketCanOptions {
-    std::string interface;         ///< such as `can0`
-    std::vector<IdFilter> filters; ///< none: all frames. Error frames come in any case.
-    bool receive_own = false;      ///< hand out what this bus itself sent, once it is on the wire
+    std::string interface;              ///< such as `can0`
+    std::vector<IdFilter> filters = {}; ///< none: all frames. Error frames come in any case.
+    bool receive_own = false;           ///< hand out what this bus itself sent, once it is on the wire
 };
 
 /// A CAN interface of Linux (`Bus`), classic or FD. Opens in its constructor; from then on no call allocates,
