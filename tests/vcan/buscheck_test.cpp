@@ -10,7 +10,7 @@ using dfdyn::tests::Background;
 using dfdyn::tests::IcubLog;
 using dfdyn::tests::run;
 
-TEST_CASE("a live bus is looked at: who sends, and who does not") {
+TEST_CASE("a live bus is looked at: who sends, and who does not", "[virtual_time]") {
     const IcubLog log(75, 50); // 1.5 s
     const auto played = log.without(" 3DB#");
     const auto bus = log.directory.write("bus.json", dfdyn::tests::icub_arm_at(50));
@@ -29,7 +29,7 @@ TEST_CASE("a live bus is looked at: who sends, and who does not") {
     CHECK_THAT(report, Contains("frames were sent by programs of this computer"));
 }
 
-TEST_CASE("an interface that goes down while it is looked at, and comes back, is said") {
+TEST_CASE("an interface that goes down while it is looked at, and comes back, is said", "[virtual_time]") {
     const dfdyn::tests::TemporaryDirectory directory;
     const auto bus = directory.write("bus.json", dfdyn::tests::icub_arm_at(50));
     run("ip link add dev vcan4 type vcan && ip link set vcan4 up");
