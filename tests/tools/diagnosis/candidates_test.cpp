@@ -181,3 +181,34 @@ TEST_CASE("parameters follow the catalogue's signs and units") {
     CHECK(std::ranges::none_of(sensor_candidates(torques, torques.nominal, false),
                                [](const Candidate& one) { return one.effect == "actuator_gain"; }));
 }
+
+TEST_CASE("an unnamed dependence is on inputs, and no larger than what the rigid body leaves") {
+    const Robot robot = dfdyn::tests::ur5();
+    const DiagnosisSignals signals = signals_of(robot, OutputKind::joint_torque);
+    const VectorXd velocity = signals.measured.motion.velocity.col(2);
+    MatrixXd unexplained = MatrixXd::Zero(signals.rows(), 6);
+    unexplained.col(0) = 0.7 * velocity.cwiseAbs2();
+    const std::vector<Candidate> all = dependence_candidates(signals, unexplained);
+    const auto found = std::ranges::find_if(all, [](const Candidate& one) {
+        return one.where == "output1" && one.inputs == std::vector<std::string>{"qd3"};
+    });
+    REQUIRE(found != all.end());
+    CHECK_FALSE(found->named());
+    check_same(contribution(signals, *found, 0).col(0), velocity.cwiseAbs2(), 1e-12);
+    CHECK(found->shapes[0].allowed(VectorXd::Constant(1, 0.7)));
+    CHECK_FALSE(found->shapes[0].allowed(VectorXd::Constant(1, 1.4)));
+    // whatever the basis: also where its functions cancel each other
+    const auto of_position = std::ranges::find_if(all, [](const Candidate& one) {
+        return one.where == "output1" && one.inputs == std::vector<std::string>{"q1"};
+    });
+    REQUIRE(of_position != all.end());
+    const EffectShape& widest = of_position->shapes.back();
+    VectorXd coefficients = VectorXd::Ones(static_cast<Index>(widest.columns.size()));
+    MatrixXd sum = MatrixXd::Zero(signals.rows(), 6);
+    for (const std::size_t column : widest.columns) {
+        sum += contribution(signals, *of_position, column);
+    }
+    coefficients *= unexplained.col(0).norm() / sum.col(0).norm();
+    CHECK(widest.allowed(1.4 * coefficients));
+    CHECK_FALSE(widest.allowed(1.6 * coefficients));
+}

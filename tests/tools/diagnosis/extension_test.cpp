@@ -74,8 +74,8 @@ DiagnosisWork work_with(const std::shared_ptr<const DiagnosisSignals>& signals, 
     work.torque_gains = VectorXd::Ones(signals->outputs());
     work.explanation.candidates = {candidate};
     work.explanation.chosen = {{0, shape}};
-    work.explanation.fit.coefficients = coefficients;
-    work.explanation.fit.covariance = 1e-12 * MatrixXd::Identity(coefficients.size(), coefficients.size());
+    work.explanation.named.coefficients = coefficients;
+    work.explanation.named.covariance = 1e-12 * MatrixXd::Identity(coefficients.size(), coefficients.size());
     return work;
 }
 
@@ -193,9 +193,9 @@ TEST_CASE("columns of the same effect at the same place become one") {
             work.explanation.candidates.push_back(candidate);
         }
     }
-    work.explanation.fit.coefficients =
+    work.explanation.named.coefficients =
         VectorXd::LinSpaced(3, 1, 3); // stiffness and its offset, then the offset
-    work.explanation.fit.covariance = MatrixXd::Identity(3, 3);
+    work.explanation.named.covariance = MatrixXd::Identity(3, 3);
     const Extension extension = extension_of(work);
     REQUIRE(extension.columns.size() == 2);
     CHECK(extension.columns[0].effect.name == "joint_spring");
