@@ -126,6 +126,7 @@ class Search {
   private:
     void add_nuisance();
     std::vector<Candidate> demanding_as_chosen(std::vector<Candidate> contacts) const;
+    Eigen::VectorXd delays() const;
     std::vector<Entry> passing() const;
     void refine();
     void gather(std::vector<Entry> passing);
@@ -178,6 +179,20 @@ std::vector<Candidate> Search::demanding_as_chosen(std::vector<Candidate> contac
     return contacts;
 }
 
+/// Per output, the delay that the model at hand has there.
+Eigen::VectorXd Search::delays() const {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(signals_.outputs());
+    for (std::size_t i = 0; i < at_.chosen.size(); ++i) {
+        const Candidate& candidate = at_.candidates[at_.chosen[i].candidate];
+        if (candidate.effect == "delay") {
+            for (const EffectColumn::Part& part : candidate.columns.front().parts) {
+                result[part.output] = at_.fit.coefficients[at_.first_column(i)];
+            }
+        }
+    }
+    return result;
+}
+
 /// Candidates that depend on the model at hand. Ripples and contacts that were chosen stay as they are.
 std::vector<Entry> Search::passing() const {
     std::vector<Candidate> found;
@@ -188,7 +203,7 @@ std::vector<Entry> Search::passing() const {
             }
         }
     };
-    add(sensor_candidates(signals_, signals_.nominal + at_.effects(signals_, is_of_the_arm),
+    add(sensor_candidates(signals_, signals_.nominal + at_.effects(signals_, is_of_the_arm), delays(),
                           options_.gains_known));
     if (!signals_.wrench()) {
         add(drift_candidates(signals_, at_.effects(signals_, is_friction)));
@@ -336,6 +351,9 @@ std::vector<WeighedSums> Search::sums_of_blocks() const {
 /// Drops, one after the other, lasting effects without which blocks of time are predicted no worse by what
 /// fits the other blocks.
 void Search::keep_what_predicts() {
+    if (regression_.fitted_frames() < validation_blocks) {
+        return; // too short a recording to leave any of it out
+    }
     const std::vector<WeighedSums> blocks = sums_of_blocks();
     while (true) {
         const double all = held_out_score(at_.problem, blocks, at_.chosen);

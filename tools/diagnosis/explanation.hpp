@@ -39,11 +39,13 @@ struct Explanation {
     Eigen::VectorXd coefficients(std::size_t chosen_index) const;
     Eigen::MatrixXd covariance(std::size_t chosen_index) const;
 
+    /// Of both fits: where a chosen candidate's columns begin.
+    Eigen::Index first_column(std::size_t chosen_index) const;
+
   private:
     Eigen::MatrixXd of_fit(const DiagnosisSignals& signals, const EffectFit& of,
                            const std::function<bool(const Candidate&)>& wanted) const;
     void add_nuisance(Eigen::MatrixXd& sum, const EffectFit& of) const;
-    Eigen::Index first_column(std::size_t chosen_index) const; ///< of both fits
 };
 
 /// Searches among all candidates at once, in rounds: the noise is what the model at hand leaves, candidates

@@ -146,8 +146,9 @@ TEST_CASE("what the extended model adds for torques is what the diagnosis' colum
     const auto signals = std::make_shared<const DiagnosisSignals>(
         diagnosis_signals(robot, OutputKind::joint_torque, swinging(robot, engine)));
     std::vector<Candidate> candidates = joint_candidates(*signals);
-    for (auto more : {body_candidates(*signals), position_candidates(*signals),
-                      sensor_candidates(*signals, signals->nominal, true)}) {
+    for (auto more :
+         {body_candidates(*signals), position_candidates(*signals),
+          sensor_candidates(*signals, signals->nominal, VectorXd::Zero(signals->outputs()), true)}) {
         candidates.insert(candidates.end(), more.begin(), more.end());
     }
     candidates.push_back(ripple_candidate(*signals, 2, {3, 40}));
@@ -165,7 +166,8 @@ TEST_CASE("what it adds for a wrench is what they say, too") {
     const Robot robot = dfdyn::tests::icub_right_arm();
     const auto signals = std::make_shared<const DiagnosisSignals>(
         diagnosis_signals(robot, OutputKind::wrench, swinging(robot, engine)));
-    std::vector<Candidate> candidates = sensor_candidates(*signals, signals->nominal, true);
+    std::vector<Candidate> candidates =
+        sensor_candidates(*signals, signals->nominal, VectorXd::Zero(signals->outputs()), true);
     for (auto more : {body_candidates(*signals), position_candidates(*signals)}) {
         candidates.insert(candidates.end(), more.begin(), more.end());
     }
