@@ -30,7 +30,8 @@ using CoefficientRule = std::function<bool(const Eigen::VectorXd& coefficients)>
 struct EffectShape {
     std::vector<std::size_t> columns; ///< of the candidate
     CoefficientRule allowed;
-    double value = 0; ///< the shape's own parameter, where the effect has one
+    double value = 0;   ///< the shape's own parameter, where the effect has one
+    double bounded = 0; ///< how many of the coefficients can only be small where another one is
 };
 
 /// A named cause at a place: an effect of the catalogue; or, without a name, what an output would show if it

@@ -23,7 +23,8 @@ const SearchCandidate::Shape& shape_of(const SearchProblem& problem, const Chose
 /// What a candidate costs for being one of many, of many shapes, with so many coefficients.
 double price(const SearchProblem& problem, const ChosenShape& chosen) {
     const SearchCandidate& candidate = problem.candidates[chosen.candidate];
-    const auto parameters = static_cast<double>(candidate.shapes[chosen.shape].columns.size());
+    const SearchCandidate::Shape& shape = candidate.shapes[chosen.shape];
+    const double parameters = static_cast<double>(shape.columns.size()) - 0.5 * shape.bounded;
     return candidate.extra_price +
            std::log(candidate.rivals * static_cast<double>(candidate.shapes.size()) * candidate.tried) +
            0.5 * parameters * std::log1p(candidate.rows);

@@ -14,6 +14,7 @@ struct SearchCandidate {
     struct Shape {
         std::vector<Eigen::Index> columns; ///< of the normal equations
         CoefficientRule allowed;
+        double bounded = 0; ///< how many of the coefficients are bounded by another one: half of one each
     };
     std::vector<Shape> shapes;
     std::size_t family = 0; ///< of those with the same number, one at most; 0: of none

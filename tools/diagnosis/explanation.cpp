@@ -137,6 +137,7 @@ class Search {
     void fit_named();
     std::vector<std::string> chosen_keys() const;
     Eigen::VectorXd all_coefficients() const;
+    Eigen::VectorXd of_named(Eigen::VectorXd coefficients) const;
 
     const DiagnosisSignals& signals_;
     const ExplanationOptions& options_;
@@ -213,9 +214,11 @@ std::vector<Entry> Search::passing() const {
             add({at_.candidates[one.candidate]});
         }
     }
-    const Eigen::MatrixXd weighed = weighed_residual(regression_, all_coefficients());
-    add(scan_ripples(signals_, regression_, weighed));
-    add(demanding_as_chosen(scan_contacts(signals_, regression_, weighed)));
+    const Eigen::VectorXd coefficients = all_coefficients();
+    // a free function of the position can hide a ripple
+    add(scan_ripples(signals_, regression_, weighed_residual(regression_, of_named(coefficients))));
+    add(demanding_as_chosen(
+        scan_contacts(signals_, regression_, weighed_residual(regression_, coefficients))));
     std::vector<Entry> result;
     for (Candidate& candidate : found) {
         result.emplace_back(rows_, std::move(candidate));
@@ -253,7 +256,7 @@ void Search::gather(std::vector<Entry> passing) {
         candidate.extra_price = entry.candidate.extra_price;
         candidate.rows = static_cast<double>(rows_.bins() * regression_.fitted_frames());
         for (const EffectShape& shape : entry.candidate.shapes) {
-            SearchCandidate::Shape one{{}, shape.allowed};
+            SearchCandidate::Shape one{{}, shape.allowed, shape.bounded};
             for (const std::size_t column : shape.columns) {
                 one.columns.push_back(static_cast<Eigen::Index>(columns.size() + column));
             }
@@ -290,6 +293,15 @@ Eigen::VectorXd Search::all_coefficients() const {
     Eigen::VectorXd all = Eigen::VectorXd::Zero(regression_.columns());
     all(at_.fit.columns) = at_.fit.coefficients;
     return all;
+}
+
+Eigen::VectorXd Search::of_named(Eigen::VectorXd coefficients) const {
+    for (const ChosenShape& one : at_.chosen) {
+        if (!at_.candidates[one.candidate].named()) {
+            coefficients(at_.problem.candidates[one.candidate].shapes[one.shape].columns).setZero();
+        }
+    }
+    return coefficients;
 }
 
 void Search::estimate_noise(bool white) {

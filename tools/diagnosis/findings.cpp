@@ -14,8 +14,8 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr double tie = 3; ///< odds of 20 to 1: closer than this the data cannot tell two causes apart
-constexpr double price_of_shapes = 12; ///< what the three coefficients of a centre of mass cost
-constexpr std::size_t listed = 3;      ///< alternatives that a finding tells of
+constexpr double price_of_shapes = 6; ///< what the three coefficients of a centre of mass cost
+constexpr std::size_t listed = 3;     ///< alternatives that a finding tells of
 constexpr double two_sided_95 = 1.96;
 constexpr double coloured =
     1.7; ///< how much wider intervals must be than their formula says: measured, docs/diagnosis-panel.md
