@@ -50,6 +50,22 @@ ErrorMeasure error_measure(const Eigen::MatrixXd& error, const Eigen::MatrixXd& 
     return result;
 }
 
+/// Said where causes that were chosen on the first part of a recording do harm on the last.
+void suspect_poor_extension(Diagnosis& diagnosis) {
+    std::string worse;
+    for (Eigen::Index output = 0; output < diagnosis.nominal.rms.size(); ++output) {
+        if (diagnosis.extended.rms[output] > diagnosis.nominal.rms[output]) {
+            worse.append(worse.empty() ? "" : ", ")
+                .append(diagnosis.output_names[static_cast<std::size_t>(output)]);
+        }
+    }
+    if (!worse.empty()) {
+        diagnosis.suspicions.push_back(
+            "on held-out time the extended model errs more than the nominal one at " + worse +
+            ": this recording is too short, or too little like itself, for these causes");
+    }
+}
+
 /// Errors on the last third, of a model that was chosen and fitted without it.
 void measure_on_held_out(DiagnosisWork& work, ExplanationOptions options) {
     options.fitted_share = fitted_share;
@@ -65,6 +81,7 @@ void measure_on_held_out(DiagnosisWork& work, ExplanationOptions options) {
     Diagnosis& diagnosis = work.diagnosis;
     diagnosis.nominal = measure(nominal_error);
     diagnosis.extended = measure(nominal_error - earlier.model(signals));
+    suspect_poor_extension(diagnosis);
     diagnosis.heldout_from_s = signals.measured.time_s[first];
     diagnosis.heldout_to_s = signals.measured.time_s[signals.rows() - 1];
 }
