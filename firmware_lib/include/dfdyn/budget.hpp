@@ -41,4 +41,11 @@ struct Cost {
     std::int64_t largest_step; ///< the largest part that learning is sliced into: a smaller budget may not get on
 };
 
+/// The bytes that an estimator takes.
+struct Footprint {
+    std::int64_t state_bytes;    ///< RAM: the estimator itself
+    std::int64_t constant_bytes; ///< flash: the constants, and where learning starts
+    std::int64_t stack_bytes;    ///< of any of its calls, at most, compiled with optimisation
+};
+
 } // namespace dfdyn

@@ -13,6 +13,7 @@ template <class Scalar, int columns, int p, int m>
 struct BlockArrowConstants {
     LearnerConstants<Scalar, columns, product(m, sum(p, 1))> features;
     LearnerConstants<Scalar, p, 1> common;
+    static constexpr std::int64_t start_bytes = decltype(features)::start_bytes + decltype(common)::start_bytes;
 };
 
 /// Recursive least squares of model SPK: y_k = φ'w_k + ψ_k'π + e_k, the same columns φ with weights of their
@@ -217,7 +218,7 @@ class BlockArrow {
     /// φ times the weights of regression i, as they are once an update under way is done; `pending` = φ'K/α.
     [[nodiscard]] Scalar projection(int i, const Scalar* phi, Scalar pending) const noexcept {
         const Scalar now = detail::dot(weights_.data() + i * padded(columns_), phi, columns_);
-        return i < next_ ? now : now + pending * residual(*this, i);
+        return task_ != Task::weights || i < next_ ? now : now + pending * residual(*this, i);
     }
 
     void load(const LearnerStart<Scalar, columns, regressions>& start) noexcept {

@@ -5,6 +5,7 @@
 #include "dfdyn/storage.hpp"
 
 #include <concepts>
+#include <cstdint>
 
 namespace dfdyn {
 
@@ -28,6 +29,7 @@ template <class Scalar, int p, int m>
 struct LearnerConstants {
     Scalar prior_variance;                   ///< ρ²/σ² > 0
     Scalar forgetting_factor;                ///< λ, 1 - 1/p ≤ λ ≤ 1; 1 reproduces the paper
+    static constexpr std::int64_t start_bytes = sizeof(LearnerStart<Scalar, p, m>);
     const LearnerStart<Scalar, p, m>* start; ///< nullptr: zero weights and the prior's covariance
 };
 
