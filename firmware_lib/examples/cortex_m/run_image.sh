@@ -20,6 +20,6 @@ fi
 
 status=0
 "$qemu" -M "$board" -nographic -monitor none -serial none -semihosting-config enable=on,target=native \
-    -icount "shift=$shift" -kernel "$image" </dev/null >"${image%.elf}.txt" || status=$?
+    -icount "shift=$shift,sleep=off" -kernel "$image" </dev/null >"${image%.elf}.txt" 2>&1 || status=$?
 grep -v '^ticks' "${image%.elf}.txt" || true
 exit "$status"
