@@ -28,10 +28,10 @@ test_packages=(
     "clang-format:no check of the formatting"
     "clang-tidy:no static analysis"
     "shellcheck:no check of the scripts"
-    "gcc-arm-none-eabi:no build for the Cortex-M7"
-    "libnewlib-arm-none-eabi:no build for the Cortex-M7"
-    "libstdc++-arm-none-eabi-newlib:no build for the Cortex-M7"
-    "qemu-system-arm:no run on the Cortex-M7"
+    "gcc-arm-none-eabi:no build for the Cortex-M cores"
+    "libnewlib-arm-none-eabi:no build for the Cortex-M cores"
+    "libstdc++-arm-none-eabi-newlib:no build for the Cortex-M cores"
+    "qemu-system-arm:no run on the Cortex-M cores"
     "can-utils:the CAN backend cannot be tested against other programs"
     "python3:the frames of DBC files cannot be read by another program"
     "python3-can:the frames of DBC files cannot be read by another program"
@@ -39,6 +39,9 @@ test_packages=(
     "kmod:the CAN backend cannot be tested where the kernel has no CAN"
     "user-mode-linux:the CAN backend cannot be tested where the kernel has no CAN"
 )
+
+# Not to be had everywhere; what needs them says that it checked nothing.
+optional_test_packages=("clang-22" "libclang-rt-22-dev")
 
 is_installed() {
     [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]
@@ -64,6 +67,13 @@ apt_install() {
     as_root apt-get -o DPkg::Lock::Timeout=300 install --yes --no-install-recommends "$@"
 }
 
+install_optional() {
+    local package
+    for package in "$@"; do
+        is_installed "$package" || apt_install "$package" || echo "not to be had here: $package"
+    done
+}
+
 # What is still missing after all tries, each with apt's own reason and with what does not work without it.
 explain_missing() {
     local entry package
@@ -77,8 +87,14 @@ explain_missing() {
 }
 
 case ${1:-} in
-demo) packages=("${demo_packages[@]}") ;;
-test) packages=("${demo_packages[@]}" "${test_packages[@]}") ;;
+demo)
+    packages=("${demo_packages[@]}")
+    optional=()
+    ;;
+test)
+    packages=("${demo_packages[@]}" "${test_packages[@]}")
+    optional=("${optional_test_packages[@]}")
+    ;;
 *)
     echo "usage: install_packages.sh demo|test" >&2
     exit 2
@@ -93,6 +109,7 @@ fi
 mapfile -t missing < <(missing_of "${packages[@]}")
 if [[ ${#missing[@]} -eq 0 ]]; then
     echo "all ${#packages[@]} packages are there"
+    install_optional "${optional[@]}"
     exit 0
 fi
 
@@ -110,3 +127,4 @@ if [[ ${#missing[@]} -gt 0 ]]; then
     explain_missing
     exit 1
 fi
+install_optional "${optional[@]}"

@@ -13,7 +13,8 @@ namespace {
 using Estimator = dfdyn::Estimator<ur5_model::Model>;
 
 Estimator estimator(ur5_model::constants); // all of its state; no heap
-constexpr dfdyn::Budget budget{Estimator::cost().learn / 2}; // of one tick: a sample is learned over two or three
+constexpr dfdyn::Budget budget{Estimator::cost().learn /
+                               2}; // of one tick: a sample is learned over two or three
 static_assert(budget.affords(Estimator::cost().largest_step), "a smaller budget would never learn anything");
 
 Estimator::Sample read_sensors(const Ur5Sample& recorded) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// dfdyn_embedding: runs the example. dfdyn_embedding TICKS [TICKS_IN_DOUBLE]: compares it with what a target wrote of
-// each of its ticks, a line of whole numbers "ticks: …" for each.
+// dfdyn_embedding: runs the example. dfdyn_embedding TICKS [TICKS_IN_DOUBLE]: compares it with what a target
+// wrote of each of its ticks, a line of whole numbers "ticks: …" for each.
 #include "embedding.hpp"
 
 #include <algorithm>
@@ -52,7 +52,8 @@ std::vector<TickOutcome> read_outcomes(const char* path, const std::string& tag)
     return read;
 }
 
-/// Relative to the value, or to the standard deviation where that is larger: a prediction of 0 is as good as it.
+/// Relative to the value, or to the standard deviation where that is larger: a prediction of 0 is as good as
+/// it.
 double difference(const TickOutcome& a, const TickOutcome& b) {
     double largest = a.predicted == b.predicted && a.learned == b.learned ? 0 : 1;
     for (std::size_t k = 0; k < 6 && a.predicted && b.predicted; ++k) {
@@ -70,8 +71,9 @@ bool agrees(const char* path, const std::string& tag, double tolerance) {
     for (std::size_t t = 0; t < std::min(target.size(), outcomes.size()); ++t) {
         largest = std::max(largest, difference(target[t], outcomes[t]));
     }
-    std::printf("%s%zu ticks on the target, %zu here; they differ by %.1e of each value at most (%.0e allowed)\n",
-                tag.c_str(), target.size(), outcomes.size(), largest, tolerance);
+    std::printf(
+        "%s%zu ticks on the target, %zu here; they differ by %.1e of each value at most (%.0e allowed)\n",
+        tag.c_str(), target.size(), outcomes.size(), largest, tolerance);
     return target.size() == outcomes.size() && largest <= tolerance;
 }
 

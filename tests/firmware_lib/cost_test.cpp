@@ -87,8 +87,8 @@ Sample perhaps_faulty(Sample sample, std::mt19937_64& engine) {
 
 } // namespace
 
-TEMPLATE_TEST_CASE("a tick that learns its sample at once costs what prediction and learning cost", "", UdSingle,
-                   UdDouble, UdWhole, Information, Parametric, Mean, Kernel, KernelSingle) {
+TEMPLATE_TEST_CASE("a tick that learns its sample at once costs what prediction and learning cost", "",
+                   UdSingle, UdDouble, UdWhole, Information, Parametric, Mean, Kernel, KernelSingle) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine);
     Estimator<TestType> estimator(constants);
@@ -107,9 +107,10 @@ TEMPLATE_TEST_CASE("a tick that learns its sample at once costs what prediction 
     CHECK(ticks >= 30);
 }
 
-// What a tick does beyond its budget is prediction and a variance, whatever comes in, and at its most exactly that.
-TEMPLATE_TEST_CASE("no tick does more than predict, a variance and its budget", "", UdSingle, UdDouble, UdWhole,
-                   Information, Parametric, Mean, Kernel, KernelSingle) {
+// What a tick does beyond its budget is prediction and a variance, whatever comes in, and at its most exactly
+// that.
+TEMPLATE_TEST_CASE("no tick does more than predict, a variance and its budget", "", UdSingle, UdDouble,
+                   UdWhole, Information, Parametric, Mean, Kernel, KernelSingle) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr Cost cost = cost_of<TestType>();
     for (const double forgetting_factor : {1.0, 0.99}) {
@@ -130,8 +131,8 @@ TEMPLATE_TEST_CASE("no tick does more than predict, a variance and its budget", 
     }
 }
 
-TEMPLATE_TEST_CASE("between ticks no more is done than the budget, and all of it by whole samples", "", UdSingle,
-                   UdDouble, UdWhole, Information, Parametric, Mean, Kernel, KernelSingle) {
+TEMPLATE_TEST_CASE("between ticks no more is done than the budget, and all of it by whole samples", "",
+                   UdSingle, UdDouble, UdWhole, Information, Parametric, Mean, Kernel, KernelSingle) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr Cost cost = cost_of<TestType>();
     for (const double forgetting_factor : {1.0, 0.99}) {
@@ -182,12 +183,14 @@ TEMPLATE_TEST_CASE_SIG("the cost of learning is that of any size", "",
 
 TEMPLATE_TEST_CASE("an input map costs what it says", "", DerivativeFree<6>, DerivativeFreeWeighted<3>,
                    (DerivativeFreeReduced<6, 3>), DerivativeFreeStructured<6>,
-                   DerivativeFreeStructuredRecursive<6>, StandardMeasured, Standard<2>, Standard<6>, Standard<20>) {
+                   DerivativeFreeStructuredRecursive<6>, StandardMeasured, Standard<2>, Standard<6>,
+                   Standard<20>) {
     constexpr int joints = 5;
     using Map = typename TestType::template Map<Double, joints>;
     const typename Map::Constants constants{};
     Map map(constants, {}, {}, {});
-    typename TestType::template Sample<Double, joints, 1> sample{}; // of a standing arm: all windows are whole
+    typename TestType::template Sample<Double, joints, 1>
+        sample{}; // of a standing arm: all windows are whole
     Double xi[joints * TestType::features_per_joint];
     for (int t = 0; t < 2 * TestType::lags + 2; ++t) {
         sample.time_ns += 1'000'000;
@@ -204,9 +207,8 @@ TEMPLATE_TEST_CASE_SIG("the feature map costs what it says", "", ((int d), d), 1
         const typename RandomFourier<d>::template Constants<Number, 12> constants{};
         const Number xi[12] = {};
         Number phi[2 * d];
-        CHECK(count([&] {
-                  RandomFourier<d>::template evaluate<Number, 12>(constants, {}, {}, xi, phi);
-              }) == RandomFourier<d>::template cost<Number>(12, d));
+        CHECK(count([&] { RandomFourier<d>::template evaluate<Number, 12>(constants, {}, {}, xi, phi); }) ==
+              RandomFourier<d>::template cost<Number>(12, d));
     };
     check(Single{});
     check(Double{});
@@ -216,12 +218,13 @@ TEMPLATE_TEST_CASE_SIG("the feature map costs what it says", "", ((int d), d), 1
 TEST_CASE("the physics map costs what it says") {
     using Arm = Chain<3>;
     constexpr int columns = 10 * 3 + 6 * 3;
-    using Columns = Physics<StandardMeasured, columns, ViscousFriction<3>, CoulombFriction<3>, StribeckFriction<3>,
-                            RotorInertia<3>, TorqueRipple<3>, OutputOffset<3>>;
+    using Columns = Physics<StandardMeasured, columns, ViscousFriction<3>, CoulombFriction<3>,
+                            StribeckFriction<3>, RotorInertia<3>, TorqueRipple<3>, OutputOffset<3>>;
     using Map = Columns::Map<Double, Arm>;
     Map::Constants constants{};
     Storage<std::int32_t, 3> rows{{0, 1, 2}};
-    constants.effects = {{rows}, {rows, {{1, 1, 1}}}, {rows, {{1, 1, 1}}, {{1, 1, 1}}}, {rows}, {rows, {}, {}}, {rows}};
+    constants.effects = {{rows}, {rows, {{1, 1, 1}}}, {rows, {{1, 1, 1}}, {{1, 1, 1}}},
+                         {rows}, {rows, {}, {}},      {rows}};
     for (int c = 0; c < columns; ++c) {
         constants.selected[c] = c;
     }

@@ -30,8 +30,8 @@ std::span<const double> values(const JointVector& vector) {
     return {vector.data(), static_cast<std::size_t>(vector.size())};
 }
 
-/// What suffices to learn a sample in `ticks` slices, in each of which as much may be left over as a slice cannot
-/// use.
+/// What suffices to learn a sample in `ticks` slices, in each of which as much may be left over as a slice
+/// cannot use.
 Budget share_of(const Cost& cost, int ticks) {
     return {(cost.learn + cost.forget + ticks - 1) / ticks + cost.largest_step};
 }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tick of a model of DFDYN_JOINTS joints, six outputs and DFDYN_FEATURES random features (2d columns): instructions to predict,
-// and to predict and learn; stack; and what the constant expressions said of bytes before.
+// A tick of a model of DFDYN_JOINTS joints, six outputs and DFDYN_FEATURES random features (2d columns):
+// instructions to predict, and to predict and learn; stack; and what the constant expressions said of bytes
+// before.
 #include "dfdyn/dfdyn.hpp"
 #include "instruction_counter.hpp"
 #include "report.hpp"
 #include "stack_watermark.hpp"
+
+extern "C" std::uint32_t data_begin[], bss_end[];
 
 namespace {
 
@@ -92,6 +95,8 @@ struct Measured {
     return measured;
 }
 
+std::uint32_t ram_bytes() { return static_cast<std::uint32_t>(bss_end - data_begin) * 4; }
+
 } // namespace
 
 int application() {
@@ -106,13 +111,16 @@ int application() {
     report(": instructions: predict ", predict.instructions, ", predict and learn ");
     report("", learn.instructions, "; operations: ");
     report("", static_cast<std::uint32_t>(Estimator::cost().predict + Estimator::cost().variance), ", ");
-    report("", static_cast<std::uint32_t>(Estimator::cost().predict + Estimator::cost().learn + Estimator::cost().forget),
+    report("",
+           static_cast<std::uint32_t>(Estimator::cost().predict + Estimator::cost().learn +
+                                      Estimator::cost().forget),
            "; state ");
     report("", static_cast<std::uint32_t>(footprint.state_bytes), " bytes, constants ");
     report("", static_cast<std::uint32_t>(footprint.constant_bytes), " bytes, stack ");
     report("", stack, " of ");
     report("", static_cast<std::uint32_t>(footprint.stack_bytes), " bytes\n");
     const bool good = predict.as_expected && learn.as_expected && stack <= footprint.stack_bytes &&
-                      learn.instructions <= DFDYN_INSTRUCTION_CEILING;
+                      learn.instructions <= DFDYN_INSTRUCTION_CEILING &&
+                      ram_bytes() + stack <= DFDYN_RAM_CEILING;
     return good ? 0 : 1;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Learning on the metal: a periodic timer interrupt takes what has come over CAN, gates it into a sample, predicts, and learns
-// within its budget. The frames come from memory in the place of the controller's mailbox; for another board write `Mailbox` anew.
+// Learning on the metal: a periodic timer interrupt takes what has come over CAN, gates it into a sample,
+// predicts, and learns within its budget. The frames come from memory in the place of the controller's
+// mailbox; for another board write `Mailbox` anew.
 #include "report.hpp"
 #include "stack_watermark.hpp"
 #include "systick.hpp"
@@ -48,7 +49,9 @@ class Mailbox {
     [[nodiscard]] const BusCounters& counters() const noexcept { return counters_; }
 
   private:
-    static constexpr std::int64_t stamp_ns(const Ur5Frame& frame) { return std::int64_t{1000} * frame.time_us; }
+    static constexpr std::int64_t stamp_ns(const Ur5Frame& frame) {
+        return std::int64_t{1000} * frame.time_us;
+    }
 
     std::int64_t now_ns_ = stamp_ns(ur5_frames[0]);
     std::size_t next_ = 0;
@@ -67,7 +70,8 @@ constexpr Cia402Drive drive(int joint) {
                           .length = 32,
                           .encoding = Encoding::signed_integer,
                           .factor = 2 * std::numbers::pi / 1048576};
-    const Signal current{.start_bit = 32, .length = 16, .encoding = Encoding::signed_integer, .factor = 0.001};
+    const Signal current{
+        .start_bit = 32, .length = 16, .encoding = Encoding::signed_integer, .factor = 0.001};
     return Cia402Drive({.node = joint + 1,
                         .joint = joint,
                         .position_pdo = 0x280,
@@ -134,8 +138,8 @@ bool learned_well() {
     report("; an interrupt took at most ", statistics.longest / (core_clock_hz / 1'000'000),
            " us of 1000, at 500 million instructions per second");
     report("; stack ", stack_used_bytes(), " bytes\n");
-    return counters.ticks >= 285 && counters.predicted >= 275 && counters.learned > 50 && statistics.overruns == 0 &&
-           statistics.error_square < 0.05F * statistics.output_square;
+    return counters.ticks >= 285 && counters.predicted >= 275 && counters.learned > 50 &&
+           statistics.overruns == 0 && statistics.error_square < 0.05F * statistics.output_square;
 }
 
 } // namespace

@@ -7,7 +7,8 @@ extern "C" std::uint32_t stack_bottom[], stack_top[];
 
 constexpr std::uint32_t stack_paint = 0xC5C5C5C5;
 
-/// Fills the unused part of the stack with a pattern that the functions below look for; returns where that ends.
+/// Fills the unused part of the stack with a pattern that the functions below look for; returns where that
+/// ends.
 [[gnu::always_inline]] inline const std::uint32_t* paint_stack() {
     std::uint32_t* stack_pointer = nullptr;
     asm volatile("mov %0, sp" : "=r"(stack_pointer));

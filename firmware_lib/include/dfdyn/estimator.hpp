@@ -58,10 +58,11 @@ class Estimator {
           regression_(constants), target_(Outputs::zeros(sizes_.output_count)), ratio_(target_) {}
 
     /// Predicts the sample's output from its position and the past, then learns it as far as the budget goes.
-    /// A refused sample leaves what has been learned as it is. Takes at most `cost().predict` + `cost().variance` +
-    /// the budget multiply-adds, whatever the input; where the sample is learned at once, the variance comes with
-    /// it. Within the budget, learning may take more than `cost().learn`: `cost().forget` with forgetting, and for
-    /// SPK the products of φ with all weights once more where another sample ended in the same tick.
+    /// A refused sample leaves what has been learned as it is. Takes at most `cost().predict` +
+    /// `cost().variance` + the budget multiply-adds, whatever the input; where the sample is learned at once,
+    /// the variance comes with it. Within the budget, learning may take more than `cost().learn`:
+    /// `cost().forget` with forgetting, and for SPK the products of φ with all weights once more where
+    /// another sample ended in the same tick.
     Estimate tick(const Sample& sample, Budget budget) noexcept {
         Estimate estimate = unknown();
         Status& status = estimate.status;
@@ -130,8 +131,8 @@ class Estimator {
         return cost;
     }
 
-    /// Bytes of a firmware model. The stack does not grow with features or lags: on it are the estimate, of a rigid
-    /// body the outputs' screws, and the frames of the calls.
+    /// Bytes of a firmware model. The stack does not grow with features or lags: on it are the estimate, of a
+    /// rigid body the outputs' screws, and the frames of the calls.
     [[nodiscard]] static constexpr Footprint footprint() noexcept {
         constexpr std::int64_t scalar = sizeof(Scalar);
         constexpr std::int64_t physics = Model::parameters == 0 ? 0 : (128 + 6 * Model::outputs) * scalar;

@@ -13,8 +13,8 @@ namespace dfdyn::tests {
 
 inline std::int64_t counted_operations = 0;
 
-/// A number that counts the work done with its kind, as `Budget` defines it. Otherwise it behaves as `Real`, so
-/// that whatever runs with a plain number runs with this one.
+/// A number that counts the work done with its kind, as `Budget` defines it. Otherwise it behaves as `Real`,
+/// so that whatever runs with a plain number runs with this one.
 template <class Real>
 struct Counted {
     Real value = 0;
@@ -22,7 +22,7 @@ struct Counted {
     Counted() = default;
     // As plain numbers do: NOLINTNEXTLINE(google-explicit-constructor)
     template <class Number>
-        requires std::is_arithmetic_v<Number>
+    requires std::is_arithmetic_v<Number>
     constexpr Counted(Number number) : value(static_cast<Real>(number)) {}
     // For comparisons, and what only looks at a number: NOLINTNEXTLINE(google-explicit-constructor)
     constexpr operator Real() const { return value; }
@@ -193,8 +193,7 @@ template <class Real>
 struct HalfPi<tests::Counted<Real>> : HalfPi<Real> {};
 
 template <class Real, int lanes>
-    requires(lanes > 1)
-struct Vector<tests::Counted<Real>, lanes> {
+requires(lanes > 1) struct Vector<tests::Counted<Real>, lanes> {
     using Scalar = tests::Counted<Real>;
     using Type = tests::CountedLanes<Real, lanes>;
     using Mask = tests::WholeLanes<lanes>;

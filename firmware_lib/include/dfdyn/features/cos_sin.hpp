@@ -134,8 +134,8 @@ bool cos_sin(const Scalar* argument, int count, Scalar amplitude, Scalar* cosine
     return inside;
 }
 
-/// Multiply-adds of `cos_sin`: per argument, filled up to whole vectors of the machine, one for the quadrant, one
-/// for each part of π/2, the two polynomials with their square, and the amplitude.
+/// Multiply-adds of `cos_sin`: per argument, filled up to whole vectors of the machine, one for the quadrant,
+/// one for each part of π/2, the two polynomials with their square, and the amplitude.
 template <class Scalar>
 constexpr std::int64_t cos_sin_cost(int count) noexcept {
     constexpr int lanes = detail::cos_sin_lane_count<Scalar>;

@@ -12,7 +12,8 @@ namespace dfdyn {
 /// delay, slow motion a long one and little noise.
 ///
 /// `time` and `value` hold `count` samples, newest first; times decrease and are relative to the newest
-/// (time[0] = 0). Fewer than degree + 1 samples give 0. Causal. O(count²): the window grows to at most `count`.
+/// (time[0] = 0). Fewer than degree + 1 samples give 0. Causal. O(count²): the window grows to at most
+/// `count`.
 template <class Scalar>
 class AdaptiveWindow {
   public:
@@ -30,9 +31,9 @@ class AdaptiveWindow {
     [[nodiscard]] static constexpr std::int64_t cost(int count) noexcept {
         std::int64_t total = 0;
         for (int length = 2; length <= count; ++length) {
-            total += 4 * length + 8;                                 // a line through `length` samples
-            total += length > 2 ? 4 * length + 8 * length + 9 : 0;   // whether it fits them; a parabola
-            total += length > 3 ? 4 * length : 0;                    // whether that fits them
+            total += 4 * length + 8;                               // a line through `length` samples
+            total += length > 2 ? 4 * length + 8 * length + 9 : 0; // whether it fits them; a parabola
+            total += length > 3 ? 4 * length : 0;                  // whether that fits them
         }
         return total;
     }

@@ -8,7 +8,8 @@
 namespace dfdyn {
 
 /// Input STD with derivatives estimated from the positions: ξ_i = (q_i, q̇_i, q̈_i) (paper, eq. eq:x), by the
-/// adaptive window over at most M+1 positions. Causal and bounded: O(n M²), the most where the arm stands still.
+/// adaptive window over at most M+1 positions. Causal and bounded: O(n M²), the most where the arm stands
+/// still.
 template <int M>
 struct Standard {
     static_assert(M == dynamic || M >= 2, "an acceleration needs three positions");

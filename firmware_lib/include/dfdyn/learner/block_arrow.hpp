@@ -13,7 +13,8 @@ template <class Scalar, int columns, int p, int m>
 struct BlockArrowConstants {
     LearnerConstants<Scalar, columns, product(m, sum(p, 1))> features;
     LearnerConstants<Scalar, p, 1> common;
-    static constexpr std::int64_t start_bytes = decltype(features)::start_bytes + decltype(common)::start_bytes;
+    static constexpr std::int64_t start_bytes =
+        decltype(features)::start_bytes + decltype(common)::start_bytes;
 };
 
 /// Recursive least squares of model SPK: y_k = φ'w_k + ψ_k'π + e_k, the same columns φ with weights of their
@@ -204,7 +205,9 @@ class BlockArrow {
     }
 
     static constexpr int padded(int count) noexcept { return Factor::padded(count); }
-    static constexpr std::int64_t weights_cost(int column_count) noexcept { return std::int64_t{column_count} + 1; }
+    static constexpr std::int64_t weights_cost(int column_count) noexcept {
+        return std::int64_t{column_count} + 1;
+    }
     static constexpr std::int64_t forget_cost(int column_count) noexcept {
         return Forgetting<Scalar>::cost + 1 + Factor::scale_and_bound_cost(column_count);
     }

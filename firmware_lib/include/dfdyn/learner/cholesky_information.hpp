@@ -14,8 +14,8 @@ namespace dfdyn {
 /// ("Cholesky-based updates"): each row is folded in by Givens rotations, and the right-hand sides ride
 /// along, R w = z, so that single precision loses nothing. Weights come from back-substitution: for several
 /// outputs that costs more than the update, which is why `UdCovariance` is the default. A row is folded in
-/// one piece: a budget below `cost().learn` learns nothing. Forgetting is a piece of its own, and taking a variance
-/// back another.
+/// one piece: a budget below `cost().learn` learns nothing. Forgetting is a piece of its own, and taking a
+/// variance back another.
 ///
 /// R is stored by rows above and on its diagonal. Memory about p²/2 + (2m+2) p.
 template <class Scalar, int p, int m>
@@ -142,10 +142,13 @@ class CholeskyInformation {
     static constexpr std::int64_t half_square(int columns) noexcept {
         return std::int64_t{columns} * (columns + 1) / 2;
     }
-    static constexpr std::int64_t variance_cost(int columns) noexcept { return half_square(columns) + columns; }
+    static constexpr std::int64_t variance_cost(int columns) noexcept {
+        return half_square(columns) + columns;
+    }
     /// Of each column's rotation, over the factor and the right-hand sides, and of the weights.
     static constexpr std::int64_t fold_and_solve_cost(int columns, int outputs) noexcept {
-        return std::int64_t{columns} * (function_cost + 2 + 4 * outputs) + (4 + outputs) * half_square(columns);
+        return std::int64_t{columns} * (function_cost + 2 + 4 * outputs) +
+               (4 + outputs) * half_square(columns);
     }
     static constexpr std::int64_t forget_cost(int columns, int outputs) noexcept {
         return Forgetting<Scalar>::cost + 2 * function_cost + 2 + half_square(columns) +

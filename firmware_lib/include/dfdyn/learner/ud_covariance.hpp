@@ -12,8 +12,8 @@ namespace dfdyn {
 /// Recursive least squares of m outputs over the same p columns, by the factor P = U D U' of their covariance
 /// (`UdFactor`): one sweep per row, after which the gain gives the weights of all outputs.
 ///
-/// Learning can be sliced after the innovations, after any panel of the sweep and before forgetting. Until it is
-/// done the weights and `variance` are the old ones. Memory about p²/2 + (m+3) p.
+/// Learning can be sliced after the innovations, after any panel of the sweep and before forgetting. Until it
+/// is done the weights and `variance` are the old ones. Memory about p²/2 + (m+3) p.
 template <class Scalar, int p, int m>
 class UdCovariance {
   public:

@@ -113,9 +113,9 @@ void inertial_row(const Screw<Scalar>& screw, const LinkMotion<Scalar>& motion, 
     row[9] = u.z * alpha.z + uw.z * w.z;
 }
 
-/// Multiply-adds of the regressor of revolute joints; a prismatic one needs no sine and cosine. Per joint its frame
-/// and its motion, per screw and joint it passes the change of frames, per pair of an output and a body that acts
-/// on it the row.
+/// Multiply-adds of the regressor of revolute joints; a prismatic one needs no sine and cosine. Per joint its
+/// frame and its motion, per screw and joint it passes the change of frames, per pair of an output and a body
+/// that acts on it the row.
 template <class Arm>
 constexpr std::int64_t rigid_body_cost(const typename Arm::Sizes& sizes) noexcept {
     constexpr int joint = 2 * function_cost + 57 + 57;
