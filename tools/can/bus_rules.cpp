@@ -16,8 +16,6 @@ constexpr double largest_load = 0.8;
 constexpr double largest_unknown_load = 0.1;
 constexpr double least_refused = 0.01; ///< of the samples; for what may happen now and then
 
-std::string percent(double share) { return number_text(std::round(1000 * share) / 10) + " %"; }
-
 std::string counted(std::uint64_t count, const char* of) {
     return count > 0 ? std::to_string(count) + of : std::string();
 }

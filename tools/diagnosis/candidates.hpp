@@ -26,6 +26,10 @@ std::vector<Candidate> sensor_candidates(const DiagnosisSignals& signals, const 
 /// has; none for joints without any.
 std::vector<Candidate> drift_candidates(const DiagnosisSignals& signals, const Eigen::MatrixXd& friction);
 
+/// What has no name: dependences of each output on each joint's position or velocity, and of a joint's own
+/// friction on its position.
+std::vector<Candidate> dependence_candidates(const DiagnosisSignals& signals);
+
 /// A ripple of `joint` with these whole numbers of cycles per turn as shapes.
 Candidate ripple_candidate(const DiagnosisSignals& signals, std::size_t joint,
                            const std::vector<int>& cycles);

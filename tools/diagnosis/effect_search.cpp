@@ -25,8 +25,7 @@ double price(const SearchProblem& problem, const ChosenShape& chosen) {
     const SearchCandidate& candidate = problem.candidates[chosen.candidate];
     const auto parameters = static_cast<double>(candidate.shapes[chosen.shape].columns.size());
     return candidate.extra_price +
-           std::log(static_cast<double>(problem.candidates.size() * candidate.shapes.size()) *
-                    candidate.tried) +
+           std::log(candidate.rivals * static_cast<double>(candidate.shapes.size()) * candidate.tried) +
            0.5 * parameters * std::log1p(candidate.rows);
 }
 

@@ -17,6 +17,7 @@ struct SearchCandidate {
     };
     std::vector<Shape> shapes;
     std::size_t family = 0; ///< of those with the same number, one at most; 0: of none
+    double rivals = 1;      ///< how many candidates there are of its sort
     double tried = 1;       ///< how many alternatives it was picked from beforehand
     double extra_price = 0; ///< what it costs beside
     double rows = 1;        ///< how many rows it acts on: what its parameters are paid for by
@@ -52,7 +53,7 @@ struct EffectFit {
 };
 
 /// Evidence of unit-information priors (Schwarz) for the effects' coefficients, of the given deviations for
-/// the nuisance; one in so many candidates is there, and any of its shapes is as likely.
+/// the nuisance; one in so many candidates of a sort is there, and any of its shapes is as likely.
 EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShape>& chosen);
 
 /// `chosen` less the one at `index`.

@@ -84,7 +84,8 @@ class Search {
                       std::max<Eigen::Index>(
                           1, std::llround(options.fitted_share * static_cast<double>(rows_.frames())))) {
         add_nuisance();
-        for (auto* make : {&joint_candidates, &body_candidates, &position_candidates}) {
+        for (auto* make :
+             {&joint_candidates, &body_candidates, &position_candidates, &dependence_candidates}) {
             for (Candidate& candidate : (*make)(signals_)) {
                 lasting_.emplace_back(rows_, std::move(candidate));
             }
@@ -241,6 +242,12 @@ void Search::gather(std::vector<Entry> passing) {
     };
     std::ranges::for_each(lasting_, add);
     std::ranges::for_each(passing, add);
+    const auto named = std::ranges::count_if(at_.candidates, &Candidate::named);
+    for (std::size_t i = 0; i < at_.candidates.size(); ++i) {
+        const auto all = std::ssize(at_.candidates);
+        at_.problem.candidates[i].rivals =
+            static_cast<double>(at_.candidates[i].named() ? named : all - named);
+    }
     at_.problem.nuisance.clear();
     for (std::size_t i = 0; i < nuisance_.size(); ++i) {
         at_.problem.nuisance.push_back({static_cast<Eigen::Index>(i), nuisance_deviation_[i]});
@@ -353,8 +360,17 @@ Eigen::MatrixXd Explanation::effects(const DiagnosisSignals& signals,
     return sum;
 }
 
+Eigen::MatrixXd Explanation::named(const DiagnosisSignals& signals) const {
+    return with_nuisance(signals, [](const Candidate& candidate) { return candidate.named(); });
+}
+
 Eigen::MatrixXd Explanation::all(const DiagnosisSignals& signals) const {
-    Eigen::MatrixXd sum = effects(signals, [](const Candidate&) { return true; });
+    return with_nuisance(signals, [](const Candidate&) { return true; });
+}
+
+Eigen::MatrixXd Explanation::with_nuisance(const DiagnosisSignals& signals,
+                                           const std::function<bool(const Candidate&)>& wanted) const {
+    Eigen::MatrixXd sum = effects(signals, wanted);
     for (std::size_t i = 0; i < nuisance.size(); ++i) {
         accumulate(sum, fit.coefficients[static_cast<Eigen::Index>(i)], nuisance[i]);
     }

@@ -30,13 +30,17 @@ struct Explanation {
     /// T x m: what those of the chosen effects that are `wanted` add to the rigid body's outputs.
     Eigen::MatrixXd effects(const DiagnosisSignals& signals,
                             const std::function<bool(const Candidate&)>& wanted) const;
-    /// T x m: all effects and the nuisance.
+    /// T x m: the named effects and the nuisance.
+    Eigen::MatrixXd named(const DiagnosisSignals& signals) const;
+    /// T x m: also what has no name.
     Eigen::MatrixXd all(const DiagnosisSignals& signals) const;
     /// The coefficients of a chosen candidate's shape, and their covariance.
     Eigen::VectorXd coefficients(std::size_t chosen_index) const;
     Eigen::MatrixXd covariance(std::size_t chosen_index) const;
 
   private:
+    Eigen::MatrixXd with_nuisance(const DiagnosisSignals& signals,
+                                  const std::function<bool(const Candidate&)>& wanted) const;
     Eigen::Index first_column(std::size_t chosen_index) const; ///< of `fit`
 };
 

@@ -56,7 +56,7 @@ void weigh_alternatives(Finding& finding, const Explanation& explanation, std::s
     for (const Replacement& other : additions(explanation.problem, others)) {
         const Candidate& candidate = explanation.candidates[other.with.candidate];
         const double margin = own - other.score;
-        if (other.with.candidate == explanation.chosen[index].candidate ||
+        if (!candidate.named() || other.with.candidate == explanation.chosen[index].candidate ||
             (candidate.effect == finding.effect && candidate.where == finding.where)) {
             continue;
         }
@@ -129,6 +129,9 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
     for (std::size_t i = 0; i < explanation.chosen.size(); ++i) {
         const std::size_t number = explanation.chosen[i].candidate;
         const Candidate& candidate = explanation.candidates[number];
+        if (!candidate.named()) {
+            continue;
+        }
         const EffectShape& shape = candidate.shapes[explanation.chosen[i].shape];
         Finding finding;
         finding.effect = candidate.effect;

@@ -35,6 +35,7 @@ SearchProblem problem_of(const MatrixXd& columns, const VectorXd& target) {
     for (Index column = 0; column < columns.cols(); ++column) {
         SearchCandidate candidate;
         candidate.shapes.push_back({{column}, anything});
+        candidate.rivals = static_cast<double>(columns.cols());
         candidate.rows = rows;
         problem.candidates.push_back(candidate);
     }
