@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <cstring>
 
+#if defined(__ARM_FEATURE_MVE) && defined(__GNUC__) && !defined(__clang__) && __GNUC__ <= 12
+#error "g++ 12 compares only the first float of a vector here: compile with -mcpu=cortex-m55+nomve"
+#endif
+
 namespace dfdyn::detail {
 
 #if defined(__AVX512F__)
