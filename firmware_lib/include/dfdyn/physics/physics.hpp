@@ -106,8 +106,8 @@ struct Physics {
       private:
         template <class Effect>
         static constexpr std::int64_t effect_cost(int selected) noexcept {
-            const int columns = Effect::columns == dynamic ? selected : std::min(Effect::columns, selected);
-            return std::int64_t{Effect::column_cost} * columns;
+            const int most = Effect::columns == dynamic ? selected : std::min(Effect::columns, selected);
+            return std::int64_t{Effect::column_cost} * most;
         }
         /// Of all that are there, and not more than of the most expensive ones alone.
         static constexpr std::int64_t effects_cost(int selected) noexcept {
