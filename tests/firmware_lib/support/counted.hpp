@@ -20,9 +20,9 @@ struct Counted {
     Real value = 0;
 
     Counted() = default;
-    // As plain numbers do: NOLINTNEXTLINE(google-explicit-constructor)
     template <class Number>
     requires std::is_arithmetic_v<Number>
+    // As plain numbers do: NOLINTNEXTLINE(google-explicit-constructor)
     constexpr Counted(Number number) : value(static_cast<Real>(number)) {}
     // For comparisons, and what only looks at a number: NOLINTNEXTLINE(google-explicit-constructor)
     constexpr operator Real() const { return value; }
