@@ -71,7 +71,9 @@ Candidate link_inertia(const DiagnosisSignals& signals, Eigen::Index number) {
     result.columns = mass_columns(signals, number, centre, Eigen::Isometry3d::Identity());
     const auto body = [mass](double delta_mass, const Eigen::VectorXd& moments) {
         constexpr double farthest = 0.3; // m that a centre of mass is off
-        return mass + delta_mass > 0 && moments.norm() <= farthest * (mass + delta_mass);
+        constexpr double heaviest = 5;   // times what the robot's file says
+        return mass + delta_mass > 0 && mass + delta_mass <= heaviest * mass &&
+               moments.norm() <= farthest * (mass + delta_mass);
     };
     result.shapes = {
         {{0}, [body](const Eigen::VectorXd& c) { return body(c[0], Eigen::VectorXd::Zero(3)); }, 0},

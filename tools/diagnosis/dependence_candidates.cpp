@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/common/root_mean_square.hpp"
 #include "tools/diagnosis/candidate_parts.hpp"
 #include "tools/diagnosis/candidates.hpp"
 #include "tools/diagnosis/smooth_functions.hpp"
+
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -24,77 +27,102 @@ struct JointInputs {
           of_position(harmonics(signals.measured.motion.position.col(joint), 5)) {}
 };
 
-Candidate without_name(Eigen::Index output, std::vector<std::string> inputs) {
-    Candidate result;
-    result.where = numbered("output", static_cast<std::size_t>(output));
-    result.inputs = std::move(inputs);
-    for (const std::string& input : result.inputs) {
-        result.detail += input;
+/// What one output would show if it depended on some inputs.
+class Dependence {
+  public:
+    /// `largest`: that it may be, rms.
+    Dependence(Eigen::Index output, double largest, std::vector<std::string> inputs)
+        : output_(output), largest_(largest) {
+        candidate_.where = numbered("output", static_cast<std::size_t>(output));
+        candidate_.inputs = std::move(inputs);
+        for (const std::string& input : candidate_.inputs) {
+            candidate_.detail += input;
+        }
+        candidate_.extra_price = price_of_no_name;
     }
-    result.extra_price = price_of_no_name;
-    return result;
-}
 
-void add_shape(Candidate& candidate, std::vector<std::size_t> columns) {
-    candidate.shapes.push_back({std::move(columns), is_anything, 0});
-}
+    void add_function(const Eigen::VectorXd& series) {
+        candidate_.columns.push_back(on_output(output_, series));
+    }
+    void add_shape(std::vector<std::size_t> columns) {
+        Eigen::MatrixXd functions(candidate_.columns.front().parts.front().series.size(),
+                                  static_cast<Eigen::Index>(columns.size()));
+        for (std::size_t i = 0; i < columns.size(); ++i) {
+            functions.col(static_cast<Eigen::Index>(i)) = candidate_.columns[columns[i]].parts.front().series;
+        }
+        const Eigen::MatrixXd squares =
+            functions.transpose() * functions / static_cast<double>(functions.rows());
+        const auto allowed = [squares, most = largest_ * largest_](const Eigen::VectorXd& coefficients) {
+            return coefficients.dot(squares * coefficients) <= most;
+        };
+        candidate_.shapes.push_back({std::move(columns), allowed, 0});
+    }
+    Candidate take() { return std::move(candidate_); }
 
-Candidate of_position(Eigen::Index output, const JointInputs& joint) {
-    Candidate result = without_name(output, {joint.position_name});
+  private:
+    Eigen::Index output_;
+    double largest_;
+    Candidate candidate_;
+};
+
+Candidate of_position(Eigen::Index output, double largest, const JointInputs& joint) {
+    Dependence result(output, largest, {joint.position_name});
     for (const Eigen::VectorXd& function : joint.of_position) {
-        result.columns.push_back(on_output(output, function));
+        result.add_function(function);
     }
-    add_shape(result, {0, 1, 2, 3});
-    add_shape(result, {0, 1, 2, 3, 4, 5});
-    add_shape(result, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
-    return result;
+    result.add_shape({0, 1, 2, 3});
+    result.add_shape({0, 1, 2, 3, 4, 5});
+    result.add_shape({0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
+    return result.take();
 }
 
 /// `own`: friction of its own joint has a name; what is the same in both directions has none.
-Candidate of_velocity(Eigen::Index output, const JointInputs& joint, bool own) {
-    Candidate result = without_name(output, {joint.velocity_name});
-    for (const Eigen::VectorXd& function :
-         {joint.velocity.cwiseAbs2().eval(), joint.velocity.cwiseAbs().eval(), joint.velocity,
-          joint.direction}) {
-        result.columns.push_back(on_output(output, function));
-    }
-    add_shape(result, {0});
-    add_shape(result, {1});
+Candidate of_velocity(Eigen::Index output, double largest, const JointInputs& joint, bool own) {
+    Dependence result(output, largest, {joint.velocity_name});
+    result.add_function(joint.velocity.cwiseAbs2());
+    result.add_function(joint.velocity.cwiseAbs());
+    result.add_function(joint.velocity);
+    result.add_function(joint.direction);
+    result.add_shape({0});
+    result.add_shape({1});
     if (!own) {
-        add_shape(result, {2});
-        add_shape(result, {3});
-        add_shape(result, {2, 3});
+        result.add_shape({2});
+        result.add_shape({3});
+        result.add_shape({2, 3});
     }
-    return result;
+    return result.take();
 }
 
 /// Friction of a joint that is not the same everywhere.
-Candidate of_position_and_velocity(Eigen::Index output, const JointInputs& joint) {
-    Candidate result = without_name(output, {joint.position_name, joint.velocity_name});
+Candidate of_position_and_velocity(Eigen::Index output, double largest, const JointInputs& joint) {
+    Dependence result(output, largest, {joint.position_name, joint.velocity_name});
     for (const Eigen::VectorXd& friction : {joint.velocity, joint.direction}) {
         for (std::size_t i = 0; i < 4; ++i) {
-            result.columns.push_back(on_output(output, friction.cwiseProduct(joint.of_position[i])));
+            result.add_function(friction.cwiseProduct(joint.of_position[i]));
         }
     }
-    add_shape(result, {0, 1});
-    add_shape(result, {4, 5});
-    add_shape(result, {0, 1, 2, 3});
-    add_shape(result, {4, 5, 6, 7});
-    return result;
+    result.add_shape({0, 1});
+    result.add_shape({4, 5});
+    result.add_shape({0, 1, 2, 3});
+    result.add_shape({4, 5, 6, 7});
+    return result.take();
 }
 
 } // namespace
 
-std::vector<Candidate> dependence_candidates(const DiagnosisSignals& signals) {
+std::vector<Candidate> dependence_candidates(const DiagnosisSignals& signals,
+                                             const Eigen::MatrixXd& unexplained) {
+    constexpr double margin = 1.5;
     std::vector<Candidate> result;
     for (Eigen::Index number = 0; number < static_cast<Eigen::Index>(signals.joints()); ++number) {
         const JointInputs joint(signals, number);
         for (Eigen::Index output = 0; output < signals.outputs(); ++output) {
+            const double largest = margin * root_mean_square(unexplained.col(output));
             const bool own = !signals.wrench() && output == number;
-            result.push_back(of_position(output, joint));
-            result.push_back(of_velocity(output, joint, own));
+            result.push_back(of_position(output, largest, joint));
+            result.push_back(of_velocity(output, largest, joint, own));
             if (own) {
-                result.push_back(of_position_and_velocity(output, joint));
+                result.push_back(of_position_and_velocity(output, largest, joint));
             }
         }
     }

@@ -64,7 +64,7 @@ void measure_on_held_out(DiagnosisWork& work, ExplanationOptions options) {
     };
     Diagnosis& diagnosis = work.diagnosis;
     diagnosis.nominal = measure(nominal_error);
-    diagnosis.extended = measure(nominal_error - earlier.named(signals));
+    diagnosis.extended = measure(nominal_error - earlier.model(signals));
     diagnosis.heldout_from_s = signals.measured.time_s[first];
     diagnosis.heldout_to_s = signals.measured.time_s[signals.rows() - 1];
 }

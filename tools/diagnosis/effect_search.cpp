@@ -151,6 +151,21 @@ EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShap
     return fit;
 }
 
+double held_out_score(const SearchProblem& problem, const std::vector<WeighedSums>& blocks,
+                      const std::vector<ChosenShape>& chosen) {
+    const std::vector<Eigen::Index> columns = columns_of(problem, chosen);
+    const Eigen::MatrixXd system = system_of(problem, columns);
+    const Eigen::VectorXd moment = problem.sums.moment(columns);
+    double score = 0;
+    for (const WeighedSums& block : blocks) {
+        const Eigen::MatrixXd own = block.gram(columns, columns);
+        const Eigen::VectorXd own_moment = block.moment(columns);
+        const Eigen::VectorXd others = (system - own).ldlt().solve(moment - own_moment);
+        score += others.dot(own_moment) - 0.5 * others.dot(own * others);
+    }
+    return score;
+}
+
 std::vector<Replacement> additions(const SearchProblem& problem, const std::vector<ChosenShape>& chosen) {
     const EffectFit base = fit_effects(problem, chosen);
     const Projection projection = project(problem, base.columns);

@@ -56,6 +56,11 @@ struct EffectFit {
 /// the nuisance; one in so many candidates of a sort is there, and any of its shapes is as likely.
 EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShape>& chosen);
 
+/// How well what fits all other blocks of rows predicts each, summed over the blocks: half the fall of the
+/// sum of squares. `blocks`: those that the problem's sums are the sum of.
+double held_out_score(const SearchProblem& problem, const std::vector<WeighedSums>& blocks,
+                      const std::vector<ChosenShape>& chosen);
+
 /// `chosen` less the one at `index`.
 std::vector<ChosenShape> without(std::vector<ChosenShape> chosen, std::size_t index);
 

@@ -19,6 +19,8 @@ constexpr std::size_t listed = 3;      ///< alternatives that a finding tells of
 constexpr double two_sided_95 = 1.96;
 constexpr double coloured =
     1.7; ///< how much wider intervals must be than their formula says: measured, docs/diagnosis-panel.md
+constexpr double model_error =
+    0.04; ///< of a parameter: what no noise explains, where effects are large; measured, too
 
 /// Intervals by the gradient of each parameter with respect to the coefficients.
 std::vector<FoundParameter> found_parameters(const Candidate& candidate, const EffectShape& shape,
@@ -39,7 +41,9 @@ std::vector<FoundParameter> found_parameters(const Candidate& candidate, const E
         (gradient * covariance * gradient.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
     std::vector<FoundParameter> result;
     for (std::size_t k = 0; k < values.size(); ++k) {
-        const double reach = two_sided_95 * coloured * deviation[static_cast<Eigen::Index>(k)];
+        const double deviation_of_all =
+            std::hypot(coloured * deviation[static_cast<Eigen::Index>(k)], model_error * values[k].value);
+        const double reach = two_sided_95 * deviation_of_all;
         result.push_back({values[k].name, values[k].unit, values[k].value, values[k].value - reach,
                           values[k].value + reach});
     }
