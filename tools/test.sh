@@ -39,7 +39,7 @@ build_release() { build release; }
 test_units() { run_tests release --label-regex '^(firmware|hal|tools|embedding|truth|headers|panel)$'; }
 test_promises() { run_tests release --label-regex '^acceptance$'; }
 test_can() { run_tests release --label-regex '^vcan$'; }
-test_elsewhere() { run_tests release --label-regex '^(consumer|cortex_m7)$' --verbose; }
+test_elsewhere() { run_tests release --label-regex '^(consumer|cortex_m|realtime)$' --verbose; }
 # Every plan of the experiment, with one draw and few rows.
 test_experiment() { tools/reproduce.sh --quick; }
 test_long() { ctest --test-dir build/release --label-regex '^long$' --parallel "$jobs" --output-on-failure --no-tests=error; }
@@ -76,7 +76,7 @@ steps=(
     "test_units:unit tests and firmware headers"
     "test_promises:promises on real recordings (the demo)"
     "test_can:CAN backend and dfdyn play on a kernel's virtual CAN, against can-utils"
-    "test_elsewhere:use by another project, and on a bare Cortex-M7 under QEMU"
+    "test_elsewhere:use by another project, on bare Cortex-M cores under QEMU, and that nothing in the loop blocks"
     "test_sanitized:firmware and bus layer by clang++, address and undefined-behaviour sanitizers"
     "analyse_firmware:static analysis of the firmware and the bus layer"
 )
@@ -99,7 +99,7 @@ esac
 
 # The lines of a log that belong on the terminal.
 highlights() {
-    grep -hE '^[0-9]+% tests passed|cortex-m7: |not installed:' "$1" | sed -E 's/^([0-9]+: )+//; s/^/        /' || return 0
+    grep -hE '^[0-9]+% tests passed|cortex-m[0-9a-z-]+: (dfdyn_c|instr|bench|control)|the target, |realtime: |not installed:' "$1" | sed -E 's/^([0-9]+: )+//; s/^/        /' || return 0
 }
 
 # run_step NUMBER FUNCTION TITLE

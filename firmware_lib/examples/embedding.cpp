@@ -25,9 +25,19 @@ Estimator::Sample read_sensors(const Ur5Sample& recorded) {
     return sample;
 }
 
+TickOutcome outcome_of(const Estimator::Estimate& estimate) {
+    TickOutcome outcome{.prediction = {},
+                        .standard_deviation = {},
+                        .predicted = estimate.status.predicted(),
+                        .learned = estimate.status.learned()};
+    std::ranges::copy(estimate.prediction, outcome.prediction.begin());
+    std::ranges::copy(estimate.standard_deviation, outcome.standard_deviation.begin());
+    return outcome;
+}
+
 } // namespace
 
-int run_example(void (*after_tick)()) {
+int run_example(void (*after_tick)(const TickOutcome&)) {
     estimator.reset();
     float error_square = 0;
     float output_square = 0;
@@ -38,7 +48,7 @@ int run_example(void (*after_tick)()) {
             output_square += recorded.current_A[1] * recorded.current_A[1];
         }
         if (after_tick != nullptr) {
-            after_tick();
+            after_tick(outcome_of(estimate));
         }
     }
     const bool learned = estimator.counters().learned > 50;

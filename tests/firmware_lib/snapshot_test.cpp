@@ -105,7 +105,7 @@ TEST_CASE("each part of the head has its own reason") {
         return read(changed);
     };
     CHECK(with_word(0, 0x44464459) == SnapshotResult::not_a_snapshot); // the other byte order
-    CHECK(with_word(1, 3) == SnapshotResult::wrong_version);
+    CHECK(with_word(1, SnapshotHeader::expected_version + 1) == SnapshotResult::wrong_version);
     CHECK(with_word(2, model + 1) == SnapshotResult::wrong_model);
     CHECK(with_word(3, 0) == SnapshotResult::wrong_size);
     CHECK(with_word(3, 0xFFFFFFFF) == SnapshotResult::wrong_size);

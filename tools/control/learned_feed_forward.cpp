@@ -30,10 +30,10 @@ std::span<const double> values(const JointVector& vector) {
     return {vector.data(), static_cast<std::size_t>(vector.size())};
 }
 
-/// What suffices to learn a sample in `ticks` slices: twice the cost, because with forgetting there may be a
-/// second sweep, and in each slice as much as may be left over.
+/// What suffices to learn a sample in `ticks` slices, in each of which as much may be left over as a slice
+/// cannot use.
 Budget share_of(const Cost& cost, int ticks) {
-    return {(2 * cost.learn + ticks - 1) / ticks + cost.largest_step};
+    return {(cost.learn + cost.forget + ticks - 1) / ticks + cost.largest_step};
 }
 
 } // namespace

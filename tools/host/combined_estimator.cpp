@@ -108,12 +108,13 @@ class CombinedEstimator final : public HostEstimator {
 
     Cost cost() const override {
         const auto table = static_cast<std::int64_t>(predictions_.size());
-        Cost cost{2 * table, 0, 8 * table, 0};
+        Cost cost{.predict = 2 * table, .variance = 0, .learn = 8 * table, .forget = 0, .largest_step = 0};
         for (const CombinationMember& member : members_) {
             const Cost one = member.estimator->cost();
             cost.predict += one.predict;
             cost.variance += one.variance;
             cost.learn += one.learn;
+            cost.forget += one.forget;
             cost.largest_step = std::max(cost.largest_step, one.largest_step);
         }
         return cost;

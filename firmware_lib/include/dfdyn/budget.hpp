@@ -6,9 +6,10 @@
 
 namespace dfdyn {
 
-/// How much learning one tick may do, in multiply-adds. The costs of the parts are constant expressions of
-/// the sizes
-/// (`Estimator::cost()`), so that a loop can be given a share of its period.
+/// How much learning one tick may do, in multiply-adds: one per product or quotient, with the sum that takes
+/// it up, and `function_cost` per square root, exponential, logarithm, sine or cosine. The costs of the parts
+/// are constant expressions of the sizes (`Estimator::cost()`), so that a loop can be given a share of its
+/// period.
 struct Budget {
     std::int64_t operations = 0;
 
@@ -27,14 +28,28 @@ struct Budget {
     }
 };
 
+/// A call of an elementary function, in multiply-adds.
+inline constexpr int function_cost = 30;
+
 /// The cost of a tick's parts, in multiply-adds; the time they take is these numbers times a factor of the
 /// machine.
 struct Cost {
-    std::int64_t predict;  ///< input, features, weights; done in every tick
-    std::int64_t variance; ///< a separate variance; in ticks that do not learn their own sample at once
-    std::int64_t learn;    ///< the whole of learning one sample
     std::int64_t
-        largest_step; ///< the largest part that learning can be sliced into: no smaller budget makes progress
+        predict; ///< input, features, weights, estimate: the most of any tick, of one with a measurement
+    /// A separate variance, in ticks that do not learn their own sample at once: the most, with a sample in
+    /// hand.
+    std::int64_t variance;
+    std::int64_t learn;  ///< learning one sample, without forgetting
+    std::int64_t forget; ///< what forgetting adds to that, at most
+    std::int64_t
+        largest_step; ///< the largest part that learning is sliced into: a smaller budget may not get on
+};
+
+/// The bytes that an estimator takes.
+struct Footprint {
+    std::int64_t state_bytes;    ///< RAM: the estimator itself
+    std::int64_t constant_bytes; ///< flash: the constants, and where learning starts
+    std::int64_t stack_bytes;    ///< of any of its calls, at most, compiled with optimisation
 };
 
 } // namespace dfdyn

@@ -58,10 +58,11 @@ class Estimator {
           regression_(constants), target_(Outputs::zeros(sizes_.output_count)), ratio_(target_) {}
 
     /// Predicts the sample's output from its position and the past, then learns it as far as the budget goes.
-    /// A refused sample leaves what has been learned as it is. At most
-    /// `cost().predict` + `cost().variance` + the budget multiply-adds, whatever the input. Within the
-    /// budget, learning may take more than `cost().learn`: a second sweep with forgetting, and for SPK the
-    /// products of φ with all weights once more where another sample ended in the same tick.
+    /// A refused sample leaves what has been learned as it is. Takes at most `cost().predict` +
+    /// `cost().variance` + the budget multiply-adds, whatever the input; where the sample is learned at once,
+    /// the variance comes with it. Within the budget, learning may take more than `cost().learn`:
+    /// `cost().forget` with forgetting, and for SPK the products of φ with all weights once more where
+    /// another sample ended in the same tick.
     Estimate tick(const Sample& sample, Budget budget) noexcept {
         Estimate estimate = unknown();
         Status& status = estimate.status;
@@ -125,11 +126,26 @@ class Estimator {
 
     /// Cost of a tick's parts in multiply-adds, a constant expression for a firmware model.
     [[nodiscard]] static constexpr Cost cost(const typename Model::Sizes& sizes = {}) noexcept {
-        return Regression::cost(sizes);
+        Cost cost = Regression::cost(sizes);
+        cost.predict += std::int64_t{sizes.output_count} * output_cost;
+        return cost;
+    }
+
+    /// Bytes of a firmware model. The stack does not grow with features or lags: on it are the estimate, of a
+    /// rigid body the outputs' screws, and the frames of the calls.
+    [[nodiscard]] static constexpr Footprint footprint() noexcept {
+        constexpr std::int64_t scalar = sizeof(Scalar);
+        constexpr std::int64_t physics = Model::parameters == 0 ? 0 : (128 + 6 * Model::outputs) * scalar;
+        return {.state_bytes = sizeof(Estimator),
+                .constant_bytes = sizeof(Constants) + Model::StructureConstants::start_bytes,
+                .stack_bytes = 512 + 3 * sizeof(Estimate) + physics};
     }
 
   private:
     using Outputs = Storage<Scalar, Model::outputs>;
+
+    /// Multiply-adds that an output takes between the regression's units and its own.
+    static constexpr int output_cost = function_cost + 6;
 
     [[nodiscard]] Estimate unknown() const noexcept {
         Estimate estimate{Outputs::zeros(sizes_.output_count),
@@ -242,15 +258,18 @@ class Estimator {
         if (!at_once) {
             regression_.variances(ratio_.data());
         }
-        if (measured && !plausible(doubtful ? innovation_square(estimate.innovation) : error_square)) {
+        Scalar& square = estimate.normalised_innovation_squared;
+        square = doubtful ? innovation_square(estimate.innovation) : error_square;
+        if (measured && !plausible(square)) {
             status.learning = Reason::innovation_too_large;
         }
         fold(budget, status);
         if (at_once) {
             regression_.last_ratios(ratio_.data());
         }
-        estimate.normalised_innovation_squared =
-            measured ? innovation_square(estimate.innovation) : Scalar(0);
+        if (measured && !doubtful) {
+            square = innovation_square(estimate.innovation);
+        }
         complete(sample, measured, estimate);
     }
 
@@ -318,7 +337,8 @@ class Estimator {
         for (int k = 0; k < sizes_.output_count; ++k) {
             const Scalar noise = constants_->output_noise_std[k];
             estimate.prediction[k] = constants_->output_offset[k] + noise * estimate.prediction[k];
-            estimate.standard_deviation[k] = noise * std::sqrt(ratio_[k]);
+            using std::sqrt;
+            estimate.standard_deviation[k] = noise * sqrt(ratio_[k]);
             estimate.innovation[k] = measured ? sample.output[k] - estimate.prediction[k] : Scalar(0);
         }
     }

@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <cstring>
 
+#if defined(__ARM_FEATURE_MVE) && defined(__GNUC__) && !defined(__clang__) && __GNUC__ <= 12
+#error "g++ 12 compares only the first float of a vector here: compile with -mcpu=cortex-m55+nomve"
+#endif
+
 namespace dfdyn::detail {
 
 #if defined(__AVX512F__)
@@ -22,11 +26,13 @@ inline constexpr int wide = std::max(1, vector_bytes / static_cast<int>(sizeof(S
 
 /// `lanes` numbers as one. The compilers' own vector type, because a sum that is kept in lanes by hand is
 /// vectorised by some versions at some levels only. Values move by reference: how a call passes a vector
-/// depends on the machine's options.
+/// depends on the machine's options. All that is asked of vectors is here, so that a scalar of another kind
+/// can bring its own.
 template <class Scalar, int lanes>
 struct Vector {
     // The attribute needs a typedef: NOLINTNEXTLINE(modernize-use-using)
     typedef Scalar Type __attribute__((vector_size(lanes * sizeof(Scalar))));
+    using Mask = decltype(Type{} < Type{}); ///< whole numbers as wide as the scalar; as a condition: -1 or 0
 
     static void load(const Scalar* address, Type& vector) noexcept {
         std::memcpy(&vector, address, sizeof vector);
@@ -41,6 +47,18 @@ struct Vector {
             result += vector[lane];
         }
         return result;
+    }
+
+    /// Lane by lane: where the condition holds `yes`, else `no`.
+    static void select(const Mask& condition, const Type& yes, const Type& no, Type& result) noexcept {
+        result = condition ? yes : no;
+    }
+    /// Towards zero.
+    static void truncate(const Type& vector, Mask& whole) noexcept {
+        whole = __builtin_convertvector(vector, Mask);
+    }
+    static void convert(const Mask& whole, Type& vector) noexcept {
+        vector = __builtin_convertvector(whole, Type);
     }
 };
 

@@ -5,7 +5,10 @@
 #include "tests/support/seed.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -55,6 +58,37 @@ std::vector<Scalar> random_arguments(std::mt19937_64& engine, double largest, in
     return arguments;
 }
 
+/// The largest absolute error over all floats whose bits are `first` … `last` - 1, against double precision,
+/// whose own error is nothing beside it.
+double largest_error_of_all(std::uint32_t first, std::uint32_t last) {
+    constexpr int count = 2048;
+    std::array<float, count> argument{};
+    std::array<float, count> cosine{};
+    std::array<float, count> sine{};
+    std::array<double, count> exact_argument{};
+    std::array<double, count> exact_cosine{};
+    std::array<double, count> exact_sine{};
+    std::array<double, count> errors{};
+    for (std::uint32_t bits = first; bits < last; bits += count) {
+        for (std::uint32_t i = 0; i < count;
+             ++i) { // the last stretch ends with the last float again and again
+            argument[i] = std::bit_cast<float>(std::min(bits + i, last - 1));
+            exact_argument[i] = static_cast<double>(argument[i]);
+        }
+        cos_sin(argument.data(), count, 1.0F, cosine.data(), sine.data());
+        cos_sin(exact_argument.data(), count, 1.0, exact_cosine.data(), exact_sine.data());
+        for (std::size_t i = 0; i < count; ++i) {
+            const double error = std::max(std::abs(static_cast<double>(cosine[i]) - exact_cosine[i]),
+                                          std::abs(static_cast<double>(sine[i]) - exact_sine[i]));
+            errors[i] = std::max(errors[i], error);
+        }
+    }
+    return std::ranges::max(errors);
+}
+
+constexpr std::uint32_t sign_bit = 0x80000000;
+const auto largest_bits = std::bit_cast<std::uint32_t>(largest_cos_sin_argument<float>);
+
 template <class Scalar>
 bool accepted(Scalar argument) {
     Scalar cosine = 0;
@@ -72,6 +106,44 @@ TEMPLATE_TEST_CASE("cosine and sine are as accurate as documented over the whole
               documented_error<TestType>);
     }
     CHECK(largest_error(quadrant_borders<TestType>()) < documented_error<TestType>);
+}
+
+// Below 2⁻¹² the cosine is 1 - x²/2 and the sine x to the last bit but one: random arguments suffice there.
+TEST_CASE("every float of the first quadrant's half is as accurate as documented") {
+    const auto eighth_turn = std::bit_cast<std::uint32_t>(0.7853983F);
+    const auto small = std::bit_cast<std::uint32_t>(0x1p-12F);
+    CHECK(largest_error_of_all(small, eighth_turn) < documented_error<float>);
+}
+
+TEST_CASE("every float of the whole range is as accurate as documented", "[.long]") {
+    CHECK(largest_error_of_all(0, largest_bits + 1) < documented_error<float>);
+    CHECK(largest_error_of_all(sign_bit, sign_bit + largest_bits + 1) < documented_error<float>);
+}
+
+// What the bound for double rests on.
+TEMPLATE_TEST_CASE("the reduction's products are exact, and the polynomials leave out less than a rounding",
+                   "", float, double) {
+    constexpr auto& parts = dfdyn::detail::HalfPi<TestType>::parts;
+    constexpr int last = static_cast<int>(std::size(parts)) - 1;
+    const auto quarters = static_cast<int>(largest_cos_sin_argument<double> / 1.57 + 1);
+    bool exact = true;
+    long double error = -0x1.921fb544p0L; // less π/2 in two exact pieces
+    for (int i = 0; i <= last; ++i) {
+        error += static_cast<long double>(parts[i]);
+        for (int k = 1; k <= quarters && i < last; ++k) {
+            const TestType product = static_cast<TestType>(k) * parts[i];
+            exact = exact && static_cast<long double>(product) == static_cast<long double>(parts[i]) * k;
+        }
+    }
+    CHECK(exact);
+    const long double precision = std::numeric_limits<TestType>::epsilon();
+    error -= 0x4.2d18469898cc517p-36L;
+    CHECK(std::abs(error) * quarters < precision / 100);
+    constexpr int terms =
+        dfdyn::detail::taylor_terms<TestType>; // of cosine beyond the 1; the next has this power
+    const long double eighth_turn = std::acos(-1.0L) / 4;
+    CHECK(std::pow(eighth_turn, 2 * terms + 2) / std::tgamma(2.0L * terms + 3) < precision / 50);
+    CHECK(std::pow(eighth_turn, 2 * terms + 1) / std::tgamma(2.0L * terms + 2) < precision / 4);
 }
 
 TEMPLATE_TEST_CASE("zero, the smallest and the largest arguments", "", float, double) {

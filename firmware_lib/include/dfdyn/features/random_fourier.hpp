@@ -11,7 +11,7 @@ namespace dfdyn {
 /// Random Fourier features of the Gaussian kernel K_G = exp(-|ξ-ξ'|²/(2ℓ²)): φ = [cos(Ωξ); sin(Ωξ)]/√d, 2d
 /// columns (paper, eq. eq:basis_function with one length scale ℓ: Ω = ω/ℓ, ω ~ N(0, I)). Orthogonal random
 /// features (Yu et al. 2016) are the same map with another draw of ω: the training tool makes either.
-/// Evaluate costs d·dim(ξ) + about 30 d multiply-adds.
+/// Evaluate costs d·dim(ξ) multiply-adds and those of d cosines and sines.
 template <int d>
 struct RandomFourier {
     static constexpr int count = d;
@@ -41,8 +41,9 @@ struct RandomFourier {
         return cos_sin(phi, feature_count, constants.amplitude, phi, phi + feature_count);
     }
 
+    template <class Scalar>
     [[nodiscard]] static constexpr std::int64_t cost(int input_count, int feature_count) noexcept {
-        return std::int64_t{feature_count} * (input_count + 30);
+        return std::int64_t{feature_count} * input_count + cos_sin_cost<Scalar>(feature_count);
     }
 };
 

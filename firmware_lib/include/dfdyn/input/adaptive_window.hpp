@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+
 namespace dfdyn {
 
 /// Velocity and acceleration at the newest of a few samples, by the adaptive windowing of F. Janabi-Sharifi,
@@ -10,8 +12,8 @@ namespace dfdyn {
 /// delay, slow motion a long one and little noise.
 ///
 /// `time` and `value` hold `count` samples, newest first; times decrease and are relative to the newest
-/// (time[0] = 0). Fewer than degree + 1 samples give 0. Causal. At most 12·count² operations: the
-/// window grows to at most `count`.
+/// (time[0] = 0). Fewer than degree + 1 samples give 0. Causal. O(count²): the window grows to at most
+/// `count`.
 template <class Scalar>
 class AdaptiveWindow {
   public:
@@ -24,6 +26,17 @@ class AdaptiveWindow {
 
     /// Second derivative of the longest parabola that fits.
     [[nodiscard]] constexpr Scalar acceleration() const noexcept { return longest(2).curvature; }
+
+    /// Multiply-adds of both, where all samples fit; otherwise fewer.
+    [[nodiscard]] static constexpr std::int64_t cost(int count) noexcept {
+        std::int64_t total = 0;
+        for (int length = 2; length <= count; ++length) {
+            total += 4 * length + 8;                               // a line through `length` samples
+            total += length > 2 ? 4 * length + 8 * length + 9 : 0; // whether it fits them; a parabola
+            total += length > 3 ? 4 * length : 0;                  // whether that fits them
+        }
+        return total;
+    }
 
   private:
     /// value ≈ mean + slope_at_mean·u + half_curvature·(u² - skew·u - spread), u = time - mean time:

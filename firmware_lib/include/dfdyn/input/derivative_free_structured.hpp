@@ -50,7 +50,7 @@ struct DerivativeFreeStructured : DerivativeFreeReduced<M, 3> {
 /// Input DFSR as the recursive filter that the FIR rows truncate: its memory does not grow with M and nothing
 /// is cut off, so that velocity and acceleration of a position at rest decay to exactly zero. After M+1
 /// samples it differs from the FIR rows by what they truncate, of order β^M. Starts as if the arm had stood
-/// still at its first position. Evaluate costs O(n).
+/// still at its first position. Costs 7 n multiply-adds.
 template <int M>
 struct DerivativeFreeStructuredRecursive {
     static_assert(M == dynamic || M >= 2);
@@ -99,7 +99,7 @@ struct DerivativeFreeStructuredRecursive {
         }
 
         [[nodiscard]] static constexpr std::int64_t cost(int joints, int /*lags*/, int /*rows*/) noexcept {
-            return std::int64_t{joints} * 9;
+            return std::int64_t{joints} * 7;
         }
 
       private:

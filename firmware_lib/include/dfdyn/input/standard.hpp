@@ -8,7 +8,8 @@
 namespace dfdyn {
 
 /// Input STD with derivatives estimated from the positions: ξ_i = (q_i, q̇_i, q̈_i) (paper, eq. eq:x), by the
-/// adaptive window over at most M+1 positions. Causal and bounded; evaluate costs O(n M²).
+/// adaptive window over at most M+1 positions. Causal and bounded: O(n M²), the most where the arm stands
+/// still.
 template <int M>
 struct Standard {
     static_assert(M == dynamic || M >= 2, "an acceleration needs three positions");
@@ -63,7 +64,8 @@ struct Standard {
         }
 
         [[nodiscard]] static constexpr std::int64_t cost(int joints, int lag_count, int /*rows*/) noexcept {
-            return std::int64_t{joints} * 12 * (lag_count + 1) * (lag_count + 1);
+            const int count = lag_count + 1;
+            return joints * (AdaptiveWindow<Scalar>::cost(count) + 3) + count;
         }
 
       private:

@@ -13,6 +13,8 @@ template <class Scalar, int columns, int p, int m>
 struct BlockArrowConstants {
     LearnerConstants<Scalar, columns, product(m, sum(p, 1))> features;
     LearnerConstants<Scalar, p, 1> common;
+    static constexpr std::int64_t start_bytes =
+        decltype(features)::start_bytes + decltype(common)::start_bytes;
 };
 
 /// Recursive least squares of model SPK: y_k = φ'w_k + ψ_k'π + e_k, the same columns φ with weights of their
@@ -97,7 +99,9 @@ class BlockArrow {
     }
 
     [[nodiscard]] bool idle() const noexcept { return task_ == Task::none; }
-    [[nodiscard]] bool sample_pending() const noexcept { return !idle() && task_ != Task::bound; }
+    [[nodiscard]] bool sample_pending() const noexcept {
+        return !idle() && task_ != Task::forget && task_ != Task::bound;
+    }
 
     /// Takes in the present columns, as given to `predict`, with the m targets. Only when idle. If weights
     /// were updated since `predict`, what φ leaves of the columns is computed once more, within the budget.
@@ -149,13 +153,18 @@ class BlockArrow {
 
     [[nodiscard]] static constexpr Cost cost(int column_count, int parameters, int outputs) noexcept {
         const Cost shared = CommonParameters<Scalar, p, m>::cost(parameters, outputs);
-        const std::int64_t weights = std::int64_t{column_count} * outputs * (1 + parameters);
-        const std::int64_t sweep_step =
-            std::max(Factor::largest_step(column_count), std::int64_t{2} * column_count);
-        return {weights + column_count + shared.predict,
-                Factor::variance_cost(column_count) + shared.variance,
-                Factor::sweep_cost(column_count) + shared.learn + weights + 2 * column_count,
-                std::max(sweep_step, shared.largest_step)};
+        const std::int64_t regression_count = std::int64_t{outputs} * (1 + parameters);
+        const std::int64_t sweep = Factor::sweep_cost(column_count);
+        const std::int64_t variances = outputs * UdFactor<Scalar, p>::variance_cost(parameters);
+        // In hand, a sample costs a sweeping variance, or what it adds to `predict` while the weights change.
+        const std::int64_t in_hand = std::max(Factor::sweeping_variance_cost(column_count) + shared.variance,
+                                              column_count + 1 + regression_count + variances);
+        return {.predict = regression_count * column_count + shared.predict,
+                .variance = Factor::variance_cost(column_count) + in_hand,
+                .learn = sweep + shared.learn + regression_count * weights_cost(column_count),
+                .forget = shared.forget + forget_cost(column_count) + sweep,
+                .largest_step = std::max({Factor::largest_step(column_count), weights_cost(column_count),
+                                          forget_cost(column_count), shared.largest_step})};
     }
 
     template <class Self, class Visitor>
@@ -172,7 +181,7 @@ class BlockArrow {
     }
 
   private:
-    enum class Task : int { none, residual, sweep, common, weights, bound };
+    enum class Task : int { none, residual, sweep, common, weights, forget, bound };
 
     static constexpr int regressions = product(m, sum(p, 1));
 
@@ -196,6 +205,12 @@ class BlockArrow {
     }
 
     static constexpr int padded(int count) noexcept { return Factor::padded(count); }
+    static constexpr std::int64_t weights_cost(int column_count) noexcept {
+        return std::int64_t{column_count} + 1;
+    }
+    static constexpr std::int64_t forget_cost(int column_count) noexcept {
+        return Forgetting<Scalar>::cost + 1 + Factor::scale_and_bound_cost(column_count);
+    }
     [[nodiscard]] int regression_count() const noexcept { return outputs_ * (1 + parameters_); }
 
     /// Weights of column c of output k: 0 a_k, 1 … p those of G_k.
@@ -206,7 +221,7 @@ class BlockArrow {
     /// φ times the weights of regression i, as they are once an update under way is done; `pending` = φ'K/α.
     [[nodiscard]] Scalar projection(int i, const Scalar* phi, Scalar pending) const noexcept {
         const Scalar now = detail::dot(weights_.data() + i * padded(columns_), phi, columns_);
-        return i < next_ ? now : now + pending * residual(*this, i);
+        return task_ != Task::weights || i < next_ ? now : now + pending * residual(*this, i);
     }
 
     void load(const LearnerStart<Scalar, columns, regressions>& start) noexcept {
@@ -224,9 +239,11 @@ class BlockArrow {
         case Task::residual:
             return subtract_features(budget);
         case Task::common:
-            return common_.advance(budget);
+            return common_.learn(budget);
         case Task::weights:
-            return update_weights(budget) && budget.spend(2 * columns_);
+            return update_weights(budget);
+        case Task::forget:
+            return common_.advance(budget) && (!forgetting_.active() || budget.spend(forget_cost(columns_)));
         default:
             return factor_.sweep(budget);
         }
@@ -249,6 +266,9 @@ class BlockArrow {
             task_ = Task::weights;
             break;
         case Task::weights:
+            task_ = forgetting_.active() || !common_.idle() ? Task::forget : Task::none;
+            break;
+        case Task::forget:
             task_ = forget() ? Task::bound : Task::none;
             break;
         default:
@@ -278,7 +298,7 @@ class BlockArrow {
 
     bool update_weights(Budget& budget) noexcept {
         for (; next_ < regression_count(); ++next_) {
-            if (!budget.spend(columns_)) {
+            if (!budget.spend(weights_cost(columns_))) {
                 return false;
             }
             detail::add_scaled(residual(*this, next_) / alpha_, factor_.gain(),

@@ -5,6 +5,7 @@
 #include "dfdyn/learner/kernels.hpp"
 #include "dfdyn/learner/learner.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dfdyn {
@@ -13,7 +14,8 @@ namespace dfdyn {
 /// ("Cholesky-based updates"): each row is folded in by Givens rotations, and the right-hand sides ride
 /// along, R w = z, so that single precision loses nothing. Weights come from back-substitution: for several
 /// outputs that costs more than the update, which is why `UdCovariance` is the default. A row is folded in
-/// one piece: a budget below `cost().learn` learns nothing.
+/// one piece: a budget below `cost().learn` learns nothing. Forgetting is a piece of its own, and taking a
+/// variance back another.
 ///
 /// R is stored by rows above and on its diagonal. Memory about p²/2 + (2m+2) p.
 template <class Scalar, int p, int m>
@@ -32,7 +34,8 @@ class CholeskyInformation {
     }
 
     void reset() noexcept {
-        const Scalar diagonal = 1 / std::sqrt(constants_->prior_variance);
+        using std::sqrt;
+        const Scalar diagonal = 1 / sqrt(constants_->prior_variance);
         for (int i = 0; i < columns_; ++i) {
             for (int j = i; j < columns_; ++j) {
                 factor_row(i)[j - i] = i == j ? diagonal : Scalar(0);
@@ -52,7 +55,7 @@ class CholeskyInformation {
             value = 0;
         }
         forgetting_.restart();
-        pending_ = 0;
+        task_ = Task::none;
         ratio_ = 1;
     }
 
@@ -70,8 +73,8 @@ class CholeskyInformation {
         return scratch_square(0);
     }
 
-    [[nodiscard]] bool idle() const noexcept { return pending_ == 0; }
-    [[nodiscard]] bool sample_pending() const noexcept { return pending_ != 0; }
+    [[nodiscard]] bool idle() const noexcept { return task_ == Task::none; }
+    [[nodiscard]] bool sample_pending() const noexcept { return task_ == Task::sample; }
 
     void begin(const Scalar* row, const Scalar* target) noexcept {
         for (int j = 0; j < columns_; ++j) {
@@ -80,23 +83,15 @@ class CholeskyInformation {
         for (int k = 0; k < outputs_; ++k) {
             target_[k] = target[k];
         }
-        pending_ = 1;
+        task_ = Task::sample;
     }
 
     bool advance(Budget& budget) noexcept {
-        if (idle()) {
-            return true;
+        while (!idle()) {
+            if (!work(budget)) {
+                return false;
+            }
         }
-        if (!budget.spend(cost(columns_, outputs_).learn)) {
-            return false;
-        }
-        ratio_ = 1 + variance(row_.data());
-        fold(0);
-        if (forgetting_.active()) {
-            forget();
-        }
-        solve_weights();
-        pending_ = 0;
         return true;
     }
 
@@ -115,11 +110,14 @@ class CholeskyInformation {
     }
 
     [[nodiscard]] static constexpr Cost cost(int columns, int outputs) noexcept {
-        const std::int64_t half_square = std::int64_t{columns} * (columns + 1) / 2;
-        // Variance, rotations and weights; under forgetting once more for the bound, and the factor's
-        // scaling.
-        const std::int64_t learn = half_square * (2 * (1 + 4 + outputs) + 1);
-        return {std::int64_t{columns} * outputs, half_square, learn, learn};
+        const std::int64_t learn = variance_cost(columns) + fold_and_solve_cost(columns, outputs);
+        const std::int64_t bound = outputs + fold_and_solve_cost(columns, outputs);
+        const std::int64_t forget = forget_cost(columns, outputs);
+        return {.predict = std::int64_t{columns} * outputs,
+                .variance = variance_cost(columns),
+                .learn = learn,
+                .forget = forget + bound,
+                .largest_step = std::max({learn, forget, bound})};
     }
 
     template <class Self, class Visitor>
@@ -133,11 +131,30 @@ class CholeskyInformation {
         visitor.array(self.row_.data(), self.row_.size());
         visitor.array(self.target_.data(), self.target_.size());
         visitor.positive_array(&self.ratio_, 1);
-        visitor.ranged(self.pending_, 0, 1);
+        visitor.ranged(self.task_, Task::none, Task::bound);
+        visitor.ranged(self.bounded_, 0, self.columns_ - 1);
         Forgetting<Scalar>::visit_state(self.forgetting_, visitor);
     }
 
   private:
+    enum class Task : int { none, sample, forget, bound };
+
+    static constexpr std::int64_t half_square(int columns) noexcept {
+        return std::int64_t{columns} * (columns + 1) / 2;
+    }
+    static constexpr std::int64_t variance_cost(int columns) noexcept {
+        return half_square(columns) + columns;
+    }
+    /// Of each column's rotation, over the factor and the right-hand sides, and of the weights.
+    static constexpr std::int64_t fold_and_solve_cost(int columns, int outputs) noexcept {
+        return std::int64_t{columns} * (function_cost + 2 + 4 * outputs) +
+               (4 + outputs) * half_square(columns);
+    }
+    static constexpr std::int64_t forget_cost(int columns, int outputs) noexcept {
+        return Forgetting<Scalar>::cost + 2 * function_cost + 2 + half_square(columns) +
+               std::int64_t{columns} * outputs + variance_cost(columns);
+    }
+
     static constexpr int factor_size(int columns) noexcept {
         return columns == dynamic ? dynamic : columns * (columns + 1) / 2;
     }
@@ -160,7 +177,8 @@ class CholeskyInformation {
     void load(const LearnerStart<Scalar, p, m>& start) noexcept {
         for (int i = 0; i < columns_; ++i) {
             Scalar* row = factor_row(i);
-            row[0] = 1 / std::sqrt(start.diagonal[i]);
+            using std::sqrt;
+            row[0] = 1 / sqrt(start.diagonal[i]);
             for (int j = i + 1; j < columns_; ++j) {
                 const Scalar* column = start.unit_upper.data() + j * (j - 1) / 2;
                 row[j - i] = -detail::dot(row, column + i, j - i);
@@ -179,7 +197,8 @@ class CholeskyInformation {
                 continue;
             }
             Scalar* factor = factor_row(i);
-            const Scalar length = std::hypot(factor[0], row_[i]);
+            using std::hypot;
+            const Scalar length = hypot(factor[0], row_[i]);
             const Scalar cosine = factor[0] / length;
             const Scalar sine = row_[i] / length;
             rotate(cosine, sine, factor, row_.data() + i, columns_ - i);
@@ -221,34 +240,64 @@ class CholeskyInformation {
         return total;
     }
 
-    void forget() noexcept {
-        const Scalar shrink = std::sqrt(forgetting_.factor_after(ratio_));
+    /// Does the task in hand and goes on to the next; false if the budget does not reach.
+    bool work(Budget& budget) noexcept {
+        switch (task_) {
+        case Task::sample:
+            return budget.spend(cost(columns_, outputs_).learn) && learn();
+        case Task::forget:
+            return budget.spend(forget_cost(columns_, outputs_)) && forget();
+        default:
+            return budget.spend(outputs_ + fold_and_solve_cost(columns_, outputs_)) && bound_variance();
+        }
+    }
+
+    bool learn() noexcept {
+        ratio_ = 1 + variance(row_.data());
+        fold(0);
+        solve_weights();
+        task_ = forgetting_.active() ? Task::forget : Task::none;
+        return true;
+    }
+
+    /// Scales the information, which leaves the weights as they are, and looks at one parameter's variance.
+    bool forget() noexcept {
+        using std::sqrt;
+        const Scalar shrink = sqrt(forgetting_.factor_after(ratio_));
         for (Scalar& value : factor_) {
             value *= shrink;
         }
         for (Scalar& value : right_hand_sides_) {
             value *= shrink;
         }
-        bound_variance(forgetting_.next_parameter());
+        begin_bound(forgetting_.next_parameter());
+        return true;
     }
 
-    /// See UdCovariance::bound_variance.
-    void bound_variance(int i) noexcept {
+    /// See UdFactor::begin_bound.
+    void begin_bound(int i) noexcept {
+        using std::sqrt;
         const Scalar ceiling = constants_->prior_variance;
         const Scalar present = parameter_variance(i);
-        if (present <= ceiling) {
+        task_ = present <= ceiling ? Task::none : Task::bound;
+        if (task_ == Task::none) {
             return;
         }
-        const Scalar precision = std::sqrt(1 / ceiling - 1 / present);
-        solve_weights();
+        bounded_ = i;
         for (Scalar& value : row_) {
             value = 0;
         }
-        row_[i] = precision;
+        row_[i] = sqrt(1 / ceiling - 1 / present);
+    }
+
+    bool bound_variance() noexcept {
         for (int k = 0; k < outputs_; ++k) {
-            target_[k] = precision * weights(k)[i];
+            target_[k] = row_[bounded_] * weights(k)[bounded_];
         }
-        fold(i);
+        fold(bounded_);
+        solve_weights();
+        task_ = Task::none;
+        return true;
     }
 
     const Constants* constants_;
@@ -262,7 +311,8 @@ class CholeskyInformation {
     mutable Columns scratch_; ///< of `variance`
     Outputs target_;
     Scalar ratio_ = 1;
-    int pending_ = 0;
+    Task task_ = Task::none;
+    int bounded_ = 0; ///< the parameter whose variance is taken back
 };
 
 } // namespace dfdyn

@@ -63,16 +63,18 @@ class CommonParameters {
     }
 
     /// Works on the rows in hand as far as the budget goes; true when there is nothing left.
-    bool advance(Budget& budget) noexcept {
-        while (learner_.advance(budget)) {
+    bool advance(Budget& budget) noexcept { return learn(budget) && learner_.advance(budget); }
+
+    /// The same, but leaves what forgetting has to do to `advance`.
+    bool learn(Budget& budget) noexcept {
+        while (learner_.learn(budget)) {
             if (next_ == 2 * outputs_) {
                 return true;
             }
-            const bool variance = next_ < outputs_;
-            if (!budget.spend(variance ? UdFactor<Scalar, p>::variance_cost(parameters_) : parameters_)) {
-                return false;
-            }
-            if (variance) {
+            if (next_ < outputs_) {
+                if (!budget.spend(UdFactor<Scalar, p>::variance_cost(parameters_))) {
+                    return false;
+                }
                 variances_[next_] = learner_.variance(rows_.data() + next_ * parameters_);
             } else {
                 const int k = next_ - outputs_;
@@ -93,8 +95,12 @@ class CommonParameters {
 
     [[nodiscard]] static constexpr Cost cost(int parameters, int outputs) noexcept {
         const Cost row = UdCovariance<Scalar, p, 1>::cost(parameters, 1);
-        return {outputs * row.predict, outputs * row.variance,
-                outputs * (row.variance + parameters + row.learn), std::max(row.variance, row.largest_step)};
+        const std::int64_t variance = UdFactor<Scalar, p>::variance_cost(parameters);
+        return {.predict = outputs * row.predict,
+                .variance = outputs * row.variance,
+                .learn = outputs * (variance + row.learn),
+                .forget = row.forget,
+                .largest_step = std::max(variance, row.largest_step)};
     }
 
     template <class Self, class Visitor>

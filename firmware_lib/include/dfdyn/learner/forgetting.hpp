@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/budget.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -25,6 +27,8 @@ class Forgetting {
     constexpr Forgetting(Scalar factor, int parameters, int rows = 1) noexcept
         : factor_(factor), parameters_(static_cast<Scalar>(parameters)),
           payback_(std::clamp(parameters_ / (2 * static_cast<Scalar>(rows)), Scalar(1), Scalar(20))) {
+        using std::log;
+        price_ = active() ? parameters_ * -log(factor) : Scalar(0);
         restart();
     }
 
@@ -42,17 +46,21 @@ class Forgetting {
         if (!active()) {
             return 1;
         }
-        account_ += payback_ * std::log(ratio);
+        using std::exp;
+        using std::log;
+        account_ += payback_ * log(ratio);
         account_ = account_ < capacity() ? account_ : capacity();
-        const Scalar price = parameters_ * -std::log(factor_);
-        if (account_ >= price) {
-            account_ -= price;
+        if (account_ >= price_) {
+            account_ -= price_;
             return factor_;
         }
-        const Scalar affordable = std::exp(-account_ / parameters_);
+        const Scalar affordable = exp(-account_ / parameters_);
         account_ = 0;
         return affordable;
     }
+
+    /// Multiply-adds of `factor_after`, at most.
+    static constexpr int cost = 2 * (function_cost + 1);
 
     /// The parameters in turn, for the look at their variances.
     [[nodiscard]] constexpr int next_parameter() noexcept {
@@ -74,6 +82,7 @@ class Forgetting {
     Scalar factor_;
     Scalar parameters_;
     Scalar payback_;
+    Scalar price_ = 0; ///< of applying the factor once, in nats
     Scalar account_ = 0;
     int next_parameter_ = 0;
 };

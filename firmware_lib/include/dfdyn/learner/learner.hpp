@@ -5,6 +5,7 @@
 #include "dfdyn/storage.hpp"
 
 #include <concepts>
+#include <cstdint>
 
 namespace dfdyn {
 
@@ -26,8 +27,9 @@ struct LearnerStart {
 /// ~ N(0, 1), w ~ N(0, prior_variance I), so that one factor serves all.
 template <class Scalar, int p, int m>
 struct LearnerConstants {
-    Scalar prior_variance;                   ///< ρ²/σ² > 0
-    Scalar forgetting_factor;                ///< λ, 1 - 1/p ≤ λ ≤ 1; 1 reproduces the paper
+    Scalar prior_variance;    ///< ρ²/σ² > 0
+    Scalar forgetting_factor; ///< λ, 1 - 1/p ≤ λ ≤ 1; 1 reproduces the paper
+    static constexpr std::int64_t start_bytes = sizeof(LearnerStart<Scalar, p, m>);
     const LearnerStart<Scalar, p, m>* start; ///< nullptr: zero weights and the prior's covariance
 };
 

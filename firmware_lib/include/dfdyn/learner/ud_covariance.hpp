@@ -12,8 +12,8 @@ namespace dfdyn {
 /// Recursive least squares of m outputs over the same p columns, by the factor P = U D U' of their covariance
 /// (`UdFactor`): one sweep per row, after which the gain gives the weights of all outputs.
 ///
-/// Learning can be sliced after any panel of the sweep. Until it is done the weights and `variance` are the
-/// old ones. Memory about p²/2 + (m+3) p.
+/// Learning can be sliced after the innovations, after any panel of the sweep and before forgetting. Until it
+/// is done the weights and `variance` are the old ones. Memory about p²/2 + (m+3) p.
 template <class Scalar, int p, int m>
 class UdCovariance {
   public:
@@ -59,7 +59,9 @@ class UdCovariance {
     [[nodiscard]] bool idle() const noexcept { return task_ == Task::none; }
 
     /// Whether a sample's row is in hand and not yet learned.
-    [[nodiscard]] bool sample_pending() const noexcept { return task_ == Task::sample; }
+    [[nodiscard]] bool sample_pending() const noexcept {
+        return task_ == Task::innovation || task_ == Task::sample;
+    }
 
     /// Takes in φ (p values) and the m targets, each in units of its noise. Only when idle.
     void begin(const Scalar* row, const Scalar* target) noexcept { begin_row(row, target, 1, true); }
@@ -68,23 +70,31 @@ class UdCovariance {
     /// forgetting happens once, after the last.
     void begin_row(const Scalar* row, const Scalar* target, Scalar noise_variance,
                    bool last_of_instant) noexcept {
-        predict(row, innovation_.data());
         for (int k = 0; k < outputs_; ++k) {
-            innovation_[k] = target[k] - innovation_[k];
+            innovation_[k] = target[k]; // the prediction is taken off within the budget
         }
         factor_.begin(row, noise_variance);
         noise_variance_ = noise_variance;
         last_of_instant_ = last_of_instant ? 1 : 0;
-        task_ = Task::sample;
+        task_ = Task::innovation;
     }
 
     /// Works on the row in hand as far as the budget goes; true when there is none left.
     bool advance(Budget& budget) noexcept {
         while (!idle()) {
-            if (!factor_.sweep(budget) || !budget.spend(finish_cost(columns_, outputs_))) {
+            if (!work(budget)) {
                 return false;
             }
-            finish();
+        }
+        return true;
+    }
+
+    /// The same, but leaves what forgetting has to do to `advance`.
+    bool learn(Budget& budget) noexcept {
+        while (sample_pending()) {
+            if (!work(budget)) {
+                return false;
+            }
         }
         return true;
     }
@@ -103,15 +113,19 @@ class UdCovariance {
     [[nodiscard]] const UdFactor<Scalar, p>& factor() const noexcept { return factor_; }
 
     [[nodiscard]] static constexpr Cost cost(int columns, int outputs) noexcept {
-        using Factor = UdFactor<Scalar, p>;
+        const std::int64_t sweep = Factor::sweep_cost(columns);
+        const std::int64_t predict = std::int64_t{columns} * outputs;
         const std::int64_t finish = finish_cost(columns, outputs);
-        return {std::int64_t{columns} * outputs, Factor::variance_cost(columns),
-                Factor::sweep_cost(columns) + finish, std::max(Factor::largest_step(columns), finish)};
+        return {.predict = predict,
+                .variance = Factor::variance_cost(columns) + Factor::sweeping_variance_cost(columns),
+                .learn = predict + sweep + finish,
+                .forget = forget_cost(columns) + sweep,
+                .largest_step = std::max({Factor::largest_step(columns), finish, forget_cost(columns)})};
     }
 
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
-        UdFactor<Scalar, p>::visit_state(self.factor_, visitor);
+        Factor::visit_state(self.factor_, visitor);
         visitor.array(self.weights_.data(), self.weights_.size());
         visitor.array(self.innovation_.data(), self.innovation_.size());
         visitor.positive_array(&self.noise_variance_, 1);
@@ -123,12 +137,17 @@ class UdCovariance {
     }
 
   private:
-    /// What the sweep under way does.
-    enum class Task : int { none, sample, bound };
+    using Factor = UdFactor<Scalar, p>;
 
-    static constexpr int padded(int columns) noexcept { return UdFactor<Scalar, p>::padded(columns); }
+    /// What is to be done next; a sample and a bound are sweeps.
+    enum class Task : int { none, innovation, sample, forget, bound };
+
+    static constexpr int padded(int columns) noexcept { return Factor::padded(columns); }
     static constexpr std::int64_t finish_cost(int columns, int outputs) noexcept {
-        return std::int64_t{columns} * (outputs + 2);
+        return std::int64_t{outputs} * (columns + 1) + 2;
+    }
+    static constexpr std::int64_t forget_cost(int columns) noexcept {
+        return Forgetting<Scalar>::cost + 1 + Factor::scale_and_bound_cost(columns);
     }
 
     using Weights = Storage<Scalar, product(m, padded(p))>;
@@ -143,42 +162,63 @@ class UdCovariance {
         }
     }
 
-    void finish() noexcept {
-        const bool bound = task_ == Task::bound;
-        factor_.close();
-        task_ = Task::none;
-        if (bound) {
-            return; // a variance was taken back; the weights stay
+    /// Does the task in hand and goes on to the next; false if the budget does not reach.
+    bool work(Budget& budget) noexcept {
+        switch (task_) {
+        case Task::innovation:
+            return budget.spend(std::int64_t{columns_} * outputs_) && subtract_prediction();
+        case Task::sample:
+            return factor_.sweep(budget) && budget.spend(finish_cost(columns_, outputs_)) && finish();
+        case Task::forget:
+            return budget.spend(forget_cost(columns_)) && forget();
+        default:
+            return factor_.sweep(budget) && close();
         }
+    }
+
+    bool subtract_prediction() noexcept {
+        for (int k = 0; k < outputs_; ++k) {
+            innovation_[k] -= detail::dot(weights(k), factor_.row(), columns_);
+        }
+        task_ = Task::sample;
+        return true;
+    }
+
+    bool finish() noexcept {
         for (int k = 0; k < outputs_; ++k) {
             detail::add_scaled(innovation_[k] / factor_.alpha(), factor_.gain(),
                                weights_.data() + k * padded(columns_), columns_);
         }
         ratio_ = factor_.alpha() / noise_variance_;
-        if (forgetting_.active()) {
-            information_ = std::min(information_ * ratio_, std::numeric_limits<Scalar>::max());
-        }
-        if (last_of_instant_ != 0) {
-            forget();
+        information_ = std::min(information_ * ratio_, std::numeric_limits<Scalar>::max());
+        close();
+        if (last_of_instant_ != 0 && forgetting_.active()) {
+            task_ = Task::forget;
+        } else if (last_of_instant_ != 0) {
             information_ = 1;
         }
+        return true;
     }
 
-    void forget() noexcept {
-        if (!forgetting_.active()) {
-            return;
-        }
+    bool forget() noexcept {
         factor_.scale(1 / forgetting_.factor_after(information_));
-        if (factor_.begin_bound(forgetting_.next_parameter(), constants_->prior_variance)) {
-            task_ = Task::bound;
-        }
+        information_ = 1;
+        const bool bound = factor_.begin_bound(forgetting_.next_parameter(), constants_->prior_variance);
+        task_ = bound ? Task::bound : Task::none;
+        return true;
+    }
+
+    bool close() noexcept {
+        factor_.close();
+        task_ = Task::none;
+        return true;
     }
 
     const Constants* constants_;
     [[no_unique_address]] Extent<p> columns_;
     [[no_unique_address]] Extent<m> outputs_;
     Forgetting<Scalar> forgetting_;
-    UdFactor<Scalar, p> factor_;
+    Factor factor_;
     Weights weights_;
     Outputs innovation_;
     Scalar noise_variance_ = 1;

@@ -4,6 +4,8 @@
 #include "dfdyn/learner/kernels.hpp"
 #include "dfdyn/learner/learner.hpp"
 
+#include <algorithm>
+
 namespace dfdyn {
 
 /// The covariance P = U D U' of p parameters as its square-root-free Cholesky factor, and the sweep that
@@ -103,7 +105,7 @@ class UdFactor {
     /// Sweeps as far as the budget goes; true when all columns are done.
     [[nodiscard]] bool sweep(Budget& budget) noexcept {
         for (; panel_ < panel_count(); ++panel_) {
-            if (!budget.spend(panel_cost(panel_))) {
+            if (!budget.spend(panel_cost(panel_, columns_))) {
                 return false;
             }
             fold_panel(panel_);
@@ -141,19 +143,31 @@ class UdFactor {
     [[nodiscard]] Scalar upper(int i, int j) const noexcept { return upper_element(*this, i, j); }
     [[nodiscard]] Scalar diagonal(int j) const noexcept { return diagonal_[j]; }
 
-    /// Multiply-adds of a sweep, of `variance`, and of the largest part that a sweep can be sliced into.
+    /// Multiply-adds of a sweep, and of the largest part that a sweep can be sliced into.
     [[nodiscard]] static constexpr std::int64_t sweep_cost(int columns) noexcept {
         std::int64_t total = 0;
-        for (int b = 0; b < padded(columns) / detail::panel_width; ++b) {
-            total += panel_cost(b);
+        for (int b = 0; b < panel_count(columns); ++b) {
+            total += panel_cost(b, columns);
         }
         return total;
     }
-    [[nodiscard]] static constexpr std::int64_t variance_cost(int columns) noexcept {
-        return sweep_cost(columns) / 3;
-    }
     [[nodiscard]] static constexpr std::int64_t largest_step(int columns) noexcept {
-        return panel_cost(padded(columns) / detail::panel_width - 1);
+        return panel_cost(panel_count(columns) - 1, columns);
+    }
+    /// Of `variance`, and what it takes beyond that while a sweep is under way, at most.
+    [[nodiscard]] static constexpr std::int64_t variance_cost(int columns) noexcept {
+        std::int64_t total = 0;
+        for (int b = 0; b < panel_count(columns); ++b) {
+            total += projection_cost(b, columns) + 2 * detail::panel_width;
+        }
+        return total;
+    }
+    [[nodiscard]] static constexpr std::int64_t sweeping_variance_cost(int columns) noexcept {
+        return std::int64_t{columns} + 2;
+    }
+    /// Of `scale` and `begin_bound`, at most.
+    [[nodiscard]] static constexpr std::int64_t scale_and_bound_cost(int columns) noexcept {
+        return std::int64_t{3} * columns;
     }
 
     template <class Self, class Visitor>
@@ -179,7 +193,15 @@ class UdFactor {
     static constexpr int triangles_size(int columns) noexcept {
         return columns == dynamic ? dynamic : 6 * (padded(columns) / detail::panel_width);
     }
-    static constexpr std::int64_t panel_cost(int b) noexcept { return std::int64_t{48} * b + 48; }
+    static constexpr int panel_count(int columns) noexcept { return padded(columns) / detail::panel_width; }
+    static constexpr std::int64_t projection_cost(int b, int columns) noexcept {
+        const int width = std::min(detail::panel_width, columns - detail::panel_width * b);
+        return std::int64_t{16} * b + width * (width - 1) / 2;
+    }
+    /// Five for each column's gain, two for each element above the diagonal.
+    static constexpr std::int64_t panel_cost(int b, int columns) noexcept {
+        return projection_cost(b, columns) + std::int64_t{32} * b + 5 * detail::panel_width + 2 * 6;
+    }
 
     using Panels = Storage<Scalar, panels_size(p)>;
     using Triangles = Storage<Scalar, triangles_size(p)>;
@@ -195,7 +217,7 @@ class UdFactor {
         }
     }
 
-    [[nodiscard]] int panel_count() const noexcept { return padded(columns_) / detail::panel_width; }
+    [[nodiscard]] int panel_count() const noexcept { return panel_count(columns_); }
     [[nodiscard]] int panel_width_up_to(int panel) const noexcept {
         const int columns = detail::panel_width * panel;
         return columns < columns_ ? columns : static_cast<int>(columns_);

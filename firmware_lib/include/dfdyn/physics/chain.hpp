@@ -56,6 +56,14 @@ struct JointTorques {
     static constexpr std::int64_t pairs(int outputs, int /*bodies*/) noexcept {
         return std::int64_t{outputs} * (outputs + 1) / 2;
     }
+
+    /// Times that a screw is brought from one link's frame to the next one's.
+    static constexpr std::int64_t carries(int outputs, int /*bodies*/, int /*joints*/) noexcept {
+        return std::int64_t{outputs} * (outputs - 1) / 2;
+    }
+
+    /// Multiply-adds of all `begin`.
+    static constexpr int begin_cost = 0;
 };
 
 /// The outputs are force (N) and torque (N·m, about the sensor frame's origin) at a sensor within the chain,
@@ -96,6 +104,13 @@ struct WrenchAtSensor {
     static constexpr std::int64_t pairs(int outputs, int bodies) noexcept {
         return std::int64_t{outputs} * bodies;
     }
+
+    /// At most: where every link counts the sensor may sit on the first link, not on the base.
+    static constexpr std::int64_t carries(int outputs, int bodies, int joints) noexcept {
+        return std::int64_t{outputs} * (bodies == joints ? bodies : bodies - 1);
+    }
+
+    static constexpr int begin_cost = 27;
 };
 
 /// A serial chain of n joints of known geometry, compiled in; what is learned is the inertial parameters of

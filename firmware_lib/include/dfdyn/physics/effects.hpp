@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/budget.hpp"
 #include "dfdyn/storage.hpp"
 
 #include <cmath>
@@ -11,6 +12,7 @@ namespace dfdyn {
 
 /// A named effect adds columns to the physics: each column acts on one output and is known but for its
 /// factor, which is learned. An effect says
+///  - `columns`: how many; `column_cost`: multiply-adds of one, at most;
 ///  - `at_joint`: its columns act on joints, so that the outputs must be the joints' torques;
 ///  - `Constants`: `row` gives the output (0: the first) that each column acts on, the rest is the effect's
 ///    own;
@@ -20,6 +22,8 @@ namespace dfdyn {
 template <class E>
 concept PhysicsEffect = requires(const typename E::template Constants<float>& constants, int column,
                                  const float* xi) {
+    { E::columns } -> std::convertible_to<int>;
+    { E::column_cost } -> std::convertible_to<int>;
     { E::at_joint } -> std::convertible_to<bool>;
     { constants.row[column] } -> std::convertible_to<std::int32_t>;
     { constants.row.size() } -> std::convertible_to<int>;
@@ -33,6 +37,8 @@ namespace detail {
 /// such effect's constants from another's.
 template <template <int> class Effect, int count, int element>
 struct MotionColumns {
+    static constexpr int columns = count;
+    static constexpr int column_cost = 0;
     static constexpr bool at_joint = true;
 
     template <class Scalar>
@@ -55,6 +61,8 @@ struct ViscousFriction : detail::MotionColumns<ViscousFriction, count, 1> {};
 /// `coulomb_friction`: tanh(q̇ / v), a sign without a step; the parameter is N·m.
 template <int count>
 struct CoulombFriction {
+    static constexpr int columns = count;
+    static constexpr int column_cost = function_cost + 1;
     static constexpr bool at_joint = true;
 
     template <class Scalar>
@@ -74,6 +82,8 @@ struct CoulombFriction {
 /// friction (N·m).
 template <int count>
 struct StribeckFriction {
+    static constexpr int columns = count;
+    static constexpr int column_cost = 2 * function_cost + 4;
     static constexpr bool at_joint = true;
     static constexpr int faded = 40; ///< exp(-40) is nothing, and beyond 87 a float has denormals
 
@@ -112,6 +122,8 @@ struct JointSpring : detail::MotionColumns<JointSpring, count, 0> {};
 /// parameters are N·m.
 template <int count>
 struct TorqueRipple {
+    static constexpr int columns = count;
+    static constexpr int column_cost = function_cost + 1;
     static constexpr bool at_joint = true;
 
     template <class Scalar>
@@ -132,6 +144,8 @@ struct TorqueRipple {
 /// `torque_offset` or `ft_bias`: 1; the parameter is what is added to the output (N·m, N).
 template <int count>
 struct OutputOffset {
+    static constexpr int columns = count;
+    static constexpr int column_cost = 0;
     static constexpr bool at_joint = false;
 
     template <class Scalar>
@@ -144,8 +158,5 @@ struct OutputOffset {
         return Scalar(1);
     }
 };
-
-/// The most expensive effect's multiply-adds per column, tanh, exp and sin counted as 30 each.
-inline constexpr int effect_cost = 65;
 
 } // namespace dfdyn

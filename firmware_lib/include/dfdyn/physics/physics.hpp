@@ -4,6 +4,7 @@
 #include "dfdyn/physics/effects.hpp"
 #include "dfdyn/physics/rigid_body.hpp"
 
+#include <algorithm>
 #include <type_traits>
 
 namespace dfdyn {
@@ -95,15 +96,25 @@ struct Physics {
             return true;
         }
 
-        /// Multiply-adds of `evaluate`, at most.
+        /// Multiply-adds of `evaluate`, at most: all of it where every column is selected.
         [[nodiscard]] static constexpr std::int64_t cost(const Sizes& sizes) noexcept {
             const std::int64_t written = std::int64_t{2} * sizes.output_count * sizes.column_count;
-            const int effects = sizeof...(EffectTypes) == 0 ? 0 : effect_cost * sizes.column_count;
             return MotionMap::cost(sizes.joint_count, sizes.lag_count, 3) +
-                   rigid_body_cost<Arm>(sizes.chain()) + written + effects;
+                   rigid_body_cost<Arm>(sizes.chain()) + written + effects_cost(sizes.column_count);
         }
 
       private:
+        template <class Effect>
+        static constexpr std::int64_t effect_cost(int selected) noexcept {
+            const int most = Effect::columns == dynamic ? selected : std::min(Effect::columns, selected);
+            return std::int64_t{Effect::column_cost} * most;
+        }
+        /// Of all that are there, and not more than of the most expensive ones alone.
+        static constexpr std::int64_t effects_cost(int selected) noexcept {
+            const std::int64_t most = std::max({0, EffectTypes::column_cost...});
+            return std::min(most * selected, (std::int64_t{0} + ... + effect_cost<EffectTypes>(selected)));
+        }
+
         static constexpr int inputs = product(3, Arm::joints);
         using MotionMap = typename MotionType::template Map<Scalar, Arm::joints>;
         using Inputs = Storage<Scalar, inputs>;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/budget.hpp"
 #include "dfdyn/physics/chain.hpp"
 
 #include <algorithm>
@@ -112,12 +113,16 @@ void inertial_row(const Screw<Scalar>& screw, const LinkMotion<Scalar>& motion, 
     row[9] = u.z * alpha.z + uw.z * w.z;
 }
 
-/// Multiply-adds of the regressor: 190 per joint for its motion (sine and cosine counted as 30 each) and 80
-/// per pair of an output and a body that acts on it.
+/// Multiply-adds of the regressor of revolute joints; a prismatic one needs no sine and cosine. Per joint its
+/// frame and its motion, per screw and joint it passes the change of frames, per pair of an output and a body
+/// that acts on it the row.
 template <class Arm>
 constexpr std::int64_t rigid_body_cost(const typename Arm::Sizes& sizes) noexcept {
-    return std::int64_t{190} * sizes.joint_count +
-           80 * Arm::Output::pairs(sizes.output_count, sizes.body_count);
+    constexpr int joint = 2 * function_cost + 57 + 57;
+    using Output = typename Arm::Output;
+    return std::int64_t{joint} * sizes.joint_count + Output::begin_cost +
+           24 * Output::carries(sizes.output_count, sizes.body_count, sizes.joint_count) +
+           51 * Output::pairs(sizes.output_count, sizes.body_count);
 }
 
 /// The rows ψ with ψ π = output (paper, eq. par_regr_model), where π holds the inertial parameters of every

@@ -38,7 +38,7 @@ class FeatureColumns {
 
     [[nodiscard]] static constexpr std::int64_t cost(const typename Model::Sizes& sizes) noexcept {
         return Map::cost(sizes.joint_count, sizes.lag_count, sizes.features_per_joint) +
-               Model::Features::cost(sizes.input_count(), sizes.feature_count);
+               Model::Features::template cost<Scalar>(sizes.input_count(), sizes.feature_count);
     }
 
   private:

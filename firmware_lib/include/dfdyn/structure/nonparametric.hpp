@@ -73,9 +73,7 @@ struct Nonparametric {
 
         [[nodiscard]] static constexpr Cost cost(const typename Model::Sizes& sizes) noexcept {
             Cost cost = Learner::cost(sizes.column_count(), sizes.output_count);
-            // The learner predicts once more, for the innovation.
-            cost.predict +=
-                FeatureColumns<Model>::cost(sizes) + std::int64_t{sizes.column_count()} * sizes.output_count;
+            cost.predict += FeatureColumns<Model>::cost(sizes);
             return cost;
         }
 

@@ -45,7 +45,7 @@ class PhysicsColumns {
     [[nodiscard]] const Scalar* data() const noexcept { return psi_.data(); }
 
     [[nodiscard]] static constexpr std::int64_t cost(const typename Model::Sizes& sizes) noexcept {
-        return Map::cost(sizes.physics) + std::int64_t{sizes.output_count} * sizes.physics.column_count;
+        return Map::cost(sizes.physics) + std::int64_t{sizes.output_count} * (1 + sizes.physics.column_count);
     }
 
   private:

@@ -11,6 +11,7 @@ template <class Scalar, int parameters, class LearnerConstantsType>
 struct MeanConstants {
     Storage<Scalar, parameters> parameters_of_mean; ///< π, per unit of the physics' column scale
     LearnerConstantsType residual;                  ///< of the learner of what the mean leaves
+    static constexpr std::int64_t start_bytes = LearnerConstantsType::start_bytes;
 };
 
 /// Models SP and SP2 of the paper (eq. eq:SP-Mean_model_statistics): y_k = ψ_k'π + φ'w_k + e with a fixed π;

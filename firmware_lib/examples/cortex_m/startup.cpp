@@ -20,6 +20,9 @@ extern const Initialiser init_array_begin[], init_array_end[];
     semihosting::exit(3);
 }
 
+/// For whoever uses the timer's interrupt.
+[[gnu::weak]] void systick_handler() { fault_handler(); }
+
 [[noreturn]] void start() {
     std::uint32_t* to = data_begin;
     for (const std::uint32_t* from = data_load; to != data_end; ++from, ++to) {
@@ -56,6 +59,6 @@ struct VectorTable {
 [[gnu::section(".vectors"), gnu::used]] const VectorTable vector_table = {
     stack_top,
     {reset_handler, fault_handler, fault_handler, fault_handler, fault_handler, fault_handler, nullptr,
-     nullptr, nullptr, nullptr, fault_handler, fault_handler, nullptr, fault_handler, fault_handler}};
+     nullptr, nullptr, nullptr, fault_handler, fault_handler, nullptr, fault_handler, systick_handler}};
 
 } // extern "C"

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// Learning on the metal: a periodic timer interrupt takes what has come over CAN, gates it into a sample,
+// predicts, and learns within its budget. The frames come from memory in the place of the controller's
+// mailbox; for another board write `Mailbox` anew.
+#include "report.hpp"
+#include "stack_watermark.hpp"
+#include "systick.hpp"
+#include "ur5_frames.hpp" // 2.4 s of six CiA 402 drives
+#include "ur5_model.hpp"
+
+#include "dfdyn/hal/assembly/effort_output.hpp"
+#include "dfdyn/hal/device/cia402.hpp"
+#include "dfdyn/hal/sample_assembly.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace {
+
+using namespace dfdyn::hal;
+
+constexpr int joints = 6;
+constexpr std::int64_t sample_period_ns = 8'000'000; // of the recording; the timer is eight times as fast
+constexpr std::uint32_t timer_hz = 1000;
+
+/// The CAN controller. Its clock is the timer.
+class Mailbox {
+  public:
+    void advance() noexcept { now_ns_ += sample_period_ns; }
+    [[nodiscard]] bool ended() const noexcept { return next_ == std::size(ur5_frames); }
+
+    std::span<const Frame> drain(std::span<Frame> into) noexcept {
+        std::size_t count = 0;
+        for (; count < into.size() && !ended() && stamp_ns(ur5_frames[next_]) <= now_ns_; ++next_) {
+            const Ur5Frame& received = ur5_frames[next_];
+            Frame& frame = into[count++] = Frame{};
+            frame.stamp_ns = stamp_ns(received);
+            frame.stamp_source = StampSource::hardware;
+            frame.id = received.id;
+            frame.length = received.length;
+            std::copy_n(received.data, received.length, frame.data.begin());
+        }
+        counters_.received += count;
+        return into.first(count);
+    }
+    SendResult send(const Frame& /*frame*/) noexcept { return SendResult::sent; }
+    [[nodiscard]] std::int64_t now_ns() const noexcept { return now_ns_; }
+    [[nodiscard]] BusState state() const noexcept { return BusState::active; }
+    [[nodiscard]] const BusCounters& counters() const noexcept { return counters_; }
+
+  private:
+    static constexpr std::int64_t stamp_ns(const Ur5Frame& frame) {
+        return std::int64_t{1000} * frame.time_us;
+    }
+
+    std::int64_t now_ns_ = stamp_ns(ur5_frames[0]);
+    std::size_t next_ = 0;
+    BusCounters counters_;
+};
+static_assert(Bus<Mailbox>);
+
+using Currents = EffortOutput<joints, 4>;
+using Assembly = SampleAssembly<float, joints, Cia402Drive, joints, Currents, 4>;
+using Estimator = dfdyn::Estimator<ur5_model::Model>;
+
+constexpr TrackConfig track{.max_age_ns = 3 * sample_period_ns, .latency_ns = 0, .qualification = {}};
+
+constexpr Cia402Drive drive(int joint) {
+    const Signal position{.start_bit = 0,
+                          .length = 32,
+                          .encoding = Encoding::signed_integer,
+                          .factor = 2 * std::numbers::pi / 1048576};
+    const Signal current{
+        .start_bit = 32, .length = 16, .encoding = Encoding::signed_integer, .factor = 0.001};
+    return Cia402Drive({.node = joint + 1,
+                        .joint = joint,
+                        .position_pdo = 0x280,
+                        .position_length = 6,
+                        .position = position,
+                        .effort_pdo = 0x280,
+                        .effort_length = 6,
+                        .effort = current});
+}
+
+template <class T>
+constexpr std::array<T, joints> six(const T& value) {
+    return {value, value, value, value, value, value};
+}
+
+Mailbox mailbox;
+Assembly assembly({.board = {drive(0), drive(1), drive(2), drive(3), drive(4), drive(5)},
+                   .position = track,
+                   .position_range = six(Range{-7, 7}),
+                   .clock = {.tolerance_ns = 2 * sample_period_ns},
+                   .output_bus = 0},
+                  Currents({.track = track, .range = six(Range{-20, 20})}));
+Estimator estimator(ur5_model::constants);
+constexpr dfdyn::Budget budget{Estimator::cost().learn / 2};
+
+struct Statistics {
+    std::uint32_t interrupts = 0;
+    std::uint32_t overruns = 0; ///< interrupts that were due before the one before had ended
+    std::uint32_t longest = 0;  ///< of an interrupt, in counts of the timer
+    float error_square = 0;     ///< of joint 2
+    float output_square = 0;
+};
+Statistics statistics;
+volatile bool ended;
+
+void learn(std::int64_t instant_ns) {
+    const auto [sample, report] = assembly.assemble(instant_ns, mailbox.now_ns());
+    if (report.position != Reason::ok) {
+        return;
+    }
+    const auto estimate = estimator.tick(sample, budget);
+    if (estimate.status.predicted() && sample.output_valid) { // in a robot: feed estimate.prediction forward
+        statistics.error_square += estimate.innovation[1] * estimate.innovation[1];
+        statistics.output_square += sample.output[1] * sample.output[1];
+    }
+}
+
+void end_of_interrupt() {
+    const std::uint32_t spent = systick().reload - systick().value;
+    statistics.overruns += (systick().control & SysTick::passed_zero) != 0 ? 1 : 0;
+    statistics.longest = std::max(statistics.longest, spent);
+    ++statistics.interrupts;
+    ended = mailbox.ended();
+}
+
+bool learned_well() {
+    const dfdyn::Counters& counters = estimator.counters();
+    report(DFDYN_CORE ": control loop: interrupts ", statistics.interrupts, "");
+    report(", frames ", static_cast<std::uint32_t>(mailbox.counters().received), "");
+    report(", samples ", counters.ticks, "");
+    report(", predicted ", counters.predicted, "");
+    report(", learned ", counters.learned, "");
+    report(", overruns ", statistics.overruns, "");
+    report("; an interrupt took at most ", statistics.longest / (core_clock_hz / 1'000'000),
+           " us of 1000, at 500 million instructions per second");
+    report("; stack ", stack_used_bytes(), " bytes\n");
+    return counters.ticks >= 285 && counters.predicted >= 275 && counters.learned > 50 &&
+           statistics.overruns == 0 && statistics.error_square < 0.05F * statistics.output_square;
+}
+
+} // namespace
+
+extern "C" void systick_handler() {
+    static std::array<Frame, 16> room;
+    if (ended) {
+        return;
+    }
+    static_cast<void>(systick().control); // forgets that the timer has passed zero
+    mailbox.advance();
+    assembly.drain(mailbox, room, [](const Assembly::Moment& moment) { learn(moment.instant_ns); });
+    end_of_interrupt();
+}
+
+int application() {
+    systick().reload = core_clock_hz / timer_hz - 1;
+    systick().value = 0;
+    systick().control = SysTick::enabled | SysTick::interrupts | SysTick::core_clock;
+    while (!ended) {
+        asm volatile("wfi");
+    }
+    return learned_well() ? 0 : 1;
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The embedding example in double precision: the model's constants are widened when compiling.
+#include "embedding.hpp"
+
+#include "ur5_model.hpp"
+#include "ur5_samples.hpp"
+
+#include <algorithm>
+
+namespace {
+
+using Single = ur5_model::Model;
+using Model = dfdyn::Model<double, Single::Arm, Single::Input, Single::Features>;
+using Estimator = dfdyn::Estimator<Model>;
+
+template <int count>
+constexpr dfdyn::Storage<double, count> widened(const dfdyn::Storage<float, count>& values) {
+    dfdyn::Storage<double, count> wide{};
+    std::ranges::copy(values, wide.begin());
+    return wide;
+}
+
+constexpr dfdyn::LearnerStart<double, Model::columns, Model::outputs> start{
+    .weights = widened(ur5_model::start.weights),
+    .unit_upper = widened(ur5_model::start.unit_upper),
+    .diagonal = widened(ur5_model::start.diagonal)};
+
+constexpr Model::Constants widened(const Single::Constants& model) {
+    return {.sizes = {},
+            .identity = model.identity,
+            .gap_ns = model.gap_ns,
+            .input = {widened(model.input.rows), widened(model.input.scale)},
+            .features = {widened(model.features.frequencies), static_cast<double>(model.features.amplitude)},
+            .physics = {},
+            .output_offset = widened(model.output_offset),
+            .output_noise_std = widened(model.output_noise_std),
+            .position_limit = widened(model.position_limit),
+            .output_limit = widened(model.output_limit),
+            .innovation_limit = static_cast<double>(model.innovation_limit),
+            .innovation_patience = model.innovation_patience,
+            .learner = {static_cast<double>(model.learner.prior_variance),
+                        static_cast<double>(model.learner.forgetting_factor), &start}};
+}
+
+constexpr Model::Constants constants = widened(ur5_model::constants);
+Estimator estimator(constants);
+
+} // namespace
+
+int run_example_in_double(void (*after_tick)(const TickOutcome&)) {
+    estimator.reset();
+    for (const Ur5Sample& recorded : ur5_samples) {
+        Estimator::Sample sample{
+            .time_ns = 1000 * recorded.time_us, .position = {}, .output = {}, .output_valid = true};
+        std::ranges::copy(recorded.position_rad, sample.position.begin());
+        std::ranges::copy(recorded.current_A, sample.output.begin());
+        const auto estimate = estimator.tick(sample, dfdyn::Budget::unlimited());
+        TickOutcome outcome{.prediction = {},
+                            .standard_deviation = {},
+                            .predicted = estimate.status.predicted(),
+                            .learned = estimate.status.learned()};
+        std::ranges::copy(estimate.prediction, outcome.prediction.begin());
+        std::ranges::copy(estimate.standard_deviation, outcome.standard_deviation.begin());
+        if (after_tick != nullptr) {
+            after_tick(outcome);
+        }
+    }
+    return estimator.counters().learned > 200 ? 0 : 1;
+}

@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# check_realtime.sh SOURCE_FOLDER EIGEN: nothing that runs within the control loop's period blocks: by clang's check of function
+# effects when compiling, and by RealtimeSanitizer when running; and both find what does. Needs clang 20 or later with its
+# runtime; where there is none it says so and checks nothing.
+set -euo pipefail
+cd "$1"
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+compiler=
+for version in 23 22 21 20; do
+    if command -v "clang++-$version" >/dev/null; then
+        compiler=clang++-$version
+        break
+    fi
+done
+if [[ -z $compiler ]] || ! "$compiler" -fsanitize=realtime -x c++ - -o "$scratch/any" <<<'int main() {}' 2>/dev/null; then
+    echo "realtime: NOT CHECKED: no clang with RealtimeSanitizer (Debian 12: apt-get install clang-22 libclang-rt-22-dev)"
+    exit 0
+fi
+
+compile=("$compiler" -std=c++20 -O1 -Wfunction-effects -Werror=function-effects -fsanitize=realtime -DNDEBUG
+    -I. -Ifirmware_lib/include -Ihal/include -isystem "$2" tests/realtime/realtime.cpp)
+if "${compile[@]}" -DDFDYN_MUST_NOT_COMPILE -fsyntax-only 2>"$scratch/refused.txt"; then
+    echo "realtime: a function that may not block allocates, and compiles"
+    exit 1
+fi
+grep -q "error: function with 'nonblocking' attribute must not call non-'nonblocking' function '.*allocate" "$scratch/refused.txt"
+"${compile[@]}" -o "$scratch/realtime"
+"$scratch/realtime"
+if "$scratch/realtime" block 2>"$scratch/caught.txt"; then
+    echo "realtime: an allocation within the period was not caught"
+    exit 1
+fi
+grep -q 'RealtimeSanitizer.*unsafe-library-call' "$scratch/caught.txt"
+echo "realtime: checked by $compiler: effects of functions, and RealtimeSanitizer"
