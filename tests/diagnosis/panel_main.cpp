@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <random>
 
 namespace {
@@ -18,7 +19,7 @@ namespace {
 using namespace dfdyn::tests;
 
 struct PanelOptions {
-    std::uint64_t seed = std::random_device{}();
+    std::optional<std::uint64_t> seed;
     int cases = 1;
     PanelMix mix;
     std::filesystem::path directory; ///< of generate
@@ -48,7 +49,7 @@ int generate(const PanelOptions& options) {
     int redraws = 0;
     for (int number = 0; number < options.cases; ++number) {
         const auto start = std::chrono::steady_clock::now();
-        const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(number);
+        const std::uint64_t seed = *options.seed + static_cast<std::uint64_t>(number);
         const PanelCase panel_case = make_panel_case(seed, options.mix);
         write_panel_case(panel_case, options.directory, case_name(number));
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
@@ -66,13 +67,13 @@ int generate(const PanelOptions& options) {
 
 int score(const PanelOptions& options) {
     const std::vector<CaseScore> scores =
-        run_panel(options.seed, options.cases, options.mix, options.threads, [](const CaseScore& one) {
+        run_panel(*options.seed, options.cases, options.mix, options.threads, [](const CaseScore& one) {
             std::printf("%s\n", describe(one).c_str());
             std::fflush(stdout);
         });
     const std::string tables = panel_tables(scores);
     std::printf("%d recordings, seeds from %llu\n\n%s", options.cases,
-                static_cast<unsigned long long>(options.seed), tables.c_str());
+                static_cast<unsigned long long>(*options.seed), tables.c_str());
     if (!options.tables.empty()) {
         dfdyn::tools::write_file(options.tables, tables);
     }
@@ -121,6 +122,9 @@ int main(int argc, char** argv) {
                       "Status 1 where less is right than has been on the tests' panel");
     CLI11_PARSE(app, argc, argv);
     try {
+        if (!options.seed) {
+            options.seed = std::random_device{}();
+        }
         return generating->parsed() ? generate(options) : score(options);
     } catch (const dfdyn::tools::InputError& error) {
         std::fprintf(stderr, "%s\n", error.what());
