@@ -3,9 +3,7 @@
 
 #include "dfdyn/hal/bits.hpp"
 #include "dfdyn/hal/device/decoded.hpp"
-
-#include <Eigen/Core>
-#include <Eigen/LU>
+#include "dfdyn/hal/device/six_equations.hpp"
 
 namespace dfdyn::hal {
 
@@ -23,8 +21,8 @@ class AtiNetcan {
   public:
     struct Config {
         std::uint32_t base = 0x20;
-        std::array<std::array<double, 6>, 6> matrix{}; ///< of this very sensor, one row per axis
-        double counts_per_newton = 0;                  ///< 0: not known
+        std::array<SixValues, 6> matrix{}; ///< of this very sensor, one row per axis
+        double counts_per_newton = 0;      ///< 0: not known
         double counts_per_newton_metre = 0;
     };
 
@@ -75,17 +73,14 @@ class AtiNetcan {
         FrameList frames;
         frames.count = 2;
         frames.frame = {make_frame(first_id(), 8), make_frame(second_id(), 6)};
-        if (calibration() != Reason::ok) {
-            return frames;
-        }
-        Eigen::Matrix<double, 6, 1> counts;
+        SixValues counts{};
         for (std::size_t axis = 0; axis < 6; ++axis) {
-            counts[static_cast<int>(axis)] = value[axis] * counts_per_unit(axis);
+            counts[axis] = value[axis] * counts_per_unit(axis);
         }
-        const Eigen::Matrix<double, 6, 1> gauges = matrix(config_).partialPivLu().solve(counts);
-        for (std::size_t i = 0; i < 6; ++i) {
+        const auto gauges = calibration() == Reason::ok ? solve(config_.matrix, counts) : std::nullopt;
+        for (std::size_t i = 0; i < 6 && gauges; ++i) {
             store_big(frames.frame[i % 2].data.data() + gauge_place(i),
-                      saturated<std::int16_t>(gauges[static_cast<int>(i)]));
+                      saturated<std::int16_t>((*gauges)[i]));
         }
         return frames;
     }
@@ -106,26 +101,14 @@ class AtiNetcan {
         return axis < 3 ? config_.counts_per_newton : config_.counts_per_newton_metre;
     }
 
-    [[nodiscard]] static Eigen::Matrix<double, 6, 6> matrix(const Config& config) noexcept {
-        Eigen::Matrix<double, 6, 6> result;
-        for (std::size_t row = 0; row < 6; ++row) {
-            for (std::size_t column = 0; column < 6; ++column) {
-                result(static_cast<int>(row), static_cast<int>(column)) = config.matrix[row][column];
-            }
-        }
-        return result;
-    }
-
     [[nodiscard]] static Reason check(const Config& config) noexcept {
         const double force = config.counts_per_newton;
         const double torque = config.counts_per_newton_metre;
         if (force == 0 || torque == 0) {
             return Reason::waiting_for_full_scale;
         }
-        const double determinant = matrix(config).determinant(); // not a number if any element is none
         const bool sound = force > 0 && torque > 0 && std::isfinite(force) && std::isfinite(torque);
-        return sound && std::isfinite(determinant) && determinant != 0 ? Reason::ok
-                                                                       : Reason::full_scale_implausible;
+        return sound && solve(config.matrix, {}) ? Reason::ok : Reason::full_scale_implausible;
     }
 
     Config config_;

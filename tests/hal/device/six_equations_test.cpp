@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/device/six_equations.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <Eigen/Dense>
+
+#include <limits>
+#include <random>
+
+namespace {
+
+using dfdyn::hal::SixValues;
+using Matrix = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+using Vector = Eigen::Matrix<double, 6, 1>;
+using Rows = std::array<SixValues, 6>;
+
+Rows rows_of(const Matrix& matrix) {
+    Rows rows{};
+    Eigen::Map<Matrix>(rows.front().data()) = matrix;
+    return rows;
+}
+
+Matrix random_matrix(std::mt19937_64& engine) {
+    std::normal_distribution<double> normal;
+    return Matrix::NullaryExpr([&] { return normal(engine); });
+}
+
+} // namespace
+
+TEST_CASE("six equations have Eigen's solution") {
+    DFDYN_SEEDED_ENGINE(engine);
+    for (int i = 0; i < 1000; ++i) {
+        Matrix matrix = random_matrix(engine);
+        matrix(i % 6, i % 6) = i % 2 == 0 ? 0 : matrix(i % 6, i % 6); // a pivot that must be exchanged
+        const Vector right = random_matrix(engine).col(0);
+        SixValues given{};
+        Eigen::Map<Vector>(given.data()) = right;
+        const auto found = dfdyn::hal::solve(rows_of(matrix), given);
+        REQUIRE(found);
+        const Vector expected = matrix.fullPivLu().solve(right);
+        const double condition = matrix.norm() * matrix.inverse().norm();
+        CHECK((Eigen::Map<const Vector>(found->data()) - expected).norm() <=
+              1e-14 * condition * expected.norm());
+    }
+}
+
+TEST_CASE("a singular matrix, or one with an element that is no number, has no solution") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Matrix sound = random_matrix(engine);
+    for (int row = 0; row < 6; ++row) {
+        Matrix matrix = sound;
+        matrix.row(row).setZero();
+        CHECK_FALSE(dfdyn::hal::solve(rows_of(matrix), {}));
+        for (int column = 0; column < 6; ++column) {
+            for (const double bad :
+                 {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+                matrix = sound;
+                matrix(row, column) = bad;
+                CHECK_FALSE(dfdyn::hal::solve(rows_of(matrix), {}));
+            }
+        }
+    }
+}
