@@ -19,14 +19,17 @@ bool same_bits(const std::vector<float>& one, const std::vector<float>& other, s
                       [](float a, float b) { return std::bit_cast<int>(a) == std::bit_cast<int>(b); });
 }
 
-} // namespace
+/// What was predicted while `dfdyn play` sent the log, and from the recording made of that.
+struct LiveAndReplayed {
+    ReplayedRecording live;
+    ReplayedBus again;
 
-TEST_CASE("what is predicted on a live bus, its recording replayed in-process predicts bit for bit",
-          "[virtual_time]") {
-    // Without virtual time at 100 Hz: at 1 kHz a booted kernel gave too few valid ticks to learn from.
-    const int rate_hz = dfdyn::tests::virtual_time() ? 1000 : 100;
-    const int rows = 2 * rate_hz;
-    const IcubLog log(rows, rate_hz);
+    [[nodiscard]] long learned() const {
+        return std::ranges::count_if(live.status, [](const auto& status) { return status.learned(); });
+    }
+};
+
+LiveAndReplayed live_and_replayed(const IcubLog& log) {
     const auto recorded = log.directory.path() / "recorded.log";
     std::atomic<bool> stop = false;
     const long receivers = dfdyn::tests::receivers();
@@ -37,23 +40,38 @@ TEST_CASE("what is predicted on a live bus, its recording replayed in-process pr
         stop = true;
     });
     const auto live_estimator = make_estimator(log.model, true);
-    const ReplayedRecording live =
+    ReplayedRecording live =
         replay_interface(*live_estimator, {&log.model, 1}, log.bus, {"vcan0", 0, recorded}, 0, stop).replayed;
     player.join();
     const auto estimator = make_estimator(log.model, true);
-    const ReplayedBus again = replay_log(*estimator, {&log.model, 1}, log.bus, recorded, "", 0);
+    return {std::move(live), replay_log(*estimator, {&log.model, 1}, log.bus, recorded, "", 0)};
+}
+
+} // namespace
+
+TEST_CASE("what is predicted on a live bus, its recording replayed in-process predicts bit for bit",
+          "[virtual_time]") {
+    // Without virtual time at 100 Hz: at 1 kHz a booted kernel gave too few valid ticks to learn from.
+    const int rate_hz = dfdyn::tests::virtual_time() ? 1000 : 100;
+    const int rows = 2 * rate_hz;
+    const IcubLog log(rows, rate_hz);
+    LiveAndReplayed both = live_and_replayed(log);
+    // In real time, ticks that a busy machine delays are refused: then the run says little.
+    for (int attempt = 0; attempt < 3 && !dfdyn::tests::virtual_time() && both.learned() <= rows / 2;
+         ++attempt) {
+        both = live_and_replayed(log);
+    }
+    const auto& [live, again] = both;
     const ReplayedRecording& replayed = again.replayed;
 
     CHECK(again.bus.frames == static_cast<std::uint64_t>(4 * rows + 6)); // and the sensor's full scales
     const std::size_t ticks = replayed.status.size();
     REQUIRE(ticks > static_cast<std::size_t>(rows * 3 / 4));
-    REQUIRE(live.status.size() >= ticks); // the silence after the last frame is not in the recording
-    const auto learned =
-        std::ranges::count_if(live.status, [](const auto& status) { return status.learned(); });
+    REQUIRE(live.status.size() >= ticks);  // the silence after the last frame is not in the recording
     constexpr int before_learning = 9 + 4; // readings until an encoder is believed, then the lags
-    CAPTURE(learned);
-    // In real time, how many is the machine's business: enough for equality to mean something.
-    CHECK((dfdyn::tests::virtual_time() ? learned == rows - before_learning : learned > rows / 10));
+    CAPTURE(both.learned());
+    CHECK((dfdyn::tests::virtual_time() ? both.learned() == rows - before_learning
+                                        : both.learned() > rows / 2));
     CHECK(std::equal(replayed.time_s.begin(), replayed.time_s.end(), live.time_s.begin()));
     CHECK(std::equal(replayed.bus_reason.begin(), replayed.bus_reason.end(), live.bus_reason.begin()));
     CHECK(same_bits(replayed.predicted, live.predicted, 6 * ticks));

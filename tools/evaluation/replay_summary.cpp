@@ -122,9 +122,9 @@ void print_summary(std::ostream& out, const ReplaySummary& summary) {
         print_values(out, "nRMSE, second half", recording.normalised_error_second_half);
         print_values(out, "share within 2 sigma", recording.within_two_deviations);
         for (const Contradiction& contradiction : recording.contradictions) {
-            out << "  contradicts the model from " << formatted_or_dash("%.2f", contradiction.start_s)
-                << " to " << formatted_or_dash("%.2f", contradiction.end_s) << " s (nis up to "
-                << formatted_or_dash("%.0f", contradiction.peak) << ")\n";
+            out << "  contradicts the model from " << formatted("%.2f", contradiction.start_s) << " to "
+                << formatted("%.2f", contradiction.end_s) << " s (nis up to "
+                << formatted("%.0f", contradiction.peak) << ")\n";
         }
         if (summary.horizon > 0) {
             const std::string index = "epsilon (T=" + std::to_string(summary.horizon) + ")";
@@ -132,11 +132,9 @@ void print_summary(std::ostream& out, const ReplaySummary& summary) {
             print_values(out, index + ", after", recording.horizon_steady);
         }
     }
-    out << "time of a tick that learns, on this machine: median "
-        << formatted_or_dash("%.1f", summary.median_us) << " us, 99 % "
-        << formatted_or_dash("%.1f", summary.p99_us) << " us, longest "
-        << formatted_or_dash("%.1f", summary.longest_us) << " us (" << summary.operations
-        << " multiply-adds)\n"
+    out << "time of a tick that learns, on this machine: median " << formatted("%.1f", summary.median_us)
+        << " us, 99 % " << formatted("%.1f", summary.p99_us) << " us, longest "
+        << formatted("%.1f", summary.longest_us) << " us (" << summary.operations << " multiply-adds)\n"
         << "learned state: " << summary.state_bytes << " bytes\n"
         << "build: " << build_flags() << '\n';
 }

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/bench/timed_loop.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tools/common/error.hpp"
+
+#include <algorithm>
+
+namespace {
+
+using namespace dfdyn::tools;
+
+} // namespace
+
+TEST_CASE("a timed loop calls each tick once, in order, and tells the time of each") {
+    std::vector<std::size_t> called;
+    const TimedLoop timed =
+        time_loop({.period_s = 0.001, .duration_s = 0.05}, [&](std::size_t tick) { called.push_back(tick); });
+    REQUIRE(called.size() == 50);
+    CHECK(std::ranges::is_sorted(called));
+    CHECK(called.front() == 0);
+    CHECK(called.back() == 49);
+    CHECK(timed.pace.ticks == 50);
+    REQUIRE(timed.late_us.size() == 50);
+    REQUIRE(timed.duration_us.size() == 50);
+    CHECK(*std::ranges::min_element(timed.late_us) >= 0); // none begins before it is due
+    CHECK(*std::ranges::min_element(timed.duration_us) >= 0);
+    CHECK(timed.cores > 0);
+    CHECK(static_cast<double>(timed.pace.longest_ns) ==
+          Approx(1000 * *std::ranges::max_element(timed.duration_us)));
+}
+
+TEST_CASE("a timed loop refuses times that make none") {
+    const auto nothing = [](std::size_t) {};
+    CHECK_THROWS_AS(time_loop({.period_s = 0, .duration_s = 1}, nothing), InputError);
+    CHECK_THROWS_AS(time_loop({.period_s = 2, .duration_s = 1}, nothing), InputError);
+    CHECK_THROWS_AS(time_loop({.period_s = 0.001, .duration_s = 4000}, nothing), InputError);
+}
