@@ -34,6 +34,23 @@ function(dfdyn_compile_strictly target)
     endif()
 endfunction()
 
+# With DFDYN_COMPILE_BY_FOLDER, compiles the sources of a target that lie in one folder as one; call it when all have been added.
+# What is compiled together depends on the folder alone, so that two files whose names clash do so in every build.
+function(dfdyn_compile_by_folder target)
+    if(NOT DFDYN_COMPILE_BY_FOLDER)
+        return()
+    endif()
+    get_target_property(sources ${target} SOURCES)
+    foreach(source IN LISTS sources)
+        get_filename_component(folder "${source}" ABSOLUTE)
+        get_filename_component(folder "${folder}" DIRECTORY)
+        file(RELATIVE_PATH folder "${PROJECT_SOURCE_DIR}" "${folder}")
+        string(MAKE_C_IDENTIFIER "${folder}" group)
+        set_source_files_properties("${source}" TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${group})
+    endforeach()
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction()
+
 # Every subfolder that has a CMakeLists.txt; the folders list their own sources.
 macro(dfdyn_add_subfolders)
     file(GLOB dfdyn_subfolder_lists CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*/CMakeLists.txt")

@@ -11,10 +11,10 @@
 #include <thread>
 #include <vector>
 
+namespace allocation_guard_test {
+
 using dfdyn::tests::AllocationGuard;
 using dfdyn::tests::HeapCalls;
-
-namespace {
 
 // Without this the compiler may leave out an allocation whose memory nobody looks at.
 template <typename T>
@@ -33,8 +33,6 @@ void check_one_block(const HeapCalls& calls) {
     CHECK(calls.allocations == 1);
     CHECK(calls.releases == 1);
 }
-
-} // namespace
 
 TEST_CASE("the guard counts nothing where nothing is allocated") {
     const HeapCalls calls = calls_of([] {
@@ -162,3 +160,5 @@ TEST_CASE("guards nest, and a guard counts on after it was asked") {
     CHECK(second.allocations == 2);
     CHECK(second.releases == 1);
 }
+
+} // namespace allocation_guard_test

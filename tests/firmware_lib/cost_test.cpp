@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace {
+namespace cost_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -84,8 +84,6 @@ Sample perhaps_faulty(Sample sample, std::mt19937_64& engine) {
     }
     return sample;
 }
-
-} // namespace
 
 TEMPLATE_TEST_CASE("a tick that learns its sample at once costs what prediction and learning cost", "",
                    UdSingle, UdDouble, UdWhole, Information, Parametric, Mean, Kernel, KernelSingle) {
@@ -236,3 +234,5 @@ TEST_CASE("the physics map costs what it says") {
               CHECK(map.evaluate(psi));
           }) == Map::cost({}));
 }
+
+} // namespace cost_test

@@ -11,7 +11,7 @@
 #include <limits>
 #include <optional>
 
-namespace {
+namespace estimator_allocation_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -83,8 +83,6 @@ void check(std::mt19937_64& engine) {
     CHECK(calls.releases == 0);
 }
 
-} // namespace
-
 TEMPLATE_TEST_CASE("nothing in an estimator's life calls the heap", "", DerivativeFree<5>,
                    DerivativeFreeWeighted<5>, (DerivativeFreeReduced<5, 3>), DerivativeFreeStructured<5>,
                    DerivativeFreeStructuredRecursive<5>, Standard<5>, StandardMeasured) {
@@ -107,3 +105,5 @@ TEMPLATE_TEST_CASE("nothing in the life of an estimator with physics calls the h
     check<TestKernel<float, DerivativeFree<5>, 4, TestType>>(
         engine); // features and physics see different inputs
 }
+
+} // namespace estimator_allocation_test

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace estimator_budget_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -45,8 +45,6 @@ double largest_difference(const Storage<Scalar, m>& a, const Storage<Scalar, m>&
     }
     return largest;
 }
-
-} // namespace
 
 // The whole estimator learns exactly the samples that the sliced one took in.
 TEMPLATE_TEST_CASE("random budgets learn the same as unlimited ones, bit for bit", "", UdFloat, UdDouble,
@@ -214,3 +212,5 @@ TEST_CASE("the cost of a tick is a constant expression of the model") {
     static_assert(cost.predict == 2 * 3 * 8 + 15 * 6 + cos_sin_cost<float>(15) + 2 * 30 + 2 * 36);
     SUCCEED();
 }
+
+} // namespace estimator_budget_test

@@ -5,7 +5,7 @@
 #include "tests/firmware_lib/support/running_arm.hpp"
 #include "tests/support/seed.hpp"
 
-namespace {
+namespace estimator_contact_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -40,8 +40,6 @@ template <class Scalar, template <class, int, int> class Form>
 using ModelOf = TestModel<Scalar, DerivativeFreeReduced<6, 3>, 60, Form>;
 using UdFloat = ModelOf<float, UdCovariance>;
 using InformationDouble = ModelOf<double, CholeskyInformation>;
-
-} // namespace
 
 TEMPLATE_TEST_CASE("a short contact is predicted, shown and not learned", "", UdFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
@@ -117,3 +115,5 @@ TEST_CASE("an estimator that has learned nothing yet refuses nothing") {
         5; // 60 times the noise, but less than twice the prior's deviation of 32 times the noise
     CHECK(estimator.tick(sample, Budget::unlimited()).status.learned());
 }
+
+} // namespace estimator_contact_test

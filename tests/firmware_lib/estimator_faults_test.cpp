@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace estimator_faults_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -36,8 +36,6 @@ SmallModel::Sample with_time(SmallModel::Sample sample, std::int64_t time_ns) {
     sample.time_ns = time_ns;
     return sample;
 }
-
-} // namespace
 
 TEST_CASE("a position that is no number, or beyond its limit, is refused and leaves a gap") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -255,3 +253,5 @@ TEST_CASE("measured derivatives that are no numbers, or too large, are refused w
         CHECK(arm.tick(arm.due()) == Reason::ok);
     }
 }
+
+} // namespace estimator_faults_test

@@ -12,7 +12,7 @@
 #include <limits>
 #include <vector>
 
-namespace {
+namespace estimator_fuzz_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -242,8 +242,6 @@ FuzzSample garbage_sample(std::mt19937_64& engine) {
     return sample;
 }
 
-} // namespace
-
 // The twin is told of every good sample, but learns only those that the victim did: after all that happens to
 // the victim it must predict the same, bit for bit.
 TEST_CASE("any mixture of faults is handled as documented, and leaves no trace") {
@@ -297,3 +295,5 @@ TEST_CASE("any bytes whatever, any budget and any call in between leave a sound 
     }
     CHECK(estimator.counters().learned > 1000);
 }
+
+} // namespace estimator_fuzz_test

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <span>
 
-namespace {
+namespace estimator_snapshot_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -70,8 +70,6 @@ struct Pair {
         }
     }
 };
-
-} // namespace
 
 TEMPLATE_TEST_CASE("a restored estimator goes on as the original does, once its window has filled", "",
                    UdFloat, UdDouble, InformationFloat, InformationDouble, Parametric, Mean, Kernel,
@@ -231,3 +229,5 @@ TEST_CASE("restoring restarts the window and keeps the counters") {
     std::vector<std::byte> small(pair.original.snapshot_bytes() - 1);
     CHECK(pair.original.snapshot(small) == SnapshotResult::wrong_size);
 }
+
+} // namespace estimator_snapshot_test

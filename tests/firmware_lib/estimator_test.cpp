@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace estimator_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -46,8 +46,6 @@ struct Record {
         return solve_by_qr(with_prior(part(regression, 0, count), prior_variance, 1));
     }
 };
-
-} // namespace
 
 TEMPLATE_TEST_CASE("until the window is full nothing is predicted, and it says so", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
@@ -242,3 +240,5 @@ TEMPLATE_TEST_CASE("reset gives a new estimator, restart_window keeps what was l
     }
     CHECK((snapshot_of(used) == snapshot_of(fresh)));
 }
+
+} // namespace estimator_test

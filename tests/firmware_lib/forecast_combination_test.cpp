@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace {
+namespace forecast_combination_test {
 
 using dfdyn::Extent;
 using dfdyn::SnapshotResult;
@@ -62,8 +62,6 @@ std::vector<double> batch_weights(const std::vector<Values<Scalar>>& errors) {
     }
     return weights;
 }
-
-} // namespace
 
 TEMPLATE_TEST_CASE("members weigh alike until they have been seen to predict", "", float, double) {
     const Combination<TestType> combined = combination<TestType>(100);
@@ -202,3 +200,5 @@ TEST_CASE("a combination does not allocate") {
     CHECK(written == SnapshotResult::ok);
     CHECK(read == SnapshotResult::ok);
 }
+
+} // namespace forecast_combination_test

@@ -9,7 +9,7 @@
 #include <deque>
 #include <vector>
 
-namespace {
+namespace lag_window_test {
 
 using namespace dfdyn;
 using Row = std::vector<double>;
@@ -64,8 +64,6 @@ constexpr int newest_after_wrapping() {
     return 100 * *window.row(0) + 10 * *window.row(1) + *window.row(2);
 }
 
-} // namespace
-
 TEST_CASE("the window holds the last M+1 rows, newest first, in one block") {
     DFDYN_SEEDED_ENGINE(engine);
     compare_with_deque(engine, Extent<1>{}, Extent<0>{});
@@ -89,3 +87,5 @@ TEST_CASE("a window works in constant expressions") {
 TEST_CASE("a window takes no more than twice its rows and two counters") {
     CHECK(sizeof(LagWindow<float, 4, 15>) <= 2 * 16 * 4 * sizeof(float) + 32);
 }
+
+} // namespace lag_window_test

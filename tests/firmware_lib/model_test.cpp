@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace {
+namespace model_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -59,8 +59,6 @@ DynamicModel::Constants on_heap(const FixedModel::Constants& fixed) {
     return constants;
 }
 
-} // namespace
-
 TEST_CASE("500 features, 1,000 columns, in static storage") {
     DFDYN_SEEDED_ENGINE(engine);
     large_constants = make_constants<LargeModel>(engine);
@@ -100,3 +98,5 @@ TEST_CASE("a model whose sizes are known at run time behaves as the firmware's")
     CHECK(host.restore(snapshot_of(firmware)) == SnapshotResult::ok);
     CHECK((snapshot_of(host) == snapshot_of(firmware)));
 }
+
+} // namespace model_test

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace {
+namespace snapshot_test {
 
 using namespace dfdyn;
 
@@ -46,8 +46,6 @@ SnapshotResult read(const std::vector<std::byte>& bytes) {
 }
 
 SnapshotResult read_of(const State& state) { return read(written(state)); }
-
-} // namespace
 
 TEST_CASE("the checksum is the CRC-32 of ISO 3309") {
     constexpr std::string_view digits = "123456789";
@@ -124,3 +122,5 @@ TEST_CASE("content that cannot be a state is rejected although its checksum is r
     CHECK(read_of({{1, 2, 3}, {1, 1}, 10}) == SnapshotResult::corrupted);
     CHECK(read_of({{1, 2, 3}, {1, 1}, 9}) == SnapshotResult::ok);
 }
+
+} // namespace snapshot_test

@@ -14,7 +14,7 @@
 #include <memory>
 #include <utility>
 
-namespace {
+namespace standstill_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -264,8 +264,6 @@ class TextbookForgetting {
     Eigen::VectorXd weights_;
 };
 
-} // namespace
-
 // One horizon's worth of forgetting is given away at a standstill, no more: variances grow by at most e. A
 // twin whose parameters cost it p (1-λ) = 6 % of the noise's variance then pays 17 %: 5 % in the root.
 TEMPLATE_TEST_CASE("after a long rest the motion is predicted as if learning had been switched off", "",
@@ -330,3 +328,5 @@ TEST_CASE("textbook forgetting does not survive the same standstill, even in dou
     }
     CHECK_FALSE(largest < 100 * torque_noise);
 }
+
+} // namespace standstill_test

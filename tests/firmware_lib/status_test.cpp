@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-namespace {
+namespace status_test {
 
 using dfdyn::Reason;
 using dfdyn::Status;
@@ -31,8 +31,6 @@ constexpr std::pair<int, const char*> published[] = {
     {38, "innovation_too_large"},
     {39, "state_not_finite"},
 };
-
-} // namespace
 
 TEST_CASE("reasons keep their numbers and names") {
     std::set<int> known;
@@ -66,3 +64,5 @@ TEST_CASE("a status reports the prediction's reason before learning's") {
     CHECK_FALSE(refused.learned());
     CHECK(refused.reason() == Reason::gap);
 }
+
+} // namespace status_test

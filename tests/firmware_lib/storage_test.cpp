@@ -8,7 +8,7 @@
 #include <numeric>
 #include <type_traits>
 
-namespace {
+namespace storage_test {
 
 using namespace dfdyn;
 
@@ -25,8 +25,6 @@ void check_holds_numbers(S& storage) {
     CHECK(storage.data()[storage.size() - 1] == static_cast<float>(storage.size()));
     CHECK(storage.end() - storage.begin() == storage.size());
 }
-
-} // namespace
 
 TEST_CASE("storage of a fixed size is an aggregate in place, aligned for vectors") {
     auto storage = Storage<float, 7>::zeros({});
@@ -58,3 +56,5 @@ TEST_CASE("an extent of a fixed size takes no memory and knows its number") {
     static_assert(sum(dynamic, 1) == dynamic && sum(1, dynamic) == dynamic);
     SUCCEED();
 }
+
+} // namespace storage_test

@@ -18,7 +18,6 @@
 #include <utility>
 
 namespace dfdyn::tools {
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -63,6 +62,8 @@ class DescriptorBuffer : public std::streambuf {
     int descriptor_ = -1;
     std::array<char, 1U << 16U> buffer_{};
 };
+
+namespace {
 
 /// Without this the kernel ends the program when a file reaches `ulimit -f`; with it, the write fails with a
 /// reason.

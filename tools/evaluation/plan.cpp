@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* schema = "dfdyn.plan/1";
+constexpr const char* plan_schema = "dfdyn.plan/1";
 constexpr int most_rows = 100'000'000;
 constexpr int most_in_list = 1000;
 
@@ -57,8 +57,8 @@ class PlanReader {
 
   private:
     void check_fields() const {
-        if (json_.text("schema") != schema) {
-            throw json_.error("schema", in_quotes(schema), in_quotes(json_.text("schema")));
+        if (json_.text("schema") != plan_schema) {
+            throw json_.error("schema", in_quotes(plan_schema), in_quotes(json_.text("schema")));
         }
         std::vector<std::string_view> names(plan_names.begin(), plan_names.end());
         names.insert(names.end(), later_names.begin(), later_names.end());

@@ -13,7 +13,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr std::array<std::string_view, 5> models{"P", "NP", "SP", "SP2", "SPK"};
+constexpr std::array<std::string_view, 5> model_names{"P", "NP", "SP", "SP2", "SPK"};
 constexpr std::array<std::string_view, 2> hypers{"ML", "CV"};
 constexpr std::array<std::string_view, 2> physics_inputs{"same", "own"};
 constexpr std::array<std::string_view, 3> priors{"scaled", "unit", "diagonal"};
@@ -133,7 +133,7 @@ std::vector<Case> expand_cases(const JsonReader& entry, const Case& defaults) {
     one.suffix = entry.has("suffix") ? plain_name(entry, "suffix") : "";
     std::vector<Case> cases;
     for (const std::string& model : names_or(entry, "model", defaults.model)) {
-        one.model = one_of(entry, "model", model, models);
+        one.model = one_of(entry, "model", model, model_names);
         for (const std::string& hyper : names_or(entry, "hyper", defaults.hyper)) {
             one.hyper = one_of(entry, "hyper", hyper, hypers);
             for (const std::string& input : names_or(entry, "input", to_string(defaults.input))) {

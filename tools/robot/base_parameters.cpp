@@ -13,8 +13,8 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr double rank_limit = 1e-6; ///< the rank is never cut above it, relative to the first diagonal entry
-constexpr double rounding = 1e-14;  ///< relative; below it all is zero
-constexpr double no_part = 1e-9;    ///< of a combination's coefficients, with columns of the same length
+constexpr double relative_rounding = 1e-14; ///< relative; below it all is zero
+constexpr double no_part = 1e-9; ///< of a combination's coefficients, with columns of the same length
 
 struct Rank {
     Eigen::Index rank = 0;
@@ -23,10 +23,10 @@ struct Rank {
 
 Rank rank_at_largest_drop(const Eigen::VectorXd& diagonal) {
     const double first = diagonal[0];
-    Rank best{diagonal.size(), diagonal[diagonal.size() - 1] / (rounding * first)};
+    Rank best{diagonal.size(), diagonal[diagonal.size() - 1] / (relative_rounding * first)};
     double drop = 0;
     for (Eigen::Index i = 1; i < diagonal.size(); ++i) {
-        const double ratio = diagonal[i - 1] / std::max(diagonal[i], rounding * first);
+        const double ratio = diagonal[i - 1] / std::max(diagonal[i], relative_rounding * first);
         if (diagonal[i] < rank_limit * first && ratio > drop) {
             drop = ratio;
             best = {i, ratio};
@@ -57,7 +57,7 @@ BaseParameters find_base_parameters(const Eigen::MatrixXd& regressor) {
         return base;
     }
     // A column that is nothing but rounding must not be scaled up to count.
-    length = (length.array() > rounding * longest).select(length, longest);
+    length = (length.array() > relative_rounding * longest).select(length, longest);
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(regressor * length.cwiseInverse().asDiagonal());
     const auto [rank, gap] = rank_at_largest_drop(qr.matrixR().diagonal().cwiseAbs());
     const Eigen::MatrixXd scaled =

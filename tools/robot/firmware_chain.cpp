@@ -8,8 +8,8 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr std::array<const char*, inertial_parameters> names{"m",   "mcx", "mcy", "mcz", "Ixx",
-                                                             "Ixy", "Ixz", "Iyy", "Iyz", "Izz"};
+constexpr std::array<const char*, inertial_parameters> symbols{"m",   "mcx", "mcy", "mcz", "Ixx",
+                                                               "Ixy", "Ixz", "Iyy", "Iyz", "Izz"};
 constexpr std::array<const char*, inertial_parameters> units{"kg",    "kg·m",  "kg·m",  "kg·m",  "kg·m²",
                                                              "kg·m²", "kg·m²", "kg·m²", "kg·m²", "kg·m²"};
 
@@ -45,7 +45,7 @@ Eigen::VectorXd nominal_parameters(const Robot& robot, OutputKind outputs) {
 std::vector<std::string> parameter_names(const Robot& robot, OutputKind outputs) {
     std::vector<std::string> result;
     for (std::size_t link = first_body(robot, outputs); link <= robot.joints.size(); ++link) {
-        for (const char* name : names) {
+        for (const char* name : symbols) {
             result.push_back("link" + std::to_string(link) + " " + name);
         }
     }

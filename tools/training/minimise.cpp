@@ -13,7 +13,7 @@
 namespace dfdyn::tools {
 namespace {
 
-struct Search {
+struct Descent {
     const Differentiable& function;
     int evaluations_most;
     Minimum best;
@@ -21,7 +21,7 @@ struct Search {
     std::exception_ptr error; // thrown by the function: NLopt would not hand it on as it is
 };
 
-std::optional<PointValue> guarded(Search& search, const Eigen::VectorXd& point) {
+std::optional<PointValue> guarded(Descent& search, const Eigen::VectorXd& point) {
     try {
         return search.function(point);
     } catch (...) {
@@ -30,13 +30,13 @@ std::optional<PointValue> guarded(Search& search, const Eigen::VectorXd& point) 
     }
 }
 
-double without_value(const Search& search, std::vector<double>& gradient) {
+double without_value(const Descent& search, std::vector<double>& gradient) {
     std::fill(gradient.begin(), gradient.end(), 0.0);
     return search.worst + 1e3;
 }
 
 double evaluate(const std::vector<double>& point, std::vector<double>& gradient, void* context) {
-    Search& search = *static_cast<Search*>(context);
+    Descent& search = *static_cast<Descent*>(context);
     if (search.error || search.best.evaluations == search.evaluations_most) {
         return without_value(search, gradient); // NLopt stops only when its line search has ended
     }
@@ -57,7 +57,7 @@ double evaluate(const std::vector<double>& point, std::vector<double>& gradient,
 }
 
 /// One run of the optimiser from `start`.
-void descend(Search& search, const Bounds& bounds, const Eigen::VectorXd& start, double tolerance) {
+void descend(Descent& search, const Bounds& bounds, const Eigen::VectorXd& start, double tolerance) {
     nlopt::opt optimiser(nlopt::LD_LBFGS, static_cast<unsigned>(start.size()));
     optimiser.set_min_objective(evaluate, &search);
     optimiser.set_lower_bounds(to_vector(bounds.lower));
@@ -86,7 +86,7 @@ Minimum minimise(const Differentiable& function, const Bounds& bounds, const Eig
         return value ? Minimum{start, value->value, 1}
                      : Minimum{{}, std::numeric_limits<double>::infinity(), 1};
     }
-    Search search{function, evaluations_most, {}, 0, nullptr};
+    Descent search{function, evaluations_most, {}, 0, nullptr};
     descend(search, bounds, start, tolerance);
     double before = std::numeric_limits<double>::infinity();
     while (before - search.best.value > tolerance && search.best.evaluations < evaluations_most) {

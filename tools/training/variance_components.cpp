@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double log_prior_range = 25;
+constexpr double widest_log_prior = 25;
 constexpr double log_noise_range = 40;
 constexpr int expectation_steps = 10;
 constexpr int newton_steps_most = 300;
@@ -134,7 +134,7 @@ class Newton {
 std::optional<VarianceComponents> best_variances(const LinearStatistics& statistics, PhysicsPrior prior,
                                                  const std::optional<VectorXd>& log_prior) {
     VectorXd x = first_guess(statistics, prior);
-    VectorXd range = VectorXd::Constant(x.size(), log_prior ? 0 : log_prior_range);
+    VectorXd range = VectorXd::Constant(x.size(), log_prior ? 0 : widest_log_prior);
     range.head(outputs_of(statistics)).setConstant(log_noise_range);
     if (log_prior) {
         x.tail(log_prior->size()) = *log_prior;

@@ -9,7 +9,7 @@
 #include <functional>
 #include <vector>
 
-namespace {
+namespace adaptive_window_test {
 
 using dfdyn::AdaptiveWindow;
 using Signal = std::function<double(double)>;
@@ -64,8 +64,6 @@ double largest_velocity_error(const Signal& signal, const Signal& derivative, in
 }
 
 double quantised(double value, double count) { return std::floor(value / count) * count; }
-
-} // namespace
 
 TEMPLATE_TEST_CASE("a straight line and a parabola are met exactly, at uneven times", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
@@ -165,3 +163,5 @@ TEST_CASE("the values may lie apart") {
     const double values[] = {7, 99, 5, 99, 3, 99};
     CHECK(AdaptiveWindow<double>(ages, values, 2, 3, 1e-9).velocity() == Approx(2));
 }
+
+} // namespace adaptive_window_test

@@ -10,7 +10,7 @@
 #include <array>
 #include <limits>
 
-namespace {
+namespace derivative_free_reduced_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -82,8 +82,6 @@ Errors float_errors(const Rows& matrix, std::size_t j) {
     return errors;
 }
 
-} // namespace
-
 TEST_CASE("DFR: the inputs are the scaled product of R with each joint's window") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int trial = 0; trial < 50; ++trial) {
@@ -131,3 +129,5 @@ TEST_CASE("DFR is ready once it holds M+1 samples") {
     CHECK(ready_after<float, joints>(map, lags + 1));
     static_assert(Map<float>::cost(4, 10, 3) == 4 * 3 * 12);
 }
+
+} // namespace derivative_free_reduced_test

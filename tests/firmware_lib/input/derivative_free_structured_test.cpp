@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace derivative_free_structured_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -57,8 +57,6 @@ std::vector<double> smooth_joint(int count) {
 void push(RecursiveMap& map, double position) {
     map.push(Sample<double, 1, 1>{0, {{position}}, {{0}}, false});
 }
-
-} // namespace
 
 TEST_CASE("DFSR's rows are the paper's") {
     const std::vector<double> rows = fir_rows();
@@ -173,3 +171,5 @@ TEST_CASE("the recursive filter is ready after M+1 samples, as the rows are") {
     static_assert(DerivativeFreeStructured<lags>::lags == lags);
     static_assert(DerivativeFreeStructured<lags>::features_per_joint == 3);
 }
+
+} // namespace derivative_free_structured_test

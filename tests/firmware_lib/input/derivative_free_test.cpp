@@ -7,7 +7,7 @@
 
 #include <type_traits>
 
-namespace {
+namespace derivative_free_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -27,8 +27,6 @@ Constants random_constants(std::mt19937_64& engine) {
     }
     return constants;
 }
-
-} // namespace
 
 TEST_CASE("DF: each input is a scaled position, by joints and then by lags") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -59,3 +57,5 @@ TEST_CASE("DFW computes what DF does: its weights are part of the scale") {
     static_assert(Map::cost(joints, lags, lags + 1) == joints * (lags + 1));
     SUCCEED();
 }
+
+} // namespace derivative_free_test

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace {
+namespace standard_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -36,8 +36,6 @@ Sample<Scalar, joints, 1> parabolas_at(std::int64_t time_ns) {
             {{0}},
             false};
 }
-
-} // namespace
 
 TEMPLATE_TEST_CASE("STD: position, velocity and acceleration of each joint, scaled, at uneven times", "",
                    float, double) {
@@ -117,3 +115,5 @@ TEST_CASE("STD with measured derivatives passes them on, scaled") {
     map.restart();
     CHECK_FALSE(map.ready());
 }
+
+} // namespace standard_test

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace {
+namespace effects_test {
 
 using namespace dfdyn;
 
@@ -36,8 +36,6 @@ struct CubicDamping {
         return velocity * velocity * velocity;
     }
 };
-
-} // namespace
 
 TEST_CASE("each effect is its formula") {
     CHECK(ViscousFriction<1>::value(ViscousFriction<1>::Constants<double>{{{0}}}, 0, xi) == -0.7);
@@ -150,3 +148,5 @@ TEST_CASE("a sensor's bias is an offset of an output") {
         CHECK(psi[k][1] == (k == 5 ? 1 : 0));
     }
 }
+
+} // namespace effects_test

@@ -12,7 +12,7 @@
 #include <numeric>
 #include <vector>
 
-namespace {
+namespace physics_map_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -139,8 +139,6 @@ std::vector<float> psi_of(const Constants& constants, const Sizes& sizes, const 
 }
 
 using Measured = FirmwarePhysics<StandardMeasured, 15>;
-
-} // namespace
 
 TEST_CASE("selected columns are those of all, scaled, in units of the outputs") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -307,3 +305,5 @@ TEST_CASE("a map's cost is known when compiling, and grows with the square of th
     static_assert(std::is_trivially_copyable_v<Measured::Constants<float, Arm>>);
     CHECK(sizeof(Measured::Map<float, Arm>) < 256);
 }
+
+} // namespace physics_map_test

@@ -12,7 +12,7 @@
 
 #include <functional>
 
-namespace {
+namespace rigid_body_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -121,8 +121,6 @@ double power(const tools::Robot& robot, const Eigen::VectorXd& xi) {
     }
     return total;
 }
-
-} // namespace
 
 TEST_CASE("the joints' power is the rate of the energy") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -250,3 +248,5 @@ TEMPLATE_TEST_CASE("the stated cost is the work", "", Chain<1>, Chain<4>, Chain<
     rigid_body_regressor<Arm, Number>(chain, {}, xi.data(), psi.data(), Arm::parameters);
     CHECK(counted_operations == rigid_body_cost<Arm>({}) - 2 * function_cost * Arm::joints);
 }
+
+} // namespace rigid_body_test

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace {
+namespace two_link_test {
 
 using namespace dfdyn;
 
@@ -51,8 +51,6 @@ Torques by_hand(const PlanarBody& one, const PlanarBody& two, const double* xi) 
     return {first, second};
 }
 
-} // namespace
-
 TEST_CASE("a planar arm of two links has the textbook's torques") {
     DFDYN_SEEDED_ENGINE(engine);
     std::uniform_real_distribution<double> number(-3, 3);
@@ -94,3 +92,5 @@ TEST_CASE("a sliding joint holds the weight of what it carries, and accelerates 
         CHECK(psi[c] == 0);
     }
 }
+
+} // namespace two_link_test

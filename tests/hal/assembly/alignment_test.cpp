@@ -12,10 +12,10 @@
 #include <cmath>
 #include <vector>
 
+namespace alignment_test {
+
 using namespace dfdyn::hal;
 using namespace dfdyn::tests;
-
-namespace {
 
 constexpr std::int64_t us = 1000;
 constexpr std::int64_t ms = 1000 * us;
@@ -71,8 +71,6 @@ std::vector<Frame> traffic(std::int64_t end_ns, std::mt19937_64& engine) {
     std::ranges::stable_sort(frames, {}, &Frame::stamp_ns);
     return frames;
 }
-
-} // namespace
 
 TEST_CASE("a timer's samples are steady and true, whatever the phases, rates and latencies") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -184,3 +182,5 @@ TEST_CASE("an arm whose joints measure their currents has one output per joint")
     CHECK(arm.assemble(5 * ms, 6 * ms).report.output == Reason::output_out_of_range);
     CHECK_FALSE(arm.colliding_id().has_value());
 }
+
+} // namespace alignment_test

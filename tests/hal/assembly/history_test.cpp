@@ -5,16 +5,14 @@
 
 #include <algorithm>
 
+namespace history_test {
+
 using dfdyn::hal::Measurement;
 using History = dfdyn::hal::History<1, 4>;
-
-namespace {
 
 bool push(History& history, std::int64_t stamp_ns) {
     return history.push({stamp_ns, dfdyn::hal::Reason::ok, {static_cast<double>(stamp_ns)}});
 }
-
-} // namespace
 
 TEST_CASE("a history has the neighbours of any instant it reaches back to") {
     History history;
@@ -56,3 +54,5 @@ TEST_CASE("between two measurements values are on the line") {
     CHECK(between.value[0] == Approx(1.5));
     CHECK(between.value[1] == Approx(-6));
 }
+
+} // namespace history_test

@@ -3,10 +3,10 @@
 #include "dfdyn/hal/device/cia402.hpp"
 #include "tests/hal/support/arm_on_bus.hpp"
 
+namespace moments_test {
+
 using namespace dfdyn::hal;
 using namespace dfdyn::tests;
-
-namespace {
 
 using Arm = SampleAssembly<double, 2, Cia402Drive, 2, EffortOutput<2, 8>>;
 using Kind = Arm::Moment::Kind;
@@ -29,8 +29,6 @@ Arm make_drives() {
              .output_bus = 0},
             EffortOutput<2, 8>({.track = track, .range = {Range{-30, 30}, Range{-30, 30}}})};
 }
-
-} // namespace
 
 TEST_CASE("at a SYNC the values measured at the one before are complete, and exact") {
     Arm arm = make_drives();
@@ -113,3 +111,5 @@ TEST_CASE("a set is complete when all joints and the wrench are new, at the wren
         ++arm.number;
     }
 }
+
+} // namespace moments_test

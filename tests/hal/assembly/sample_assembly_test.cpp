@@ -3,6 +3,8 @@
 
 #include "tests/hal/support/arm_on_bus.hpp"
 
+namespace sample_assembly_test {
+
 namespace hal = dfdyn::hal;
 using namespace dfdyn::tests;
 
@@ -23,3 +25,5 @@ TEST_CASE("an arm on a bus is learned from, tick by tick, once it has qualified"
     CHECK(arm.assembly.bus(0).rejected.count() == 0);
     CHECK_FALSE(arm.assembly.colliding_id().has_value());
 }
+
+} // namespace sample_assembly_test

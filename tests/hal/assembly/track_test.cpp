@@ -3,9 +3,9 @@
 
 #include "tests/support/catch.hpp"
 
-using namespace dfdyn::hal;
+namespace track_test {
 
-namespace {
+using namespace dfdyn::hal;
 
 using Joint = Track<1, 4>;
 
@@ -20,8 +20,6 @@ Joint ready_joint() {
     }
     return joint;
 }
-
-} // namespace
 
 TEST_CASE("a value is that of the instant: measured, interpolated, or held") {
     Joint joint = ready_joint();
@@ -103,3 +101,5 @@ TEST_CASE("outputs have their own reasons") {
     output.push(30, Reason::ok, {0}, false);
     CHECK(output.at(20).reason == Reason::output_gap);
 }
+
+} // namespace track_test

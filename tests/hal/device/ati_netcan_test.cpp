@@ -8,11 +8,11 @@
 #include <cmath>
 #include <limits>
 
+namespace ati_netcan_test {
+
 using namespace dfdyn::hal;
 using namespace dfdyn::tests;
 using Kind = Decoded::Kind;
-
-namespace {
 
 /// Fx is 2 x gauge 0 - gauge 5, every other axis its own gauge; 100 counts per N, 1000 per N·m.
 AtiNetcan::Config plain_config() {
@@ -36,8 +36,6 @@ Frame with_status(std::uint8_t high, std::uint8_t low) {
     frame.data[1] = low;
     return frame;
 }
-
-} // namespace
 
 TEST_CASE("an ATI sensor's gauges become a wrench by its matrix") {
     const AtiNetcan sensor(plain_config());
@@ -107,3 +105,5 @@ TEST_CASE("what a simulated ATI sensor sends decodes to within what its gauges r
     const FrameList overload = sensor.encode({0, 400, 0, 0, 0, 0});
     CHECK(sensor.wrench(overload.frame[0], overload.frame[1]).raw[1] == 32767);
 }
+
+} // namespace ati_netcan_test

@@ -7,11 +7,11 @@
 
 #include <cmath>
 
+namespace cia402_test {
+
 using namespace dfdyn::hal;
 using namespace dfdyn::tests;
 using Kind = Decoded::Kind;
-
-namespace {
 
 constexpr std::int64_t ms = 1'000'000;
 
@@ -29,8 +29,6 @@ Cia402Drive::Config elbow_config() {
 }
 
 const Frame minus_two = frame_of(0x285, {0x30, 0xF8, 0xFF, 0xFF, 0x11, 0x22, 0x33, 0x44}, 7 * ms); // -2000
-
-} // namespace
 
 TEST_CASE("a CiA 402 drive's PDOs are read as they are mapped") {
     Cia402Drive drive(elbow_config());
@@ -157,3 +155,5 @@ TEST_CASE("what a simulated drive sends decodes to within half a unit, in one PD
           Reason::device_not_operational);
     CHECK(drive.decode(drive.encode_emcy(0x7300)).reason == Reason::encoder_fault);
 }
+
+} // namespace cia402_test

@@ -7,16 +7,14 @@
 
 #include <cmath>
 
+namespace icub_2foc_test {
+
 using namespace dfdyn::hal;
 using namespace dfdyn::tests;
 using icub::FocBoard;
 using Kind = Decoded::Kind;
 
-namespace {
-
 FocBoard knee() { return FocBoard({.address = 2, .joint = 1, .motor_per_joint = -100, .zero_rad = 0.5}); }
-
-} // namespace
 
 TEST_CASE("a 2FOC board sends current, velocity and position") {
     FocBoard board = knee();
@@ -73,3 +71,5 @@ TEST_CASE("what a simulated 2FOC board sends decodes to within half a step") {
     CHECK(board.decode(board.encode_status(1, 0)).reason == Reason::encoder_fault);
     CHECK(board.decode(board.encode_status(0, 1U << 31)).reason == Reason::device_fault);
 }
+
+} // namespace icub_2foc_test

@@ -7,12 +7,12 @@
 
 #include <cmath>
 
+namespace icub_strain_test {
+
 using namespace dfdyn::hal;
 using namespace dfdyn::tests;
 using icub::StrainBoard;
 using Kind = Decoded::Kind;
-
-namespace {
 
 /// Full scales of an FT45: 1500 1500 2000 N, 35 35 25 N·m, as the board of the left arm answers.
 StrainBoard left_arm_board() {
@@ -28,8 +28,6 @@ StrainBoard left_arm_board() {
 
 const Frame some_force = frame_of(0x3DA, {0x00, 0xC0, 0xFF, 0x7F, 0x01, 0x80});  // 0xC000 0x7FFF 0x8001
 const Frame some_torque = frame_of(0x3DB, {0x00, 0x00, 0x00, 0x80, 0xFF, 0xFF}); // 0 0x8000 0xFFFF
-
-} // namespace
 
 TEST_CASE("a strain board's two frames are force and torque, offset binary, in shares of the full scale") {
     StrainBoard board = left_arm_board();
@@ -124,3 +122,5 @@ TEST_CASE("what a simulated strain board sends decodes to within half a step, or
     asking.decode(board.encode_full_scale(0, 1500));
     CHECK(asking.full_scale()[0] == 1500);
 }
+
+} // namespace icub_strain_test

@@ -7,19 +7,17 @@
 
 #include <cmath>
 
+namespace icub_two_joint_board_test {
+
 using namespace dfdyn::hal;
 using namespace dfdyn::tests;
 using icub::TwoJointBoard;
 using Kind = Decoded::Kind;
 
-namespace {
-
 constexpr double degree = std::numbers::pi / 180;
 
 /// Board 3 of an iCub's arm: -11.375 ticks per degree; joints 2 and 3.
 TwoJointBoard arm_board() { return {3, {2, -11.375, 10}, {3, 8, 0}}; }
-
-} // namespace
 
 TEST_CASE("an iCub board's POSITION holds the ticks of two joints") {
     TwoJointBoard board = arm_board();
@@ -91,3 +89,5 @@ TEST_CASE("what a simulated iCub board sends decodes to within half a tick") {
     CHECK(board.decode(board.encode_status(0, TwoJointBoard::optical_encoder_error)).reason ==
           Reason::encoder_fault);
 }
+
+} // namespace icub_two_joint_board_test

@@ -7,11 +7,11 @@
 
 #include <cmath>
 
+namespace odrive_test {
+
 using namespace dfdyn::hal;
 using namespace dfdyn::tests;
 using Kind = Decoded::Kind;
-
-namespace {
 
 constexpr std::int64_t ms = 1'000'000;
 
@@ -23,8 +23,6 @@ OdriveAxis shoulder() {
 const Frame half_a_turn = frame_of(0x069, {0x00, 0x00, 0x00, 0x3F, 1, 2, 3, 4}, 1000 * ms); // 0.5
 const Frame healthy = frame_of(0x061, {0, 0, 0, 0, 8, 0, 0, 0x80}, 900 * ms);
 const Frame encoder_error = frame_of(0x061, {0, 0, 0, 0, 8, 0, 1, 0}, 900 * ms);
-
-} // namespace
 
 TEST_CASE("an ODrive's estimate is in turns of the motor") {
     OdriveAxis axis = shoulder();
@@ -79,3 +77,5 @@ TEST_CASE("what a simulated ODrive sends decodes to a float's resolution") {
     }
     CHECK(axis.decode(axis.encode_heartbeat(true)).reason == Reason::encoder_fault);
 }
+
+} // namespace odrive_test

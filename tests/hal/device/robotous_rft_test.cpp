@@ -7,19 +7,17 @@
 
 #include <cmath>
 
+namespace robotous_rft_test {
+
 using namespace dfdyn::hal;
 using namespace dfdyn::tests;
 using Kind = Decoded::Kind;
-
-namespace {
 
 RobotousRft small_sensor() { return RobotousRft({0xF9, 0xFA, 50, 2000}); }
 
 // Fx 0x1234, Fy -1, Fz 0x7FFF; Tx 0xFE0C over both frames, Ty 2000, Tz -32768
 const Frame first_frame = frame_of(0xF9, {0x0B, 0x12, 0x34, 0xFF, 0xFF, 0x7F, 0xFF, 0xFE});
 const Frame second_frame = frame_of(0xFA, {0x0C, 0x07, 0xD0, 0x80, 0x00, 0x00, 0x00, 0x00});
-
-} // namespace
 
 TEST_CASE("a Robotous sensor's record is split in the middle of Tx") {
     const RobotousRft sensor = small_sensor();
@@ -75,3 +73,5 @@ TEST_CASE("what a simulated Robotous sensor sends decodes to within half a step,
     CHECK(overload.frame[1].data[5] == 0x08); // Fx is bit 5, Fz bit 3
     CHECK(sensor.wrench(overload.frame[0], overload.frame[1]).reason == Reason::output_saturated);
 }
+
+} // namespace robotous_rft_test

@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-namespace {
+namespace six_equations_test {
 
 using dfdyn::hal::SixValues;
 using Matrix = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
@@ -25,8 +25,6 @@ Matrix random_matrix(std::mt19937_64& engine) {
     std::normal_distribution<double> normal;
     return Matrix::NullaryExpr([&] { return normal(engine); });
 }
-
-} // namespace
 
 TEST_CASE("six equations have Eigen's solution") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -62,3 +60,5 @@ TEST_CASE("a singular matrix, or one with an element that is no number, has no s
         }
     }
 }
+
+} // namespace six_equations_test

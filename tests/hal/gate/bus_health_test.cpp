@@ -3,6 +3,8 @@
 
 #include "tests/support/catch.hpp"
 
+namespace bus_health_test {
+
 using namespace dfdyn::hal;
 
 TEST_CASE("a bus that hears nothing says why") {
@@ -60,3 +62,5 @@ TEST_CASE("lost arbitration, refused sends and error frames are no loss") {
     CHECK(health.losses() == 0);
     CHECK(health.reason() == Reason::ok);
 }
+
+} // namespace bus_health_test

@@ -5,9 +5,9 @@
 
 #include <limits>
 
-using dfdyn::hal::ClockGate;
+namespace clock_test {
 
-namespace {
+using dfdyn::hal::ClockGate;
 
 constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t second = 1000 * ms;
@@ -25,8 +25,6 @@ ClockGate running_gate() {
     }
     return gate;
 }
-
-} // namespace
 
 TEST_CASE("stamps of a steady clock pass as they are") {
     ClockGate gate = make_gate();
@@ -98,3 +96,5 @@ TEST_CASE("a first stamp far from the reader's time is not believed at once") {
         }
     }
 }
+
+} // namespace clock_test

@@ -3,6 +3,8 @@
 
 #include "tests/support/catch.hpp"
 
+namespace frozen_test {
+
 using Gate = dfdyn::hal::FrozenGate<3>;
 
 TEST_CASE("a sensor that repeats itself is frozen from the limit on, until it moves") {
@@ -32,3 +34,5 @@ TEST_CASE("zeros freeze as any other value does") {
     CHECK_FALSE(gate.frozen({0, 0, 0}));
     CHECK(gate.frozen({0, 0, 0}));
 }
+
+} // namespace frozen_test

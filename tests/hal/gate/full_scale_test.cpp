@@ -5,10 +5,10 @@
 
 #include <limits>
 
+namespace full_scale_test {
+
 using namespace dfdyn::hal;
 using Gate = FullScaleGate<3>;
-
-namespace {
 
 Gate complete_gate() {
     Gate gate({{{10, 5000}, {10, 5000}, {0.5, 500}}});
@@ -17,8 +17,6 @@ Gate complete_gate() {
     gate.report(2, 35);
     return gate;
 }
-
-} // namespace
 
 TEST_CASE("full scales are used once all are known") {
     Gate gate({{{10, 5000}, {10, 5000}, {0.5, 500}}});
@@ -51,3 +49,5 @@ TEST_CASE("a channel that the sensor does not have is ignored") {
     gate.report(3, 0);
     CHECK(gate.reason() == Reason::ok);
 }
+
+} // namespace full_scale_test

@@ -3,6 +3,8 @@
 
 #include "tests/support/catch.hpp"
 
+namespace gap_test {
+
 TEST_CASE("a hole between two values is seen and counted") {
     dfdyn::hal::GapGate gate(10);
     CHECK_FALSE(gate.ends(1'000'000)); // the first
@@ -15,3 +17,5 @@ TEST_CASE("a hole between two values is seen and counted") {
     CHECK(gate.between(5, 16));
     CHECK_FALSE(gate.between(5, 15));
 }
+
+} // namespace gap_test

@@ -4,6 +4,8 @@
 #include "tests/hal/support/frames.hpp"
 #include "tests/support/catch.hpp"
 
+namespace offenders_test {
+
 using namespace dfdyn::hal;
 
 TEST_CASE("the first offender is kept, the others are counted") {
@@ -22,3 +24,5 @@ TEST_CASE("the first offender is kept, the others are counted") {
     CHECK(offenders.first().stamp_ns == 77);
     CHECK(offenders.first().reason == Reason::wrong_length);
 }
+
+} // namespace offenders_test

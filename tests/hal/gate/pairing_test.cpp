@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <vector>
 
+namespace pairing_test {
+
 using namespace dfdyn::hal;
 using namespace dfdyn::tests;
 using Result = PairGate::Result;
@@ -198,3 +200,5 @@ TEST_CASE("on a loaded bus halves of two wrenches never make one, whatever is lo
     CHECK(gate.pairs() > 8'000); // of 9'800 that lost no half
     CHECK(gate.doubles() == 0);
 }
+
+} // namespace pairing_test

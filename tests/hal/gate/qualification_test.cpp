@@ -3,13 +3,11 @@
 
 #include "tests/support/catch.hpp"
 
+namespace qualification_test {
+
 using dfdyn::hal::QualificationGate;
 
-namespace {
-
 constexpr QualificationGate::Config quick{.readings = 3, .zero_readings = 20};
-
-} // namespace
 
 TEST_CASE("a source qualifies with a few readings") {
     QualificationGate gate(quick);
@@ -52,3 +50,5 @@ TEST_CASE("a source that was away qualifies anew") {
     CHECK_FALSE(gate.qualified(false));
     CHECK(gate.qualified(false));
 }
+
+} // namespace qualification_test

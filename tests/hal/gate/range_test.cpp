@@ -5,6 +5,8 @@
 
 #include <limits>
 
+namespace range_test {
+
 TEST_CASE("values are within their ranges, or refused and counted") {
     dfdyn::hal::RangeGate<2> gate({{{-1, 2}, {0, 10}}});
     CHECK(gate.within({-1, 0}));
@@ -17,3 +19,5 @@ TEST_CASE("values are within their ranges, or refused and counted") {
     CHECK_FALSE(gate.within({0, std::numeric_limits<double>::infinity()}));
     CHECK(gate.count() == 4);
 }
+
+} // namespace range_test

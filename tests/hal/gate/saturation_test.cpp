@@ -5,6 +5,8 @@
 
 #include <array>
 
+namespace saturation_test {
+
 using Raw = std::array<std::int32_t, 3>;
 
 TEST_CASE("a reading is saturated where the device says so or a raw value is at its end") {
@@ -18,3 +20,5 @@ TEST_CASE("a reading is saturated where the device says so or a raw value is at 
     CHECK(gate.count() == 4);
     CHECK(gate.episodes() == 2);
 }
+
+} // namespace saturation_test

@@ -8,9 +8,9 @@
 #include <random>
 #include <vector>
 
-using dfdyn::hal::SendRateGate;
+namespace send_rate_test {
 
-namespace {
+using dfdyn::hal::SendRateGate;
 
 constexpr std::int64_t us = 1000;
 constexpr std::int64_t period_ns = 1000 * us;
@@ -18,8 +18,6 @@ constexpr std::int64_t period_ns = 1000 * us;
 std::int64_t between(std::mt19937_64& engine, std::int64_t lowest, std::int64_t highest) {
     return std::uniform_int_distribution<std::int64_t>(lowest, highest)(engine);
 }
-
-} // namespace
 
 TEST_CASE("one sender is never suspected, however its frames wait, and what is known of it is true") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -81,3 +79,5 @@ TEST_CASE("frames that share a stamp, or come with an older one, are no evidence
     CHECK_FALSE(gate.too_soon(7 * period_ns));
     CHECK_FALSE(gate.too_soon(11 * period_ns));
 }
+
+} // namespace send_rate_test

@@ -3,6 +3,8 @@
 
 #include "tests/support/catch.hpp"
 
+namespace staleness_test {
+
 TEST_CASE("a value stands for as long as its limit, then it is stale") {
     dfdyn::hal::StalenessGate gate(10);
     CHECK_FALSE(gate.stale(100, 100));
@@ -13,3 +15,5 @@ TEST_CASE("a value stands for as long as its limit, then it is stale") {
     CHECK(gate.count() == 2);
     CHECK_FALSE(gate.stale(115, 111)); // measured after the instant
 }
+
+} // namespace staleness_test

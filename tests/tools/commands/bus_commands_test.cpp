@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace {
+namespace bus_commands_test {
 
 using Catch::Matchers::ContainsSubstring;
 using dfdyn::tests::file_content;
@@ -53,8 +53,6 @@ class Bench {
   private:
     TemporaryDirectory directory_;
 };
-
-} // namespace
 
 TEST_CASE("simulated drives send what the simulated recording converts to, byte for byte") {
     const Bench bench;
@@ -112,3 +110,5 @@ TEST_CASE("a log of a bus is judged: all is well, or what is wrong with its plac
     CHECK(bench.call("buscheck" + log + bench.bus() + " --can can0").status == 2);
     CHECK(bench.call("buscheck --log " + bench.path("none.log") + bench.bus()).status == 2);
 }
+
+} // namespace bus_commands_test

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-namespace {
+namespace command_line_test {
 
 using dfdyn::tests::file_content;
 using dfdyn::tests::Outcome;
@@ -31,8 +31,6 @@ std::string notes(const std::string& text) {
 const std::string log_file = DFDYN_TEST_DATA_DIR "/ur5_kufieta/Movement_No7_Acc_slow_Verify_Model_short.csv";
 const std::string quick =
     " --outputs i --features 20 --starts 1 --likelihood-rows 60 --lags 4 --rows 0:1200 ";
-
-} // namespace
 
 TEST_CASE("help and version end with status 0, and every subcommand shows an example") {
     const TemporaryDirectory directory;
@@ -192,3 +190,5 @@ TEST_CASE("simulate writes a recording and the truth, or nothing at all") {
     CHECK_THAT(outcome.error, Catch::Matchers::ContainsSubstring(" mm away from where it can go"));
     CHECK_FALSE(std::filesystem::exists(directory.path() / "run.csv"));
 }
+
+} // namespace command_line_test

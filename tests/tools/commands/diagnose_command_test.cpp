@@ -15,9 +15,9 @@
 #include <sstream>
 #include <string>
 
-namespace tools = dfdyn::tools;
+namespace diagnose_command_test {
 
-namespace {
+namespace tools = dfdyn::tools;
 
 using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::StartsWith;
@@ -92,8 +92,6 @@ double error_at_start(const tools::TrainedModel& model, const tools::Recording& 
     }
     return sum;
 }
-
-} // namespace
 
 TEST_CASE("diagnose names friction and rotors, and writes report, figures and model") {
     const TemporaryDirectory directory;
@@ -223,3 +221,5 @@ TEST_CASE("diagnose refuses what it cannot use, in one line") {
     CHECK_THAT(refusal("--log " + log + " --outputs tau -o " + log), ContainsSubstring(log));
     CHECK_THAT(run_program(directory, "diagnose --help").out, ContainsSubstring("Example:"));
 }
+
+} // namespace diagnose_command_test

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-namespace {
+namespace evaluate_command_test {
 
 using Catch::Matchers::ContainsSubstring;
 using dfdyn::tests::file_content;
@@ -39,8 +39,6 @@ std::size_t count_unit_files(const TemporaryDirectory& directory) {
     }
     return count;
 }
-
-} // namespace
 
 TEST_CASE("evaluate writes its files, silently, and finds them again") {
     const TemporaryDirectory directory;
@@ -107,3 +105,5 @@ TEST_CASE("a run that is ended half-way leaves whole files and goes on from them
                ContainsSubstring("120 of 120 cases x draws done (" + std::to_string(done) + " found"));
     CHECK(count_unit_files(directory) == 120);
 }
+
+} // namespace evaluate_command_test

@@ -14,9 +14,9 @@
 #include <sstream>
 #include <string>
 
-namespace tools = dfdyn::tools;
+namespace identify_command_test {
 
-namespace {
+namespace tools = dfdyn::tools;
 
 using Catch::Matchers::ContainsSubstring;
 using dfdyn::tests::file_content;
@@ -79,8 +79,6 @@ std::string recording(double factor, bool with_derivatives) {
     }
     return text.str();
 }
-
-} // namespace
 
 TEST_CASE("identify finds an arm's true parameters, with recorded derivatives and without") {
     const TemporaryDirectory directory;
@@ -152,3 +150,5 @@ TEST_CASE("identify refuses what it cannot use, in one line") {
     }
     CHECK_THAT(identify(directory, "--help").out, ContainsSubstring("Example:"));
 }
+
+} // namespace identify_command_test

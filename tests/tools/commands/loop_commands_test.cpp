@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string>
 
-namespace {
+namespace loop_commands_test {
 
 using Catch::Matchers::ContainsSubstring;
 using dfdyn::tests::file_content;
@@ -50,8 +50,6 @@ class Bench {
 };
 
 const std::string simulate = " --simulate --duration 11";
-
-} // namespace
 
 TEST_CASE("a simulated loop is recorded, a model trained on that, and the loop with it tracks better") {
     const Bench bench(R"("encoders")",
@@ -142,3 +140,5 @@ TEST_CASE("what does not fit together is said before anything runs") {
     bench.write("file", "");
     CHECK_THAT(bench.refusal(simulate + " -o " + bench.path("file")), ContainsSubstring("file"));
 }
+
+} // namespace loop_commands_test

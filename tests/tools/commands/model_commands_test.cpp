@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace model_commands_test {
 
 using Catch::Matchers::ContainsSubstring;
 using dfdyn::tests::file_content;
@@ -105,8 +105,6 @@ void check_refused(const Outcome& outcome, const std::string& words) {
     CHECK(std::ranges::count(outcome.error.substr(message), '\n') == 1);
     CHECK_THAT(outcome.error, ContainsSubstring(words));
 }
-
-} // namespace
 
 TEST_CASE("models with a robot are trained and replayed from one command each") {
     const Bench bench;
@@ -221,3 +219,5 @@ TEST_CASE("several models are replayed as one, if they are of the same arm") {
         bench.call("replay --model " + bench.path("model.json") + "," + bench.path("wrench.json") + on_log),
         "expected joints and outputs as in ");
 }
+
+} // namespace model_commands_test

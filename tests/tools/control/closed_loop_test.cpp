@@ -13,7 +13,7 @@
 #include <cmath>
 #include <vector>
 
-namespace {
+namespace closed_loop_test {
 
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
@@ -45,8 +45,6 @@ Scenario loaded_scenario() {
 LoopModel random_model(std::mt19937_64& engine) {
     return {unlearned_model(engine, 1, 0.008, {"tau1"}, 30), "model", true};
 }
-
-} // namespace
 
 TEST_CASE("with a rigid body that is right the arm follows; a payload that nobody knows of makes the error "
           "of its weight") {
@@ -137,3 +135,5 @@ TEST_CASE("a bus that does not fit robot and scenario is refused") {
     CHECK(refusal(one_drive(at_sync), scenario, robot) ==
           "joints: expected the rate of the loop, 500 Hz, found 1000");
 }
+
+} // namespace closed_loop_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-namespace {
+namespace control_loop_test {
 
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
@@ -40,8 +40,6 @@ class Bench {
     JointVector position_;
     std::int64_t ticks_ = 0;
 };
-
-} // namespace
 
 TEST_CASE("no command is beyond the limit, and those at it are counted") {
     Scenario scenario = pendulum_scenario();
@@ -173,3 +171,5 @@ TEST_CASE("a loop is told what its scenario and model must have") {
     CHECK(refusal(scenario, robot, nullptr) ==
           "s.json: controller.kind: expected feed_forward, found another");
 }
+
+} // namespace control_loop_test

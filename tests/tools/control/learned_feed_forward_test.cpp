@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-namespace {
+namespace learned_feed_forward_test {
 
 using namespace dfdyn::tools;
 using dfdyn::tests::unlearned_model;
@@ -64,8 +64,6 @@ std::string refusal(const TrainedModel& model) {
     }
     return "none";
 }
-
-} // namespace
 
 TEST_CASE("what was learned of measured positions is predicted for the reference's") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -152,3 +150,5 @@ TEST_CASE("a model of something else than these joints' torques by their positio
     CHECK(refusal(measured) == "m.json: expected a model of positions alone, found one that needs measured "
                                "derivatives (input STD)");
 }
+
+} // namespace learned_feed_forward_test

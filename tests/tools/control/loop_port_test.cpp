@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace loop_port_test {
 
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
@@ -57,8 +57,6 @@ class Line {
 
 /// Position at tick k.
 double at(int tick) { return 0.5 + 0.001 * tick; }
-
-} // namespace
 
 TEST_CASE("a tick gets position and torque of the instant that the description's trigger gives") {
     const auto [trigger, delay] =
@@ -180,3 +178,5 @@ TEST_CASE("a sensor that has not told its full scales is asked for them, ten tim
     }
     CHECK(bus.taken.size() == 12);
 }
+
+} // namespace loop_port_test

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <string>
 
-namespace {
+namespace loop_recording_test {
 
 using namespace dfdyn::tools;
 using dfdyn::tests::file_content;
@@ -34,8 +34,6 @@ std::string written(const LoopRecording& recording) {
     return file_content(directory.path() / "run.csv");
 }
 
-} // namespace
-
 TEST_CASE("every so many ticks a row of positions and torques is kept, where both were measured") {
     LoopRecording recording(2, 2, 0.001, 1);
     record(recording, 8);
@@ -55,3 +53,5 @@ TEST_CASE("a recording ends where its time is over, and takes no memory while it
 TEST_CASE("a recording of nothing has its columns") {
     CHECK(written(LoopRecording(1, 1, 0.001, 1)) == "t,q1,tau1\n");
 }
+
+} // namespace loop_recording_test

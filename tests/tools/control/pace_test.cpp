@@ -3,13 +3,11 @@
 
 #include "tests/support/catch.hpp"
 
-namespace {
+namespace pace_test {
 
 using dfdyn::tools::Pace;
 
 constexpr std::int64_t start = 1'000'000, period = 1000;
-
-} // namespace
 
 TEST_CASE("ticks are due at absolute times, however late they begin and however long they take") {
     Pace pace(start, period);
@@ -41,3 +39,5 @@ TEST_CASE("a deadline is missed by a tick that begins after the next was due, an
     CHECK(pace.counters().worst_late_ns == 5 * period);
     CHECK(pace.counters().longest_ns == 299);
 }
+
+} // namespace pace_test

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace {
+namespace plant_port_test {
 
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
@@ -26,8 +26,6 @@ SimulatedPlant resting_plant() {
 std::int64_t count_of(const ScriptedBus& bus, std::uint32_t id) {
     return std::ranges::count_if(bus.taken, [id](const hal::Frame& frame) { return frame.id == id; });
 }
-
-} // namespace
 
 TEST_CASE("drives hold a command for 20 ms, then have no torque until the next") {
     PlantPort port(one_drive(at_sync), {});
@@ -96,3 +94,5 @@ TEST_CASE("what is no command changes nothing; frames that find no room are coun
     port.send(bus, plant);
     CHECK(port.refused() == 2); // of SYNC, heartbeat and position
 }
+
+} // namespace plant_port_test

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace {
+namespace safe_stop_test {
 
 using namespace dfdyn::tools;
 
@@ -35,8 +35,6 @@ TickHealth health(const std::function<void(TickHealth&)>& spoil) {
     spoil(result);
     return result;
 }
-
-} // namespace
 
 TEST_CASE("a loop waits for positions as long as it takes, then runs while all is well") {
     SafeStop stop(small_config());
@@ -109,3 +107,5 @@ TEST_CASE("who has not moved anything stops at once") {
     CHECK(elsewhere.tick(healthy, JointVector::Constant(2, 1)) == LoopState::stopped);
     CHECK(elsewhere.cause() == StopCause::following_error);
 }
+
+} // namespace safe_stop_test

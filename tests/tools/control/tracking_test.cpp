@@ -9,7 +9,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace {
+namespace tracking_test {
 
 using namespace dfdyn::tools;
 
@@ -29,8 +29,6 @@ std::vector<TrackingWindow> windows() {
     }
     return tracking.windows();
 }
-
-} // namespace
 
 TEST_CASE("the tracking error is the root mean square of each whole window") {
     const std::vector<TrackingWindow> result = windows();
@@ -71,3 +69,5 @@ TEST_CASE("a report has the table, the curves and a page; a run without a whole 
     CHECK_THAT(dfdyn::tests::file_content(folder / "tracking.svg"), Catch::Matchers::Contains("<svg"));
     CHECK_THAT(dfdyn::tests::file_content(folder / "tracking.html"), Catch::Matchers::Contains("A title"));
 }
+
+} // namespace tracking_test

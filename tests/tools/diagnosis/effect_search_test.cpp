@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <random>
 
-namespace {
+namespace effect_search_test {
 
 using namespace dfdyn::tools;
 using Eigen::Index;
@@ -50,8 +50,6 @@ std::vector<std::size_t> found(const SearchProblem& problem) {
     std::ranges::sort(result);
     return result;
 }
-
-} // namespace
 
 TEST_CASE("what was planted is found, with its coefficients; noise alone yields nothing") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -151,3 +149,5 @@ TEST_CASE("the held-out score is that of each block by the least squares of all 
     CHECK(held_out_score(problem, sums, {{3, 0}, {0, 0}}) == Approx(expected({3, 0})));
     CHECK(held_out_score(problem, sums, {}) == 0);
 }
+
+} // namespace effect_search_test

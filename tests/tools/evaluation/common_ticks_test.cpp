@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace common_ticks_test {
 
 using namespace dfdyn::tools;
 using dfdyn::tests::two_case_plan;
@@ -46,8 +46,6 @@ std::vector<bool> ticks_from_to(std::size_t first, std::size_t last) {
               ticks.begin() + static_cast<std::ptrdiff_t>(last), true);
     return ticks;
 }
-
-} // namespace
 
 TEST_CASE("ticks are scored from the largest window on, up to the last whole horizon") {
     CHECK(common_ticks(plan_with_windows(), data_of_three_subsets(), 0, 1) ==
@@ -107,3 +105,5 @@ TEST_CASE("errors of other ticks are no errors, and missing ones of common ticks
     CHECK(units[0].error[1][2][9] == infinite);
     CHECK(units[1].error[0][1][8] == infinite);
 }
+
+} // namespace common_ticks_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace comparison_test {
 
 using namespace dfdyn::tools;
 using dfdyn::tests::two_case_plan;
@@ -37,8 +37,6 @@ void lose(std::vector<UnitResult>& units, const std::string& name, std::size_t t
 }
 
 const Comparison a_is_less{"A", "B", "force", Phase::steady, 0};
-
-} // namespace
 
 TEST_CASE("a clear difference in every draw holds, and its opposite is contradicted") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -193,3 +191,5 @@ TEST_CASE("ratios are said in words") {
     CHECK(ratio_text(std::nan("")) == "not comparable");
     CHECK(ratio_text(infinite) == "∞ times as much");
 }
+
+} // namespace comparison_test

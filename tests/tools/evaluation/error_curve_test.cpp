@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace error_curve_test {
 
 using namespace dfdyn::tools;
 using dfdyn::tests::unit_at;
@@ -50,8 +50,6 @@ double draw_mean(const UnitResult& draw, std::size_t tick) {
     }
     return sum / count;
 }
-
-} // namespace
 
 TEST_CASE("the curve is the mean over subsets, then over draws, with the draws' quartiles") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -118,3 +116,5 @@ TEST_CASE("the phases part at the settling time") {
     CHECK(lost_share(pointers(draws), 0) == 0);
     CHECK(phase_box(pointers(draws), 1, Phase::steady, 2).count == 3 * (40 + 40 + 20));
 }
+
+} // namespace error_curve_test

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace {
+namespace evaluation_page_test {
 
 using namespace dfdyn::tools;
 using Catch::Matchers::ContainsSubstring;
@@ -46,8 +46,6 @@ Evaluation evaluation() {
 void write(const TemporaryDirectory& directory, const Evaluation& one) {
     write_evaluation(directory.path(), one.plan, one.data, one.results);
 }
-
-} // namespace
 
 TEST_CASE("an evaluation writes page, tables, findings, figures and pictures") {
     const TemporaryDirectory directory;
@@ -156,3 +154,5 @@ TEST_CASE("no text of a plan can leave its place in the page") {
     CHECK(html.find("<script") == std::string::npos);
     CHECK(markup_fault(html).empty());
 }
+
+} // namespace evaluation_page_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace {
+namespace horizon_error_test {
 
 using namespace dfdyn::tools;
 
@@ -70,8 +70,6 @@ std::vector<HorizonIndex> indices_of(const std::vector<Step>& steps, std::size_t
     return errors.indices();
 }
 
-} // namespace
-
 TEST_CASE("the horizon index is the paper's") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::vector<Step> steps = random_steps(engine, 40);
@@ -114,3 +112,5 @@ TEST_CASE("an output that rests at zero has no relative error") {
     CHECK(std::isinf(errors.indices().front().epsilon[0]));
     CHECK(errors.indices().front().epsilon[1] == 1);
 }
+
+} // namespace horizon_error_test

@@ -9,7 +9,7 @@
 #include <array>
 #include <functional>
 
-namespace {
+namespace plan_test {
 
 using namespace dfdyn::tools;
 using Catch::Matchers::ContainsSubstring;
@@ -29,8 +29,6 @@ std::vector<std::string> case_names(const Plan& plan) {
     }
     return names;
 }
-
-} // namespace
 
 TEST_CASE("a plan is read with its defaults, its paths from its own folder") {
     const TemporaryDirectory directory;
@@ -310,3 +308,5 @@ TEST_CASE("the plans of tools/reproduce.sh are valid, and encode the same findin
     CHECK(ur5.seeds.size() >= 10);
     CHECK(load_plan_data(ur5).subsets.size() == 2);
 }
+
+} // namespace plan_test

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace {
+namespace replay_test {
 
 using namespace dfdyn::tools;
 using dfdyn::tests::small_model;
@@ -48,8 +48,6 @@ ReplayedRecording with_innovations(const std::vector<float>& innovations) {
     replayed.normalised_innovation_squared = innovations;
     return replayed;
 }
-
-} // namespace
 
 TEST_CASE("a replay predicts once the window is full, again after a gap, and learns") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -137,3 +135,5 @@ TEST_CASE("the CSV of a replay has the columns that scripts rely on") {
     }
     CHECK_THAT(last, Catch::Matchers::EndsWith(",1,ok"));
 }
+
+} // namespace replay_test

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace run_plan_test {
 
 using namespace dfdyn::tools;
 using Catch::Matchers::ContainsSubstring;
@@ -47,8 +47,6 @@ json without_times(const EvaluationResults& results) {
     }
     return all;
 }
-
-} // namespace
 
 TEST_CASE("a run does every case with every draw, and finds its results again") {
     const TemporaryDirectory directory;
@@ -301,3 +299,5 @@ TEST_CASE("a combination of cases is the combination of their models, and runs a
     directory.write("plan.json", plan.dump());
     CHECK(run(directory).reused == 0);
 }
+
+} // namespace run_plan_test

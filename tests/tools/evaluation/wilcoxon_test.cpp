@@ -7,9 +7,9 @@
 #include <cmath>
 #include <vector>
 
-namespace tools = dfdyn::tools;
+namespace wilcoxon_test {
 
-namespace {
+namespace tools = dfdyn::tools;
 
 /// 1 … n with their own ranks, of which those that add up to `positive_sum` are positive, the largest first.
 std::vector<double> differences_with(int n, int positive_sum) {
@@ -60,8 +60,6 @@ Enumerated enumerate(const std::vector<double>& differences) {
             static_cast<double>(above) / static_cast<double>(choices)};
 }
 
-} // namespace
-
 TEST_CASE("the signed-rank test has the probabilities of the published tables") {
     // n, sum, one-sided probability of that sum or less
     const auto [n, sum, probability] = GENERATE(table<int, int, double>({{5, 0, 0.0313},
@@ -107,3 +105,5 @@ TEST_CASE("differences of zero say nothing") {
     CHECK(none.p_negative == 1);
     CHECK(none.p_positive == 1);
 }
+
+} // namespace wilcoxon_test

@@ -9,7 +9,7 @@
 #include <regex>
 #include <sstream>
 
-namespace {
+namespace chart_test {
 
 using namespace dfdyn::tools;
 using Catch::Matchers::ContainsSubstring;
@@ -41,8 +41,6 @@ std::string line_of(const std::string& svg) {
     REQUIRE(std::regex_search(svg, match, std::regex("<path class=\"line\" d=\"([^\"]*)\"")));
     return match[1];
 }
-
-} // namespace
 
 TEST_CASE("a chart of curves shows each with its name, and its points where they belong") {
     const std::string svg = curve_chart("Title", "x", "y", {curve("a", {1, 10, 100}), curve("b", {2, 3, 4})});
@@ -115,3 +113,5 @@ TEST_CASE("a chart of its own brings its style along") {
     CHECK(occurrences(svg, "class=\"paper\"") == 1);
     CHECK_THAT(svg, Catch::Matchers::StartsWith("<svg xmlns=\"http://www.w3.org/2000/svg\""));
 }
+
+} // namespace chart_test

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-namespace tools = dfdyn::tools;
+namespace log_axis_test {
 
-namespace {
+namespace tools = dfdyn::tools;
 
 std::vector<std::string> labels_of(const tools::LogAxis& axis) {
     std::vector<std::string> labels;
@@ -20,8 +20,6 @@ std::vector<std::string> labels_of(const tools::LogAxis& axis) {
     }
     return labels;
 }
-
-} // namespace
 
 TEST_CASE("an axis ends at round numbers about its values") {
     const tools::LogAxis axis = tools::log_axis({0.03, 7, 0.5}, 0, 1);
@@ -69,3 +67,5 @@ TEST_CASE("powers of ten are labelled, and 2 and 5 where there is room") {
     CHECK(labels_of({1e-10, 1e10, 0, 1}).size() == 11);
     CHECK(tools::ticks_of({1, 10, 0, 1}).size() == 10);
 }
+
+} // namespace log_axis_test

@@ -7,16 +7,14 @@
 #include <string>
 #include <vector>
 
+namespace report_table_test {
+
 namespace tools = dfdyn::tools;
 using Catch::Matchers::ContainsSubstring;
 using Texts = std::vector<std::string>;
 
-namespace {
-
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-} // namespace
 
 TEST_CASE("a column of numbers has the same decimals, three digits for a typical one") {
     CHECK(tools::format_column({0.27149, 0.0912, 1.5}) == Texts{"0.271", "0.091", "1.500"});
@@ -79,3 +77,5 @@ TEST_CASE("a table in Markdown has the same cells, and no markup but its own") {
                   "| i\\*2 | – |\n"
                   "\na \\<note\\>\n");
 }
+
+} // namespace report_table_test

@@ -16,12 +16,12 @@
 #include <string_view>
 #include <vector>
 
+namespace report_test {
+
 namespace tools = dfdyn::tools;
 using Catch::Matchers::ContainsSubstring;
 using nlohmann::json;
 using tools::Report;
-
-namespace {
 
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
@@ -95,8 +95,6 @@ std::size_t occurrences(std::string_view text, std::string_view wanted) {
     }
     return count;
 }
-
-} // namespace
 
 TEST_CASE("the page holds the numbers of the series, time and innovation exactly") {
     const Report report = small_report();
@@ -255,3 +253,5 @@ TEST_CASE("a report of 15 000 ticks and 6 outputs stays below 3 MB") {
     report.innovation = {values, 16.8, "99 %"};
     CHECK(tools::render_report(report).size() < 3'000'000);
 }
+
+} // namespace report_test

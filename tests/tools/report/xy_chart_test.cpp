@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace xy_chart_test {
 
 using namespace dfdyn::tools;
 using Catch::Matchers::ContainsSubstring;
@@ -21,8 +21,6 @@ std::vector<std::string> labels(const LinearAxis& axis) {
     }
     return texts;
 }
-
-} // namespace
 
 TEST_CASE("a linear axis has room at its ends and round labels") {
     const LinearAxis axis = linear_axis({-1, 1, std::nan("")}, 100, 200);
@@ -82,3 +80,5 @@ TEST_CASE("bins hold equally many points, and points of one x stay together") {
     CHECK(same.mean == std::vector<double>{2, 9});
     CHECK(binned("b", {}, {}, 5).x.empty());
 }
+
+} // namespace xy_chart_test

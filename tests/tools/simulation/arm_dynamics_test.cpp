@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace {
+namespace arm_dynamics_test {
 
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
@@ -18,8 +18,6 @@ using namespace dfdyn::tests;
 JointVector random_joints(std::mt19937_64& engine, int n) {
     return JointVector::NullaryExpr(n, [&] { return uniform(engine, -2, 2); });
 }
-
-} // namespace
 
 TEST_CASE("forward dynamics undo inverse dynamics, and the mass matrix is their linear part") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -114,3 +112,5 @@ TEST_CASE("chains that the simulation cannot hold, and negative masses, are refu
     CHECK_THROWS_WITH(ArmDynamics(robot, JointVector::Zero(1)),
                       Catch::Matchers::ContainsSubstring("link rod: expected a mass"));
 }
+
+} // namespace arm_dynamics_test

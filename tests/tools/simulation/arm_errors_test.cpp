@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace {
+namespace arm_errors_test {
 
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
@@ -40,8 +40,6 @@ struct SoftJoint {
                       stiffness * pressed * pressed);
     }
 };
-
-} // namespace
 
 TEST_CASE(
     "rotor and link swing against each other with the two-mass frequency, and keep energy and momentum") {
@@ -160,3 +158,5 @@ TEST_CASE("an actuator of limited bandwidth follows its command exponentially, f
     arm.advance(5e-3);
     CHECK(arm.state().torque[0] == Approx(3 - 2 * std::exp(-2 * std::numbers::pi * 20 * 5e-3)));
 }
+
+} // namespace arm_errors_test

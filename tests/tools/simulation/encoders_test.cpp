@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace {
+namespace encoders_test {
 
 using namespace dfdyn::tools;
 using dfdyn::tests::uniform;
@@ -20,8 +20,6 @@ EncoderModel perfect(int joints) {
     model.eccentricity_phase = JointVector::Zero(joints);
     return model;
 }
-
-} // namespace
 
 TEST_CASE("a 12-bit encoder errs uniformly within one count of 2 pi / 4096") {
     EncoderModel model = perfect(1);
@@ -94,3 +92,5 @@ TEST_CASE("velocity and acceleration of a parabola are exact, and 0 until there 
     }
     CHECK(curved.acceleration()[0] == Approx(8).epsilon(1e-6));
 }
+
+} // namespace encoders_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace {
+namespace lugre_friction_test {
 
 using dfdyn::tools::LuGreFriction;
 using dfdyn::tools::LuGreParameters;
@@ -20,8 +20,6 @@ LuGreParameters parameters() {
     result.stribeck_velocity = 0.05;
     return result;
 }
-
-} // namespace
 
 TEST_CASE("LuGre friction settles on the Stribeck curve at every velocity, both ways") {
     for (const double velocity : {-2.0, -0.1, -0.03, 0.001, 0.02, 0.05, 0.3, 5.0}) {
@@ -73,3 +71,5 @@ TEST_CASE("without bristles only viscous friction is left") {
     CHECK(friction.torque(2) == 1.4);
     CHECK(friction.deflection() == 0);
 }
+
+} // namespace lugre_friction_test

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace {
+namespace payload_schedule_test {
 
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
@@ -18,8 +18,6 @@ constexpr double mass = 2, length = 0.5, gravity = 9.81;
 double acceleration_of(const SimulatedArm& arm) { return arm.state().acceleration[0]; }
 
 SimulatedArm resting() { return {pendulum(mass, length), free_actuators(1), JointVector::Constant(1, 0.3)}; }
-
-} // namespace
 
 TEST_CASE("a payload moves the arm as one body with its last link: from its time on, and once") {
     SimulatedArm arm = resting();
@@ -68,3 +66,5 @@ TEST_CASE("a plant attaches its payloads as its time comes") {
     const double inertia = mass * length * length + 3 * length * length / 4;
     CHECK(plant.truth().acceleration[0] == Approx(expected(mass * length + 3 * length / 2, inertia)));
 }
+
+} // namespace payload_schedule_test

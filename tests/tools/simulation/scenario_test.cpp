@@ -9,7 +9,7 @@
 #include <numeric>
 #include <vector>
 
-namespace {
+namespace scenario_test {
 
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
@@ -46,8 +46,6 @@ std::string error_with(const std::string& path, const json& value) {
     }
     return "none";
 }
-
-} // namespace
 
 TEST_CASE("a scenario's fields arrive, with their defaults, one number for all joints or one each") {
     const Scenario scenario = read(minimal());
@@ -182,3 +180,5 @@ TEST_CASE("a file that is no scenario is refused") {
                       Catch::Matchers::ContainsSubstring("schema: expected dfdyn.scenario/1"));
     CHECK(read_scenario_chain(directory.write("b.json", minimal().dump())).tip == "rod");
 }
+
+} // namespace scenario_test

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace {
+namespace sensor_errors_test {
 
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
@@ -41,8 +41,6 @@ double settled(LuGreFriction& friction, double velocity) {
     }
     return friction.torque(velocity);
 }
-
-} // namespace
 
 TEST_CASE("friction has a level per direction, one of the load, and a drift") {
     LuGreParameters parameters;
@@ -147,3 +145,5 @@ TEST_CASE("a base that is not the root tilts about the root's axes") {
     const Eigen::Vector3d expected = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY()) * robot.gravity;
     CHECK((real_robot(robot, errors).gravity - expected).norm() < 1e-12);
 }
+
+} // namespace sensor_errors_test

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace {
+namespace simulated_arm_test {
 
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
@@ -43,8 +43,6 @@ Robot random_swing(std::mt19937_64& engine, int n) {
     }
     return robot;
 }
-
-} // namespace
 
 TEST_CASE("a free swing keeps its energy, with an error of the step's fourth order at least") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -104,3 +102,5 @@ TEST_CASE("actuators give no more than their limit") {
     arm.apply(JointVector::Constant(1, -100));
     CHECK(arm.state().torque[0] == -2);
 }
+
+} // namespace simulated_arm_test

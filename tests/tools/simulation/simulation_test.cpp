@@ -10,7 +10,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace {
+namespace simulation_test {
 
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
@@ -39,8 +39,6 @@ std::string bytes(const Robot& robot, const Scenario& scenario) {
     }
     return recording.str() + truth.str();
 }
-
-} // namespace
 
 TEST_CASE("recorded rate and jitter are the scenario's; the truth has no stamp error") {
     Scenario scenario = quiet_scenario(1);
@@ -202,3 +200,5 @@ TEST_CASE("a reference beyond a joint's limit, and an arm out of control, say wh
         }(),
         Catch::Matchers::ContainsSubstring("running away"));
 }
+
+} // namespace simulation_test

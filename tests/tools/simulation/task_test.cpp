@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace {
+namespace task_test {
 
 using namespace dfdyn::tools;
 
@@ -45,8 +45,6 @@ CircleTask small_circle() {
     circle.radius = 0.02;
     return circle;
 }
-
-} // namespace
 
 TEST_CASE("a multisine starts at rest, stays within its amplitude, and its derivatives are right") {
     MultisineTask model;
@@ -132,3 +130,5 @@ TEST_CASE("a circle out of reach says where, by how much, and which joint is in 
     circle.radius = 1;
     CHECK_THROWS_AS(make_task(circle, robot, period_s, 1), InputError);
 }
+
+} // namespace task_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace {
+namespace wrench_sensor_test {
 
 using namespace dfdyn::tools;
 
@@ -35,8 +35,6 @@ double gain(const WrenchSensorModel& model, double frequency_hz) {
     }
     return std::hypot(sine, cosine) / (steps / 16.0);
 }
-
-} // namespace
 
 TEST_CASE("the F/T sensor's -3 dB point is its bandwidth, and its order is the roll-off") {
     WrenchSensorModel model = fine();
@@ -121,3 +119,5 @@ TEST_CASE("the F/T sensor holds its reading until the next") {
         CHECK(sensor.reading()[0] == Approx(i - i % 8).margin(1e-6));
     }
 }
+
+} // namespace wrench_sensor_test

@@ -10,18 +10,16 @@
 #include <cmath>
 #include <limits>
 
+namespace covariance_factor_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::MatrixXd;
-
-namespace {
 
 MatrixXd random_covariance(Eigen::Index size) {
     tools::NormalSource random(dfdyn::tests::seed());
     const MatrixXd root = random.matrix(size, size);
     return root * root.transpose() + MatrixXd::Identity(size, size);
 }
-
-} // namespace
 
 TEST_CASE("CovarianceFactor inverts, solves and has the determinant, for sizes around its blocks") {
     const Eigen::Index size = GENERATE(1, 2, 47, 48, 49, 96, 97, 150);
@@ -50,3 +48,5 @@ TEST_CASE("CovarianceFactor refuses what is no covariance") {
     SECTION("singular") { covariance = MatrixXd::Ones(60, 60); }
     CHECK_FALSE(tools::CovarianceFactor::of(covariance));
 }
+
+} // namespace covariance_factor_test

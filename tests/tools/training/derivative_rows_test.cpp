@@ -10,10 +10,10 @@
 #include <cmath>
 #include <vector>
 
+namespace derivative_rows_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::VectorXd;
-
-namespace {
 
 /// Impulse response of (numerator) / (1 - beta z^-1), run as the recursion that it is.
 VectorXd impulse_response(const std::vector<double>& numerator, double beta, int lags) {
@@ -26,8 +26,6 @@ VectorXd impulse_response(const std::vector<double>& numerator, double beta, int
     }
     return response;
 }
-
-} // namespace
 
 TEST_CASE("filtered rows are the impulse responses of the paper's filters") {
     const double beta = GENERATE(0.01, 0.3, 0.9, 0.99);
@@ -80,3 +78,5 @@ TEST_CASE("a polynomial row of more samples than coefficients lets less noise th
     const double tight = tools::polynomial_derivative_row(1, 9, 9).norm();
     CHECK(tools::polynomial_derivative_row(1, 1, 9).norm() < tight / 10);
 }
+
+} // namespace derivative_rows_test

@@ -8,11 +8,11 @@
 
 #include <cmath>
 
+namespace feature_likelihood_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
 
 constexpr int lags = 4;
 constexpr int features = 8;
@@ -28,8 +28,6 @@ struct Problem {
     MatrixXd omega = random.matrix(features, 6);
     VectorXd theta{{-3.0, 0.7, 0.1, -0.2, 0.3, -0.4}};
 };
-
-} // namespace
 
 TEST_CASE("FeatureLikelihood is the normal density of the outputs under the features' kernel plus noise") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
@@ -64,3 +62,5 @@ TEST_CASE("the gradient of FeatureLikelihood is its derivative") {
     CHECK(dfdyn::tests::relative_error(likelihood.evaluate(problem.theta)->gradient,
                                        dfdyn::tests::differences(value_at, problem.theta)) < 1e-6);
 }
+
+} // namespace feature_likelihood_test

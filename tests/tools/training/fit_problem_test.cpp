@@ -13,14 +13,14 @@
 #include <numbers>
 #include <string>
 
+namespace fit_problem_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using tools::InputKind;
 using tools::PhysicsPrior;
-
-namespace {
 
 /// A small training problem with physics of five columns for two outputs and two joints.
 struct Problem {
@@ -72,8 +72,6 @@ void check_gradient(const tools::Likelihood& likelihood, const VectorXd& theta) 
         CHECK(dfdyn::tests::relative_error(value->gradient, truth) < 2e-6);
     }
 }
-
-} // namespace
 
 TEST_CASE(
     "the gradients of all models with all inputs are derivatives, of the exact kernel and of features") {
@@ -175,3 +173,5 @@ TEST_CASE("DFR starts where DFSR ends: the same kernel, the same likelihood") {
     CHECK(free.exact().evaluate(free.start_from(structured, theta))->minus_two_log_likelihood ==
           Approx(structured.exact().evaluate(theta)->minus_two_log_likelihood).epsilon(1e-9));
 }
+
+} // namespace fit_problem_test

@@ -10,12 +10,12 @@
 #include <cmath>
 #include <limits>
 
+namespace hold_out_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
 
 constexpr Index training = 40;
 
@@ -27,8 +27,6 @@ double relative_error(const MatrixXd& predicted, const MatrixXd& measured) {
     }
     return sum / static_cast<double>(measured.cols());
 }
-
-} // namespace
 
 TEST_CASE("the hold-out error is that of the kernel's prediction of what it has not seen") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
@@ -113,3 +111,5 @@ TEST_CASE("a point lies at the edge of a grid in the coordinates that vary") {
     CHECK_FALSE(tools::at_edge(line[1], line));
     CHECK(tools::at_edge(line[2], line));
 }
+
+} // namespace hold_out_test

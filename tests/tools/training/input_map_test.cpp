@@ -8,11 +8,11 @@
 #include <array>
 #include <cmath>
 
+namespace input_map_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
 
 constexpr int lags = 4;
 
@@ -44,8 +44,6 @@ struct Arm {
 };
 
 MatrixXd centred(const MatrixXd& matrix) { return matrix.rowwise() - matrix.colwise().mean(); }
-
-} // namespace
 
 TEST_CASE("stored inputs are the trained ones up to a constant") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
@@ -128,3 +126,5 @@ TEST_CASE("STD without gains of its own has inputs of unit deviation and nothing
     const MatrixXd gains = arm.map(4)->inputs(VectorXd{{std::log(2), std::log(3)}});
     CHECK((gains.col(1) - 2 * map->inputs(parameters).col(1)).norm() < 1e-9);
 }
+
+} // namespace input_map_test

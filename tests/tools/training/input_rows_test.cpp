@@ -8,11 +8,11 @@
 
 #include <cmath>
 
+namespace input_rows_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
 
 constexpr int lags = 5;
 
@@ -22,8 +22,6 @@ MatrixXd pooled_factor(tools::NormalSource& random) {
     factor.diagonal() = VectorXd::LinSpaced(lags + 1, 1, 0.05);
     return factor;
 }
-
-} // namespace
 
 TEST_CASE("DF rows are the identity without parameters") {
     tools::NormalSource random(1);
@@ -119,3 +117,5 @@ TEST_CASE("all starts lie within the bounds") {
         }
     }
 }
+
+} // namespace input_rows_test

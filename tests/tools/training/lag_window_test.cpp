@@ -8,11 +8,11 @@
 
 #include <cmath>
 
+namespace lag_window_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
 
 constexpr int lags = 4;
 
@@ -22,8 +22,6 @@ double naive_deviation(const MatrixXd& positions, const tools::RowList& rows, Ei
     const VectorXd values = windows * row;
     return std::sqrt((values.array() - values.mean()).square().mean());
 }
-
-} // namespace
 
 TEST_CASE("lag_windows holds each joint's positions, newest first") {
     const MatrixXd positions{{0, 100}, {1, 101}, {2, 102}, {3, 103}, {4, 104}};
@@ -94,3 +92,5 @@ TEST_CASE("the pooled factor measures rows in a typical joint's deviation") {
     }
     CHECK(spread.pooled_factor().diagonal().cwiseAbs().minCoeff() > 1e-7);
 }
+
+} // namespace lag_window_test

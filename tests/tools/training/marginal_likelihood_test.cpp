@@ -11,11 +11,11 @@
 #include <limits>
 #include <string>
 
+namespace marginal_likelihood_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
 
 constexpr int lags = 5;
 
@@ -52,8 +52,6 @@ struct Problem {
         return tools::free_rows(lags, kind.back() - '0', spread.pooled_factor());
     }
 };
-
-} // namespace
 
 TEST_CASE("the gradient of the marginal likelihood is its derivative, for every input") {
     const std::string kind = GENERATE("STD", "DF", "DFW", "DFSR", "DFR1", "DFR2", "DFR3", "DFR5");
@@ -121,3 +119,5 @@ TEST_CASE("the marginal likelihood has no value where it cannot be computed") {
         CHECK_FALSE(likelihood.evaluate(theta));
     }
 }
+
+} // namespace marginal_likelihood_test

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <stdexcept>
 
+namespace minimise_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::VectorXd;
-
-namespace {
 
 /// Rosenbrock's valley; minimum 0 at (1, 1).
 std::optional<tools::PointValue> valley(const VectorXd& x) {
@@ -23,8 +23,6 @@ tools::Bounds box(double lower, double upper) {
 }
 
 const VectorXd start{{-1.2, 1.0}};
-
-} // namespace
 
 TEST_CASE("minimise finds the minimum, the same each time") {
     const tools::Minimum minimum = tools::minimise(valley, box(-5, 5), start, 1e-12, 500);
@@ -74,3 +72,5 @@ TEST_CASE("minimise passes on what the function throws") {
     CHECK_THROWS_AS(tools::minimise(throwing, box(-5, 5), start, 1e-12, 500), std::logic_error);
     CHECK(calls == 3);
 }
+
+} // namespace minimise_test

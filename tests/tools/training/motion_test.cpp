@@ -9,12 +9,12 @@
 
 #include <cmath>
 
+namespace motion_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
 
 constexpr int lags = 6;
 constexpr double period = 0.02;
@@ -24,8 +24,6 @@ VectorXd parabola(double a, double b, double c) {
     const VectorXd time = -period * VectorXd::LinSpaced(lags + 1, 0, lags);
     return a + b * time.array() + c * time.array().square() / 2;
 }
-
-} // namespace
 
 TEST_CASE("filters of the physics give slope and curvature in physical units") {
     const double logit = GENERATE(-3.0, 0.0, 2.5);
@@ -106,3 +104,5 @@ TEST_CASE("the pull back of every motion is its derivative") {
     CHECK((motion->pull_back(parameters, weights) - truth).norm() <= 1e-7 * truth.norm() + 1e-12);
     CHECK(motion->learns() == (kind != 0));
 }
+
+} // namespace motion_test

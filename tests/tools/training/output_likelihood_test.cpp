@@ -7,11 +7,11 @@
 #include "tools/training/covariance_factor.hpp"
 #include "tools/training/random_source.hpp"
 
+namespace output_likelihood_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
 
 struct Problem {
     MatrixXd covariance;
@@ -37,8 +37,6 @@ struct Problem {
         return sum;
     }
 };
-
-} // namespace
 
 TEST_CASE("ProfiledVarianceLikelihood is the normal density at the best variances") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
@@ -80,3 +78,5 @@ TEST_CASE("ProfiledVarianceLikelihood has the derivative with respect to the cov
     }
     CHECK(dfdyn::tests::relative_error(gradient, expected) < 1e-6);
 }
+
+} // namespace output_likelihood_test

@@ -7,12 +7,12 @@
 #include "tests/support/seed.hpp"
 #include "tests/tools/training/numerics.hpp"
 
+namespace physics_regressor_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
 
 using Arm = dfdyn::Chain<dfdyn::dynamic>;
 using Map = dfdyn::Physics<dfdyn::StandardMeasured, dfdyn::dynamic, dfdyn::CoulombFriction<dfdyn::dynamic>>;
@@ -44,8 +44,6 @@ tools::MotionState state_of(const VectorXd& xi) {
     const Index joints = xi.size() / 3;
     return {xi.head(joints), xi.segment(joints, joints), xi.tail(joints)};
 }
-
-} // namespace
 
 TEST_CASE("training sees the physics of the firmware") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -80,3 +78,5 @@ TEST_CASE("the regressor's pull back is its derivative") {
     stacked << found.velocity, found.acceleration;
     CHECK(dfdyn::tests::relative_error(stacked, dfdyn::tests::differences(sum, xi.tail(2 * joints))) < 1e-6);
 }
+
+} // namespace physics_regressor_test

@@ -12,12 +12,12 @@
 
 #include <cmath>
 
+namespace physics_start_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
 
 constexpr int lags = 3;
 constexpr Index features = 12; // columns: 6 frequencies
@@ -113,8 +113,6 @@ double error_of(const MatrixXd& found, const MatrixXd& truth) {
     return (found - truth).norm() / truth.norm();
 }
 
-} // namespace
-
 TEST_CASE("SPK's start in block-arrow form is the solution for all unknowns") {
     const double forgetting_factor = GENERATE(1.0, 0.995);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
@@ -181,3 +179,5 @@ TEST_CASE("a start that cannot be solved for is an error") {
     CHECK_THROWS_AS(tools::joint_start(problem.physics(), prior_variance), tools::InputError);
     CHECK_THROWS_AS(tools::parametric_start(problem.physics(), prior_variance), tools::InputError);
 }
+
+} // namespace physics_start_test

@@ -8,10 +8,10 @@
 
 #include <cmath>
 
+namespace random_features_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::MatrixXd;
-
-namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -39,8 +39,6 @@ double expected_square_error(int count, double length_scale) {
     const MatrixXd kernel = tools::gaussian_kernel(sample_points(), length_scale);
     return (1 - kernel.array().square()).square().sum() / (2.0 * count);
 }
-
-} // namespace
 
 TEST_CASE("random features miss the kernel by what theory says") {
     const int count = GENERATE(50, 200, 800);
@@ -98,3 +96,5 @@ TEST_CASE("frequencies depend on the seed alone") {
     CHECK(omega(1) == omega(1));
     CHECK(omega(1) != omega(2));
 }
+
+} // namespace random_features_test

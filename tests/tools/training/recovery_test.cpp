@@ -13,11 +13,11 @@
 
 #include <cmath>
 
+namespace recovery_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
 
 constexpr int lags = 6;
 
@@ -56,8 +56,6 @@ MatrixXd information(const tools::MarginalLikelihood& likelihood, const VectorXd
     return 0.5 * (result + result.transpose());
 }
 
-} // namespace
-
 TEST_CASE("hyperparameters are recovered from data drawn from the model") {
     const bool structured = GENERATE(false, true);
     const std::uint64_t seed = GENERATE(11U, 12U, 13U);
@@ -85,3 +83,5 @@ TEST_CASE("hyperparameters are recovered from data drawn from the model") {
     CHECK(likelihood.evaluate(truth)->minus_two_log_likelihood - minimum.value < (structured ? 22.5 : 18.5));
     CHECK(minimum.value < likelihood.evaluate(truth)->minus_two_log_likelihood);
 }
+
+} // namespace recovery_test

@@ -13,12 +13,12 @@
 #include <cmath>
 #include <limits>
 
+namespace start_state_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
 
 constexpr int lags = 3;
 constexpr int features = 12;
@@ -62,8 +62,6 @@ MatrixXd unit_upper(const tools::StartModel& start, Index size) {
     CHECK(next == start.unit_upper.size());
     return upper;
 }
-
-} // namespace
 
 TEST_CASE("the start's U D U' is the inverse of the information matrix") {
     const double forgetting_factor = GENERATE(1.0, 0.995);
@@ -132,3 +130,5 @@ TEST_CASE("a start whose information is singular is refused, with the prior that
         Catch::Matchers::ContainsSubstring("information matrix of the start state is not positive "
                                            "definite, expected a regular one (prior variance inf"));
 }
+
+} // namespace start_state_test

@@ -18,6 +18,8 @@
 #include <cmath>
 #include <string>
 
+namespace train_physics_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -25,8 +27,6 @@ using Eigen::VectorXd;
 using tools::HyperMethod;
 using tools::InputKind;
 using tools::ModelClass;
-
-namespace {
 
 constexpr int lags = 5;
 
@@ -134,8 +134,6 @@ bool same(const tools::TrainingResult& a, const tools::TrainingResult& b) {
            a.physics->start.diagonal == b.physics->start.diagonal &&
            a.physics->motion_rows == b.physics->motion_rows;
 }
-
-} // namespace
 
 TEST_CASE("every model with every input predicts what it was trained on, from its numbers alone") {
     const auto model = GENERATE(ModelClass::P, ModelClass::SP, ModelClass::SP2, ModelClass::SPK);
@@ -391,3 +389,5 @@ TEST_CASE("outputs beyond what doubles can square leave no start with a finite l
     CHECK(arm.message() ==
           "training: expected a finite likelihood from at least one of 2 starts, found none");
 }
+
+} // namespace train_physics_test

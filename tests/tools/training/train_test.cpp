@@ -14,13 +14,13 @@
 #include <numbers>
 #include <string>
 
+namespace train_test {
+
 namespace tools = dfdyn::tools;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using tools::InputKind;
-
-namespace {
 
 tools::TrainingData three_joints() {
     tools::NormalSource random(dfdyn::tests::seed());
@@ -74,8 +74,6 @@ tools::TrainingData with_standstill(tools::TrainingData data, Index rows) {
     result.gap_before.assign(static_cast<std::size_t>(total), 0);
     return result;
 }
-
-} // namespace
 
 TEST_CASE("training fills the whole model, for every input") {
     const auto kind =
@@ -334,3 +332,5 @@ TEST_CASE("training refuses options out of range") {
                   tools::number_text(options.forgetting_factor));
     }
 }
+
+} // namespace train_test

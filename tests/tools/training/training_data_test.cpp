@@ -8,10 +8,10 @@
 #include <limits>
 #include <string>
 
+namespace training_data_test {
+
 namespace tools = dfdyn::tools;
 using tools::InputKind;
-
-namespace {
 
 tools::TrainingData small_data() {
     tools::NormalSource random(1);
@@ -26,8 +26,6 @@ std::string message(const tools::TrainingData& data, InputKind kind = InputKind:
     }
     return "";
 }
-
-} // namespace
 
 TEST_CASE("sound training data pass") { CHECK(message(small_data()).empty()); }
 
@@ -85,3 +83,5 @@ TEST_CASE("derivatives are not asked for where the input does without") {
     data.accelerations.setConstant(std::numeric_limits<double>::quiet_NaN());
     CHECK(message(data, InputKind::DFR).empty());
 }
+
+} // namespace training_data_test

@@ -6,14 +6,14 @@
 #include "tests/tools/training/linear_model.hpp"
 #include "tests/tools/training/numerics.hpp"
 
+namespace variance_components_test {
+
 namespace tools = dfdyn::tools;
 using dfdyn::tests::LinearModel;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using tools::PhysicsPrior;
-
-namespace {
 
 VectorXd some_variances(PhysicsPrior prior) {
     VectorXd x(LinearModel::outputs + LinearModel::groups(prior));
@@ -22,8 +22,6 @@ VectorXd some_variances(PhysicsPrior prior) {
     }
     return x;
 }
-
-} // namespace
 
 TEST_CASE("the variance criterion is the normal density of the outputs, and has its derivatives") {
     const auto prior = GENERATE(PhysicsPrior::none, PhysicsPrior::shared, PhysicsPrior::diagonal);
@@ -147,3 +145,5 @@ TEST_CASE("as gamma grows the estimators of SPK and SP coincide, their likelihoo
     CHECK(last_likelihood < 1e-4);
     CHECK(std::abs(determinant) > 0.1); // the term that sets them apart
 }
+
+} // namespace variance_components_test
