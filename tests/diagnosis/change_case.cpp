@@ -19,7 +19,8 @@ namespace {
 constexpr double rate_hz = 100;
 constexpr double integration_rate_hz = 2000;
 /// The learner and what is usual settle before.
-constexpr double earliest_s = 30;
+constexpr double earliest_s = 35;
+constexpr double trained_s = 25;
 
 /// How an arm is, beside its URDF, and how large its changes are.
 struct ChangeArm {
@@ -32,7 +33,7 @@ struct ChangeArm {
 };
 
 const ChangeArm& change_arm(const std::string& name) {
-    static const ChangeArm ur5{"ur5_torque", 1.5, 8, 20000, {1, 1, 1, 0.25, 0.25, 0.25}, 0.4, 0.5, 3, 30, 100};
+    static const ChangeArm ur5{"ur5_torque", 1, 8, 20000, {1, 1, 1, 0.25, 0.25, 0.25}, 0.4, 0.5, 3, 30, 100};
     static const ChangeArm icub{"icub_wrench", 0.03, 0.8, 600, {1, 1, 0.6, 0.6}, 0.02, 0.1, 0.5, 4, 15};
     return name == ur5.name ? ur5 : icub;
 }
@@ -72,7 +73,7 @@ Scenario change_scenario(const PanelRobot& kind, const Robot& robot, double dura
     }
     scenario.torque_sensor.noise = arm.torque_noise * share * draw.uniform(0.5, 1.5);
     scenario.encoders.eccentricity = scenario.encoders.eccentricity_phase = JointVector::Zero(share.size());
-    scenario.encoders.bits_per_turn = draw.whole(15, 19);
+    scenario.encoders.bits_per_turn = draw.whole(17, 20);
     scenario.derivatives = {10, 40, 40, 6.3 / std::exp2(scenario.encoders.bits_per_turn)};
     if (kind.outputs == OutputKind::wrench) {
         scenario.force_torque.emplace();
@@ -104,7 +105,8 @@ void change_friction(ChangeCase& one, Scenario& scenario, const Clock& clock, Dr
     const LuGreParameters& before = scenario.actuators.friction[joint];
     const double factor = draw.uniform(1.5, 3);
     const auto more = factor - 1;
-    scenario.loads.further = [=, at_s = one.time_s](const JointVector& position, const JointVector& velocity) {
+    scenario.loads.further = [=, at_s = one.time_s](const JointVector& position,
+                                                    const JointVector& velocity) {
         JointVector torque = JointVector::Zero(position.size());
         const auto k = static_cast<Eigen::Index>(joint);
         const double level = before.coulomb * std::tanh(velocity[k] / 0.005) + before.viscous * velocity[k];
@@ -123,8 +125,8 @@ void push(ChangeCase& one, const ChangeArm& arm, Scenario& scenario, Draw& draw)
     contact.force = draw.uniform(arm.push_from, arm.push_to) * direction.normalized();
     scenario.loads.contacts.push_back(contact);
     one.where = "tool";
-    one.size = formatted("%.0f N", contact.force.norm()) +
-               formatted(" for %.1f s", contact.end_s - contact.start_s);
+    one.size =
+        formatted("%.0f N", contact.force.norm()) + formatted(" for %.1f s", contact.end_s - contact.start_s);
 }
 
 double& element(Columns& columns, std::size_t row, std::size_t column) {
@@ -191,6 +193,17 @@ Recording simulate_rows(const PanelRobot& kind, const Robot& robot, const Scenar
     return recording;
 }
 
+/// What there is to train on.
+Recording beginning(Recording recording) {
+    const auto rows = static_cast<std::size_t>(trained_s * rate_hz);
+    recording.time_s.resize(rows);
+    recording.time_ns.resize(rows);
+    recording.gap_before.resize(rows);
+    recording.position.values.resize(rows * recording.position.names.size());
+    recording.output.values.resize(rows * recording.output.names.size());
+    return recording;
+}
+
 /// Friction does not show in what a sensor in the arm measures.
 std::vector<Cause> causes_of(bool wrench) {
     std::vector<Cause> causes{Cause::payload, Cause::bias, Cause::contact, Cause::frozen};
@@ -250,30 +263,27 @@ ChangeCase make_change_case(std::uint64_t seed, const ChangeMix& mix) {
     return one;
 }
 
-ChangeModel train_change_model(const std::string& robot_name) {
-    const ChangeCase commissioning = make_change_case(
-        1, {.robot = robot_name, .cause = std::nullopt, .never = true, .duration_s = 45});
-    const PanelRobot& kind = panel_robot(robot_name);
+ChangeModel train_change_model(const ChangeCase& one) {
+    const PanelRobot& kind = panel_robot(one.robot_name);
     const Robot robot = read_panel_robot(kind);
     ModelTraining training;
     TrainingOptions& options = training.options;
-    options.model = ModelClass::SPK;
-    options.feature_count = 30;
-    options.likelihood_rows = 200;
-    options.starts = 2;
+    options.model = ModelClass::P;
+    options.input = InputKind::DFSR;
+    options.lags = 12;
+    options.likelihood_rows = 400;
+    options.starts = 3;
     options.refinement_evaluations = 0;
-    options.forgetting_factor = 0.999;
-    options.physics.own_motion = true;
+    options.forgetting_factor = 0.9998;
     std::vector<std::string> effects{"ft_bias"};
     if (kind.outputs != OutputKind::wrench) {
         effects = {"viscous_friction", "coulomb_friction", "rotor_inertia", "torque_offset"};
     }
     training.physics = RobotPhysics{robot, effects, 0.05, {}};
-    const std::vector<Recording> recordings{commissioning.recording};
+    const std::vector<Recording> recordings{beginning(one.recording)};
     ChangeModel result;
-    result.model =
-        train_model(prepare_training(recordings, training), kind.outputs, training, {}).model;
-    result.monitor = monitor_setup(result.model, &robot, robot_name);
+    result.model = train_model(prepare_training(recordings, training), kind.outputs, training, {}).model;
+    result.monitor = monitor_setup(result.model, &robot, one.robot_name);
     return result;
 }
 

@@ -36,11 +36,11 @@ const std::vector<std::string>& change_robot_names();
 /// bytes. A bias and a frozen reading are put into the recording, everything else is simulated.
 ChangeCase make_change_case(std::uint64_t seed, const ChangeMix& mix);
 
-/// What is replayed over the cases of an arm: trained on half a minute of another motion of it.
+/// What is replayed over a case: rigid body, friction and offsets, trained on its first 25 s and learning on.
 struct ChangeModel {
     tools::TrainedModel model;
     tools::MonitorSetup monitor;
 };
-ChangeModel train_change_model(const std::string& robot_name);
+ChangeModel train_change_model(const ChangeCase& one);
 
 } // namespace dfdyn::tests

@@ -39,14 +39,11 @@ ChangeScore score_of(ChangeCase&& change, std::vector<NamedChange> found) {
     return score;
 }
 
-ChangeScore run_case(std::uint64_t seed, const ChangeMix& mix, std::map<std::string, ChangeModel>& models) {
+ChangeScore run_case(std::uint64_t seed, const ChangeMix& mix) {
     ChangeCase change = make_change_case(seed, mix);
-    auto model = models.find(change.robot_name);
-    if (model == models.end()) {
-        model = models.emplace(change.robot_name, train_change_model(change.robot_name)).first;
-    }
-    const auto estimator = monitored(make_estimator(model->second.model, false), model->second.monitor);
-    replay(*estimator, std::span(&model->second.model, 1), change.recording, 0, [](std::size_t) {});
+    const ChangeModel trained = train_change_model(change);
+    const auto estimator = monitored(make_estimator(trained.model, false), trained.monitor);
+    replay(*estimator, std::span(&trained.model, 1), change.recording, 0, [](std::size_t) {});
     change.recording = {};
     return score_of(std::move(change), estimator->take_changes());
 }
@@ -134,11 +131,10 @@ std::string confidence_table(const std::vector<ChangeScore>& scores) {
 
 std::vector<ChangeScore> run_change_panel(std::uint64_t seed, int cases, const ChangeMix& mix,
                                           const std::function<void(const ChangeScore&)>& done) {
-    std::map<std::string, ChangeModel> models;
     std::vector<ChangeScore> scores;
     scores.reserve(static_cast<std::size_t>(cases));
     for (int number = 0; number < cases; ++number) {
-        scores.push_back(run_case(seed + static_cast<std::uint64_t>(number), mix, models));
+        scores.push_back(run_case(seed + static_cast<std::uint64_t>(number), mix));
         done(scores.back());
     }
     return scores;
@@ -172,8 +168,8 @@ std::string change_tables(const std::vector<ChangeScore>& scores) {
         watched_s += score.watched_s;
         false_alarms += score.false_alarms;
     }
-    return causes_table(scores) + mistakes_table(scores) + confidence_table(scores) + "\nFalse alarms: " +
-           std::to_string(false_alarms) + formatted(" in %.2f h.\n", watched_s / 3600);
+    return causes_table(scores) + mistakes_table(scores) + confidence_table(scores) +
+           "\nFalse alarms: " + std::to_string(false_alarms) + formatted(" in %.2f h.\n", watched_s / 3600);
 }
 
 } // namespace dfdyn::tests

@@ -9,7 +9,7 @@ namespace dfdyn::tests {
 
 /// What the monitor said of a case.
 struct ChangeScore {
-    ChangeCase change;                       ///< without its recording
+    ChangeCase change; ///< without its recording
     std::vector<tools::NamedChange> found;
     const tools::NamedChange* hit = nullptr; ///< the first alarm within ten seconds of the change
     int false_alarms = 0;                    ///< before it, or where there is none

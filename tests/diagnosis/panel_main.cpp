@@ -113,8 +113,8 @@ CLI::App* add_changes(CLI::App& app, PanelOptions& options) {
                 }
             },
             "Always this change")
-        ->check(CLI::IsMember({"payload", "friction_changed", "bias_moved", "external_contact",
-                               "sensor_frozen"}));
+        ->check(CLI::IsMember(
+            {"payload", "friction_changed", "bias_moved", "external_contact", "sensor_frozen"}));
     command->add_flag("--never", options.changes.never, "Nothing changes");
     command->add_option("--duration", options.changes.duration_s, "Seconds per case")
         ->check(CLI::Range(45.0, 1e5));

@@ -14,8 +14,7 @@ void MonitorOptions::add_to(CLI::App& command) {
     command.add_flag("--monitor", chosen,
                      "Watch the innovations for a change of the arm or its sensors, and say what changed "
                      "(docs/monitor.md)");
-    command.add_option("--changes", file, "Likewise, and write the changes here")
-        ->type_name("CHANGES.json");
+    command.add_option("--changes", file, "Likewise, and write the changes here")->type_name("CHANGES.json");
     command
         .add_option("--false-alarms", false_alarm_hours,
                     "Of --monitor: hours between two false alarms, on average; default: 10")
@@ -26,13 +25,12 @@ void MonitorOptions::add_to(CLI::App& command) {
 }
 
 MonitorSetup MonitorOptions::setup(std::span<const TrainedModel> models, const std::string& source) const {
-    const auto physical = std::ranges::find_if(
-        models, [](const TrainedModel& model) { return model.physics.has_value(); });
+    const auto physical =
+        std::ranges::find_if(models, [](const TrainedModel& model) { return model.physics.has_value(); });
     const TrainedModel& model = physical == models.end() ? models.front() : *physical;
     std::optional<Robot> arm;
     if (!robot.urdf.empty()) {
-        arm = robot.read(
-            kind_of_outputs(model.outputs.names, static_cast<std::size_t>(model.joints)));
+        arm = robot.read(kind_of_outputs(model.outputs.names, static_cast<std::size_t>(model.joints)));
     }
     MonitorSetup setup = monitor_setup(model, arm ? &*arm : nullptr, source);
     setup.false_alarm_hours = false_alarm_hours;

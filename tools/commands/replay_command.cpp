@@ -139,8 +139,7 @@ std::vector<ReplayedBus> replay_bus(const ReplayOptions& options, std::span<cons
 
 void write_results(const ReplayOptions& options, std::span<const TrainedModel> models,
                    const Replaying& replaying, std::span<const ReplayedRecording> replayed) {
-    const ReplaySummary summary =
-        summarise(models, *replaying.estimator, replayed, options.chosen_horizon());
+    const ReplaySummary summary = summarise(models, *replaying.estimator, replayed, options.chosen_horizon());
     if (!options.csv.empty()) {
         AtomicFile file(options.csv);
         write_replay_csv(file.stream(), models.front(), replayed);

@@ -28,7 +28,9 @@ template <class Arm>
 using HostMonitor = Monitor<float, Arm, dynamic>;
 
 /// Even, at least 4.
-int motion_lags(double period_s) { return std::max(4, 2 * static_cast<int>(std::lround(motion_window_s / period_s / 2))); }
+int motion_lags(double period_s) {
+    return std::max(4, 2 * static_cast<int>(std::lround(motion_window_s / period_s / 2)));
+}
 
 template <class Arm>
 typename HostMonitor<Arm>::Constants monitor_constants(const MonitorSetup& setup) {

@@ -15,9 +15,10 @@ struct MonitorSetup {
     ChainModel chain;
     std::vector<std::string> outputs;
     double sample_period_s = 0;
-    std::vector<double> output_gain;                               ///< per output: output per N·m (N)
-    Eigen::Isometry3d tip_placement = Eigen::Isometry3d::Identity(); ///< of the tool's frame in the last link's
-    double false_alarm_hours = 10; ///< mean time between false alarms, > 0
+    std::vector<double> output_gain; ///< per output: output per N·m (N)
+    Eigen::Isometry3d tip_placement =
+        Eigen::Isometry3d::Identity(); ///< of the tool's frame in the last link's
+    double false_alarm_hours = 10;     ///< mean time between false alarms, > 0
 };
 
 /// For outputs of `model`: the chain of its physics, or else that of `robot`. Throws InputError, naming

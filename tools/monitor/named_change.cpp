@@ -23,16 +23,16 @@ ordered_json to_json(const RecordedChanges& recorded, const NamedChange& change)
         parameters.push_back(
             {{"name", parameter.name}, {"value", parameter.value}, {"unit", parameter.unit}});
     }
-    ordered_json result{{"alarm", seconds(recorded, change.alarm_ns)},
-                        {"onset", seconds(recorded, change.onset_ns)},
-                        {"end", nullptr},
-                        {"cause", name(change.cause)},
-                        {"where", change.where},
-                        {"confidence", change.confidence},
-                        {"parameters", parameters},
-                        {"runner_up",
-                         {{"cause", name(change.runner_up)}, {"confidence", change.runner_up_confidence}}},
-                        {"shown_by", change.shown_by}};
+    ordered_json result{
+        {"alarm", seconds(recorded, change.alarm_ns)},
+        {"onset", seconds(recorded, change.onset_ns)},
+        {"end", nullptr},
+        {"cause", name(change.cause)},
+        {"where", change.where},
+        {"confidence", change.confidence},
+        {"parameters", parameters},
+        {"runner_up", {{"cause", name(change.runner_up)}, {"confidence", change.runner_up_confidence}}},
+        {"shown_by", change.shown_by}};
     if (change.end_ns != 0) {
         result["end"] = seconds(recorded, change.end_ns);
     }
@@ -52,11 +52,11 @@ std::string sizes_of(const NamedChange& change) {
 
 void print_changes(std::ostream& out, const RecordedChanges& recorded) {
     for (const NamedChange& change : recorded.changes) {
-        out << recorded.recording << ": " << formatted("%.2f", seconds(recorded, change.alarm_ns)) << " s: "
-            << name(change.cause) << (change.where.empty() ? "" : " at ") << change.where << sizes_of(change)
-            << "; confidence " << formatted("%.2f", change.confidence) << ", since "
-            << formatted("%.2f", seconds(recorded, change.onset_ns)) << " s, else "
-            << name(change.runner_up) << ' ' << formatted("%.2f", change.runner_up_confidence) << '\n';
+        out << recorded.recording << ": " << formatted("%.2f", seconds(recorded, change.alarm_ns))
+            << " s: " << name(change.cause) << (change.where.empty() ? "" : " at ") << change.where
+            << sizes_of(change) << "; confidence " << formatted("%.2f", change.confidence) << ", since "
+            << formatted("%.2f", seconds(recorded, change.onset_ns)) << " s, else " << name(change.runner_up)
+            << ' ' << formatted("%.2f", change.runner_up_confidence) << '\n';
     }
 }
 

@@ -63,7 +63,7 @@ TEMPLATE_TEST_CASE("White, coloured and heavy-tailed innovations raise no more f
     const int count = alarms(detector, innovations, 4 * blocks_per_hour, engine);
     CAPTURE(heavy, autocorrelation, count);
     CHECK(count <= 40);
-    CHECK(detector.usual(0).autocorrelation() == Catch::Approx(autocorrelation).margin(0.15));
+    CHECK(detector.usual(0).autocorrelation() == Approx(autocorrelation).margin(0.15));
 }
 
 TEMPLATE_TEST_CASE("A change of innovations is found, with its onset, and over when they are as usual again",
@@ -122,5 +122,5 @@ TEST_CASE("A level that stays is adopted as usual", "[monitor]") {
         alarmed += detector.add(louder().data()) ? 1 : 0;
     }
     CHECK(alarmed == 0);
-    CHECK(detector.usual(0).scale() == Catch::Approx(8).epsilon(0.4));
+    CHECK(detector.usual(0).scale() == Approx(8).epsilon(0.4));
 }

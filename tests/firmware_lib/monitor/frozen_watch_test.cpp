@@ -15,14 +15,14 @@ constexpr int joints = 2;
 constexpr int channels = 3;
 constexpr double count_rad = 4e-4; ///< of the encoders
 
-/// Two joints that swing, the second one with pauses, and a noisy output; each can be frozen.
+/// Two joints that swing, the second one with rests, and a noisy output; each can be frozen.
 struct Readings {
     std::array<float, joints> position{};
     std::array<float, 1> output{};
 
     void move_to(double time_s, int frozen, std::mt19937_64& engine) {
-        const double swing = std::max(-0.5, std::sin(2 * time_s)); // it rests at one end
-        const std::array<double, joints> angle{std::sin(1.3 * time_s), swing};
+        const double swing = std::sin(2 * time_s);
+        const std::array<double, joints> angle{std::sin(1.3 * time_s), swing * swing * swing};
         for (std::size_t i = 0; i < joints; ++i) {
             if (frozen != static_cast<int>(i)) {
                 position[i] = static_cast<float>(count_rad * std::round(angle[i] / count_rad));
@@ -30,7 +30,7 @@ struct Readings {
         }
         std::normal_distribution<double> noise(0, 0.1);
         if (frozen != joints) {
-            output[0] = static_cast<float>(3 * position[0] + noise(engine));
+            output[0] = static_cast<float>(3 * static_cast<double>(position[0]) + noise(engine));
         }
     }
 };
@@ -54,10 +54,11 @@ TEST_CASE("A reading that freezes while the arm moves is told from one that rest
         return most;
     };
     run(1000, -1);
-    CHECK(run(3000, -1) < 15); // the pauses of the second joint are no evidence
+    CHECK(run(3000, -1) < 15); // the rests of the second joint are no evidence
     const int frozen = GENERATE(0, 1, 2);
     CAPTURE(frozen);
-    while (std::sin(0.02 * tick) < 0.2 || std::cos(0.013 * tick) < 0.2) { // both joints on their way
+    while (std::abs(std::sin(0.04 * tick)) < 0.7 ||
+           std::cos(0.013 * tick) < 0.2) { // both joints on their way
         run(1, -1);
     }
     CHECK(run(30, frozen) < 15);

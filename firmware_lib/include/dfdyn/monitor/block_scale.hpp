@@ -12,14 +12,15 @@ namespace dfdyn {
 /// The scale is that of Student's t with ν = `degrees` degrees of freedom, by stochastic approximation of its
 /// likelihood equation E[(ν+1) u² / (ν + u²)] = 1 (K. L. Lange, R. J. A. Little and J. M. G. Taylor, "Robust
 /// statistical modeling using the t distribution", 1989): what a robot does not predict has heavy tails, as
-/// at every reversal of a joint, and no block counts for more than ν+1. The gain of block n is 4/n, then 1/`memory`.
-/// A dozen operations per block; five scalars.
+/// at every reversal of a joint, and no block counts for more than ν+1. The gain of block n is 4/n, then
+/// 1/`memory`. A dozen operations per block; five scalars.
 template <class Scalar>
 class BlockScale {
   public:
-    static constexpr Scalar degrees = 4;
-    static constexpr Scalar memory = 300; ///< blocks
-    static constexpr Scalar most_alike = Scalar(0.95); ///< autocorrelation: beyond, a block would tell nothing
+    static constexpr Scalar degrees = 2;
+    static constexpr Scalar memory = 600; ///< blocks
+    static constexpr Scalar most_alike =
+        Scalar(0.95); ///< autocorrelation: beyond, a block would tell nothing
 
     void learn(Scalar mean) noexcept {
         if (blocks_ == 0) {

@@ -35,7 +35,7 @@ class CauseBank {
   public:
     static constexpr Scalar trust = Scalar(0.2);
     /// log: for a contact that has not ended so far.
-    static constexpr Scalar goes_on = 3;
+    static constexpr Scalar goes_on = 6;
 
     /// `friction`: whether outputs are the torques of joints of their own.
     CauseBank(Extent<m> outputs, bool friction) noexcept
@@ -43,8 +43,8 @@ class CauseBank {
           nothing_({}, outputs, false), payload_({}, outputs, false), force_({}, outputs, true),
           friction_(extent<friction_size>(friction_columns * outputs), outputs, false),
           bias_(outputs, outputs, false), push_(outputs, outputs, true),
-          rows_(Rows::zeros(extent<rows_size(m)>(rows_size(outputs)))),
-          targets_(Outputs::zeros(outputs)), recent_(targets_), peaks_(targets_) {}
+          rows_(Rows::zeros(extent<rows_size(m)>(rows_size(outputs)))), targets_(Outputs::zeros(outputs)),
+          recent_(targets_), peaks_(targets_) {}
 
     /// A block while nothing happens.
     void learn(const OutputBlock<Scalar>* block) noexcept {
@@ -296,8 +296,8 @@ class CauseBank {
         } else if (change.cause == Cause::friction) {
             change.where = best_output(friction_);
             for (int i = 0; i < friction_columns; ++i) {
-                change.size[i] = friction_.parameters()[friction_columns * change.where + i] *
-                                 friction_unit(change.where);
+                change.size[i] =
+                    friction_.parameters()[friction_columns * change.where + i] * friction_unit(change.where);
             }
         } else if (change.cause == Cause::bias) {
             change.where = best_output(bias_);

@@ -10,13 +10,13 @@ namespace dfdyn {
 
 /// Watches the block means of m normalised innovations for a change, each output and all together.
 ///
-/// Per output a CUSUM (E. S. Page, 1954) of the log likelihood ratio of a block mean x of scale `growth`
-/// against its usual one, both of Student's t with ν degrees of freedom, u = x / scale:
+/// Per output two CUSUMs (E. S. Page, 1954), of the log likelihood ratio of a block mean x whose scale has
+/// grown by a factor g - a small one and a large one - against its usual scale, both of Student's t with ν
+/// degrees of freedom, u = x / scale:
 ///
-///     s = ν log(growth) - (ν+1)/2 log((growth² + u²/ν) / (1 + u²/ν)) + log(growth) …
-///       = -log(growth) + (ν+1)/2 log((1 + u²/ν) / (1 + u²/(ν growth²)))
+///     s = -log g + (ν+1)/2 log((1 + u²/ν) / (1 + u²/(ν g²)))
 ///
-/// which is at most ν log(growth): no single block raises an alarm. The alarm is at h = log(channels ·
+/// which is at most ν log g: no single block raises an alarm. The alarm is at h = log(sums ·
 /// `blocks_between_false_alarms`): the mean time between false alarms of such a sum is at least e^h (G.
 /// Lorden, "Procedures for reacting to a change in distribution", 1971), as long as tails are not heavier
 /// than the t's. Blocks are not independent: with a first-order autocorrelation a, as many as n blocks have
@@ -27,40 +27,45 @@ namespace dfdyn {
 /// The onset of an alarm is where its sum last began to rise. It is over when every output's sum of -s has
 /// risen by `quiet`: it was learned, or went away.
 ///
-/// Cost per block: about 100 m operations, a logarithm per output. Memory: 12 (m+1) numbers.
+/// Cost per block: about 100 m operations, three logarithms per output. Memory: 15 (m+1) numbers.
 template <class Scalar, int m>
 class ChangeDetector {
   public:
-    static constexpr Scalar growth = 3;          ///< of the scale, that is looked for
-    static constexpr int settling_blocks = 100;  ///< before the first alarm
+    static constexpr int growths = 2;
+    static constexpr Scalar growth[growths] = {2, 8}; ///< of the scale, that are looked for
+    static constexpr int settling_blocks = 100;       ///< before the first alarm
     static constexpr Scalar quiet = Scalar(3.0); ///< log of the odds for "as usual" at which a change is over
 
     /// `blocks_between_false_alarms` > 1: their mean, together of all channels.
     ChangeDetector(Extent<m> outputs, Scalar blocks_between_false_alarms) noexcept
-        : outputs_(outputs), threshold_(std::log(blocks_between_false_alarms *
-                                                 static_cast<Scalar>(outputs + 1))),
+        : outputs_(outputs),
+          threshold_(std::log(blocks_between_false_alarms * static_cast<Scalar>(growths * (outputs + 1)))),
           usual_(Storage<BlockScale<Scalar>, m>::zeros(outputs)),
           rising_(Storage<Cusum, sum(m, 1)>::zeros(extent<sum(m, 1)>(outputs + 1))),
           falling_(Storage<Scalar, m>::zeros(outputs)) {}
 
     /// Takes in the next block's means. True while the alarm is on.
     bool add(const Scalar* means) noexcept {
-        Scalar together = 0;
         bool calm = true;
+        Scalar together[growths] = {};
         for (int k = 0; k < outputs_; ++k) {
-            const Scalar score = score_of(k, means[k]);
-            rise(k, score);
-            together += score / 2;
-            falling_[k] = std::min(std::max(falling_[k] - score, Scalar(0)), quiet);
+            Scalar fall = 0;
+            for (int g = 0; g < growths; ++g) {
+                const Scalar score = score_of(k, means[k], growth[g]);
+                rise(k, g, score);
+                together[g] += score / 2;
+                fall += score / growths;
+            }
+            falling_[k] = std::min(std::max(falling_[k] - fall, Scalar(0)), quiet);
             calm = calm && falling_[k] >= quiet;
         }
-        rise(outputs_, together);
+        for (int g = 0; g < growths; ++g) {
+            rise(outputs_, g, together[g]);
+        }
         settled_ = settled_ < settling_blocks ? settled_ + 1 : settled_;
         decide(calm);
-        if (!alarm_) {
-            for (int k = 0; k < outputs_; ++k) {
-                usual_[k].learn(means[k]);
-            }
+        for (int k = 0; !alarm_ && k < outputs_; ++k) {
+            usual_[k].learn(means[k]);
         }
         return alarm_;
     }
@@ -85,24 +90,24 @@ class ChangeDetector {
 
   private:
     struct Cusum {
-        Scalar sum;
-        int blocks; ///< since it was zero
+        Scalar sum[growths];
+        int blocks[growths]; ///< since it was zero
     };
 
-    [[nodiscard]] Scalar score_of(int k, Scalar mean) const noexcept {
+    [[nodiscard]] Scalar score_of(int k, Scalar mean, Scalar grown) const noexcept {
         constexpr Scalar degrees = BlockScale<Scalar>::degrees;
         const Scalar a = usual_[k].autocorrelation();
         const Scalar u = mean / usual_[k].scale();
         const Scalar square = std::min(u * u, Scalar(1e6)) / degrees;
-        const Scalar ratio = (1 + square) / (1 + square / (growth * growth));
-        const Scalar score = (degrees + 1) / 2 * std::log(ratio) - std::log(growth);
+        const Scalar ratio = (1 + square) / (1 + square / (grown * grown));
+        const Scalar score = (degrees + 1) / 2 * std::log(ratio) - std::log(grown);
         return score * (1 - a * a) / (1 + a * a);
     }
 
-    void rise(int channel, Scalar score) noexcept {
+    void rise(int channel, int g, Scalar score) noexcept {
         Cusum& cusum = rising_[channel];
-        cusum.sum = std::max(cusum.sum + score, Scalar(0));
-        cusum.blocks = cusum.sum > 0 ? cusum.blocks + 1 : 0;
+        cusum.sum[g] = std::max(cusum.sum[g] + score, Scalar(0));
+        cusum.blocks[g] = cusum.sum[g] > 0 ? cusum.blocks[g] + 1 : 0;
     }
 
     void decide(bool calm) noexcept {
@@ -120,10 +125,12 @@ class ChangeDetector {
             return;
         }
         for (int channel = outputs_; channel >= 0; --channel) {
-            if (rising_[channel].sum > threshold_) {
-                alarm_ = true;
-                channel_ = channel;
-                since_onset_ = rising_[channel].blocks;
+            for (int g = 0; g < growths; ++g) {
+                if (rising_[channel].sum[g] > threshold_) {
+                    alarm_ = true;
+                    channel_ = channel;
+                    since_onset_ = rising_[channel].blocks[g];
+                }
             }
         }
         for (int k = 0; alarm_ && k < outputs_; ++k) {

@@ -20,7 +20,8 @@ template <class Scalar, int count>
 class FrozenWatch {
   public:
     static constexpr Scalar memory = 5000;      ///< samples, of what is usual
-    static constexpr Scalar dead = Scalar(0.5); ///< of the usual step
+    static constexpr Scalar dead = Scalar(0.2); ///< of the usual step
+    static constexpr Scalar least_trials = 500; ///< samples, before anything is known of what is usual
     static constexpr int steps = 5;             ///< just before, that are averaged
 
     FrozenWatch(Extent<count> channels, int joints) noexcept
@@ -50,7 +51,8 @@ class FrozenWatch {
     /// log of the odds against chance of the channel's present run; 0 if it came to rest by itself.
     [[nodiscard]] Scalar evidence(int channel) const noexcept {
         const State& state = states_[channel];
-        if (channel < joints_ && state.step_before < dead * state.usual_step) {
+        const bool came_to_rest = channel < joints_ && state.step_before < dead * state.usual_step;
+        if (came_to_rest || state.trials < least_trials) {
             return 0;
         }
         const Scalar often = (state.repeats + 1) / (state.trials + 2);

@@ -30,10 +30,10 @@ struct Observation {
 /// after `longest_blocks`. A `FrozenWatch` raises an alarm of its own for a reading that repeats beyond
 /// chance.
 ///
-///     if (monitor.renewal_due()) { regression.copy_weights(held.renew()); monitor.renewed(); }  // learner idle
-///     Estimate e = estimator.tick(sample, budget);
-///     regression.predict_with(held.older(), …);                                 // to the output's unit
-///     if (e.status.predicted() && measured) { news = monitor.tick({…}); } else { monitor.interrupt(); }
+///     if (monitor.renewal_due()) { regression.copy_weights(held.renew()); monitor.renewed(); }  // learner
+///     idle Estimate e = estimator.tick(sample, budget); regression.predict_with(held.older(), …); // to the
+///     output's unit if (e.status.predicted() && measured) { news = monitor.tick({…}); } else {
+///     monitor.interrupt(); }
 ///
 /// Bounded: per tick 3 n (M+4) + 500 n + 130 m multiply-adds and those of `FrozenWatch`; in the last tick of
 /// a block besides those of the detector and, while a change is on, of at most `catch_up` blocks of the bank;
@@ -51,10 +51,10 @@ class Monitor {
         [[no_unique_address]] Extent<M> lags; ///< of the motion's window, even
         typename Arm::template Constants<Scalar> chain;
         typename Motion::template Constants<Scalar, n> motion; ///< `centred_motion_rows` in difference form
-        Storage<Scalar, m> output_gain; ///< output per N·m (N): 1, or 1 / torque constant (A/N·m)
-        Scalar tip[3];                  ///< m, where a force on the tool acts, in the last link's frame
-        Scalar sign_velocity;           ///< rad/s: friction's sign is tanh(q̇ / v)
-        std::int32_t block_samples;     ///< about 0.1 s
+        Storage<Scalar, m> output_gain;     ///< output per N·m (N): 1, or 1 / torque constant (A/N·m)
+        Scalar tip[3];                      ///< m, where a force on the tool acts, in the last link's frame
+        Scalar sign_velocity;               ///< rad/s: friction's sign is tanh(q̇ / v)
+        std::int32_t block_samples;         ///< about 0.1 s
         Scalar blocks_between_false_alarms; ///< their mean; of all outputs together
         std::int32_t report_blocks;         ///< from the onset to the first report, about 2 s
         std::int32_t longest_blocks;        ///< of a change, about 20 s
@@ -62,6 +62,7 @@ class Monitor {
     };
 
     static constexpr int catch_up = 3; ///< blocks of the past that the bank takes in per block
+    static constexpr int patience = 3; ///< report times that a change without a cause has to last to be told
 
     explicit Monitor(const Constants&&) = delete; // it would refer to a temporary
     explicit Monitor(const Constants& constants) noexcept
@@ -266,6 +267,9 @@ class Monitor {
         if (over) {
             end(time_ns, alarm);
         }
+        if (change_.cause == Cause::unknown && !told_ && age < patience * constants_->report_blocks) {
+            return false; // a burst that nothing explains: no news unless it lasts
+        }
         const bool news = over || !told_ || before != change_.cause;
         told_ = true;
         return news;
@@ -289,8 +293,8 @@ class Monitor {
     Storage<Scalar, product(payload_columns, m)> payload_;
     Storage<Scalar, product(force_columns, m)> force_;
     Outputs scaled_, mean_;
-    Storage<OutputBlock<Scalar>, m> block_; ///< the one at hand
-    Past past_;                             ///< ring of the last blocks …
+    Storage<OutputBlock<Scalar>, m> block_;    ///< the one at hand
+    Past past_;                                ///< ring of the last blocks …
     Storage<std::int64_t, history> ends_ns_{}; ///< … and when they ended
     ChangeDetector<Scalar, m> detector_;
     CauseBank<Scalar, m> bank_;
