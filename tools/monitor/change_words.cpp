@@ -3,7 +3,7 @@
 
 #include "tools/host/dynamic_storage.hpp"
 
-#include <cmath>
+#include <algorithm>
 
 namespace dfdyn::tools {
 
@@ -19,6 +19,12 @@ std::string unit_of(const std::string& output) {
     return output.starts_with("f") ? "N" : "N·m";
 }
 
+/// Currents whose torque constants are unknown: sizes are in what they cost in current.
+bool per_current(const MonitorSetup& setup) {
+    return setup.outputs.front().starts_with("i") &&
+           std::ranges::all_of(setup.output_gain, [](double gain) { return gain == 1; });
+}
+
 template <int m>
 void describe_payload(const Change<float, m>& change, const MonitorSetup& setup, NamedChange& named) {
     const double mass = static_cast<double>(change.size[0]);
@@ -26,7 +32,7 @@ void describe_payload(const Change<float, m>& change, const MonitorSetup& setup,
                                  static_cast<double>(change.size[3]));
     const Eigen::Vector3d centre = setup.tip_placement.inverse() * Eigen::Vector3d(moment / mass);
     named.where = "tool";
-    named.parameters = {{"mass", "kg", mass},
+    named.parameters = {{"mass", per_current(setup) ? "kg·A/(N·m)" : "kg", mass},
                         {"com_x", "m", centre.x()},
                         {"com_y", "m", centre.y()},
                         {"com_z", "m", centre.z()}};
@@ -49,7 +55,7 @@ void describe_contact(const Change<float, m>& change, const MonitorSetup& setup,
         named.where = "tool";
         for (int i = 0; i < 3; ++i) {
             named.parameters.push_back(
-                {std::string("force_") + "xyz"[i], "N", static_cast<double>(change.size[i])});
+                {std::string("force_") + "xyz"[i], per_current(setup) ? "N·A/(N·m)" : "N", static_cast<double>(change.size[i])});
         }
         return;
     }
@@ -67,8 +73,9 @@ void describe(const Change<float, m>& change, const MonitorSetup& setup, NamedCh
         break;
     case Cause::friction:
         named.where = numbered("joint", change.where);
-        named.parameters = {{"coulomb", "N·m", static_cast<double>(change.size[0])},
-                            {"viscous", "N·m·s/rad", static_cast<double>(change.size[1])}};
+        named.parameters = {
+            {"coulomb", per_current(setup) ? "A" : "N·m", static_cast<double>(change.size[0])},
+            {"viscous", per_current(setup) ? "A·s/rad" : "N·m·s/rad", static_cast<double>(change.size[1])}};
         break;
     case Cause::bias:
         describe_bias(change, setup, named);

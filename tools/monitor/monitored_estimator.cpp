@@ -98,13 +98,20 @@ class Monitored final : public MonitoredEstimator {
     void copy_weights(std::span<float> weights) const override { estimator_->copy_weights(weights); }
     void begin_recording() override {
         estimator_->begin_recording();
-        monitor_.interrupt();
+        monitor_.restart();
+        known_ = false;
     }
     std::vector<std::byte> snapshot() const override { return estimator_->snapshot(); }
     bool restore(std::span<const std::byte> snapshot) override { return estimator_->restore(snapshot); }
     std::size_t state_bytes() const override { return estimator_->state_bytes(); }
-    Cost cost() const override { return estimator_->cost(); }
+    /// With the prediction of the held weights, and the monitor.
+    Cost cost() const override {
+        Cost cost = estimator_->cost();
+        cost.predict += cost.predict + HostMonitor<Arm>::cost(constants_.sizes, constants_.lags);
+        return cost;
+    }
 
+    std::span<const NamedChange> changes() const override { return changes_; }
     std::vector<NamedChange> take_changes() override {
         std::vector<NamedChange> taken;
         taken.reserve(room);

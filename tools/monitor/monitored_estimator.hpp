@@ -28,6 +28,8 @@ MonitorSetup monitor_setup(const TrainedModel& model, const Robot* robot, const 
 /// An estimator with a monitor (dfdyn::Monitor) beside it.
 class MonitoredEstimator : public HostEstimator {
   public:
+    /// What it found, not yet taken.
+    virtual std::span<const NamedChange> changes() const = 0;
     /// What it found since the last call.
     virtual std::vector<NamedChange> take_changes() = 0;
 };

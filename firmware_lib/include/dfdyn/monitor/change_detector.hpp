@@ -76,6 +76,9 @@ class ChangeDetector {
     /// Blocks since the onset of the present alarm, that of the onset included.
     [[nodiscard]] int blocks_since_onset() const noexcept { return since_onset_; }
 
+    /// Begins anew, also while an alarm is on; what is usual stays.
+    void restart() noexcept { rest(); }
+
     /// Takes what goes on to be usual from now on.
     void adopt() noexcept {
         for (BlockScale<Scalar>& usual : usual_) {

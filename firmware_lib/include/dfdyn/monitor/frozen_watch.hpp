@@ -15,12 +15,12 @@ namespace dfdyn {
 /// position counts only if it stopped dead: its last steps before the run were at least `dead` of its usual
 /// ones. Where no position changes, nothing is learned and no run goes on.
 ///
-/// Cost: 10 operations per channel and sample; 7 numbers per channel.
+/// Cost: 10 operations per channel and sample; 8 numbers per channel.
 template <class Scalar, int count>
 class FrozenWatch {
   public:
     static constexpr Scalar memory = 5000;      ///< samples, of what is usual
-    static constexpr Scalar dead = Scalar(0.2); ///< of the usual step
+    static constexpr Scalar dead = Scalar(0.3); ///< of the usual step
     static constexpr Scalar least_trials = 500; ///< samples, before anything is known of what is usual
     static constexpr int steps = 5;             ///< just before, that are averaged
 
@@ -67,6 +67,7 @@ class FrozenWatch {
         Scalar last;
         Scalar recent_step, usual_step, step_before; ///< mean magnitudes
         Scalar repeats, trials;                      ///< while others move
+        Scalar moves;                                ///< samples that differ from the one before
         int run;
     };
     using States = Storage<State, count>;
@@ -84,7 +85,10 @@ class FrozenWatch {
             const Scalar keep = state.trials < memory ? Scalar(1) : 1 - 1 / memory;
             state.trials = keep * state.trials + 1;
             state.repeats = keep * state.repeats + (repeated ? 1 : 0);
-            state.usual_step += (step - state.usual_step) / std::min(state.trials, memory);
+        }
+        if (!repeated) {
+            state.moves = std::min(state.moves + 1, memory);
+            state.usual_step += (step - state.usual_step) / state.moves;
         }
     }
 

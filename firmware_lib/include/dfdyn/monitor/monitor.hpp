@@ -112,6 +112,14 @@ class Monitor {
         follows_ = false;
     }
 
+    /// Another recording or motion begins: likewise, and a change under way is left as it is known.
+    void restart() noexcept {
+        interrupt();
+        detector_.restart();
+        changing_ = false;
+        since_renewal_ = 2 * constants_->renewal_blocks;
+    }
+
     /// Whether the held weights are to be renewed; say `renewed` when they are. Twice in a row at the start
     /// and after a change, so that nothing from before is left.
     [[nodiscard]] bool renewal_due() const noexcept {
@@ -125,6 +133,15 @@ class Monitor {
     [[nodiscard]] const Change& change() const noexcept { return change_; }
     [[nodiscard]] const ChangeDetector<Scalar, m>& detector() const noexcept { return detector_; }
     [[nodiscard]] const CauseBank<Scalar, m>& bank() const noexcept { return bank_; }
+
+    /// Multiply-adds of a tick, at most: one that ends a block while a change is on.
+    [[nodiscard]] static constexpr std::int64_t cost(const typename Arm::Sizes& sizes, int lags) noexcept {
+        const std::int64_t joints = sizes.joint_count;
+        const std::int64_t outputs = sizes.output_count;
+        const std::int64_t tick = 3 * joints * (lags + 4) + 500 * joints + 130 * outputs;
+        const std::int64_t fits = outputs * (40 * outputs * outputs + 60 * outputs + 400);
+        return tick + catch_up * fits + 10 * outputs * history;
+    }
 
   private:
     static constexpr bool torques = std::is_same_v<typename Arm::Output, JointTorques>;
