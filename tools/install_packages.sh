@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# install_packages.sh demo|test: installs the Debian packages that are missing for building and running the demo, or for the
-# tests as well. Where nothing is missing it changes nothing and needs no network.
+# install_packages.sh demo|test|virtual-time: installs the Debian packages that are missing for building and running the demo, or for
+# the tests as well, or for the kernel of tests/vcan/virtual_time alone. Where nothing is missing it changes nothing and needs no
+# network.
 set -euo pipefail
 
 # package:what is missing without it
@@ -38,6 +39,18 @@ test_packages=(
     "iproute2:the CAN backend cannot be tested"
     "kmod:the CAN backend cannot be tested where the kernel has no CAN"
     "user-mode-linux:the CAN backend cannot be tested where the kernel has no CAN"
+)
+virtual_time_packages=(
+    "linux-source-6.12:no kernel with virtual time"
+    "xz-utils:its source cannot be unpacked"
+    "make:it cannot be built"
+    "gcc:it cannot be built"
+    "libc6-dev:it cannot be built"
+    "flex:it cannot be built"
+    "bison:it cannot be built"
+    "bc:it cannot be built"
+    "perl-base:it cannot be switched off"
+    "iproute2:it has no CAN interface"
 )
 
 is_installed() {
@@ -79,8 +92,9 @@ explain_missing() {
 case ${1:-} in
 demo) packages=("${demo_packages[@]}") ;;
 test) packages=("${demo_packages[@]}" "${test_packages[@]}") ;;
+virtual-time) packages=("${virtual_time_packages[@]}") ;;
 *)
-    echo "usage: install_packages.sh demo|test" >&2
+    echo "usage: install_packages.sh demo|test|virtual-time" >&2
     exit 2
     ;;
 esac

@@ -1,28 +1,107 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# loop_demo.sh DFDYN OUT: a loop that learns the arm it moves, on the simulated UR5 and on the iCub's right arm, over the frames of their
-# devices. For each arm: half a minute under the nominal rigid body, without payload, for the hyperparameters; then a minute and a half of
-# another motion with friction and a payload that nothing knows of, and a second payload at 65 s, under the nominal rigid body and under a
-# model that begins with nothing learned. Prints both tables; writes OUT/ARM/tracking.{csv,svg,html}.
+# loop_demo.sh DFDYN OUT [--vcan]: a loop that learns the arm it moves, on the simulated UR5 and on the iCub's right arm, over the
+# frames of their devices. For each arm: half a minute under the nominal rigid body, without payload, for the hyperparameters; then a
+# minute and a half of another motion with friction and a payload that nothing knows of, and a second payload at 65 s, under the
+# nominal rigid body and under a model that begins with nothing learned. Prints both tables.
+# Without --vcan in simulated time, frames in memory, in a minute; writes OUT/ARM/tracking.{csv,svg,html} and recordings.
+# With --vcan arm and loop are two programs on a virtual CAN interface, at the devices' rates, in a user-mode Linux whose time stands
+# still while programs run, a machine per run: some 6 minutes of two cores, and 5 for that kernel the first time (build/virtual_time).
+# By measured positions; writes OUT/vcan/ARM/{nominal,learned,again}. One run is done twice: its recordings have to be equal bit for bit.
 set -euo pipefail
-dfdyn=${1:?usage: loop_demo.sh DFDYN OUT}
-out=${2:?usage: loop_demo.sh DFDYN OUT}
-data=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)/tests/data
+usage() {
+    echo "usage: loop_demo.sh DFDYN OUT [--vcan]" >&2
+    exit 2
+}
+[[ $# -eq 2 || ($# -eq 3 && $3 == --vcan) ]] || usage
+dfdyn=$(realpath "$1")
+out=$(mkdir -p "$2" && cd "$2" && pwd)
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+data=$root/tests/data
+kernel=$root/build/virtual_time/linux.uml
+cores=$(taskset --cpu-list --pid $$ | sed -E 's/.*: //') # that we may use
+first_core=${cores%%[,-]*}
+last_core=${cores##*[,-]}
 
-# demo ARM URDF TIP SCENARIO BUS
+# demo SHOW FOLDER URDF TIP SCENARIO BUS: hyperparameters, then SHOW FOLDER ARM_OPTION...
 demo() {
-    local folder=$out/$1 urdf=$data/robots/$2 scenario=$data/scenarios/$4
+    local folder=$2 urdf=$data/robots/$3 scenario=$data/scenarios/$5
     mkdir -p "$folder"
     sed '/"payloads"/d; s/"seed": /"seed": 1/' "$scenario" >"$folder/commissioning.json"
     "$dfdyn" loop --simulate --robot "$urdf" --scenario "$folder/commissioning.json" --duration 30 -o "$folder/commissioning" >/dev/null
-    "$dfdyn" train --robot "$urdf" --tip "$3" --log "$folder/commissioning/nominal.csv" --outputs tau --model SPK \
+    "$dfdyn" train --robot "$urdf" --tip "$4" --log "$folder/commissioning/nominal.csv" --outputs tau --model SPK \
         --effects viscous_friction,coulomb_friction,rotor_inertia,torque_offset --own-motion --features 60 --forgetting 0.999 \
         --likelihood-rows 500 --starts 4 --refinement 10 -o "$folder/model.json" >"$folder/training.txt"
-    echo "$1"
-    "$dfdyn" loop --simulate --robot "$urdf" --scenario "$scenario" --bus "$data/can/$5" --model "$folder/model.json" --from-prior \
-        --duration 95.001 -o "$folder"
+    "$1" "$folder" --robot "$urdf" --scenario "$scenario" --bus "$data/can/$6"
+}
+ur5=(ur5/ur5_robot.urdf ee_link ur5_loop.json)
+icub=(icub_right_arm/icub_right_arm.urdf r_hand icub_loop.json)
+
+# in_memory FOLDER ARM_OPTION...
+in_memory() {
+    basename "$1"
+    "$dfdyn" loop --simulate "${@:2}" --model "$1/model.json" --from-prior --duration 95.001 -o "$1"
 }
 
-demo ur5 ur5/ur5_robot.urdf ee_link ur5_loop.json ur5_loop.json
-demo ur5_as_icub ur5/ur5_robot.urdf ee_link ur5_loop.json ur5_icub_loop.json
-demo icub icub_right_arm/icub_right_arm.urdf r_hand icub_loop.json icub_loop.json
+# one_run CORE FOLDER ARM_OPTION... -- [LOOP_OPTION...]: in a machine of its own, on that core.
+one_run() {
+    DFDYN_VIRTUAL_TIME=$kernel DFDYN_VCAN_SECONDS=3600 taskset --cpu-list "$1" "$root/tests/vcan/run_vcan_tests.sh" \
+        "$root/tools/loop_on_vcan.sh" "$dfdyn" "${@:2}" >"$2.console" 2>&1 || {
+        cat "$2.console" "$2/loop.txt" "$2/plant.txt" >&2
+        return 1
+    }
+}
+
+# on_vcan FOLDER ARM_OPTION...: nominal on one core, learned on another, where there is one.
+on_vcan() {
+    local folder=$1 nominal
+    local learned=(--model "$folder/model.json" --from-prior)
+    one_run "$first_core" "$folder/nominal" "${@:2}" -- &
+    nominal=$!
+    one_run "$last_core" "$folder/learned" "${@:2}" -- "${learned[@]}"
+    wait "$nominal"
+    basename "$folder"
+    for run in nominal learned; do
+        echo "$run:"
+        grep --no-filename -E '^(note|loop|learning|bus|pace|plant):' "$folder/$run/loop.txt" "$folder/$run/plant.txt" | sed 's/^/    /'
+    done
+    compare "$folder/nominal/tracking.csv" "$folder/learned/tracking.csv"
+}
+
+# compare TRACKING TRACKING: fails unless the second has a third of the error from 60 to 65 s, and never a larger one.
+compare() {
+    awk -F, 'BEGIN { print "tracking error, root mean square over all joints, mrad\n  window (s)  nominal  learned    ratio"; least = 1e9 }
+        FNR == 1 { next }
+        NR == FNR { nominal[$2] = $4; next }
+        { ratio[$2] = nominal[$2] / $4; least = ratio[$2] < least ? ratio[$2] : least
+          printf "%6d to %2d%9.2f%9.2f%9.1f\n", $2, $3, nominal[$2], $4, ratio[$2] }
+        END { printf "%.1f times less from 60 to 65 s, at least %.1f times at any time\n", ratio[60], least
+              exit !(FNR == 20 && ratio[60] >= 3 && least >= 1) }' "$@"
+}
+
+# again FOLDER ARM_OPTION...: the learned run once more has to give the same recording, bit for bit.
+again() {
+    local sum
+    one_run "$last_core" "$1/again" "${@:2}" -- --model "$1/model.json" --from-prior
+    sum=$(sha256sum <"$1/learned/learned.csv")
+    if [[ $(sha256sum <"$1/again/learned.csv") != "$sum" ]]; then
+        echo "the second learned run gave another recording" >&2
+        return 1
+    fi
+    echo "the second learned run gave the same recording, sha256 ${sum%% *}"
+}
+
+on_vcan_twice() {
+    on_vcan "$@"
+    again "$@"
+}
+
+if [[ $# -eq 3 ]]; then
+    "$root/tests/vcan/virtual_time/build_kernel.sh" "$(dirname "$kernel")"
+    demo on_vcan_twice "$out/vcan/ur5" "${ur5[@]}" ur5_loop.json
+    demo on_vcan "$out/vcan/icub" "${icub[@]}" icub_loop.json
+else
+    demo in_memory "$out/ur5" "${ur5[@]}" ur5_loop.json
+    demo in_memory "$out/ur5_as_icub" "${ur5[@]}" ur5_icub_loop.json
+    demo in_memory "$out/icub" "${icub[@]}" icub_loop.json
+fi

@@ -24,7 +24,10 @@ check_style() {
 build() {
     local preset=$1
     shift
-    cmake --preset "$preset"
+    # A first build is of everything: compile together. A folder that is already configured stays as it is.
+    local options=()
+    [[ -f build/$preset/CMakeCache.txt ]] || options=(-DDFDYN_COMPILE_TOGETHER=ON)
+    cmake --preset "$preset" "${options[@]}"
     cmake --build --preset "$preset" --parallel "$jobs" ${1:+--target "$@"}
 }
 

@@ -66,7 +66,7 @@ Fitted draw_fitted(const PanelSetup& setup, const std::vector<std::string>& name
 void describe(const PanelSetup& setup, const Fitted& fitted, PanelCase& result) {
     const std::string output = setup.output_name(fitted.main_output);
     result.hidden.push_back({fitted.effect.effect, fitted.effect.where, fitted.effect.parameters(fitted.size),
-                             output, fitted.strength});
+                             output, fitted.strength, fitted.effect.depends_on});
     if (fitted.effect.companion) {
         result.hidden.push_back(*fitted.effect.companion);
         result.hidden.back().main_output = output;

@@ -22,6 +22,7 @@ struct HiddenEffect {
     std::string main_output;     ///< where it is largest relative to the noise
     /// rms of what it adds there / rms of the noise there, both below 5 Hz; it alone, without other effects
     double strength = 0;
+    std::string depends_on = {}; ///< outside the catalogue: the input that it is a function of
 };
 
 /// A recording with its answer. Whoever is tested may see `nominal`, `recording`, `outputs` and, where

@@ -12,6 +12,7 @@ namespace dfdyn::tests {
 /// shape.
 struct DrawnEffect {
     std::string effect, where;
+    std::string depends_on; ///< outside the catalogue: an input
     std::function<void(double size, tools::Scenario&)> hide;
     std::function<EffectParameters(double size)> parameters; ///< main parameter first
     std::function<void(tools::Robot&)> rebuild;              ///< of the arm that is simulated; may be none

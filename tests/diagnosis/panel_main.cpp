@@ -12,18 +12,20 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <random>
 
 namespace {
 
 using namespace dfdyn::tests;
 
 struct PanelOptions {
-    std::uint64_t seed = 1;
+    std::uint64_t seed = std::random_device{}();
     int cases = 1;
     PanelMix mix;
     std::filesystem::path directory; ///< of generate
     int threads = 2;                 ///< of score
     std::filesystem::path tables;    ///< of score and changes
+    bool hold = false;               ///< of score: fail where it is worse than it has been
     ChangeMix changes;
 };
 
@@ -76,7 +78,12 @@ int score(const PanelOptions& options) {
     if (!options.tables.empty()) {
         dfdyn::tools::write_file(options.tables, tables);
     }
-    return 0;
+    const std::vector<std::string> worse =
+        options.hold ? setbacks(summarise(scores)) : std::vector<std::string>{};
+    for (const std::string& line : worse) {
+        std::fprintf(stderr, "%s\n", line.c_str());
+    }
+    return worse.empty() ? 0 : 1;
 }
 
 int watch(const PanelOptions& options) {
@@ -123,8 +130,8 @@ CLI::App* add_changes(CLI::App& app, PanelOptions& options) {
 }
 
 void add_mix(CLI::App& command, PanelOptions& options) {
-    command.add_option("--seed", options.seed, "Of the first case; each further one has the next")
-        ->required();
+    command.add_option("--seed", options.seed,
+                       "Of the first case; each further one has the next. Without it a new one is drawn");
     command.add_option("--cases", options.cases, "How many")->required()->check(CLI::PositiveNumber);
     command.add_option("--effect", options.mix.effect, "Always this effect");
     command.add_option("--strength", options.mix.strength, "Always this strength")
@@ -155,6 +162,8 @@ int main(int argc, char** argv) {
     add_mix(*scoring, options);
     scoring->add_option("--threads", options.threads, "Cases at the same time")->check(CLI::Range(1, 64));
     scoring->add_option("-o,--output", options.tables, "The tables, as Markdown");
+    scoring->add_flag("--hold", options.hold,
+                      "Status 1 where less is right than has been on the tests' panel");
     const CLI::App* const changes = add_changes(app, options);
     CLI11_PARSE(app, argc, argv);
     try {

@@ -14,8 +14,11 @@ using Law = std::function<double(const JointVector& position, const JointVector&
 /// What opposes a joint, per unit of size.
 struct OutsideLaw {
     Law law;
+    std::string depends_on;
     EffectParameters shape;
 };
+
+std::string input(const char* what, Eigen::Index joint) { return what + std::to_string(joint + 1); }
 
 /// Friction that grows with the distance from a middle.
 OutsideLaw position_dependent_friction(const EffectDraw& of, Eigen::Index joint) {
@@ -23,6 +26,7 @@ OutsideLaw position_dependent_friction(const EffectDraw& of, Eigen::Index joint)
     return {[joint, middle](const JointVector& q, const JointVector& v) {
                 return (q[joint] - middle) * v[joint];
             },
+            input("q", joint),
             {{"middle", middle}}};
 }
 
@@ -36,18 +40,21 @@ OutsideLaw catching_cable(const EffectDraw& of, Eigen::Index joint) {
                 const double stretch = std::max(0.0, q[joint] - from);
                 return stretch * stretch * stretch;
             },
+            input("q", joint),
             {{"from", from}}};
 }
 
 /// The square of another joint's velocity, as a rotor that is not balanced would cause.
 OutsideLaw velocity_squared_coupling(const EffectDraw&, Eigen::Index joint, Eigen::Index other) {
     return {[other](const JointVector&, const JointVector& v) { return v[other] * v[other]; },
+            input("qd", other),
             {{"joint", static_cast<double>(joint + 1)}, {"other", static_cast<double>(other + 1)}}};
 }
 
 /// Friction of another joint's motion in this one, as of a belt that runs through it.
 OutsideLaw cross_joint_friction(const EffectDraw&, Eigen::Index joint, Eigen::Index other) {
     return {[other](const JointVector&, const JointVector& v) { return std::tanh(v[other] / 0.05); },
+            input("qd", other),
             {{"joint", static_cast<double>(joint + 1)}, {"other", static_cast<double>(other + 1)}}};
 }
 
@@ -95,6 +102,7 @@ std::optional<DrawnEffect> draw_outside_effect(const std::string& name, const Ef
     const double size = of.wanted(joint) / law_rms(of.setup, outside->law);
     DrawnEffect effect;
     effect.where = joint_place(joint);
+    effect.depends_on = outside->depends_on;
     effect.hide = [joint, law = outside->law](double factor, Scenario& scenario) {
         const auto before = scenario.loads.further;
         scenario.loads.further = [=](const JointVector& q, const JointVector& v) {

@@ -97,10 +97,11 @@ CaseScore score_case(const PanelCase& panel_case, const tools::Diagnosis& diagno
         score.findings.push_back(score_finding(panel_case, finding));
     }
     if (score.outside && !panel_case.hidden.empty()) {
+        const HiddenEffect& hidden = panel_case.hidden.front();
         score.unexplained_right =
             std::ranges::any_of(diagnosis.unexplained, [&](const tools::Unexplained& entry) {
-                return diagnosis.output_names[static_cast<std::size_t>(entry.output)] ==
-                       panel_case.hidden.front().main_output;
+                return diagnosis.output_names[static_cast<std::size_t>(entry.output)] == hidden.main_output &&
+                       std::ranges::find(entry.depends_on, hidden.depends_on) != entry.depends_on.end();
             });
     }
     return score;
@@ -120,6 +121,9 @@ std::string describe(const CaseScore& score) {
                           effect.in_interval ? "" : " out");
             text += part.data();
         }
+    }
+    if (score.outside) {
+        text += score.unexplained_right ? " told" : " not told";
     }
     text += " ||";
     for (const FindingScore& finding : score.findings) {

@@ -40,7 +40,7 @@ struct CaseScore {
     bool masses_off = false, outside = false;
     std::vector<EffectScore> effects;
     std::vector<FindingScore> findings;
-    bool unexplained_right = false; ///< outside the catalogue: an entry on the right output
+    bool unexplained_right = false; ///< outside the catalogue: the right output, by the right input
     double seconds = 0;
 };
 

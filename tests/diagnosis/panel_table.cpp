@@ -44,42 +44,66 @@ void add_effect(PanelSummary& summary, const EffectScore& effect) {
     }
 }
 
+double weakest(const CaseScore& score) {
+    return std::ranges::min_element(score.effects, {}, &EffectScore::strength)->strength;
+}
+
+void add_named(PanelSummary& summary, const CaseScore& score) {
+    for (const EffectScore& effect : score.effects) {
+        add_effect(summary, effect);
+    }
+    const bool drift = std::ranges::any_of(score.effects, [](const EffectScore& effect) {
+        return effect.effect == "friction_drift"; // comes with its friction: not two by chance
+    });
+    if (score.effects.size() == 2 && !drift) {
+        Rate& rate = weakest(score) >= nominal_strength ? summary.both_named : summary.both_named_with_weak;
+        rate.add(score.effects[0].found() && score.effects[1].found());
+    }
+}
+
 bool wrong_name(const CaseScore& score) {
     return std::any_of(score.findings.begin(), score.findings.end(), [](const FindingScore& finding) {
         return finding.confidence >= likely && !finding.right;
     });
 }
 
+/// A rate with what is asked of it, and what it has been on the fixed panel less what another machine's
+/// rounding may cost.
+struct Line {
+    const char* what;
+    Rate rate;
+    double target, floor;
+    bool at_least = true;
+
+    bool within(double limit) const { return at_least ? rate.share() >= limit : rate.share() <= limit; }
+};
+
+std::vector<Line> lines_of(const PanelSummary& summary) {
+    return {{"right name and place, or its class: strength 3 and more", summary.found_at_3, 0.97, 0.85},
+            {"the same at strength 1", summary.found_at_1, 0.92, 0.6},
+            {"the same at strength 0.3", summary.found_at_03, 0.75, 0},
+            {"exact name where nothing ties, strength 1 and more", summary.exact_name, 0.95, 0.8},
+            {"main parameter within 20 %, strength 1 and more", summary.parameter_within_20, 0.90, 0.7},
+            {"main parameter inside its 95 % interval", summary.parameter_in_interval, 0.90, 0.7},
+            {"recordings without any effect that have a finding at 0.5 or more", summary.null_with_finding,
+             0.05, 0.05, false},
+            {"findings at 0.9 or more that are wrong", summary.confident_and_wrong, 0.05, 0.05, false},
+            {"two effects at once, both of strength 1 and more: both named", summary.both_named, 0.85, 0.5},
+            {"two effects at once, one or both at 0.3: both named", summary.both_named_with_weak, 0.85, 0},
+            {"effects outside the catalogue, strength 1 and more: no wrong name, output and input told",
+             summary.outside_silent, 0.80, 0.5},
+            {"the same at strength 0.3", summary.outside_weak, 0.80, 0}};
+}
+
 ReportTable target_table(const PanelSummary& summary) {
-    struct Line {
-        const char* what;
-        const Rate& rate;
-        double target;
-        bool at_least;
-    };
-    const std::array lines{
-        Line{"right name and place, or its class: strength 3 and more", summary.found_at_3, 0.97, true},
-        Line{"the same at strength 1", summary.found_at_1, 0.92, true},
-        Line{"the same at strength 0.3", summary.found_at_03, 0.75, true},
-        Line{"exact name where nothing ties, strength 1 and more", summary.exact_name, 0.95, true},
-        Line{"main parameter within 20 %, strength 1 and more", summary.parameter_within_20, 0.90, true},
-        Line{"main parameter inside its 95 % interval", summary.parameter_in_interval, 0.90, true},
-        Line{"recordings without any effect that have a finding at 0.5 or more", summary.null_with_finding,
-             0.05, false},
-        Line{"findings at 0.9 or more that are wrong", summary.confident_and_wrong, 0.05, false},
-        Line{"two effects at once: both named", summary.both_named, 0.85, true},
-        Line{"effects outside the catalogue: no wrong name, reported as unexplained", summary.outside_silent,
-             0.80, true}};
     ReportTable table{"What is asked for, and what was reached", {"", "reached", "target", "met"}, {}, ""};
-    for (const Line& line : lines) {
-        const bool met = line.at_least ? line.rate.share() >= line.target : line.rate.share() <= line.target;
+    for (const Line& line : lines_of(summary)) {
         std::array<char, 32> target{};
         std::snprintf(target.data(), target.size(), "%s %.0f %%", line.at_least ? "≥" : "≤",
                       100 * line.target);
-        table.rows.push_back({std::string(line.what), percent(line.rate), std::string(target.data()),
-                              std::string(line.rate.of == 0 ? "–"
-                                          : met             ? "yes"
-                                                            : "no")});
+        const char* met = line.rate.of == 0 ? "–" : line.within(line.target) ? "yes" : "no";
+        table.rows.push_back(
+            {std::string(line.what), percent(line.rate), std::string(target.data()), std::string(met)});
     }
     return table;
 }
@@ -153,16 +177,11 @@ PanelSummary summarise(const std::vector<CaseScore>& scores) {
     for (const CaseScore& score : scores) {
         if (score.effects.empty()) {
             summary.null_with_finding.add(wrong_name(score));
-        }
-        if (score.outside) {
-            summary.outside_silent.add(!wrong_name(score) && score.unexplained_right);
+        } else if (score.outside) {
+            Rate& rate = weakest(score) >= nominal_strength ? summary.outside_silent : summary.outside_weak;
+            rate.add(!wrong_name(score) && score.unexplained_right);
         } else {
-            for (const EffectScore& effect : score.effects) {
-                add_effect(summary, effect);
-            }
-            if (score.effects.size() == 2) {
-                summary.both_named.add(score.effects[0].found() && score.effects[1].found());
-            }
+            add_named(summary, score);
         }
         for (const FindingScore& finding : score.findings) {
             if (finding.confidence >= confident) {
@@ -171,6 +190,20 @@ PanelSummary summarise(const std::vector<CaseScore>& scores) {
         }
     }
     return summary;
+}
+
+std::vector<std::string> setbacks(const PanelSummary& summary) {
+    std::vector<std::string> result;
+    for (const Line& line : lines_of(summary)) {
+        if (line.rate.of > 0 && !line.within(line.floor)) {
+            std::array<char, 200> text{};
+            std::snprintf(text.data(), text.size(), "%s: expected %s %.0f %%, found %s", line.what,
+                          line.at_least ? "at least" : "at most", 100 * line.floor,
+                          percent(line.rate).c_str());
+            result.emplace_back(text.data());
+        }
+    }
+    return result;
 }
 
 std::string panel_tables(const std::vector<CaseScore>& scores) {

@@ -26,10 +26,14 @@ struct PanelSummary {
     Rate parameter_within_20, parameter_in_interval; ///< strength 1 and more
     Rate null_with_finding;                          ///< with a confidence of 0.5 and more
     Rate confident_and_wrong;                        ///< of all findings with a confidence of 0.9 and more
-    Rate both_named;
-    Rate outside_silent; ///< no wrong name at 0.5 and more, and an entry of what is unexplained on the right
-                         ///< output
+    Rate both_named, both_named_with_weak;           ///< both of strength 1 and more; one or both weaker
+    Rate outside_silent, outside_weak; ///< no wrong name at 0.5 and more, and the right output and input
+                                       ///< among what is unexplained; strength 1 and more, and weaker
 };
+
+/// What of it is worse than it has been on the fixed panel of the tests; empty: nothing. How far each was
+/// from its target is in the tables.
+std::vector<std::string> setbacks(const PanelSummary& summary);
 
 PanelSummary summarise(const std::vector<CaseScore>& scores);
 

@@ -10,7 +10,7 @@ using dfdyn::tests::Background;
 using dfdyn::tests::IcubLog;
 using dfdyn::tests::run;
 
-TEST_CASE("a live bus is looked at: who sends, and who does not") {
+TEST_CASE("a live bus is looked at: who sends, and who does not", "[virtual_time]") {
     const IcubLog log(75, 50); // 1.5 s
     const auto played = log.without(" 3DB#");
     const auto bus = log.directory.write("bus.json", dfdyn::tests::icub_arm_at(50));
@@ -27,4 +27,24 @@ TEST_CASE("a live bus is looked at: who sends, and who does not") {
     }
     CHECK_THAT(report, Contains("bus: error-active;"));
     CHECK_THAT(report, Contains("frames were sent by programs of this computer"));
+}
+
+TEST_CASE("an interface that goes down while it is looked at, and comes back, is said", "[virtual_time]") {
+    const dfdyn::tests::TemporaryDirectory directory;
+    const auto bus = directory.write("bus.json", dfdyn::tests::icub_arm_at(50));
+    run("ip link add dev vcan4 type vcan && ip link set vcan4 up");
+    std::string report;
+    {
+        const Background check(std::string(DFDYN_PROGRAM) + " buscheck --can vcan4 --duration 60 --bus " +
+                               bus.string());
+        run("ip link set vcan4 down && sleep 0.2 && ip link set vcan4 up && sleep 0.2");
+        run("cansend vcan4 111#0000000000000000 && sleep 0.2"); // heard: it opened again
+        check.signal(SIGINT);
+        report = check.output(20);
+    }
+    run("ip link del vcan4");
+    CAPTURE(report);
+    CHECK_THAT(report, Contains("interface_down: the interface went down"));
+    CHECK_THAT(report, Contains("1 times down"));
+    CHECK_THAT(report, !Contains("silent_bus"));
 }

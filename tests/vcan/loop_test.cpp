@@ -63,7 +63,7 @@ std::string undisturbed(const std::function<std::string()>& attempt,
 
 } // namespace
 
-TEST_CASE("a loop moves the arm of another program for as long as it is asked to") {
+TEST_CASE("a loop moves the arm of another program for as long as it is asked to", "[virtual_time]") {
     std::string plant_said;
     const std::string said = undisturbed([&] {
         const Background plant(call("plant --can vcan0"));
@@ -80,7 +80,7 @@ TEST_CASE("a loop moves the arm of another program for as long as it is asked to
     CHECK(number_after(plant_said, "command frames, ") <= 5); // silences: stalls, and after its end
 }
 
-TEST_CASE("a loop that is interrupted stops by its ramp, and says so") {
+TEST_CASE("a loop that is interrupted stops by its ramp, and says so", "[virtual_time]") {
     const std::string said = undisturbed([] {
         const Background plant(call("plant --can vcan0"));
         const Background loop(call("loop --can vcan0"));
@@ -93,7 +93,7 @@ TEST_CASE("a loop that is interrupted stops by its ramp, and says so") {
     CHECK(number_after(said, "ticks, ") > 50);
 }
 
-TEST_CASE("a loop whose arm falls silent stops by itself, and says why") {
+TEST_CASE("a loop whose arm falls silent stops by itself, and says why", "[virtual_time]") {
     const std::string said = undisturbed(
         [] {
             const Background plant(call("plant --can vcan0"));
@@ -111,7 +111,7 @@ TEST_CASE("a loop whose arm falls silent stops by itself, and says why") {
     CHECK_THAT(said, ContainsSubstring("status 1"));
 }
 
-TEST_CASE("a loop whose interface goes down stops by itself, and says why") {
+TEST_CASE("a loop whose interface goes down stops by itself, and says why", "[virtual_time]") {
     const std::string said = undisturbed([] {
         run("ip link add dev vcan4 type vcan && ip link set vcan4 up");
         std::string loop_said;
@@ -141,7 +141,7 @@ TEST_CASE("beside a flood a tick reads no more than its bound; the loop goes on,
     CHECK(stopped_by(said, {"requested", "no_position", "missed_deadlines"}));
 }
 
-TEST_CASE("over the bus a loop learns the payload of the arm that it moves") {
+TEST_CASE("over the bus a loop learns the payload of the arm that it moves", "[virtual_time]") {
     const TemporaryDirectory directory;
     const auto path = [&](const std::string& name) { return (directory.path() / name).string(); };
     std::string text = file_content(data + "/scenarios/small_arm_loop.json");
@@ -165,6 +165,7 @@ TEST_CASE("over the bus a loop learns the payload of the arm that it moves") {
     }
     CAPTURE(nominal, learned);
     CHECK(number_after(learned, " samples, ") > 50); // learned
+    REQUIRE((kept_time || !dfdyn::tests::virtual_time()));
     if (!kept_time) {
         WARN("the machine was too late for the tracking error to mean something: " + learned);
         return;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <stdexcept>
 #include <thread>
@@ -40,6 +41,8 @@ bool has_ended(pid_t pid) {
 }
 
 } // namespace
+
+bool virtual_time() { return std::getenv("DFDYN_VIRTUAL_TIME") != nullptr; }
 
 long receivers() {
     std::ifstream lists("/proc/net/can/rcvlist_all");

@@ -17,6 +17,9 @@ namespace dfdyn::tests {
 /// std::runtime_error with that when its status is not 0.
 std::string run(const std::string& command);
 
+/// Whether the clock stands still while programs run: then nothing is ever late, and every run is the same.
+bool virtual_time();
+
 /// How many raw CAN sockets receive from an interface, in the whole network namespace.
 long receivers();
 /// Waits until there are more than `more_than`, for some seconds at most; whether there are.

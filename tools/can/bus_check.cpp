@@ -122,6 +122,7 @@ void BusCheck::count(const hal::Frame& frame, bool rejected) {
         stream.first_ns = stream.last_ns = frame.stamp_ns;
     }
     const std::int64_t interval_ns = frame.stamp_ns - stream.last_ns;
+    stream.not_increasing += stream.count > 0 && interval_ns <= 0 ? 1 : 0;
     ++stream.count;
     stream.longest_gap_ns = std::max(stream.longest_gap_ns, interval_ns);
     stream.interval_square_sum_s2 += seconds(interval_ns) * seconds(interval_ns);

@@ -21,14 +21,15 @@ struct BusStream {
     std::int64_t first_ns = 0, last_ns = 0;
     std::int64_t longest_gap_ns = 0;
     double interval_square_sum_s2 = 0;
-    std::uint64_t rejected = 0; ///< by the device's decoder
-    double bits = 0;            ///< of all, at worst
-    int length = 0;             ///< of the last frame, or of the one that is expected; bytes
-    bool known = false;         ///< the description says who sends it
-    std::string sender;         ///< such as `joint 2`; empty where that is not known
-    double expected_hz = 0;     ///< 0: not sent steadily, or nobody knows
-    double expected_bits = 0;   ///< per second
-    bool several = false;       ///< more than one frame per period
+    std::uint64_t rejected = 0;       ///< by the device's decoder
+    std::uint64_t not_increasing = 0; ///< frames with a stamp not after the one before
+    double bits = 0;                  ///< of all, at worst
+    int length = 0;                   ///< of the last frame, or of the one that is expected; bytes
+    bool known = false;               ///< the description says who sends it
+    std::string sender;               ///< such as `joint 2`; empty where that is not known
+    double expected_hz = 0;           ///< 0: not sent steadily, or nobody knows
+    double expected_bits = 0;         ///< per second
+    bool several = false;             ///< more than one frame per period
 
     double rate_hz() const;  ///< 0 for fewer than two frames
     double jitter_s() const; ///< standard deviation of the intervals; 0 for fewer than three frames

@@ -14,9 +14,7 @@ namespace {
 
 constexpr double largest_load = 0.8;
 constexpr double largest_unknown_load = 0.1;
-constexpr double least_refused = 0.01; ///< of the samples; for what may happen now and then
-
-std::string percent(double share) { return number_text(std::round(1000 * share) / 10) + " %"; }
+constexpr double least_refused = 0.01; ///< of the samples or frames; for what may happen now and then
 
 std::string counted(std::uint64_t count, const char* of) {
     return count > 0 ? std::to_string(count) + of : std::string();
@@ -70,6 +68,18 @@ std::string jumps(const BusCheck& check) {
                                       (clock.adopted() > 0 ? "; they stayed so" : "");
 }
 
+std::string repeated_times(const BusCheck& check) {
+    std::uint64_t frames = 0, not_increasing = 0;
+    for (const auto& [key, stream] : check.streams()) {
+        frames += stream.count;
+        not_increasing += stream.not_increasing;
+    }
+    return static_cast<double>(not_increasing) > least_refused * static_cast<double>(frames)
+               ? std::to_string(not_increasing) + " of " + std::to_string(frames) +
+                     " frames not after the one before of their identifier"
+               : "";
+}
+
 struct BusRule {
     const char* name;
     const char* what;
@@ -78,7 +88,7 @@ struct BusRule {
     const char* fix;
 };
 
-constexpr std::array<BusRule, 11> bus_rules{{
+constexpr std::array<BusRule, 12> bus_rules{{
     {"silent_bus", "nothing is sent at all", silence, "candump IFACE; ip -details link show IFACE",
      "the interface up, with the bit rate of the devices; power, cable; the right interface"},
     {"overload", "the bus carries more than it can with a margin", overload,
@@ -122,6 +132,8 @@ constexpr std::array<BusRule, 11> bus_rules{{
      "ip link show IFACE", "ip link set IFACE up; check the adapter and its cable"},
     {"clock_jumped", "time stamps jump", jumps, "timedatectl; journalctl -u systemd-timesyncd",
      "do not set the clock while recording; stamps of the adapter's hardware"},
+    {"time_not_increasing", "time stamps repeat or run backward", repeated_times, "candump -t d IFACE",
+     "stamps of the kernel, not of the program that reads"},
 }};
 
 struct DeviceRule {
@@ -133,7 +145,7 @@ struct DeviceRule {
     const char* fix;
 };
 
-constexpr std::array<DeviceRule, 13> device_rules{{
+constexpr std::array<DeviceRule, 12> device_rules{{
     {hal::Reason::encoder_fault, DeviceRule::ever, "encoder_fault",
      "a board says that its encoder is in error", "read the board's status",
      "check the encoder and its cable"},
@@ -168,9 +180,6 @@ constexpr std::array<DeviceRule, 13> device_rules{{
      "dfdyn replay --can asks by itself; or full_scale in the description"},
     {hal::Reason::full_scale_implausible, DeviceRule::ever, "full_scale", "the sensor's full scale cannot be",
      "ask the sensor for the full scale of each channel", "correct it in the sensor or the description"},
-    {hal::Reason::time_not_increasing, DeviceRule::often, "time_not_increasing",
-     "time stamps repeat or run backward", "candump -t d IFACE",
-     "stamps of the kernel, not of the program that reads"},
 }};
 
 bool holds(const DeviceRule& rule, const BusCheck& check) {

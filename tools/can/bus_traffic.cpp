@@ -28,8 +28,6 @@ bool due(std::int64_t time_ns, std::int64_t period_ns, std::int64_t& next_ns) {
     return true;
 }
 
-std::string percent(double share) { return number_text(std::round(1000 * share) / 10) + " %"; }
-
 } // namespace
 
 BusTraffic::BusTraffic(const BusDescription& description, const TrafficOptions& options,

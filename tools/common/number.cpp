@@ -40,4 +40,6 @@ std::string formatted(const char* format, double value) {
 
 std::string rounded_text(double value) { return formatted("%.3g", value); }
 
+std::string percent(double share) { return rounded_text(100 * share) + " %"; }
+
 } // namespace dfdyn::tools

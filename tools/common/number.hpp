@@ -28,4 +28,7 @@ std::string formatted(const char* format, double value);
 /// Three significant digits: `0.0123`, `8.02`, `1.2e+04`.
 std::string rounded_text(double value);
 
+/// A share in percent, three significant digits: `12.3 %`.
+std::string percent(double share);
+
 } // namespace dfdyn::tools

@@ -61,7 +61,7 @@ class LearnedFeedForward {
     int lags_;
     std::unique_ptr<HostEstimator> learner_, follower_;
     const MonitoredEstimator* monitor_ = nullptr; ///< the learner, if it is watched
-    Budget share_;             ///< of a control tick
+    Budget share_;                                ///< of a control tick
     std::int64_t begin_ns_ = 0;
     bool in_progress_ = false; ///< the learner knows more than `weights_`
     std::vector<float> weights_, prediction_;

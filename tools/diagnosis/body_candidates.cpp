@@ -43,7 +43,7 @@ Candidate payload(const DiagnosisSignals& signals) {
         return coefficients[0] > 0 &&
                coefficients.tail(coefficients.size() - 1).norm() <= farthest * coefficients[0];
     };
-    result.shapes = {{{0}, within_reach, 0}, {{0, 1, 2, 3}, within_reach, 0}};
+    result.shapes = {{{0}, within_reach, 0}, {{0, 1, 2, 3}, within_reach, 0, 3}};
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
         std::vector<EffectParameter> values{{"mass", "kg", coefficients[0]}};
         constexpr std::array names{"com_x", "com_y", "com_z"};
@@ -71,12 +71,14 @@ Candidate link_inertia(const DiagnosisSignals& signals, Eigen::Index number) {
     result.columns = mass_columns(signals, number, centre, Eigen::Isometry3d::Identity());
     const auto body = [mass](double delta_mass, const Eigen::VectorXd& moments) {
         constexpr double farthest = 0.3; // m that a centre of mass is off
-        return mass + delta_mass > 0 && moments.norm() <= farthest * (mass + delta_mass);
+        constexpr double heaviest = 5;   // times what the robot's file says
+        return mass + delta_mass > 0 && mass + delta_mass <= heaviest * mass &&
+               moments.norm() <= farthest * (mass + delta_mass);
     };
     result.shapes = {
         {{0}, [body](const Eigen::VectorXd& c) { return body(c[0], Eigen::VectorXd::Zero(3)); }, 0},
         {{1, 2, 3}, [body](const Eigen::VectorXd& c) { return body(0, c); }, 0},
-        {{0, 1, 2, 3}, [body](const Eigen::VectorXd& c) { return body(c[0], c.tail(3)); }, 0}};
+        {{0, 1, 2, 3}, [body](const Eigen::VectorXd& c) { return body(c[0], c.tail(3)); }, 0, 3}};
     result.parameters = [mass](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
         const bool with_mass = shape.columns.front() == 0;
         const double delta_mass = with_mass ? coefficients[0] : 0;

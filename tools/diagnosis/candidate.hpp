@@ -30,15 +30,17 @@ using CoefficientRule = std::function<bool(const Eigen::VectorXd& coefficients)>
 struct EffectShape {
     std::vector<std::size_t> columns; ///< of the candidate
     CoefficientRule allowed;
-    double value = 0; ///< the shape's own parameter, where the effect has one
+    double value = 0;   ///< the shape's own parameter, where the effect has one
+    double bounded = 0; ///< how many of the coefficients can only be small where another one is
 };
 
-/// A named cause at a place: an effect of the catalogue. Its contribution is linear in the coefficients of
-/// one of its shapes.
+/// A named cause at a place: an effect of the catalogue; or, without a name, what an output would show if it
+/// depended on some inputs. Its contribution is linear in the coefficients of one of its shapes.
 struct Candidate {
     std::string effect, where;
-    std::string detail;     ///< tells candidates of the same effect and place apart: axes, times
-    std::string span;       ///< candidates of one span add the same columns in the end; empty: none
+    std::vector<std::string> inputs; ///< of a candidate without a name
+    std::string detail;              ///< tells candidates of the same effect and place apart: axes, times
+    std::string span;                ///< candidates of one span add the same columns in the end; empty: none
     std::string family;     ///< of several candidates of one family at most one is chosen; empty: none
     double tried = 1;       ///< of how many alternatives this one was picked beforehand
     double extra_price = 0; ///< what it must explain, in units of the evidence, because others of its kind do
@@ -51,6 +53,7 @@ struct Candidate {
     std::function<std::vector<EffectParameter>(const Eigen::VectorXd& coefficients, const EffectShape& shape)>
         parameters;
 
+    bool named() const { return inputs.empty(); }
     std::string key() const { return effect + '@' + where + ' ' + detail; }
 };
 

@@ -64,7 +64,7 @@ void measure_on_held_out(DiagnosisWork& work, ExplanationOptions options) {
     };
     Diagnosis& diagnosis = work.diagnosis;
     diagnosis.nominal = measure(nominal_error);
-    diagnosis.extended = measure(nominal_error - earlier.all(signals));
+    diagnosis.extended = measure(nominal_error - earlier.model(signals));
     diagnosis.heldout_from_s = signals.measured.time_s[first];
     diagnosis.heldout_to_s = signals.measured.time_s[signals.rows() - 1];
 }
@@ -101,7 +101,9 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     work.diagnosis.findings =
         findings_of(*signals, work.explanation, work.measured, work.diagnosis.output_names);
     const Eigen::MatrixXd rest = nominal_error - work.explanation.all(*signals);
-    work.diagnosis.unexplained = unexplained_rest(*signals, work.measured, rest, work.explanation.noise);
+    work.diagnosis.unexplained = unnamed_dependences(*signals, work.measured, work.explanation);
+    add_rest(work.diagnosis.unexplained,
+             unexplained_rest(*signals, work.measured, rest, work.explanation.noise));
     if (options.measure) {
         measure_on_held_out(work, how);
     }

@@ -2,6 +2,7 @@
 #include "tools/diagnosis/diagnosis_page.hpp"
 
 #include "tools/build_flags.hpp"
+#include "tools/common/number.hpp"
 #include "tools/diagnosis/error_sections.hpp"
 #include "tools/diagnosis/finding_section.hpp"
 #include "tools/diagnosis/finding_words.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/diagnosis_summary.hpp"
 
+#include "tools/common/number.hpp"
 #include "tools/diagnosis/finding_words.hpp"
 
 #include <algorithm>

@@ -38,13 +38,15 @@ void EffectRegression::set_noise(Eigen::MatrixXd spectra, const std::vector<Eige
     }
 }
 
-Eigen::VectorXd EffectRegression::weighed(const Eigen::MatrixXd& rows, Eigen::Index output) const {
-    const Eigen::MatrixXd result =
-        weight_[static_cast<std::size_t>(output)].cwiseProduct(rows.leftCols(fitted_frames_));
+Eigen::VectorXd EffectRegression::weighed(const Eigen::MatrixXd& rows, Eigen::Index output,
+                                          Eigen::Index first, Eigen::Index count) const {
+    const Eigen::MatrixXd result = weight_[static_cast<std::size_t>(output)]
+                                       .middleCols(first, count)
+                                       .cwiseProduct(rows.middleCols(first, count));
     return result.reshaped();
 }
 
-WeighedSums EffectRegression::weighed_sums() const {
+WeighedSums EffectRegression::weighed_sums(Eigen::Index first, Eigen::Index frames) const {
     WeighedSums sums{Eigen::MatrixXd::Zero(columns(), columns()), Eigen::VectorXd::Zero(columns()), 0};
     for (Eigen::Index output = 0; output < outputs(); ++output) {
         std::vector<Eigen::Index> acting;
@@ -54,12 +56,13 @@ WeighedSums EffectRegression::weighed_sums() const {
             }
         }
         const auto count = static_cast<Eigen::Index>(acting.size());
-        Eigen::MatrixXd matrix(rows_.bins() * fitted_frames_, count);
+        Eigen::MatrixXd matrix(rows_.bins() * frames, count);
         for (Eigen::Index i = 0; i < count; ++i) {
             const auto column = static_cast<std::size_t>(acting[static_cast<std::size_t>(i)]);
-            matrix.col(i) = weighed(*columns_[column]->on(output), output);
+            matrix.col(i) = weighed(*columns_[column]->on(output), output, first, frames);
         }
-        const Eigen::VectorXd wanted = weighed(target_[static_cast<std::size_t>(output)], output);
+        const Eigen::VectorXd wanted =
+            weighed(target_[static_cast<std::size_t>(output)], output, first, frames);
         Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(count, count);
         gram.selfadjointView<Eigen::Lower>().rankUpdate(matrix.transpose());
         gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();

@@ -53,7 +53,9 @@ class EffectRegression {
     void set_noise(Eigen::MatrixXd spectra, const std::vector<Eigen::MatrixXd>& unrest);
     const Eigen::MatrixXd& noise() const noexcept { return noise_; }
 
-    WeighedSums weighed_sums() const;
+    WeighedSums weighed_sums() const { return weighed_sums(0, fitted_frames_); }
+    /// Of `count` frames from `first` on.
+    WeighedSums weighed_sums(Eigen::Index first, Eigen::Index count) const;
 
     /// Per output, the weights of squares (bins x fitted frames).
     Eigen::MatrixXd weight(Eigen::Index output) const {
@@ -64,7 +66,8 @@ class EffectRegression {
     Eigen::MatrixXd residual(Eigen::Index output, const Eigen::VectorXd& coefficients) const;
 
   private:
-    Eigen::VectorXd weighed(const Eigen::MatrixXd& rows, Eigen::Index output) const;
+    Eigen::VectorXd weighed(const Eigen::MatrixXd& rows, Eigen::Index output, Eigen::Index first,
+                            Eigen::Index count) const;
 
     const SpectralRows& rows_;
     Eigen::Index fitted_frames_;

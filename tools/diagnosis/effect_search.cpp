@@ -23,10 +23,10 @@ const SearchCandidate::Shape& shape_of(const SearchProblem& problem, const Chose
 /// What a candidate costs for being one of many, of many shapes, with so many coefficients.
 double price(const SearchProblem& problem, const ChosenShape& chosen) {
     const SearchCandidate& candidate = problem.candidates[chosen.candidate];
-    const auto parameters = static_cast<double>(candidate.shapes[chosen.shape].columns.size());
+    const SearchCandidate::Shape& shape = candidate.shapes[chosen.shape];
+    const double parameters = static_cast<double>(shape.columns.size()) - 0.5 * shape.bounded;
     return candidate.extra_price +
-           std::log(static_cast<double>(problem.candidates.size() * candidate.shapes.size()) *
-                    candidate.tried) +
+           std::log(candidate.rivals * static_cast<double>(candidate.shapes.size()) * candidate.tried) +
            0.5 * parameters * std::log1p(candidate.rows);
 }
 
@@ -150,6 +150,21 @@ EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShap
         at += count;
     }
     return fit;
+}
+
+double held_out_score(const SearchProblem& problem, const std::vector<WeighedSums>& blocks,
+                      const std::vector<ChosenShape>& chosen) {
+    const std::vector<Eigen::Index> columns = columns_of(problem, chosen);
+    const Eigen::MatrixXd system = system_of(problem, columns);
+    const Eigen::VectorXd moment = problem.sums.moment(columns);
+    double score = 0;
+    for (const WeighedSums& block : blocks) {
+        const Eigen::MatrixXd own = block.gram(columns, columns);
+        const Eigen::VectorXd own_moment = block.moment(columns);
+        const Eigen::VectorXd others = (system - own).ldlt().solve(moment - own_moment);
+        score += others.dot(own_moment) - 0.5 * others.dot(own * others);
+    }
+    return score;
 }
 
 std::vector<Replacement> additions(const SearchProblem& problem, const std::vector<ChosenShape>& chosen) {

@@ -14,9 +14,11 @@ struct SearchCandidate {
     struct Shape {
         std::vector<Eigen::Index> columns; ///< of the normal equations
         CoefficientRule allowed;
+        double bounded = 0; ///< how many of the coefficients are bounded by another one: half of one each
     };
     std::vector<Shape> shapes;
     std::size_t family = 0; ///< of those with the same number, one at most; 0: of none
+    double rivals = 1;      ///< how many candidates there are of its sort
     double tried = 1;       ///< how many alternatives it was picked from beforehand
     double extra_price = 0; ///< what it costs beside
     double rows = 1;        ///< how many rows it acts on: what its parameters are paid for by
@@ -52,8 +54,13 @@ struct EffectFit {
 };
 
 /// Evidence of unit-information priors (Schwarz) for the effects' coefficients, of the given deviations for
-/// the nuisance; one in so many candidates is there, and any of its shapes is as likely.
+/// the nuisance; one in so many candidates of a sort is there, and any of its shapes is as likely.
 EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShape>& chosen);
+
+/// How well what fits all other blocks of rows predicts each, summed over the blocks: half the fall of the
+/// sum of squares. `blocks`: those that the problem's sums are the sum of.
+double held_out_score(const SearchProblem& problem, const std::vector<WeighedSums>& blocks,
+                      const std::vector<ChosenShape>& chosen);
 
 /// `chosen` less the one at `index`.
 std::vector<ChosenShape> without(std::vector<ChosenShape> chosen, std::size_t index);

@@ -137,7 +137,7 @@ PageSection comparison_section(const DiagnosisWork& work) {
     const std::vector<Eigen::Index> rows = shown_rows(work);
     const Eigen::MatrixXd measured = in_output_units(work, work.measured);
     const Eigen::MatrixXd nominal = in_output_units(work, work.signals->nominal);
-    const Eigen::MatrixXd extended = nominal + in_output_units(work, work.explanation.all(*work.signals));
+    const Eigen::MatrixXd extended = nominal + in_output_units(work, work.explanation.model(*work.signals));
     for (Eigen::Index output = 0; output < measured.cols(); ++output) {
         const std::string& name = work.diagnosis.output_names[static_cast<std::size_t>(output)];
         XyChart chart{name, "time (s)", std::string(name).append(" (").append(output_unit(name)).append(")")};
@@ -159,7 +159,7 @@ PageSection comparison_section(const DiagnosisWork& work) {
 PageSection rest_section(const DiagnosisWork& work) {
     PageSection section{"What is left", {}, {}, {}};
     const Eigen::MatrixXd nominal = in_output_units(work, work.measured - work.signals->nominal);
-    const Eigen::MatrixXd rest = nominal - in_output_units(work, work.explanation.all(*work.signals));
+    const Eigen::MatrixXd rest = nominal - in_output_units(work, work.explanation.model(*work.signals));
     section.tables.push_back(rest_table(work, rest));
     section.paragraphs.emplace_back(
         work.diagnosis.unexplained.empty()

@@ -18,6 +18,7 @@ namespace {
 
 constexpr int most_rounds = 10;
 constexpr int white_rounds = 3;
+constexpr Eigen::Index validation_blocks = 6;
 constexpr double mass_deviation = 0.058; ///< of a link's relative mass error that is uniform within ±10 %
 
 /// A candidate with its columns as spectral rows.
@@ -89,6 +90,9 @@ class Search {
                 lasting_.emplace_back(rows_, std::move(candidate));
             }
         }
+        for (Candidate& candidate : dependence_candidates(signals_, measured - signals.nominal)) {
+            lasting_.emplace_back(rows_, std::move(candidate));
+        }
         gather({});
         at_.fit = fit_effects(at_.problem, {});
         estimate_noise(true);
@@ -114,19 +118,26 @@ class Search {
             last = std::move(keys);
         }
         decide_masses();
+        keep_what_predicts();
+        fit_named();
         return std::move(at_);
     }
 
   private:
     void add_nuisance();
     std::vector<Candidate> demanding_as_chosen(std::vector<Candidate> contacts) const;
+    Eigen::VectorXd delays() const;
     std::vector<Entry> passing() const;
     void refine();
     void gather(std::vector<Entry> passing);
     void estimate_noise(bool white);
     void decide_masses();
+    std::vector<WeighedSums> sums_of_blocks() const;
+    void keep_what_predicts();
+    void fit_named();
     std::vector<std::string> chosen_keys() const;
     Eigen::VectorXd all_coefficients() const;
+    Eigen::VectorXd of_named(Eigen::VectorXd coefficients) const;
 
     const DiagnosisSignals& signals_;
     const ExplanationOptions& options_;
@@ -169,6 +180,20 @@ std::vector<Candidate> Search::demanding_as_chosen(std::vector<Candidate> contac
     return contacts;
 }
 
+/// Per output, the delay that the model at hand has there.
+Eigen::VectorXd Search::delays() const {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(signals_.outputs());
+    for (std::size_t i = 0; i < at_.chosen.size(); ++i) {
+        const Candidate& candidate = at_.candidates[at_.chosen[i].candidate];
+        if (candidate.effect == "delay") {
+            for (const EffectColumn::Part& part : candidate.columns.front().parts) {
+                result[part.output] = at_.fit.coefficients[at_.first_column(i)];
+            }
+        }
+    }
+    return result;
+}
+
 /// Candidates that depend on the model at hand. Ripples and contacts that were chosen stay as they are.
 std::vector<Entry> Search::passing() const {
     std::vector<Candidate> found;
@@ -179,7 +204,7 @@ std::vector<Entry> Search::passing() const {
             }
         }
     };
-    add(sensor_candidates(signals_, signals_.nominal + at_.effects(signals_, is_of_the_arm),
+    add(sensor_candidates(signals_, signals_.nominal + at_.effects(signals_, is_of_the_arm), delays(),
                           options_.gains_known));
     if (!signals_.wrench()) {
         add(drift_candidates(signals_, at_.effects(signals_, is_friction)));
@@ -189,9 +214,11 @@ std::vector<Entry> Search::passing() const {
             add({at_.candidates[one.candidate]});
         }
     }
-    const Eigen::MatrixXd weighed = weighed_residual(regression_, all_coefficients());
-    add(scan_ripples(signals_, regression_, weighed));
-    add(demanding_as_chosen(scan_contacts(signals_, regression_, weighed)));
+    const Eigen::VectorXd coefficients = all_coefficients();
+    // a free function of the position can hide a ripple
+    add(scan_ripples(signals_, regression_, weighed_residual(regression_, of_named(coefficients))));
+    add(demanding_as_chosen(
+        scan_contacts(signals_, regression_, weighed_residual(regression_, coefficients))));
     std::vector<Entry> result;
     for (Candidate& candidate : found) {
         result.emplace_back(rows_, std::move(candidate));
@@ -229,7 +256,7 @@ void Search::gather(std::vector<Entry> passing) {
         candidate.extra_price = entry.candidate.extra_price;
         candidate.rows = static_cast<double>(rows_.bins() * regression_.fitted_frames());
         for (const EffectShape& shape : entry.candidate.shapes) {
-            SearchCandidate::Shape one{{}, shape.allowed};
+            SearchCandidate::Shape one{{}, shape.allowed, shape.bounded};
             for (const std::size_t column : shape.columns) {
                 one.columns.push_back(static_cast<Eigen::Index>(columns.size() + column));
             }
@@ -241,6 +268,12 @@ void Search::gather(std::vector<Entry> passing) {
     };
     std::ranges::for_each(lasting_, add);
     std::ranges::for_each(passing, add);
+    const auto named = std::ranges::count_if(at_.candidates, &Candidate::named);
+    for (std::size_t i = 0; i < at_.candidates.size(); ++i) {
+        const auto all = std::ssize(at_.candidates);
+        at_.problem.candidates[i].rivals =
+            static_cast<double>(at_.candidates[i].named() ? named : all - named);
+    }
     at_.problem.nuisance.clear();
     for (std::size_t i = 0; i < nuisance_.size(); ++i) {
         at_.problem.nuisance.push_back({static_cast<Eigen::Index>(i), nuisance_deviation_[i]});
@@ -260,6 +293,15 @@ Eigen::VectorXd Search::all_coefficients() const {
     Eigen::VectorXd all = Eigen::VectorXd::Zero(regression_.columns());
     all(at_.fit.columns) = at_.fit.coefficients;
     return all;
+}
+
+Eigen::VectorXd Search::of_named(Eigen::VectorXd coefficients) const {
+    for (const ChosenShape& one : at_.chosen) {
+        if (!at_.candidates[one.candidate].named()) {
+            coefficients(at_.problem.candidates[one.candidate].shapes[one.shape].columns).setZero();
+        }
+    }
+    return coefficients;
 }
 
 void Search::estimate_noise(bool white) {
@@ -308,6 +350,52 @@ void Search::decide_masses() {
     }
 }
 
+std::vector<WeighedSums> Search::sums_of_blocks() const {
+    std::vector<WeighedSums> blocks;
+    const Eigen::Index frames = regression_.fitted_frames();
+    for (Eigen::Index block = 0; block < validation_blocks; ++block) {
+        const Eigen::Index first = block * frames / validation_blocks;
+        blocks.push_back(regression_.weighed_sums(first, (block + 1) * frames / validation_blocks - first));
+    }
+    return blocks;
+}
+
+/// Drops, one after the other, lasting effects without which blocks of time are predicted no worse by what
+/// fits the other blocks.
+void Search::keep_what_predicts() {
+    if (regression_.fitted_frames() < validation_blocks) {
+        return; // too short a recording to leave any of it out
+    }
+    const std::vector<WeighedSums> blocks = sums_of_blocks();
+    while (true) {
+        const double all = held_out_score(at_.problem, blocks, at_.chosen);
+        std::size_t worst = at_.chosen.size();
+        double best = all;
+        for (std::size_t i = 0; i < at_.chosen.size(); ++i) {
+            if (at_.candidates[at_.chosen[i].candidate].effect == "external_contact") {
+                continue; // an event is in one block only
+            }
+            const double others = held_out_score(at_.problem, blocks, without(at_.chosen, i));
+            if (others >= best) {
+                best = others;
+                worst = i;
+            }
+        }
+        if (worst == at_.chosen.size()) {
+            break;
+        }
+        at_.chosen = without(at_.chosen, worst);
+    }
+    at_.fit = fit_effects(at_.problem, at_.chosen);
+}
+
+void Search::fit_named() {
+    const auto has_name = [this](const ChosenShape& one) { return at_.candidates[one.candidate].named(); };
+    const auto unnamed = std::ranges::stable_partition(at_.chosen, has_name).begin();
+    at_.fit = fit_effects(at_.problem, at_.chosen);
+    at_.named = fit_effects(at_.problem, {at_.chosen.begin(), unnamed});
+}
+
 void accumulate(Eigen::MatrixXd& sum, double coefficient, const EffectColumn& column) {
     for (const EffectColumn::Part& part : column.parts) {
         sum.col(part.output) += coefficient * part.series;
@@ -327,37 +415,53 @@ Eigen::Index Explanation::first_column(std::size_t chosen_index) const {
 
 Eigen::VectorXd Explanation::coefficients(std::size_t chosen_index) const {
     const Eigen::Index first = first_column(chosen_index);
-    return fit.coefficients.segment(first, first_column(chosen_index + 1) - first);
+    return named.coefficients.segment(first, first_column(chosen_index + 1) - first);
 }
 
 Eigen::MatrixXd Explanation::covariance(std::size_t chosen_index) const {
     const Eigen::Index first = first_column(chosen_index);
     const Eigen::Index count = first_column(chosen_index + 1) - first;
-    return fit.covariance.block(first, first, count, count);
+    return named.covariance.block(first, first, count, count);
 }
 
-Eigen::MatrixXd Explanation::effects(const DiagnosisSignals& signals,
-                                     const std::function<bool(const Candidate&)>& wanted) const {
+Eigen::MatrixXd Explanation::of_fit(const DiagnosisSignals& signals, const EffectFit& of,
+                                    const std::function<bool(const Candidate&)>& wanted) const {
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(signals.rows(), signals.outputs());
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         const Candidate& candidate = candidates[chosen[i].candidate];
         if (!wanted(candidate)) {
             continue;
         }
-        const Eigen::VectorXd values = coefficients(i);
-        for (Eigen::Index k = 0; k < values.size(); ++k) {
-            const std::size_t column = candidate.shapes[chosen[i].shape].columns[static_cast<std::size_t>(k)];
-            accumulate(sum, values[k], candidate.columns[column]);
+        const std::vector<std::size_t>& columns = candidate.shapes[chosen[i].shape].columns;
+        const Eigen::Index first = first_column(i);
+        for (std::size_t k = 0; k < columns.size(); ++k) {
+            accumulate(sum, of.coefficients[first + static_cast<Eigen::Index>(k)],
+                       candidate.columns[columns[k]]);
         }
     }
     return sum;
 }
 
-Eigen::MatrixXd Explanation::all(const DiagnosisSignals& signals) const {
-    Eigen::MatrixXd sum = effects(signals, [](const Candidate&) { return true; });
+void Explanation::add_nuisance(Eigen::MatrixXd& sum, const EffectFit& of) const {
     for (std::size_t i = 0; i < nuisance.size(); ++i) {
-        accumulate(sum, fit.coefficients[static_cast<Eigen::Index>(i)], nuisance[i]);
+        accumulate(sum, of.coefficients[static_cast<Eigen::Index>(i)], nuisance[i]);
     }
+}
+
+Eigen::MatrixXd Explanation::effects(const DiagnosisSignals& signals,
+                                     const std::function<bool(const Candidate&)>& wanted) const {
+    return of_fit(signals, fit, wanted);
+}
+
+Eigen::MatrixXd Explanation::all(const DiagnosisSignals& signals) const {
+    Eigen::MatrixXd sum = of_fit(signals, fit, [](const Candidate&) { return true; });
+    add_nuisance(sum, fit);
+    return sum;
+}
+
+Eigen::MatrixXd Explanation::model(const DiagnosisSignals& signals) const {
+    Eigen::MatrixXd sum = of_fit(signals, named, &Candidate::named);
+    add_nuisance(sum, named);
     return sum;
 }
 

@@ -20,24 +20,32 @@ struct ExplanationOptions {
 /// What explains the difference between a measurement and the rigid body.
 struct Explanation {
     std::vector<Candidate> candidates;
-    std::vector<ChosenShape> chosen; ///< of `candidates`
+    std::vector<ChosenShape> chosen; ///< of `candidates`, those with a name first
     SearchProblem problem;
-    EffectFit fit;
+    EffectFit fit;   ///< of all of them
+    EffectFit named; ///< of those with a name alone: nothing unnamed may bend their coefficients
     bool masses_uncertain = false; ///< every link's mass is a little off: the first columns of the nuisance
     Eigen::MatrixXd noise;         ///< bins x m: spectra of what is left
     std::vector<EffectColumn> nuisance;
 
-    /// T x m: what those of the chosen effects that are `wanted` add to the rigid body's outputs.
+    /// T x m: what those of the chosen effects that are `wanted` add to the rigid body's outputs, by `fit`.
     Eigen::MatrixXd effects(const DiagnosisSignals& signals,
                             const std::function<bool(const Candidate&)>& wanted) const;
-    /// T x m: all effects and the nuisance.
+    /// T x m: all effects and the nuisance, by `fit`.
     Eigen::MatrixXd all(const DiagnosisSignals& signals) const;
-    /// The coefficients of a chosen candidate's shape, and their covariance.
+    /// T x m: the named effects and the nuisance, by `named`.
+    Eigen::MatrixXd model(const DiagnosisSignals& signals) const;
+    /// The coefficients of a chosen candidate's shape with a name, and their covariance, by `named`.
     Eigen::VectorXd coefficients(std::size_t chosen_index) const;
     Eigen::MatrixXd covariance(std::size_t chosen_index) const;
 
+    /// Of both fits: where a chosen candidate's columns begin.
+    Eigen::Index first_column(std::size_t chosen_index) const;
+
   private:
-    Eigen::Index first_column(std::size_t chosen_index) const; ///< of `fit`
+    Eigen::MatrixXd of_fit(const DiagnosisSignals& signals, const EffectFit& of,
+                           const std::function<bool(const Candidate&)>& wanted) const;
+    void add_nuisance(Eigen::MatrixXd& sum, const EffectFit& of) const;
 };
 
 /// Searches among all candidates at once, in rounds: the noise is what the model at hand leaves, candidates

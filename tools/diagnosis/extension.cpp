@@ -67,6 +67,9 @@ Extension extension_of(const DiagnosisWork& work) {
     const Explanation& explanation = work.explanation;
     for (std::size_t i = 0; i < explanation.chosen.size(); ++i) {
         const Candidate& candidate = explanation.candidates[explanation.chosen[i].candidate];
+        if (!candidate.named()) {
+            continue;
+        }
         const EffectShape& shape = candidate.shapes[explanation.chosen[i].shape];
         const Eigen::VectorXd coefficients = explanation.coefficients(i);
         const Eigen::VectorXd deviations = explanation.covariance(i).diagonal().cwiseMax(0).cwiseSqrt();

@@ -18,8 +18,6 @@ std::string confidence_text(double confidence) {
     return confidence > 0.99 ? "> 0.99" : formatted("%.2f", confidence);
 }
 
-std::string percent(double share) { return rounded_text(100 * share) + " %"; }
-
 std::optional<std::string> axis_of(const FoundParameter& parameter) {
     if (parameter.name != "axis" && parameter.name != "from_axis" && parameter.name != "to_axis") {
         return std::nullopt;

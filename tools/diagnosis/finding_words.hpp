@@ -12,9 +12,6 @@ namespace dfdyn::tools {
 /// Two decimals, and no certainty: `> 0.99` above that.
 std::string confidence_text(double confidence);
 
-/// `12.3 %`.
-std::string percent(double share);
-
 /// The axis of an F/T sensor that a parameter stands for; none for a parameter that is a quantity.
 std::optional<std::string> axis_of(const FoundParameter& parameter);
 

@@ -14,11 +14,13 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr double tie = 3; ///< odds of 20 to 1: closer than this the data cannot tell two causes apart
-constexpr double price_of_shapes = 12; ///< what the three coefficients of a centre of mass cost
-constexpr std::size_t listed = 3;      ///< alternatives that a finding tells of
+constexpr double price_of_shapes = 6; ///< what the three coefficients of a centre of mass cost
+constexpr std::size_t listed = 3;     ///< alternatives that a finding tells of
 constexpr double two_sided_95 = 1.96;
 constexpr double coloured =
     1.7; ///< how much wider intervals must be than their formula says: measured, docs/diagnosis-panel.md
+constexpr double model_error =
+    0.04; ///< of a parameter: what no noise explains, where effects are large; measured, too
 
 /// Intervals by the gradient of each parameter with respect to the coefficients.
 std::vector<FoundParameter> found_parameters(const Candidate& candidate, const EffectShape& shape,
@@ -39,7 +41,9 @@ std::vector<FoundParameter> found_parameters(const Candidate& candidate, const E
         (gradient * covariance * gradient.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
     std::vector<FoundParameter> result;
     for (std::size_t k = 0; k < values.size(); ++k) {
-        const double reach = two_sided_95 * coloured * deviation[static_cast<Eigen::Index>(k)];
+        const double deviation_of_all =
+            std::hypot(coloured * deviation[static_cast<Eigen::Index>(k)], model_error * values[k].value);
+        const double reach = two_sided_95 * deviation_of_all;
         result.push_back({values[k].name, values[k].unit, values[k].value, values[k].value - reach,
                           values[k].value + reach});
     }
@@ -56,7 +60,7 @@ void weigh_alternatives(Finding& finding, const Explanation& explanation, std::s
     for (const Replacement& other : additions(explanation.problem, others)) {
         const Candidate& candidate = explanation.candidates[other.with.candidate];
         const double margin = own - other.score;
-        if (other.with.candidate == explanation.chosen[index].candidate ||
+        if (!candidate.named() || other.with.candidate == explanation.chosen[index].candidate ||
             (candidate.effect == finding.effect && candidate.where == finding.where)) {
             continue;
         }
@@ -129,6 +133,9 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
     for (std::size_t i = 0; i < explanation.chosen.size(); ++i) {
         const std::size_t number = explanation.chosen[i].candidate;
         const Candidate& candidate = explanation.candidates[number];
+        if (!candidate.named()) {
+            continue;
+        }
         const EffectShape& shape = candidate.shapes[explanation.chosen[i].shape];
         Finding finding;
         finding.effect = candidate.effect;

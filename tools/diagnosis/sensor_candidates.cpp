@@ -11,6 +11,7 @@ namespace dfdyn::tools {
 
 namespace {
 
+constexpr double longest_delay_s = 0.25;
 constexpr std::array<const char*, 6> axes{"fx", "fy", "fz", "mx", "my", "mz"};
 constexpr std::array<const char*, 6> axis_units{"N", "N", "N", "N·m", "N·m", "N·m"};
 
@@ -89,7 +90,8 @@ Candidate rotation(const Eigen::MatrixXd& wrench) {
     return result;
 }
 
-std::vector<Candidate> wrench_candidates(const DiagnosisSignals& signals, const Eigen::MatrixXd& modelled) {
+std::vector<Candidate> wrench_candidates(const DiagnosisSignals& signals, const Eigen::MatrixXd& modelled,
+                                         const Eigen::VectorXd& delays_s) {
     const Eigen::VectorXd elapsed = signals.measured.time_s.array() - signals.measured.time_s[0];
     std::vector<Candidate> result{per_axis("ft_bias", Eigen::VectorXd::Ones(signals.rows()), ""),
                                   per_axis("ft_drift", elapsed, "/s"), rotation(modelled)};
@@ -100,27 +102,28 @@ std::vector<Candidate> wrench_candidates(const DiagnosisSignals& signals, const 
     }
     Eigen::MatrixXd rates(modelled.rows(), 6);
     for (Eigen::Index axis = 0; axis < 6; ++axis) {
-        rates.col(axis) = -signals.rate(modelled.col(axis));
+        rates.col(axis) = signals.per_delay(modelled.col(axis), delays_s[axis]);
     }
-    result.push_back(
-        single_column("delay", "ft_sensor", on_outputs(rates), positive_up_to(0.1), "delay", "s"));
+    result.push_back(single_column("delay", "ft_sensor", on_outputs(rates), positive_up_to(longest_delay_s),
+                                   "delay", "s"));
     return result;
 }
 
 } // namespace
 
 std::vector<Candidate> sensor_candidates(const DiagnosisSignals& signals, const Eigen::MatrixXd& modelled,
-                                         bool gains_known) {
+                                         const Eigen::VectorXd& delays_s, bool gains_known) {
     if (signals.wrench()) {
-        return wrench_candidates(signals, modelled);
+        return wrench_candidates(signals, modelled, delays_s);
     }
     std::vector<Candidate> result;
     for (std::size_t joint = 0; joint < signals.joints(); ++joint) {
         const auto output = static_cast<Eigen::Index>(joint);
         const std::string where = numbered("actuator", joint);
         const Eigen::VectorXd own = modelled.col(output);
-        result.push_back(single_column("delay", where, on_output(output, -signals.rate(own)),
-                                       positive_up_to(0.1), "delay", "s"));
+        result.push_back(single_column("delay", where,
+                                       on_output(output, signals.per_delay(own, delays_s[output])),
+                                       positive_up_to(longest_delay_s), "delay", "s"));
         if (gains_known) {
             Candidate gain = single_column("actuator_gain", where, on_output(output, own), up_to(0.8));
             gain.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {

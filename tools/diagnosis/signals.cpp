@@ -4,6 +4,7 @@
 #include "tools/diagnosis/low_pass_kernel.hpp"
 #include "tools/robot/regressor.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -13,6 +14,29 @@ Eigen::VectorXd DiagnosisSignals::rate(const Eigen::VectorXd& series) const {
     for (const Stretch& stretch : measured.stretches) {
         result.segment(stretch.first, stretch.count) =
             differentiated(series.segment(stretch.first, stretch.count)) * measured.rate_hz;
+    }
+    return result;
+}
+
+Eigen::VectorXd DiagnosisSignals::per_delay(const Eigen::VectorXd& series, double delay_s) const {
+    const Eigen::VectorXd slope = rate(series);
+    if (delay_s <= 0) {
+        return -slope;
+    }
+    const double step_s = 1 / measured.rate_hz;
+    Eigen::VectorXd result(series.size());
+    for (const Stretch& stretch : measured.stretches) {
+        for (Eigen::Index row = stretch.first; row < stretch.first + stretch.count; ++row) {
+            const double at = std::max(0.0, static_cast<double>(row - stretch.first) - delay_s / step_s);
+            const auto before = stretch.first + std::min(static_cast<Eigen::Index>(at), stretch.count - 2);
+            const double part = at - static_cast<double>(before - stretch.first);
+            // Hermite's cubic between two rows, by their derivatives
+            const double rise = series[before + 1] - series[before];
+            const double bend =
+                part * (1 - part) *
+                ((1 - part) * (step_s * slope[before] - rise) - part * (step_s * slope[before + 1] - rise));
+            result[row] = (series[before] + part * rise + bend - series[row]) / delay_s;
+        }
     }
     return result;
 }

@@ -25,6 +25,8 @@ struct DiagnosisSignals {
 
     /// Derivative per second, stretch by stretch.
     Eigen::VectorXd rate(const Eigen::VectorXd& series) const;
+    /// (series(t - delay) - series(t)) / delay, stretch by stretch; without a delay, minus the derivative.
+    Eigen::VectorXd per_delay(const Eigen::VectorXd& series, double delay_s) const;
     /// The outputs that a change of the true position of `joint` brings, T x m.
     Eigen::MatrixXd of_position(std::size_t joint, const Eigen::VectorXd& change) const;
     /// The outputs of a body with these ten parameters that is fixed to link `body` (0: the first that

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/unexplained.hpp"
 
+#include "tools/diagnosis/smooth_functions.hpp"
 #include "tools/diagnosis/spectral_rows.hpp"
 
 #include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -25,19 +25,6 @@ struct InputFunctions {
 };
 
 using Series = std::vector<Eigen::VectorXd>;
-
-/// Sines and cosines of an input over its range.
-Series harmonics(const Eigen::VectorXd& input, int count) {
-    const double middle = (input.maxCoeff() + input.minCoeff()) / 2;
-    const double half = (input.maxCoeff() - input.minCoeff()) / 2 + 1e-12;
-    const Eigen::ArrayXd angle = std::numbers::pi / 2 * (input.array() - middle) / half;
-    Series result;
-    for (int k = 1; k <= count; ++k) {
-        result.emplace_back((k * angle).sin());
-        result.emplace_back((k * angle).cos());
-    }
-    return result;
-}
 
 InputFunctions functions(const SpectralRows& rows, std::vector<std::string> names, const Series& series) {
     InputFunctions result{std::move(names), {}};
@@ -135,7 +122,43 @@ void list_inputs(Unexplained& entry, const std::vector<std::string>& inputs) {
     }
 }
 
+constexpr const char* no_name = "predictable, but by no cause of the catalogue";
+
+double share_of_deviation(const Eigen::VectorXd& series, const Eigen::VectorXd& measured) {
+    const Eigen::ArrayXd centred = measured.array() - measured.mean();
+    return series.norm() / centred.matrix().norm();
+}
+
 } // namespace
+
+std::vector<Unexplained> unnamed_dependences(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
+                                             const Explanation& explanation) {
+    std::vector<Unexplained> result;
+    for (const ChosenShape& one : explanation.chosen) {
+        const Candidate& candidate = explanation.candidates[one.candidate];
+        if (candidate.named()) {
+            continue;
+        }
+        const Eigen::Index output = candidate.columns.front().parts.front().output;
+        const Eigen::MatrixXd contribution = explanation.effects(
+            signals, [&](const Candidate& other) { return other.key() == candidate.key(); });
+        add_rest(result, {{output, share_of_deviation(contribution.col(output), measured.col(output)),
+                           candidate.inputs, no_name}});
+    }
+    return result;
+}
+
+void add_rest(std::vector<Unexplained>& unexplained, const std::vector<Unexplained>& rest) {
+    for (const Unexplained& one : rest) {
+        const auto same = std::ranges::find(unexplained, one.output, &Unexplained::output);
+        if (same == unexplained.end()) {
+            unexplained.push_back(one);
+        } else {
+            list_inputs(*same, one.depends_on);
+            same->nrmse = std::hypot(same->nrmse, one.nrmse);
+        }
+    }
+}
 
 std::vector<Unexplained> unexplained_rest(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
                                           const Eigen::MatrixXd& rest, const Eigen::MatrixXd& noise) {
@@ -178,9 +201,9 @@ std::vector<Unexplained> unexplained_rest(const DiagnosisSignals& signals, const
         }
         const double share =
             gains.sum() / (noise.col(output).cwiseSqrt().cwiseInverse().asDiagonal() * target).squaredNorm();
-        const Eigen::ArrayXd centred = measured.col(output).array() - measured.col(output).mean();
-        entry.nrmse = std::sqrt(std::max(0.0, share)) * rest.col(output).norm() / centred.matrix().norm();
-        entry.note = "predictable, but by no cause of the catalogue";
+        entry.nrmse =
+            std::sqrt(std::max(0.0, share)) * share_of_deviation(rest.col(output), measured.col(output));
+        entry.note = no_name;
         result.push_back(std::move(entry));
     }
     return result;

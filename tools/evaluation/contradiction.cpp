@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/evaluation/contradiction.hpp"
+#include "tools/common/quantile.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +12,7 @@ namespace {
 
 constexpr double merged_below_s = 0.25;
 constexpr double margin = 3;
-constexpr double quantile = 0.999;
+constexpr double ordinary_share = 0.999;
 constexpr double patience_s = 1;
 
 std::vector<double> settled_innovations(const TrainedModel& model, std::span<const Recording> recordings,
@@ -54,7 +55,7 @@ void calibrate_innovation_limit(TrainedModel& model, std::span<const Recording> 
     model.limits.innovation_patience = static_cast<int>(std::ceil(patience_s / model.sample_period_s));
     const std::vector<double> innovations = settled_innovations(model, recordings, from_prior);
     if (!innovations.empty()) {
-        model.limits.innovation = margin * quantile_of(innovations, quantile);
+        model.limits.innovation = margin * quantile(innovations, ordinary_share);
     }
 }
 

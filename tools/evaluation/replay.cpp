@@ -2,6 +2,7 @@
 #include "tools/evaluation/replay.hpp"
 
 #include "tools/common/error.hpp"
+#include "tools/common/quantile.hpp"
 #include "tools/common/text.hpp"
 
 #include <algorithm>
@@ -167,15 +168,7 @@ double median_horizon_index(const ReplayedRecording& replayed, std::size_t outpu
             values.push_back(index.epsilon[output]);
         }
     }
-    return values.empty() ? std::numeric_limits<double>::quiet_NaN() : quantile_of(std::move(values), 0.5);
-}
-
-double quantile_of(std::vector<double> values, double quantile) {
-    const auto rank =
-        static_cast<std::ptrdiff_t>(std::ceil(quantile * static_cast<double>(values.size()))) - 1;
-    const auto position = values.begin() + std::max<std::ptrdiff_t>(rank, 0);
-    std::ranges::nth_element(values, position);
-    return *position;
+    return median(std::move(values));
 }
 
 } // namespace dfdyn::tools

@@ -86,7 +86,4 @@ double share_within_two_deviations(const ReplayedRecording& replayed, std::size_
 double median_horizon_index(const ReplayedRecording& replayed, std::size_t output, double from_s,
                             double to_s);
 
-/// The value that a share `quantile` (0 … 1) of `values` does not exceed; `values` not empty.
-double quantile_of(std::vector<double> values, double quantile);
-
 } // namespace dfdyn::tools

@@ -3,6 +3,7 @@
 
 #include "tools/build_flags.hpp"
 #include "tools/common/number.hpp"
+#include "tools/common/quantile.hpp"
 #include "tools/model/model_file.hpp"
 
 #include <algorithm>
@@ -101,9 +102,9 @@ ReplaySummary summarise(std::span<const TrainedModel> models, const HostEstimato
         }
     }
     if (!durations.empty()) {
-        summary.median_us = quantile_of(durations, 0.5);
-        summary.p99_us = quantile_of(durations, 0.99);
-        summary.longest_us = quantile_of(durations, 1);
+        summary.median_us = median(durations);
+        summary.p99_us = quantile(durations, 0.99);
+        summary.longest_us = quantile(durations, 1);
     }
     return summary;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/evaluation/run_unit.hpp"
 
+#include "tools/common/quantile.hpp"
 #include "tools/evaluation/replay.hpp"
 
 #include <algorithm>
@@ -50,8 +51,7 @@ double median_duration_us(const ReplayedRecording& replayed) {
             durations.push_back(replayed.duration_us[tick]);
         }
     }
-    return durations.empty() ? std::numeric_limits<double>::quiet_NaN()
-                             : quantile_of(std::move(durations), 0.5);
+    return median(std::move(durations));
 }
 
 /// Counts ticks of several recordings as one progress.

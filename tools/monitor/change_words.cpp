@@ -54,8 +54,9 @@ void describe_contact(const Change<float, m>& change, const MonitorSetup& setup,
     if (change.where < 0) {
         named.where = "tool";
         for (int i = 0; i < 3; ++i) {
-            named.parameters.push_back(
-                {std::string("force_") + "xyz"[i], per_current(setup) ? "N·A/(N·m)" : "N", static_cast<double>(change.size[i])});
+            named.parameters.push_back({std::string("force_") + "xyz"[i],
+                                        per_current(setup) ? "N·A/(N·m)" : "N",
+                                        static_cast<double>(change.size[i])});
         }
         return;
     }

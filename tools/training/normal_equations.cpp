@@ -18,7 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double prior_weight_least = 1e-6;
-constexpr std::size_t block_rows = 256;
+constexpr std::size_t rows_at_once = 256;
 
 /// Ages the equations by the rows' number and adds the rows, the last of them with weight 1.
 void fold_in(const TrainedModel& model, const TrainingData& data, const RowList& rows,
@@ -41,8 +41,8 @@ NormalEquations normal_equations(const TrainedModel& model, const TrainingData& 
                                  const MatrixXd& targets) {
     const Index size = 2 * static_cast<Index>(model.features.count);
     NormalEquations equations{MatrixXd::Zero(size, size), MatrixXd::Zero(size, targets.cols())};
-    for (std::size_t first = 0; first < rows.size(); first += block_rows) {
-        const std::size_t last = std::min(first + block_rows, rows.size());
+    for (std::size_t first = 0; first < rows.size(); first += rows_at_once) {
+        const std::size_t last = std::min(first + rows_at_once, rows.size());
         fold_in(model, data,
                 {rows.begin() + static_cast<std::ptrdiff_t>(first),
                  rows.begin() + static_cast<std::ptrdiff_t>(last)},

@@ -40,27 +40,68 @@ class Tape {
     std::size_t next_ = 0;
 };
 
-BusCheck checked(const BusDescription& description, const Frames& frames, std::uint64_t dropped = 0) {
-    BusCheck check(description);
-    Tape tape(frames, dropped);
-    dfdyn::hal::ReplayBus bus(tape);
+using Bus = dfdyn::hal::ReplayBus<Tape>;
+
+/// A recording whose interface was down for some of its frames, which no log tells of.
+class BrokenBus {
+  public:
+    BrokenBus(Bus& bus, std::uint64_t down_from, std::uint64_t down_to)
+        : bus_(bus), down_from_(down_from), down_to_(down_to) {}
+
+    std::span<const Frame> drain(std::span<Frame> into) noexcept {
+        const std::span<const Frame> frames = bus_.drain(into);
+        const std::uint64_t count = bus_.counters().received;
+        const bool was_down = down_;
+        down_ = count > down_from_ && count <= down_to_;
+        const std::uint64_t downs = counters_.interface_down + (down_ && !was_down ? 1 : 0);
+        counters_ = bus_.counters();
+        counters_.interface_down = downs;
+        return down_ ? frames.first(0) : frames;
+    }
+    dfdyn::hal::SendResult send(const Frame& frame) noexcept { return bus_.send(frame); }
+    std::int64_t now_ns() const noexcept { return bus_.now_ns(); }
+    dfdyn::hal::BusState state() const noexcept {
+        return down_ ? dfdyn::hal::BusState::interface_down : bus_.state();
+    }
+    const dfdyn::hal::BusCounters& counters() const noexcept { return counters_; }
+
+  private:
+    Bus& bus_;
+    std::uint64_t down_from_, down_to_;
+    bool down_ = false;
+    dfdyn::hal::BusCounters counters_;
+};
+
+template <class Watched>
+void watch(BusCheck& check, Bus& bus, Watched& watched) {
     std::array<Frame, 1> room{};
     while (!bus.ended()) {
         bus.advance_to(bus.next_stamp_ns());
-        check.take(bus, room);
+        check.take(watched, room);
     }
+}
+
+BusCheck checked(const BusDescription& description, const Frames& frames, std::uint64_t dropped = 0) {
+    BusCheck check(description);
+    Tape tape(frames, dropped);
+    Bus bus(tape);
+    watch(check, bus, bus);
     return check;
 }
 
-Names rules(const BusDescription& description, const Frames& frames, std::uint64_t dropped = 0) {
+Names rules_of(const BusCheck& check) {
     Names names;
-    for (const BusFinding& finding : bus_findings(checked(description, frames, dropped))) {
+    for (const BusFinding& finding : bus_findings(check)) {
         for (const std::string& text : {finding.what, finding.evidence, finding.confirm, finding.fix}) {
             CHECK_FALSE(text.empty());
         }
         names.insert(finding.rule);
     }
     return names;
+}
+
+Names rules(const BusDescription& description, const Frames& frames, std::uint64_t dropped = 0) {
+    return rules_of(checked(description, frames, dropped));
 }
 
 BusDescription described(const std::string& text) {
@@ -244,6 +285,45 @@ TEST_CASE("a bus that is wrong is found by its rule, and by no other") {
     Frames set_back = jumped;
     set_back.insert(set_back.end(), good.begin(), good.end());
     CHECK(rules(bus, set_back).contains("clock_jumped"));
+}
+
+TEST_CASE("an interface that went down is found, up again or not, beside what was not heard meanwhile") {
+    const BusDescription bus = icub();
+    const Frames good = sound(bus); // 4 s
+    const std::uint64_t count = good.size();
+    const auto rules_down = [&](std::uint64_t from, std::uint64_t to) {
+        BusCheck check(bus);
+        Tape tape(good);
+        Bus recording(tape);
+        BrokenBus broken(recording, from, to);
+        watch(check, recording, broken);
+        return rules_of(check);
+    };
+    CHECK(rules_down(count, count) == Names{});
+    CHECK(rules_down(count / 2, count / 2 + 4) == Names{"interface_down"});
+    CHECK(rules_down(count / 2, count / 2 + 400) == Names{"interface_down", "gaps"}); // 0.1 s
+    CHECK(rules_down(count / 2, count) == Names{"interface_down", "source_stopped"});
+}
+
+TEST_CASE("stamps that repeat or run backward are found, now and then one is not") {
+    const BusDescription bus = icub();
+    const Frames good = sound(bus);
+    const auto stamped = [&](int every, std::int64_t step_ns) {
+        Frames frames = good;
+        int count = 0;
+        std::int64_t before_ns = 0;
+        for (Frame& frame : frames) {
+            if (is_first(frame)) {
+                frame.stamp_ns = ++count % every == 0 ? before_ns + step_ns : frame.stamp_ns;
+                before_ns = frame.stamp_ns;
+            }
+        }
+        return rules(bus, frames);
+    };
+    CHECK(stamped(10, 0).contains("time_not_increasing"));
+    CHECK(stamped(10, -200'000).contains("time_not_increasing"));
+    CHECK_FALSE(stamped(10, 1).contains("time_not_increasing"));
+    CHECK_FALSE(stamped(100, 0).contains("time_not_increasing")); // of a quarter of the frames
 }
 
 TEST_CASE("the load is that of all frames, against the bit rate") {

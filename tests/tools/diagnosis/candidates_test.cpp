@@ -159,7 +159,8 @@ TEST_CASE("friction opposes the motion, keeps its direction at rest, and builds 
 
 TEST_CASE("parameters follow the catalogue's signs and units") {
     const DiagnosisSignals signals = signals_of(dfdyn::tests::icub_right_arm(), OutputKind::wrench);
-    const std::vector<Candidate> candidates = sensor_candidates(signals, signals.nominal, true);
+    const std::vector<Candidate> candidates =
+        sensor_candidates(signals, signals.nominal, VectorXd::Zero(6), true);
     const Candidate& delay = find(candidates, "delay", "ft_sensor");
     // a reading that lags by 1 ms
     const MatrixXd lagging = contribution(signals, delay, 0) * 1e-3;
@@ -173,11 +174,54 @@ TEST_CASE("parameters follow the catalogue's signs and units") {
     REQUIRE(gain != candidates.end());
     CHECK(gain->parameters(VectorXd::Constant(1, 0.2), gain->shapes[0])[0].value == Approx(1.2));
     const DiagnosisSignals torques = signals_of(dfdyn::tests::ur5(), OutputKind::joint_torque);
-    const std::vector<Candidate> actuators = sensor_candidates(torques, torques.nominal, true);
+    const std::vector<Candidate> actuators =
+        sensor_candidates(torques, torques.nominal, VectorXd::Zero(6), true);
     // true over assumed: the log has the true torque divided by it
     CHECK(find(actuators, "actuator_gain", "actuator2")
               .parameters(VectorXd::Constant(1, 0.25), EffectShape{})[0]
               .value == Approx(0.8));
-    CHECK(std::ranges::none_of(sensor_candidates(torques, torques.nominal, false),
+    CHECK(std::ranges::none_of(sensor_candidates(torques, torques.nominal, VectorXd::Zero(6), false),
                                [](const Candidate& one) { return one.effect == "actuator_gain"; }));
+}
+
+TEST_CASE("an unnamed dependence is on inputs, and no larger than what the rigid body leaves") {
+    const Robot robot = dfdyn::tests::ur5();
+    const DiagnosisSignals signals = signals_of(robot, OutputKind::joint_torque);
+    const VectorXd velocity = signals.measured.motion.velocity.col(2);
+    MatrixXd unexplained = MatrixXd::Zero(signals.rows(), 6);
+    unexplained.col(0) = 0.7 * velocity.cwiseAbs2();
+    const std::vector<Candidate> all = dependence_candidates(signals, unexplained);
+    const auto found = std::ranges::find_if(all, [](const Candidate& one) {
+        return one.where == "output1" && one.inputs == std::vector<std::string>{"qd3"};
+    });
+    REQUIRE(found != all.end());
+    CHECK_FALSE(found->named());
+    check_same(contribution(signals, *found, 0).col(0), velocity.cwiseAbs2(), 1e-12);
+    CHECK(found->shapes[0].allowed(VectorXd::Constant(1, 0.7)));
+    CHECK_FALSE(found->shapes[0].allowed(VectorXd::Constant(1, 1.4)));
+    // whatever the basis: also where its functions cancel each other
+    const auto of_position = std::ranges::find_if(all, [](const Candidate& one) {
+        return one.where == "output1" && one.inputs == std::vector<std::string>{"q1"};
+    });
+    REQUIRE(of_position != all.end());
+    const EffectShape& widest = of_position->shapes.back();
+    VectorXd coefficients = VectorXd::Ones(static_cast<Index>(widest.columns.size()));
+    MatrixXd sum = MatrixXd::Zero(signals.rows(), 6);
+    for (const std::size_t column : widest.columns) {
+        sum += contribution(signals, *of_position, column);
+    }
+    coefficients *= unexplained.col(0).norm() / sum.col(0).norm();
+    CHECK(widest.allowed(1.4 * coefficients));
+    CHECK_FALSE(widest.allowed(1.6 * coefficients));
+}
+
+TEST_CASE("what a delay adds is the series of earlier less that of now, over the delay") {
+    const DiagnosisSignals signals = signals_of(dfdyn::tests::ur5(), OutputKind::joint_torque);
+    const Eigen::ArrayXd time = signals.measured.time_s.array();
+    const VectorXd series = (7 * time).sin();
+    for (const double delay : {0.0034, 0.02, 0.083}) {
+        const VectorXd expected = ((7 * (time - delay)).sin() - (7 * time).sin()) / delay;
+        check_same(signals.per_delay(series, delay), expected, 1e-4);
+    }
+    check_same(signals.per_delay(series, 0), -7 * (7 * time).cos(), 1e-4);
 }

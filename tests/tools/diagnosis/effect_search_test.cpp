@@ -35,6 +35,7 @@ SearchProblem problem_of(const MatrixXd& columns, const VectorXd& target) {
     for (Index column = 0; column < columns.cols(); ++column) {
         SearchCandidate candidate;
         candidate.shapes.push_back({{column}, anything});
+        candidate.rivals = static_cast<double>(columns.cols());
         candidate.rows = rows;
         problem.candidates.push_back(candidate);
     }
@@ -115,4 +116,38 @@ TEST_CASE("nuisance is paid for by what it was before anything was measured") {
     system(0, 0) += 1 / (0.058 * 0.058);
     const VectorXd exact = system.ldlt().solve(columns.leftCols(2).transpose() * target);
     CHECK((fit.coefficients - exact).cwiseAbs().maxCoeff() < 1e-9);
+}
+
+TEST_CASE("the held-out score is that of each block by the least squares of all others") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const MatrixXd columns = random_columns(5, engine);
+    VectorXd target = columns.col(0) + random_columns(1, engine);
+    constexpr Index blocks = 4;
+    constexpr Index size = rows / blocks;
+    target.segment(size, size) += 0.4 * columns.col(1).segment(size, size); // in one block only
+    SearchProblem problem = problem_of(columns, target);
+    std::vector<WeighedSums> sums;
+    for (Index block = 0; block < blocks; ++block) {
+        sums.push_back(
+            problem_of(columns.middleRows(block * size, size), target.segment(block * size, size)).sums);
+    }
+    const auto expected = [&](const std::vector<Index>& chosen) {
+        double score = 0;
+        for (Index block = 0; block < blocks; ++block) {
+            MatrixXd others(rows - size, static_cast<Index>(chosen.size()));
+            VectorXd wanted(rows - size);
+            others << columns(Eigen::seqN(0, block * size), chosen),
+                columns(Eigen::seqN((block + 1) * size, rows - (block + 1) * size), chosen);
+            wanted << target.head(block * size), target.tail(rows - (block + 1) * size);
+            const VectorXd fit = others.colPivHouseholderQr().solve(wanted);
+            const VectorXd here = target.segment(block * size, size);
+            const VectorXd left = here - columns(Eigen::seqN(block * size, size), chosen) * fit;
+            score += 0.5 * (here.squaredNorm() - left.squaredNorm());
+        }
+        return score;
+    };
+    CHECK(held_out_score(problem, sums, {{0, 0}}) == Approx(expected({0})));
+    CHECK(held_out_score(problem, sums, {{0, 0}, {1, 0}}) == Approx(expected({0, 1})));
+    CHECK(held_out_score(problem, sums, {{3, 0}, {0, 0}}) == Approx(expected({3, 0})));
+    CHECK(held_out_score(problem, sums, {}) == 0);
 }

@@ -74,8 +74,8 @@ DiagnosisWork work_with(const std::shared_ptr<const DiagnosisSignals>& signals, 
     work.torque_gains = VectorXd::Ones(signals->outputs());
     work.explanation.candidates = {candidate};
     work.explanation.chosen = {{0, shape}};
-    work.explanation.fit.coefficients = coefficients;
-    work.explanation.fit.covariance = 1e-12 * MatrixXd::Identity(coefficients.size(), coefficients.size());
+    work.explanation.named.coefficients = coefficients;
+    work.explanation.named.covariance = 1e-12 * MatrixXd::Identity(coefficients.size(), coefficients.size());
     return work;
 }
 
@@ -146,8 +146,9 @@ TEST_CASE("what the extended model adds for torques is what the diagnosis' colum
     const auto signals = std::make_shared<const DiagnosisSignals>(
         diagnosis_signals(robot, OutputKind::joint_torque, swinging(robot, engine)));
     std::vector<Candidate> candidates = joint_candidates(*signals);
-    for (auto more : {body_candidates(*signals), position_candidates(*signals),
-                      sensor_candidates(*signals, signals->nominal, true)}) {
+    for (auto more :
+         {body_candidates(*signals), position_candidates(*signals),
+          sensor_candidates(*signals, signals->nominal, VectorXd::Zero(signals->outputs()), true)}) {
         candidates.insert(candidates.end(), more.begin(), more.end());
     }
     candidates.push_back(ripple_candidate(*signals, 2, {3, 40}));
@@ -165,7 +166,8 @@ TEST_CASE("what it adds for a wrench is what they say, too") {
     const Robot robot = dfdyn::tests::icub_right_arm();
     const auto signals = std::make_shared<const DiagnosisSignals>(
         diagnosis_signals(robot, OutputKind::wrench, swinging(robot, engine)));
-    std::vector<Candidate> candidates = sensor_candidates(*signals, signals->nominal, true);
+    std::vector<Candidate> candidates =
+        sensor_candidates(*signals, signals->nominal, VectorXd::Zero(signals->outputs()), true);
     for (auto more : {body_candidates(*signals), position_candidates(*signals)}) {
         candidates.insert(candidates.end(), more.begin(), more.end());
     }
@@ -193,9 +195,9 @@ TEST_CASE("columns of the same effect at the same place become one") {
             work.explanation.candidates.push_back(candidate);
         }
     }
-    work.explanation.fit.coefficients =
+    work.explanation.named.coefficients =
         VectorXd::LinSpaced(3, 1, 3); // stiffness and its offset, then the offset
-    work.explanation.fit.covariance = MatrixXd::Identity(3, 3);
+    work.explanation.named.covariance = MatrixXd::Identity(3, 3);
     const Extension extension = extension_of(work);
     REQUIRE(extension.columns.size() == 2);
     CHECK(extension.columns[0].effect.name == "joint_spring");

@@ -3,6 +3,7 @@
 #include "tests/support/seed.hpp"
 #include "tests/tools/support/small_model.hpp"
 #include "tools/common/error.hpp"
+#include "tools/common/quantile.hpp"
 #include "tools/evaluation/contradiction.hpp"
 #include "tools/evaluation/replay.hpp"
 #include "tools/evaluation/replay_csv.hpp"
@@ -87,12 +88,6 @@ TEST_CASE("the normalised error is that of its definition, over predicted ticks 
     CHECK(std::isnan(normalised_error(replayed, 1, 0, 0, 1)));
 }
 
-TEST_CASE("quantiles are order statistics") {
-    CHECK(quantile_of({3, 1, 2}, 0) == 1);
-    CHECK(quantile_of({3, 1, 2}, 0.5) == 2);
-    CHECK(quantile_of({3, 1, 2}, 1) == 3);
-}
-
 TEST_CASE("contradictions are stretches above the limit") {
     const float none = std::nanf("");
     const auto found =
@@ -118,7 +113,7 @@ TEST_CASE("the innovation limit follows the innovations of the training rows") {
     for (std::size_t tick = 4 + 1996 / 2; tick < 2000; ++tick) {
         innovations.push_back(static_cast<double>(replayed.normalised_innovation_squared[tick]));
     }
-    CHECK(model.limits.innovation == Approx(3 * quantile_of(innovations, 0.999)));
+    CHECK(model.limits.innovation == Approx(3 * quantile(innovations, 0.999)));
 }
 
 TEST_CASE("the CSV of a replay has the columns that scripts rely on") {
