@@ -2,6 +2,7 @@
 #include "tests/diagnosis/change_panel.hpp"
 
 #include "tools/common/number.hpp"
+#include "tools/common/quantile.hpp"
 #include "tools/evaluation/replay.hpp"
 
 #include <algorithm>
@@ -64,7 +65,7 @@ void add_row(std::string& table, const std::string& label, const std::vector<con
         place += score->right_place() ? 1 : 0;
     }
     const auto quantile = [&](double q) {
-        return delays.empty() ? std::string("–") : formatted("%.1f", quantile_of(delays, q));
+        return delays.empty() ? std::string("–") : formatted("%.1f", tools::quantile(delays, q));
     };
     table += "| " + label + " | " + share(delays.size(), scores.size()) + " | " + quantile(0.5) + " | " +
              quantile(0.9) + " | " + share(right, scores.size()) + " | " + share(place, scores.size()) +
