@@ -34,20 +34,6 @@ function(dfdyn_compile_strictly target)
     endif()
 endfunction()
 
-# With DFDYN_COMPILE_TOGETHER, the sources of a target in batches: most of their time is that of the headers they share.
-function(dfdyn_compile_together target)
-    if(DFDYN_COMPILE_TOGETHER)
-        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 10)
-        # Of a batch's other files, these warnings are beside the point; the ordinary build has them.
-        target_compile_options(${target} PRIVATE -Wno-shadow -Wno-subobject-linkage)
-    endif()
-endfunction()
-
-# Sources of `target` whose own names are also those of another file of theirs.
-function(dfdyn_compile_alone target)
-    set_source_files_properties(${ARGN} TARGET_DIRECTORY ${target} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-endfunction()
-
 # Every subfolder that has a CMakeLists.txt; the folders list their own sources.
 macro(dfdyn_add_subfolders)
     file(GLOB dfdyn_subfolder_lists CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*/CMakeLists.txt")

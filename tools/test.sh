@@ -24,10 +24,7 @@ check_style() {
 build() {
     local preset=$1
     shift
-    # A first build is of everything: compile together. A folder that is already configured stays as it is.
-    local options=()
-    [[ -f build/$preset/CMakeCache.txt ]] || options=(-DDFDYN_COMPILE_TOGETHER=ON)
-    cmake --preset "$preset" "${options[@]}"
+    cmake --preset "$preset"
     cmake --build --preset "$preset" --parallel "$jobs" ${1:+--target "$@"}
 }
 

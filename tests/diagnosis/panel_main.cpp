@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <random>
 
 namespace {
@@ -19,7 +20,7 @@ namespace {
 using namespace dfdyn::tests;
 
 struct PanelOptions {
-    std::uint64_t seed = std::random_device{}();
+    std::optional<std::uint64_t> seed;
     int cases = 1;
     PanelMix mix;
     std::filesystem::path directory; ///< of generate
@@ -50,7 +51,7 @@ int generate(const PanelOptions& options) {
     int redraws = 0;
     for (int number = 0; number < options.cases; ++number) {
         const auto start = std::chrono::steady_clock::now();
-        const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(number);
+        const std::uint64_t seed = *options.seed + static_cast<std::uint64_t>(number);
         const PanelCase panel_case = make_panel_case(seed, options.mix);
         write_panel_case(panel_case, options.directory, case_name(number));
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
@@ -68,13 +69,13 @@ int generate(const PanelOptions& options) {
 
 int score(const PanelOptions& options) {
     const std::vector<CaseScore> scores =
-        run_panel(options.seed, options.cases, options.mix, options.threads, [](const CaseScore& one) {
+        run_panel(*options.seed, options.cases, options.mix, options.threads, [](const CaseScore& one) {
             std::printf("%s\n", describe(one).c_str());
             std::fflush(stdout);
         });
     const std::string tables = panel_tables(scores);
     std::printf("%d recordings, seeds from %llu\n\n%s", options.cases,
-                static_cast<unsigned long long>(options.seed), tables.c_str());
+                static_cast<unsigned long long>(*options.seed), tables.c_str());
     if (!options.tables.empty()) {
         dfdyn::tools::write_file(options.tables, tables);
     }
@@ -88,13 +89,13 @@ int score(const PanelOptions& options) {
 
 int watch(const PanelOptions& options) {
     const std::vector<ChangeScore> scores =
-        run_change_panel(options.seed, options.cases, options.changes, [](const ChangeScore& one) {
+        run_change_panel(*options.seed, options.cases, options.changes, [](const ChangeScore& one) {
             std::printf("%s\n", describe(one).c_str());
             std::fflush(stdout);
         });
     const std::string tables = change_tables(scores);
     std::printf("%d recordings, seeds from %llu\n\n%s", options.cases,
-                static_cast<unsigned long long>(options.seed), tables.c_str());
+                static_cast<unsigned long long>(*options.seed), tables.c_str());
     if (!options.tables.empty()) {
         dfdyn::tools::write_file(options.tables, tables);
     }
@@ -104,8 +105,8 @@ int watch(const PanelOptions& options) {
 CLI::App* add_changes(CLI::App& app, PanelOptions& options) {
     CLI::App* command = app.add_subcommand(
         "changes", "Watches arms that change while they are learned, and tells what the monitor found");
-    command->add_option("--seed", options.seed, "Of the first case; each further one has the next")
-        ->required();
+    command->add_option("--seed", options.seed,
+                        "Of the first case; each further one has the next. Without it a new one is drawn");
     command->add_option("--cases", options.cases, "How many")->required()->check(CLI::PositiveNumber);
     command->add_option("--robot", options.changes.robot, "Always this arm")
         ->check(CLI::IsMember(change_robot_names()));
@@ -167,6 +168,9 @@ int main(int argc, char** argv) {
     const CLI::App* const changes = add_changes(app, options);
     CLI11_PARSE(app, argc, argv);
     try {
+        if (!options.seed) {
+            options.seed = std::random_device{}();
+        }
         if (changes->parsed()) {
             return watch(options);
         }

@@ -52,7 +52,8 @@ TEST_CASE("what is predicted on a live bus, its recording replayed in-process pr
         std::ranges::count_if(live.status, [](const auto& status) { return status.learned(); });
     constexpr int before_learning = 9 + 4; // readings until an encoder is believed, then the lags
     CAPTURE(learned);
-    CHECK((dfdyn::tests::virtual_time() ? learned == rows - before_learning : learned > rows / 2));
+    // In real time, how many is the machine's business: enough for equality to mean something.
+    CHECK((dfdyn::tests::virtual_time() ? learned == rows - before_learning : learned > rows / 10));
     CHECK(std::equal(replayed.time_s.begin(), replayed.time_s.end(), live.time_s.begin()));
     CHECK(std::equal(replayed.bus_reason.begin(), replayed.bus_reason.end(), live.bus_reason.begin()));
     CHECK(same_bits(replayed.predicted, live.predicted, 6 * ticks));

@@ -391,7 +391,7 @@ void Search::keep_what_predicts() {
 
 void Search::fit_named() {
     const auto has_name = [this](const ChosenShape& one) { return at_.candidates[one.candidate].named(); };
-    const auto unnamed = std::ranges::stable_partition(at_.chosen, has_name).begin();
+    const auto unnamed = std::stable_partition(at_.chosen.begin(), at_.chosen.end(), has_name);
     at_.fit = fit_effects(at_.problem, at_.chosen);
     at_.named = fit_effects(at_.problem, {at_.chosen.begin(), unnamed});
 }
