@@ -3,6 +3,7 @@
 
 #include "tests/diagnosis/panel_random.hpp"
 #include "tools/common/number.hpp"
+#include "tools/evaluation/contradiction.hpp"
 #include "tools/physics/model_training.hpp"
 #include "tools/simulation/simulation.hpp"
 
@@ -19,7 +20,7 @@ namespace {
 constexpr double rate_hz = 100;
 constexpr double integration_rate_hz = 2000;
 /// The learner and what is usual settle before.
-constexpr double earliest_s = 35;
+constexpr double earliest_s = 60;
 constexpr double trained_s = 25;
 
 /// How an arm is, beside its URDF, and how large its changes are.
@@ -35,7 +36,8 @@ struct ChangeArm {
 const ChangeArm& change_arm(const std::string& name) {
     static const ChangeArm ur5{"ur5_torque", 1, 8, 20000, {1, 1, 1, 0.25, 0.25, 0.25}, 0.4, 0.5, 3, 30, 100};
     static const ChangeArm icub{"icub_wrench", 0.03, 0.8, 600, {1, 1, 0.6, 0.6}, 0.02, 0.1, 0.5, 4, 15};
-    return name == ur5.name ? ur5 : icub;
+    static const ChangeArm three{"three_joint_torque", 0.2, 2.5, 5000, {1, 1, 0.5}, 0.1, 0.3, 1.5, 10, 40};
+    return name == ur5.name ? ur5 : name == icub.name ? icub : three;
 }
 
 JointVector shares(const ChangeArm& arm) {
@@ -229,7 +231,7 @@ void change(ChangeCase& one, const ChangeArm& arm, Scenario& scenario, const Clo
 } // namespace
 
 const std::vector<std::string>& change_robot_names() {
-    static const std::vector<std::string> names{"ur5_torque", "icub_wrench"};
+    static const std::vector<std::string> names{"ur5_torque", "icub_wrench", "three_joint_torque"};
     return names;
 }
 
@@ -245,7 +247,7 @@ ChangeCase make_change_case(std::uint64_t seed, const ChangeMix& mix) {
     if (!mix.never) {
         one.cause = mix.cause.value_or(drawn);
     }
-    one.time_s = draw.uniform(earliest_s, mix.duration_s - 12);
+    one.time_s = draw.uniform(earliest_s, mix.duration_s - 20);
     one.end_s = mix.duration_s;
     const Robot robot = read_panel_robot(kind);
     Scenario scenario = change_scenario(kind, robot, mix.duration_s, draw);
@@ -283,6 +285,7 @@ ChangeModel train_change_model(const ChangeCase& one) {
     const std::vector<Recording> recordings{beginning(one.recording)};
     ChangeModel result;
     result.model = train_model(prepare_training(recordings, training), kind.outputs, training, {}).model;
+    calibrate_innovation_limit(result.model, recordings);
     result.monitor = monitor_setup(result.model, &robot, one.robot_name);
     return result;
 }

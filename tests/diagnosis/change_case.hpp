@@ -26,10 +26,10 @@ struct ChangeMix {
     std::optional<std::string> robot; ///< of change_robot_names()
     std::optional<Cause> cause;
     bool never = false; ///< nothing changes
-    double duration_s = 60;
+    double duration_s = 100;
 };
 
-/// ur5_torque, icub_wrench.
+/// ur5_torque, icub_wrench, three_joint_torque.
 const std::vector<std::string>& change_robot_names();
 
 /// The case of `seed`: motion, noise, cause, time, place and size are random; the same seed gives the same

@@ -82,7 +82,7 @@ void LearnedFeedForward::learn(std::int64_t time_ns, const JointVector& position
 RecordedChanges LearnedFeedForward::changes() const {
     RecordedChanges recorded{"learned", -1e-9 * static_cast<double>(begin_ns_), {}};
     if (monitor_ != nullptr) {
-        recorded.changes.assign(monitor_->changes().begin(), monitor_->changes().end());
+        recorded.changes = monitor_->changes();
     }
     return recorded;
 }

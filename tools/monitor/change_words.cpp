@@ -30,7 +30,7 @@ void describe_payload(const Change<float, m>& change, const MonitorSetup& setup,
     const double mass = static_cast<double>(change.size[0]);
     const Eigen::Vector3d moment(static_cast<double>(change.size[1]), static_cast<double>(change.size[2]),
                                  static_cast<double>(change.size[3]));
-    const Eigen::Vector3d centre = setup.tip_placement.inverse() * Eigen::Vector3d(moment / mass);
+    const Eigen::Vector3d centre = setup.tip_placement.linear().transpose() * (moment / mass);
     named.where = "tool";
     named.parameters = {{"mass", per_current(setup) ? "kg·A/(N·m)" : "kg", mass},
                         {"com_x", "m", centre.x()},

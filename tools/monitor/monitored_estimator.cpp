@@ -22,7 +22,8 @@ constexpr double motion_window_s = 0.12;
 constexpr double report_s = 2;
 constexpr double longest_s = 20;
 constexpr double renewal_s = 3;
-constexpr float sign_velocity = 0.02F; // rad/s
+constexpr float sign_velocity = 0.02F;               // rad/s
+constexpr SpeedClasses<float> speed{0.03F, 0.15F}; // rad/s
 
 template <class Arm>
 using HostMonitor = Monitor<float, Arm, dynamic>;
@@ -55,6 +56,7 @@ typename HostMonitor<Arm>::Constants monitor_constants(const MonitorSetup& setup
         constants.tip[i] = static_cast<float>(setup.tip_placement.translation()[i]);
     }
     constants.sign_velocity = sign_velocity;
+    constants.speed = speed;
     constants.block_samples = std::max(1, static_cast<int>(std::lround(block_s / setup.sample_period_s)));
     const double blocks_per_s = 1 / (setup.sample_period_s * constants.block_samples);
     constants.blocks_between_false_alarms = static_cast<float>(3600 * setup.false_alarm_hours * blocks_per_s);
@@ -71,8 +73,7 @@ class Monitored final : public MonitoredEstimator {
         : estimator_(std::move(estimator)), setup_(setup), constants_(monitor_constants<Arm>(setup)),
           monitor_(constants_), held_(Extent<dynamic>{static_cast<int>(estimator_->weight_count())}),
           held_prediction_(setup.outputs.size()), position_(setup.chain.joints.size()),
-          output_(setup.outputs.size()) {
-        changes_.reserve(room);
+          output_(setup.outputs.size()), changes_(kept, monitor_.change()) {
         renew();
     }
 
@@ -111,17 +112,22 @@ class Monitored final : public MonitoredEstimator {
         return cost;
     }
 
-    std::span<const NamedChange> changes() const override { return changes_; }
+    std::vector<NamedChange> changes() const override {
+        std::vector<NamedChange> result;
+        for (std::size_t number = count_ > kept ? count_ - kept : 0; number < count_; ++number) {
+            result.push_back(named(changes_[number % kept], setup_));
+        }
+        return result;
+    }
     std::vector<NamedChange> take_changes() override {
-        std::vector<NamedChange> taken;
-        taken.reserve(room);
-        std::swap(taken, changes_);
+        std::vector<NamedChange> taken = changes();
+        count_ = 0;
         known_ = false;
         return taken;
     }
 
   private:
-    static constexpr std::size_t room = 256; ///< changes before the heap is asked for more
+    static constexpr std::size_t kept = 256; ///< changes; older ones are forgotten
 
     static bool measured(Reason learning) {
         return learning != Reason::output_missing && learning != Reason::output_not_finite &&
@@ -139,14 +145,11 @@ class Monitored final : public MonitoredEstimator {
         }
     }
 
-    /// The first word on a change adds it, every later one replaces it.
+    /// The first word on a change adds it, every later one replaces it. There is room for all of it already:
+    /// a loop's tick does not touch the heap.
     void note() {
-        NamedChange change = named(monitor_.change(), setup_);
-        if (known_ && !changes_.empty()) {
-            changes_.back() = std::move(change);
-        } else {
-            changes_.push_back(std::move(change));
-        }
+        count_ += known_ && count_ > 0 ? 0 : 1;
+        changes_[(count_ - 1) % kept] = monitor_.change();
         known_ = monitor_.changing();
     }
 
@@ -164,7 +167,8 @@ class Monitored final : public MonitoredEstimator {
     HostMonitor<Arm> monitor_;
     HeldWeights<float, dynamic> held_;
     std::vector<float> held_prediction_, position_, output_;
-    std::vector<NamedChange> changes_;
+    std::vector<typename HostMonitor<Arm>::Change> changes_;
+    std::size_t count_ = 0; ///< of them, those forgotten included
     bool known_ = false; ///< the last of them is the present one
 };
 

@@ -28,9 +28,9 @@ MonitorSetup monitor_setup(const TrainedModel& model, const Robot* robot, const 
 /// An estimator with a monitor (dfdyn::Monitor) beside it.
 class MonitoredEstimator : public HostEstimator {
   public:
-    /// What it found, not yet taken.
-    virtual std::span<const NamedChange> changes() const = 0;
-    /// What it found since the last call.
+    /// What it found, not yet taken; the newest 256.
+    virtual std::vector<NamedChange> changes() const = 0;
+    /// Likewise, and takes them.
     virtual std::vector<NamedChange> take_changes() = 0;
 };
 

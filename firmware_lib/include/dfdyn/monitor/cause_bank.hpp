@@ -1,78 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/monitor/block_scale.hpp"
 #include "dfdyn/monitor/cause.hpp"
-#include "dfdyn/monitor/cause_fit.hpp"
-#include "dfdyn/monitor/tool_columns.hpp"
+#include "dfdyn/monitor/cause_fits.hpp"
 
 namespace dfdyn {
 
-inline constexpr int friction_columns = 2; ///< Coulomb, viscous; of the output's own joint
-
-/// What a block says of one output: the mean residual, and the means of the causes' columns.
-template <class Scalar>
-struct OutputBlock {
-    Scalar residual;
-    Scalar payload[payload_columns];
-    Scalar force[force_columns];
-    Scalar friction[friction_columns];
-};
-
-/// Fits every cause of a change to the residuals since its onset, and weighs them against each other.
+/// Weighs the causes of a change against each other, by how well they explain the residuals since its onset
+/// (`CauseFits`).
 ///
-/// The residuals are those of a prediction that does not learn the change. Their usual scale and
-/// autocorrelation are learned while nothing happens; residuals and columns then pass through the same filter
-/// x(t) - a x(t-1), which leaves nearly white noise (D. Cochrane and G. H. Orcutt, 1949). Each cause is a
-/// `CauseFit`; a bias, a friction or a push at a joint may show on some outputs only, so for each output the
-/// better of "with" and "without" counts, at the price of log(2 m). The contact's fits forget, so that they
-/// follow a push and its end. Evidence counts a share `trust`: real residuals are neither Gaussian nor quite
-/// white, and columns are not exact.
-///
-/// Cost per block while fitting: about m (40 m² + 60 m + 400) multiply-adds.
+/// A bias, a friction or a push at a joint may show on some outputs only, so for each output the better of
+/// "with" and "without" counts, at the price of log(2 m). Evidence counts a share `trust`: real residuals are
+/// neither Gaussian nor quite white, and columns are not exact.
 template <class Scalar, int m>
 class CauseBank {
   public:
+    using Block = OutputBlock<Scalar>;
+    using Speed = SpeedClasses<Scalar>;
     static constexpr Scalar trust = Scalar(0.2);
-    /// log: for a contact that has not ended so far.
-    static constexpr Scalar goes_on = 6;
+    static constexpr Scalar goes_on = 6; ///< log odds against a contact that has not ended so far
 
     /// `friction`: whether outputs are the torques of joints of their own.
     CauseBank(Extent<m> outputs, bool friction) noexcept
-        : outputs_(outputs), has_friction_(friction), usual_(Storage<BlockScale<Scalar>, m>::zeros(outputs)),
-          nothing_({}, outputs, false), payload_({}, outputs, false), force_({}, outputs, true),
-          friction_(extent<friction_size>(friction_columns * outputs), outputs, false),
-          bias_(outputs, outputs, false), push_(outputs, outputs, true),
-          rows_(Rows::zeros(extent<rows_size(m)>(rows_size(outputs)))), targets_(Outputs::zeros(outputs)),
-          recent_(targets_), peaks_(targets_) {}
+        : outputs_(outputs), has_friction_(friction), fits_(outputs),
+          recent_(Storage<Scalar, m>::zeros(outputs)), peaks_(recent_) {}
 
-    /// A block while nothing happens.
-    void learn(const OutputBlock<Scalar>* block) noexcept {
-        for (int k = 0; k < outputs_; ++k) {
-            usual_[k].learn(block[k].residual);
-        }
+    /// A block while nothing happens, and the one before it (null after a gap).
+    void learn(const Block* now, const Block* before, const Speed& speed) noexcept {
+        fits_.learn(now, before, speed);
     }
+    void relearn() noexcept { fits_.relearn(); }
 
-    /// Begins to fit. `blocks`: what there is of the past, `count` × m, for the size of the columns.
+    /// Begins to fit. `block_at(b)`, 0 ≤ b < `count`: what there is of the past.
     template <class BlockAt>
     void start(const BlockAt& block_at, int count) noexcept {
-        scale_columns(block_at, count);
-        nothing_.restart();
-        payload_.restart();
-        force_.restart();
-        friction_.restart();
-        bias_.restart();
-        push_.restart();
+        fits_.start(block_at, count);
         for (int k = 0; k < outputs_; ++k) {
             recent_[k] = peaks_[k] = 0;
         }
-        force_peak_[0] = force_peak_[1] = force_peak_[2] = 0;
+        std::fill_n(force_peak_, force_columns, Scalar(0));
     }
 
     /// A block since the onset, and the one before it.
-    void add(const OutputBlock<Scalar>* now, const OutputBlock<Scalar>* before) noexcept {
-        fit_common(now, before);
-        fit_own(now, before);
+    void add(const Block* now, const Block* before, const Speed& speed) noexcept {
+        fits_.add(now, before, speed);
+        for (int k = 0; k < outputs_; ++k) {
+            const Scalar share = now[k].residual / fits_.noise(k).scale(speed.of(now[k].speed));
+            recent_[k] += (std::min(share * share, Scalar(16)) - recent_[k]) / 5;
+        }
         note_peaks();
     }
 
@@ -86,128 +61,38 @@ class CauseBank {
         best = std::max(best, logs[static_cast<int>(Cause::frozen)]);
         Scalar total = 0;
         for (Scalar& log : logs) {
-            log = std::exp(log - best);
+            using std::exp;
+            log = exp(log - best);
             total += log;
         }
         rank(logs, total, change);
         describe(channel, change);
     }
 
-    [[nodiscard]] const BlockScale<Scalar>& usual(int output) const noexcept { return usual_[output]; }
-
-    void adopt() noexcept {
-        for (BlockScale<Scalar>& usual : usual_) {
-            usual.restart();
-        }
+    /// Multiply-adds of `add`, at most, and of `judge`.
+    static constexpr std::int64_t cost_of_add(int outputs) noexcept {
+        return CauseFits<Scalar, m>::cost(outputs) + outputs * (function_cost + 4) + 10;
+    }
+    static constexpr std::int64_t cost_of_judge(int outputs) noexcept {
+        constexpr int evidences = 20; // of an output, those that are asked for twice included
+        return outputs * evidences * (function_cost + 6) + cause_count * (function_cost + 2) + 10;
     }
 
   private:
-    static constexpr int friction_size = product(friction_columns, m);
     static constexpr Scalar impossible = 50;
-    using Outputs = Storage<Scalar, m>;
-
-    /// The rows of the largest fit.
-    static constexpr int rows_size(int outputs) noexcept {
-        return outputs == dynamic ? dynamic : outputs * std::max(friction_columns * outputs, payload_columns);
-    }
-    using Rows = Storage<Scalar, rows_size(m)>;
-
-    template <class BlockAt>
-    void scale_columns(const BlockAt& block_at, int count) noexcept {
-        Scalar powers[payload_columns + force_columns] = {};
-        for (int b = 0; b < count; ++b) {
-            const OutputBlock<Scalar>* block = block_at(b);
-            for (int k = 0; k < outputs_; ++k) {
-                const Scalar weight = 1 / (usual_[k].scale() * usual_[k].scale());
-                for (int i = 0; i < payload_columns; ++i) {
-                    powers[i] += weight * block[k].payload[i] * block[k].payload[i];
-                }
-                for (int i = 0; i < force_columns; ++i) {
-                    powers[payload_columns + i] += weight * block[k].force[i] * block[k].force[i];
-                }
-            }
-        }
-        const Scalar rows = static_cast<Scalar>(count) * static_cast<Scalar>(outputs_);
-        for (int i = 0; i < payload_columns + force_columns; ++i) {
-            column_scale_[i] = powers[i] > 0 ? std::sqrt(rows / powers[i]) : Scalar(0);
-        }
-    }
-
-    /// What the filter leaves of a number of output k, in units of the noise.
-    [[nodiscard]] Scalar filtered(int k, Scalar now, Scalar before) const noexcept {
-        const Scalar a = usual_[k].autocorrelation();
-        return (now - a * before) / (usual_[k].scale() * std::sqrt(1 - a * a));
-    }
-
-    /// Parameters that all outputs share: payload, force, and none at all.
-    void fit_common(const OutputBlock<Scalar>* now, const OutputBlock<Scalar>* before) noexcept {
-        for (int k = 0; k < outputs_; ++k) {
-            targets_[k] = filtered(k, now[k].residual, before[k].residual);
-            const Scalar share = now[k].residual / usual_[k].scale();
-            recent_[k] += (std::min(share * share, Scalar(16)) - recent_[k]) / 5;
-            rows_[k] = 0;
-        }
-        nothing_.add(rows_.data(), targets_.data());
-        for (int k = 0; k < outputs_; ++k) {
-            for (int i = 0; i < payload_columns; ++i) {
-                rows_[payload_columns * k + i] =
-                    column_scale_[i] * filtered(k, now[k].payload[i], before[k].payload[i]);
-            }
-        }
-        payload_.add(rows_.data(), targets_.data());
-        for (int k = 0; k < outputs_; ++k) {
-            for (int i = 0; i < force_columns; ++i) {
-                rows_[force_columns * k + i] =
-                    column_scale_[payload_columns + i] * filtered(k, now[k].force[i], before[k].force[i]);
-            }
-        }
-        force_.add(rows_.data(), targets_.data());
-    }
-
-    /// Parameters of each output's own: friction, bias, a push at a joint.
-    void fit_own(const OutputBlock<Scalar>* now, const OutputBlock<Scalar>* before) noexcept {
-        if (has_friction_) {
-            clear_rows(friction_columns * outputs_);
-            for (int k = 0; k < outputs_; ++k) {
-                for (int i = 0; i < friction_columns; ++i) {
-                    rows_[friction_columns * (outputs_ * k + k) + i] =
-                        friction_unit(k) * filtered(k, now[k].friction[i], before[k].friction[i]);
-                }
-            }
-            friction_.add(rows_.data(), targets_.data());
-        }
-        clear_rows(outputs_);
-        for (int k = 0; k < outputs_; ++k) {
-            rows_[outputs_ * k + k] = usual_[k].scale() * filtered(k, 1, 1);
-        }
-        bias_.add(rows_.data(), targets_.data());
-        push_.add(rows_.data(), targets_.data());
-    }
-
-    void clear_rows(int columns) noexcept {
-        for (int element = 0; element < columns * outputs_; ++element) {
-            rows_[element] = 0;
-        }
-    }
-
-    /// A parameter of 1 is as much friction as the noise is large.
-    [[nodiscard]] Scalar friction_unit(int k) const noexcept { return usual_[k].scale(); }
 
     void note_peaks() noexcept {
         Scalar force[force_columns];
-        force_parameters(force);
+        for (int i = 0; i < force_columns; ++i) {
+            force[i] = fits_.force.parameters()[i] * fits_.force_scale[i];
+        }
         if (norm_square(force) > norm_square(force_peak_)) {
             std::copy_n(force, force_columns, force_peak_);
         }
         for (int k = 0; k < outputs_; ++k) {
-            const Scalar push = push_.parameters()[k];
-            peaks_[k] = std::abs(push) > std::abs(peaks_[k]) ? push : peaks_[k];
-        }
-    }
-
-    void force_parameters(Scalar* force) const noexcept {
-        for (int i = 0; i < force_columns; ++i) {
-            force[i] = force_.parameters()[i] * column_scale_[payload_columns + i];
+            using std::abs;
+            const Scalar push = *fits_.push[k].parameters();
+            peaks_[k] = abs(push) > abs(peaks_[k]) ? push : peaks_[k];
         }
     }
 
@@ -215,40 +100,37 @@ class CauseBank {
         return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     }
 
-    template <class Fit>
-    [[nodiscard]] Scalar evidence_of_all(const Fit& fit) const noexcept {
-        Scalar total = 0;
-        for (int k = 0; k < outputs_; ++k) {
-            total += fit.evidence(k);
-        }
-        return total;
+    /// Of the fits of output k's own parameters, over none.
+    template <class Fits>
+    [[nodiscard]] Scalar gain(const Fits& fits, int k) const noexcept {
+        using std::log;
+        return fits[k].evidence().of(0) - fits_.nothing.of(k) - log(2 * static_cast<Scalar>(outputs_));
     }
 
-    template <class Fit>
-    [[nodiscard]] Scalar gain(const Fit& fit, int k) const noexcept {
-        return fit.evidence(k) - nothing_.evidence(k) - std::log(2 * static_cast<Scalar>(outputs_));
-    }
-
-    /// The output on which the fit gains most.
-    template <class Fit>
-    [[nodiscard]] int best_output(const Fit& fit) const noexcept {
+    /// Where they gain most.
+    template <class Fits>
+    [[nodiscard]] int best_output(const Fits& fits) const noexcept {
         int best = 0;
         for (int k = 1; k < outputs_; ++k) {
-            best = gain(fit, k) > gain(fit, best) ? k : best;
+            best = gain(fits, k) > gain(fits, best) ? k : best;
         }
         return best;
     }
 
-    /// Of the outputs where the fit is better than none, and of the best one anyway.
-    template <class Fit>
-    [[nodiscard]] Scalar evidence_of_some(const Fit& fit) const noexcept {
-        Scalar total = evidence_of_all(nothing_) + std::min(gain(fit, best_output(fit)), Scalar(0));
+    /// Of the outputs where they are better than none, and of the best one anyway.
+    template <class Fits>
+    [[nodiscard]] Scalar gain_of_some(const Fits& fits) const noexcept {
+        Scalar total = 0;
+        Scalar best = gain(fits, 0);
         for (int k = 0; k < outputs_; ++k) {
-            total += std::max(gain(fit, k), Scalar(0));
+            const Scalar one = gain(fits, k);
+            best = std::max(best, one);
+            total += std::max(one, Scalar(0));
         }
-        return total;
+        return total + std::min(best, Scalar(0));
     }
 
+    /// The residuals are as usual again.
     [[nodiscard]] bool ended() const noexcept {
         bool all = true;
         for (int k = 0; k < outputs_; ++k) {
@@ -259,13 +141,14 @@ class CauseBank {
 
     void weigh(Scalar* logs) const noexcept {
         const auto set = [logs](Cause cause, Scalar value) { logs[static_cast<int>(cause)] = value; };
-        const Scalar none = evidence_of_all(nothing_);
+        const Scalar none = fits_.nothing.of_all();
+        const Scalar contact =
+            std::max(fits_.force.evidence().of_all() - none, gain_of_some(fits_.push));
         set(Cause::unknown, 0);
-        set(Cause::payload, trust * (evidence_of_all(payload_) - none));
-        set(Cause::friction, has_friction_ ? trust * (evidence_of_some(friction_) - none) : -impossible);
-        set(Cause::bias, trust * (evidence_of_some(bias_) - none));
-        set(Cause::contact, trust * (std::max(evidence_of_all(force_), evidence_of_some(push_)) - none) -
-                                (ended() ? Scalar(0) : goes_on));
+        set(Cause::payload, trust * (fits_.payload.evidence().of_all() - none));
+        set(Cause::friction, has_friction_ ? trust * gain_of_some(fits_.friction) : -impossible);
+        set(Cause::bias, trust * gain_of_some(fits_.bias));
+        set(Cause::contact, trust * contact - (ended() ? Scalar(0) : goes_on));
         set(Cause::frozen, -impossible);
     }
 
@@ -286,55 +169,55 @@ class CauseBank {
 
     void describe(int channel, Change<Scalar, m>& change) const noexcept {
         change.where = -1;
-        for (Scalar& value : change.size) {
-            value = 0;
-        }
-        if (change.cause == Cause::payload) {
+        std::fill_n(change.size, 4, Scalar(0));
+        switch (change.cause) {
+        case Cause::payload:
             for (int i = 0; i < payload_columns; ++i) {
-                change.size[i] = payload_.parameters()[i] * column_scale_[i];
+                change.size[i] = fits_.payload.parameters()[i] * fits_.payload_scale[i];
             }
-        } else if (change.cause == Cause::friction) {
-            change.where = best_output(friction_);
+            break;
+        case Cause::friction:
+            change.where = best_output(fits_.friction);
             for (int i = 0; i < friction_columns; ++i) {
-                change.size[i] =
-                    friction_.parameters()[friction_columns * change.where + i] * friction_unit(change.where);
+                change.size[i] = fits_.friction[change.where].parameters()[i] * fits_.unit(change.where);
             }
-        } else if (change.cause == Cause::bias) {
-            change.where = best_output(bias_);
-            for (int k = 0; k < outputs_; ++k) {
-                change.bias[k] = gain(bias_, k) > 0 || k == change.where
-                                     ? bias_.parameters()[k] * usual_[k].scale()
-                                     : Scalar(0);
-            }
-        } else if (change.cause == Cause::contact) {
+            break;
+        case Cause::bias:
+            describe_bias(change);
+            break;
+        case Cause::contact:
             describe_contact(change);
-        } else if (change.cause == Cause::frozen) {
+            break;
+        case Cause::frozen:
             change.where = channel;
+            break;
+        case Cause::unknown:
+            break;
+        }
+    }
+
+    void describe_bias(Change<Scalar, m>& change) const noexcept {
+        change.where = best_output(fits_.bias);
+        for (int k = 0; k < outputs_; ++k) {
+            const bool moved = gain(fits_.bias, k) > 0 || k == change.where;
+            change.bias[k] = moved ? *fits_.bias[k].parameters() * fits_.unit(k) : Scalar(0);
         }
     }
 
     void describe_contact(Change<Scalar, m>& change) const noexcept {
-        if (evidence_of_all(force_) >= evidence_of_some(push_)) {
+        if (fits_.force.evidence().of_all() - fits_.nothing.of_all() >= gain_of_some(fits_.push)) {
             std::copy_n(force_peak_, force_columns, change.size);
             return;
         }
-        change.where = best_output(push_);
-        change.size[0] = -peaks_[change.where] * usual_[change.where].scale();
+        change.where = best_output(fits_.push);
+        change.size[0] = -peaks_[change.where] * fits_.unit(change.where);
     }
 
     [[no_unique_address]] Extent<m> outputs_;
     bool has_friction_;
-    Storage<BlockScale<Scalar>, m> usual_;
-    CauseFit<Scalar, 1, m> nothing_;
-    CauseFit<Scalar, payload_columns, m> payload_;
-    CauseFit<Scalar, force_columns, m> force_;
-    CauseFit<Scalar, friction_size, m> friction_;
-    CauseFit<Scalar, m, m> bias_, push_;
-    Rows rows_;
-    Outputs targets_;
-    Outputs recent_; ///< mean square of the last residuals, in units of the noise
-    Outputs peaks_;
-    Scalar column_scale_[payload_columns + force_columns] = {};
+    CauseFits<Scalar, m> fits_;
+    Storage<Scalar, m> recent_; ///< mean square of the last residuals, in units of the noise
+    Storage<Scalar, m> peaks_;
     Scalar force_peak_[force_columns] = {};
 };
 

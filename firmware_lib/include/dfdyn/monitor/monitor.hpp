@@ -5,6 +5,7 @@
 #include "dfdyn/monitor/cause_bank.hpp"
 #include "dfdyn/monitor/change_detector.hpp"
 #include "dfdyn/monitor/frozen_watch.hpp"
+#include "dfdyn/monitor/tool_columns.hpp"
 
 #include <type_traits>
 
@@ -35,9 +36,8 @@ struct Observation {
 ///     output's unit if (e.status.predicted() && measured) { news = monitor.tick({…}); } else {
 ///     monitor.interrupt(); }
 ///
-/// Bounded: per tick 3 n (M+4) + 500 n + 130 m multiply-adds and those of `FrozenWatch`; in the last tick of
-/// a block besides those of the detector and, while a change is on, of at most `catch_up` blocks of the bank;
-/// at an alarm 8 m `history` more. No heap. Memory about 10 m `history` + 4 m² … scalars, see `sizeof`.
+/// Cost per tick: `cost()`, at the end of a block while a change is on; otherwise a fraction of it. No heap.
+/// Memory about 13 m `history` + 250 m scalars, see `sizeof`.
 template <class Scalar, class Arm, int M, int history = 48>
 class Monitor {
   public:
@@ -54,6 +54,7 @@ class Monitor {
         Storage<Scalar, m> output_gain;     ///< output per N·m (N): 1, or 1 / torque constant (A/N·m)
         Scalar tip[3];                      ///< m, where a force on the tool acts, in the last link's frame
         Scalar sign_velocity;               ///< rad/s: friction's sign is tanh(q̇ / v)
+        SpeedClasses<Scalar> speed;
         std::int32_t block_samples;         ///< about 0.1 s
         Scalar blocks_between_false_alarms; ///< their mean; of all outputs together
         std::int32_t report_blocks;         ///< from the onset to the first report, about 2 s
@@ -74,18 +75,24 @@ class Monitor {
               extent<product(payload_columns, m)>(payload_columns * outputs()))),
           force_(Storage<Scalar, product(force_columns, m)>::zeros(
               extent<product(force_columns, m)>(force_columns * outputs()))),
-          scaled_(Outputs::zeros(constants.sizes.output_count)), mean_(scaled_),
+          scaled_(Outputs::zeros(constants.sizes.output_count)), deviations_(scaled_),
           block_(Storage<OutputBlock<Scalar>, m>::zeros(constants.sizes.output_count)),
           past_(Past::zeros(extent<product(history, m)>(history * outputs()))),
-          detector_(constants.sizes.output_count, constants.blocks_between_false_alarms),
+          detector_(constants.sizes.output_count, torques, constants.blocks_between_false_alarms),
           bank_(constants.sizes.output_count, torques),
-          frozen_(extent<sum(n, m)>(joints() + outputs()), joints()) {
+          frozen_(extent<sum(n, m)>(joints() + outputs()), joints()),
+          repeats_limit_(2 * std::log(constants.blocks_between_false_alarms *
+                                      static_cast<Scalar>(joints() + outputs()))) {
         change_.bias = Outputs::zeros(constants.sizes.output_count);
         since_renewal_ = 2 * constants.renewal_blocks;
     }
 
-    /// One tick. True: there is news of `change()`, which is found, is better known, or is over.
+    /// One tick; one of values that are not finite counts as a gap. True: there is news of `change()`, which is found, is better known, or is over.
     bool tick(const Observation<Scalar>& observation) noexcept {
+        if (!finite(observation)) {
+            interrupt();
+            return false;
+        }
         frozen_.add(observation.position, observation.output);
         push(observation);
         if (!motion_.ready() || !residuals_.full()) {
@@ -136,11 +143,14 @@ class Monitor {
 
     /// Multiply-adds of a tick, at most: one that ends a block while a change is on.
     [[nodiscard]] static constexpr std::int64_t cost(const typename Arm::Sizes& sizes, int lags) noexcept {
-        const std::int64_t joints = sizes.joint_count;
-        const std::int64_t outputs = sizes.output_count;
-        const std::int64_t tick = 3 * joints * (lags + 4) + 500 * joints + 130 * outputs;
-        const std::int64_t fits = outputs * (40 * outputs * outputs + 60 * outputs + 400);
-        return tick + catch_up * fits + 10 * outputs * history;
+        const int joints = sizes.joint_count;
+        const int outputs = sizes.output_count;
+        const std::int64_t tick = Motion::template Map<Scalar, n>::cost(joints, lags, 3) +
+                                  tool_columns_cost(joints, outputs) + FrozenWatch<Scalar, 1>::cost * (joints + outputs) +
+                                  std::int64_t{outputs} * (function_cost + 30);
+        const std::int64_t scaling = std::int64_t{history} * outputs * (2 * (payload_columns + force_columns) + 2);
+        return tick + ChangeDetector<Scalar, m>::cost(outputs) + scaling +
+               catch_up * CauseBank<Scalar, m>::cost_of_add(outputs) + CauseBank<Scalar, m>::cost_of_judge(outputs);
     }
 
   private:
@@ -161,11 +171,24 @@ class Monitor {
     [[nodiscard]] int joints() const noexcept { return constants_->sizes.joint_count; }
     [[nodiscard]] int outputs() const noexcept { return constants_->sizes.output_count; }
 
+    [[nodiscard]] bool finite(const Observation<Scalar>& observation) const noexcept {
+        bool all = true;
+        for (int i = 0; i < joints(); ++i) {
+            all = all && std::isfinite(observation.position[i]);
+        }
+        for (int k = 0; k < outputs(); ++k) {
+            all = all && std::isfinite(observation.output[k]) && std::isfinite(observation.prediction[k]) &&
+                  std::isfinite(observation.held_prediction[k]) &&
+                  observation.standard_deviation[k] > 0 && std::isfinite(observation.standard_deviation[k]);
+        }
+        return all;
+    }
+
     void push(const Observation<Scalar>& observation) noexcept {
         motion_.push(Pose{{observation.position}});
         for (int k = 0; k < outputs(); ++k) {
-            scaled_[k] =
-                (observation.output[k] - observation.prediction[k]) / observation.standard_deviation[k];
+            deviations_[k] = observation.standard_deviation[k];
+            scaled_[k] = (observation.output[k] - observation.prediction[k]) / deviations_[k];
         }
         innovations_.push(scaled_.data());
         for (int k = 0; k < outputs(); ++k) {
@@ -179,8 +202,9 @@ class Monitor {
         const Scalar share = 1 / static_cast<Scalar>(constants_->block_samples);
         for (int k = 0; k < outputs(); ++k) {
             const Scalar gain = share * constants_->output_gain[k];
-            mean_[k] += share * innovations_.row(0)[k];
             OutputBlock<Scalar>& sum = block_[k];
+            sum.innovation += share * innovations_.row(middle)[k];
+            sum.deviation += share * deviations_[k];
             sum.residual += share * residuals_.row(middle)[k];
             for (int i = 0; i < payload_columns; ++i) {
                 sum.payload[i] += gain * payload_[payload_columns * k + i];
@@ -190,7 +214,10 @@ class Monitor {
             }
             if constexpr (torques) {
                 const Scalar velocity = xi_[3 * k + 1];
-                sum.friction[0] += gain * std::tanh(velocity / constants_->sign_velocity);
+                using std::abs;
+                using std::tanh;
+                sum.speed += share * abs(velocity);
+                sum.friction[0] += gain * tanh(velocity / constants_->sign_velocity);
                 sum.friction[1] += gain * velocity;
             }
         }
@@ -210,7 +237,6 @@ class Monitor {
         samples_ = 0;
         for (int k = 0; k < outputs(); ++k) {
             block_[k] = {};
-            mean_[k] = 0;
         }
     }
 
@@ -222,7 +248,8 @@ class Monitor {
     [[nodiscard]] static int slot(std::int64_t number) noexcept { return static_cast<int>(number % history); }
 
     bool take_in(std::int64_t time_ns) noexcept {
-        const bool alarm = detector_.add(mean_.data());
+        const OutputBlock<Scalar>* const before = unbroken_ > 1 ? block_at(newest_ - 1) : nullptr;
+        const bool alarm = detector_.add(block_.data(), before, constants_->speed);
         const int repeating = repeats();
         told_frozen_ = repeating < 0 ? -1 : told_frozen_;
         if (!changing_ && (alarm || (repeating >= 0 && repeating != told_frozen_))) {
@@ -230,7 +257,7 @@ class Monitor {
         }
         const bool news = changing_ && follow(time_ns, alarm);
         if (!changing_ && !news) {
-            bank_.learn(block_.data());
+            bank_.learn(block_.data(), before, constants_->speed);
         }
         drop_block();
         return news;
@@ -241,7 +268,7 @@ class Monitor {
         int worst = -1;
         for (int c = 0; c < frozen_.channels(); ++c) {
             const bool long_enough = frozen_.run(c) >= 2 * constants_->block_samples;
-            const Scalar least = worst < 0 ? 2 * detector_.threshold() : frozen_.evidence(worst);
+            const Scalar least = worst < 0 ? repeats_limit_ : frozen_.evidence(worst);
             worst = long_enough && frozen_.evidence(c) > least ? c : worst;
         }
         return worst;
@@ -257,6 +284,7 @@ class Monitor {
         change_.alarm_ns = time_ns;
         change_.end_ns = 0;
         change_.channel = alarm ? detector_.channel() : -1;
+        by_detector_ = alarm;
         const std::int64_t first = newest_ - std::min<std::int64_t>(newest_, history - 1) + 1;
         bank_.start([this, first](int b) { return block_at(first + b); },
                     static_cast<int>(newest_ - first + 1));
@@ -266,7 +294,7 @@ class Monitor {
     bool follow(std::int64_t time_ns, bool alarm) noexcept {
         for (int b = 0; b < catch_up && next_ <= newest_; ++b, ++next_) {
             if (newest_ - next_ + 1 < unbroken_) { // the one before belongs to it
-                bank_.add(block_at(next_), block_at(next_ - 1));
+                bank_.add(block_at(next_), block_at(next_ - 1), constants_->speed);
             }
         }
         if (const int channel = repeats(); channel >= 0) {
@@ -297,9 +325,12 @@ class Monitor {
         changing_ = false;
         told_frozen_ = change_.cause == Cause::frozen ? change_.where : -1;
         since_renewal_ = 2 * constants_->renewal_blocks;
+        if (by_detector_ && change_.cause == Cause::unknown) {
+            detector_.nothing_happened();
+        }
         if (goes_on) {
             detector_.adopt();
-            bank_.adopt();
+            bank_.relearn();
         }
     }
 
@@ -309,13 +340,14 @@ class Monitor {
     Inputs xi_;
     Storage<Scalar, product(payload_columns, m)> payload_;
     Storage<Scalar, product(force_columns, m)> force_;
-    Outputs scaled_, mean_;
+    Outputs scaled_, deviations_;
     Storage<OutputBlock<Scalar>, m> block_;    ///< the one at hand
     Past past_;                                ///< ring of the last blocks …
     Storage<std::int64_t, history> ends_ns_{}; ///< … and when they ended
     ChangeDetector<Scalar, m> detector_;
     CauseBank<Scalar, m> bank_;
     FrozenWatch<Scalar, sum(n, m)> frozen_;
+    Scalar repeats_limit_; ///< evidence of a channel that repeats itself
     Change change_;
     int samples_ = 0; ///< of the block at hand
     std::int64_t newest_ = 0, onset_ = 0, next_ = 0;
@@ -323,7 +355,7 @@ class Monitor {
     int since_renewal_ = 0;
     int frozen_channel_ = -1, told_frozen_ = -1;
     Scalar frozen_evidence_ = 0;
-    bool follows_ = false, changing_ = false, told_ = false;
+    bool follows_ = false, changing_ = false, told_ = false, by_detector_ = false;
 };
 
 } // namespace dfdyn

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/monitor/output_block.hpp"
 #include "dfdyn/physics/rigid_body.hpp"
 
 namespace dfdyn {
 
-inline constexpr int payload_columns = 4; ///< mass, first moment in the last link's frame
-inline constexpr int force_columns = 3;   ///< force on the arm at a point of the last link, in the base frame
-
-/// Derivatives of the outputs (N·m, N) by a body fixed to the last link, m × 4, and by a force on it at
-/// `point` (m, in its frame), m × 3. `xi` as of `for_each_body`. O(n m): 250 multiply-adds per joint, 100 per
-/// output.
+/// Derivatives of the outputs (N·m, N) by a body fixed to the last link, mass and first moment about `point`
+/// (m, in the link's frame), m × 4, and by a force on the link at `point`, m × 3. `xi` as of `for_each_body`.
+/// At most `tool_columns_cost` multiply-adds.
 template <class Arm, class Scalar>
 void tool_columns(const typename Arm::template Constants<Scalar>& chain, const typename Arm::Sizes& sizes,
                   const Scalar* xi, const Scalar* point, Scalar* payload, Scalar* force) noexcept {
@@ -29,6 +27,7 @@ void tool_columns(const typename Arm::template Constants<Scalar>& chain, const t
         for (int k = 0; k < count; ++k) {
             Scalar row[inertial_parameters];
             inertial_row(screws[k], motion, row);
+            row[0] += point[0] * row[1] + point[1] * row[2] + point[2] * row[3];
             std::copy_n(row, payload_columns, payload + payload_columns * k);
             const Vector3<Scalar> velocity =
                 screws[k].linear + cross(screws[k].angular, Vector3<Scalar>::from(point));
@@ -38,6 +37,10 @@ void tool_columns(const typename Arm::template Constants<Scalar>& chain, const t
         }
     };
     for_each_body<Arm, Scalar>(chain, sizes, xi, visit);
+}
+
+constexpr std::int64_t tool_columns_cost(int joints, int outputs) noexcept {
+    return std::int64_t{joints} * 400 + std::int64_t{outputs} * 150;
 }
 
 } // namespace dfdyn
