@@ -126,7 +126,7 @@ void push(ChangeCase& one, const ChangeArm& arm, Scenario& scenario, Draw& draw)
     Eigen::Vector3d direction(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
     contact.force = draw.uniform(arm.push_from, arm.push_to) * direction.normalized();
     scenario.loads.contacts.push_back(contact);
-    one.where = "tool";
+    one.where = scenario.force_torque ? "ft_sensor" : "tool";
     one.size =
         formatted("%.0f N", contact.force.norm()) + formatted(" for %.1f s", contact.end_s - contact.start_s);
 }

@@ -52,7 +52,7 @@ void describe_bias(const Change<float, m>& change, const MonitorSetup& setup, Na
 template <int m>
 void describe_contact(const Change<float, m>& change, const MonitorSetup& setup, NamedChange& named) {
     if (change.where < 0) {
-        named.where = "tool";
+        named.where = setup.chain.sensor ? "ft_sensor" : "tool";
         for (int i = 0; i < 3; ++i) {
             named.parameters.push_back({std::string("force_") + "xyz"[i],
                                         per_current(setup) ? "N·A/(N·m)" : "N",

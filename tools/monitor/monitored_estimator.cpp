@@ -22,7 +22,7 @@ constexpr double motion_window_s = 0.12;
 constexpr double report_s = 2;
 constexpr double longest_s = 20;
 constexpr double renewal_s = 3;
-constexpr float sign_velocity = 0.02F;               // rad/s
+constexpr float sign_velocity = 0.02F;             // rad/s
 constexpr SpeedClasses<float> speed{0.03F, 0.15F}; // rad/s
 
 template <class Arm>
@@ -169,7 +169,7 @@ class Monitored final : public MonitoredEstimator {
     std::vector<float> held_prediction_, position_, output_;
     std::vector<typename HostMonitor<Arm>::Change> changes_;
     std::size_t count_ = 0; ///< of them, those forgotten included
-    bool known_ = false; ///< the last of them is the present one
+    bool known_ = false;    ///< the last of them is the present one
 };
 
 } // namespace

@@ -42,9 +42,10 @@ struct SpeedClasses {
 template <class Scalar>
 class BlockNoise {
   public:
-    static constexpr Scalar memory = 600;  ///< blocks of a class
-    static constexpr Scalar needed = 30;   ///< blocks of a class before anything is known of it
-    static constexpr Scalar most_alike = Scalar(0.95); ///< autocorrelation: beyond, a block would tell nothing
+    static constexpr Scalar memory = 600; ///< blocks of a class
+    static constexpr Scalar needed = 30;  ///< blocks of a class before anything is known of it
+    static constexpr Scalar most_alike =
+        Scalar(0.95); ///< autocorrelation: beyond, a block would tell nothing
 
     static constexpr int cost = 2 * function_cost + 25; ///< of `learn`, `smallest` and `whitening`
 

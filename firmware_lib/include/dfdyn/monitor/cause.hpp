@@ -53,9 +53,9 @@ struct Change {
     /// that it acts on most, or -1 where a force at the tool fits better. Frozen: the joint's position, or
     /// joints + the output. Otherwise -1.
     int where = -1;
-    /// Payload: mass (kg) and first moment (kg·m, 3) about the tip in the last link's frame. Friction: Coulomb (N·m) and
-    /// viscous (N·m·s/rad). Contact: peak of the force on the tool (N, 3, base frame), or of the joint's
-    /// torque.
+    /// Payload: mass (kg) and first moment (kg·m, 3) about the tip in the last link's frame. Friction:
+    /// Coulomb (N·m) and viscous (N·m·s/rad). Contact: peak of the force on the tool (N, 3, base frame), or
+    /// of the joint's torque.
     Scalar size[4] = {};
     Storage<Scalar, m> bias; ///< by how much each offset moved, in the outputs' units; bias only
 };

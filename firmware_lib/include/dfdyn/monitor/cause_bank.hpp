@@ -18,7 +18,8 @@ class CauseBank {
     using Block = OutputBlock<Scalar>;
     using Speed = SpeedClasses<Scalar>;
     static constexpr Scalar trust = Scalar(0.2);
-    static constexpr Scalar goes_on = 6; ///< log odds against a contact that has not ended so far
+    static constexpr Scalar far = Scalar(2.5); ///< deviations
+    static constexpr Scalar goes_on = 6;       ///< log odds against a contact that has not ended so far
 
     /// `friction`: whether outputs are the torques of joints of their own.
     CauseBank(Extent<m> outputs, bool friction) noexcept
@@ -30,6 +31,11 @@ class CauseBank {
         fits_.learn(now, before, speed);
     }
     void relearn() noexcept { fits_.relearn(); }
+
+    /// Whether a residual is far from what is usual after the block before.
+    [[nodiscard]] bool unusual(const Block* now, const Block* before, const Speed& speed) const noexcept {
+        return fits_.largest(now, before, speed) > far;
+    }
 
     /// Begins to fit. `block_at(b)`, 0 ≤ b < `count`: what there is of the past.
     template <class BlockAt>
@@ -142,8 +148,7 @@ class CauseBank {
     void weigh(Scalar* logs) const noexcept {
         const auto set = [logs](Cause cause, Scalar value) { logs[static_cast<int>(cause)] = value; };
         const Scalar none = fits_.nothing.of_all();
-        const Scalar contact =
-            std::max(fits_.force.evidence().of_all() - none, gain_of_some(fits_.push));
+        const Scalar contact = std::max(fits_.force.evidence().of_all() - none, gain_of_some(fits_.push));
         set(Cause::unknown, 0);
         set(Cause::payload, trust * (fits_.payload.evidence().of_all() - none));
         set(Cause::friction, has_friction_ ? trust * gain_of_some(fits_.friction) : -impossible);

@@ -101,8 +101,8 @@ class CauseFit {
 
   private:
     using Learner = UdCovariance<Scalar, p, 1>;
-    static constexpr typename Learner::Constants constants{prior_variance, forgets ? forgetting : Scalar(1),
-                                                           nullptr};
+    static constexpr
+        typename Learner::Constants constants{prior_variance, forgets ? forgetting : Scalar(1), nullptr};
 
     [[no_unique_address]] Extent<m> outputs_;
     Learner learner_;

@@ -10,8 +10,8 @@ namespace dfdyn {
 /// Every cause of a change, fitted to the residuals since its onset.
 ///
 /// The residuals are those of a prediction that does not learn the change. Their usual noise is learned while
-/// nothing happens (`BlockNoise`); residuals and columns then pass through the same whitening (D. Cochrane and
-/// G. H. Orcutt, 1949). Columns are scaled to the noise, so that one prior suits all.
+/// nothing happens (`BlockNoise`); residuals and columns then pass through the same whitening (D. Cochrane
+/// and G. H. Orcutt, 1949). Columns are scaled to the noise, so that one prior suits all.
 ///
 /// Cost per block while fitting: `cost(m)`.
 template <class Scalar, int m>
@@ -81,7 +81,18 @@ class CauseFits {
         add_shared(force, force_scale, &Block::force, now, before);
     }
 
-    [[nodiscard]] int outputs() const noexcept { return outputs_; }
+    /// Of a block's residuals, in deviations.
+    [[nodiscard]] Scalar largest(const Block* now, const Block* before, const Speed& speed) const noexcept {
+        Scalar most = 0;
+        for (int k = 0; k < outputs_; ++k) {
+            using std::abs;
+            const Whitening<Scalar> whitening =
+                noise_[k].whitening(speed.of(now[k].speed), speed.of(before[k].speed));
+            most = std::max(most, abs(whitening.of(now[k].residual, before[k].residual)));
+        }
+        return most;
+    }
+
     [[nodiscard]] const BlockNoise<Scalar>& noise(int output) const noexcept { return noise_[output]; }
     /// What a parameter of 1 of a bias, a friction or a push is in the output's unit.
     [[nodiscard]] Scalar unit(int output) const noexcept { return noise_[output].smallest(); }

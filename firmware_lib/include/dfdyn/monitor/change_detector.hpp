@@ -29,9 +29,10 @@ inline constexpr int departure_count = 5;
 /// shift … is looked for, is said in deviations of a block (`shift_size`, `force_size`).
 ///
 /// The alarm is at a limit that each kind's own excursions set (`ExcursionTail`), so that all kinds together
-/// exceed theirs once in `blocks_between_false_alarms` while innovations stay as they were. The onset is where
-/// the alarm's sum last left zero. The alarm is over when every sum is below half its limit: the change was
-/// learned, or went away. An alarm that turns out to be nothing is to be told (`nothing_happened`).
+/// exceed theirs at most once in `blocks_between_false_alarms` while innovations stay as they were. The onset
+/// is where the alarm's sum last left zero. The alarm is over when every sum is below half its limit: the
+/// change was learned, or went away. An alarm that turns out to be nothing is to be told
+/// (`nothing_happened`).
 ///
 /// Cost per block: `cost(m)`. Memory: about 45 m numbers.
 template <class Scalar, int m>
@@ -42,11 +43,14 @@ class ChangeDetector {
     static constexpr Scalar shift_size = Scalar(1.5);
     static constexpr Scalar force_size = Scalar(1.5);
     static constexpr Scalar cut_off = 3;
+    /// The limits are for so many times fewer false alarms than asked for: tails of real arms' sums are a bit
+    /// heavier than exponential (docs/monitor.md: measured).
+    static constexpr Scalar caution = 10;
 
     /// `friction`: whether outputs are the torques of joints. `blocks_between_false_alarms` > 1: their mean.
     ChangeDetector(Extent<m> outputs, bool friction, Scalar blocks_between_false_alarms) noexcept
         : outputs_(outputs), has_friction_(friction),
-          blocks_between_(departure_count * blocks_between_false_alarms),
+          blocks_between_(departure_count * caution * blocks_between_false_alarms),
           noise_(Storage<BlockNoise<Scalar>, m>::zeros(outputs)),
           sums_(Storage<Cusum, sums_of(m)>::zeros(extent<sums_of(m)>(sums_of(outputs)))) {
         set_limits();
@@ -137,8 +141,9 @@ class ChangeDetector {
         if (index >= 5 * outputs_) {
             return index < 5 * outputs_ + 2 ? Departure::payload : Departure::force;
         }
-        return index < outputs_ ? Departure::growth
-                                : index < 3 * outputs_ ? Departure::shift : Departure::friction;
+        return index < outputs_       ? Departure::growth
+               : index < 3 * outputs_ ? Departure::shift
+                                      : Departure::friction;
     }
     [[nodiscard]] int output_of(int index) const noexcept {
         return index < outputs_ ? index : index < 5 * outputs_ ? (index - outputs_) / 2 % outputs_ : outputs_;

@@ -13,20 +13,20 @@ namespace dfdyn {
 /// A sum that falls on average has excursions whose heights have an exponential tail, whatever the
 /// distribution of what is summed and however it is correlated over short times (the bound of Cramér and
 /// Lundberg: F. Lundberg, 1926; H. Cramér, 1930). Its mean height above any base is 1 for log likelihood
-/// ratios of a noise that is as assumed; what it is for this arm's sums, is estimated from their heights above
-/// `base`: n of them with the sum E, `prior` of the mean height `prior_mean` at the start as if seen already.
-/// The next is then predicted to exceed base + x with probability (1 + x/E)^-n, which allows for what is not
-/// known of the mean.
+/// ratios of a noise that is as assumed; what it is for this arm's sums, is estimated from their heights
+/// above `base`: n of them with the sum E, `prior` of the mean height `prior_mean` at the start as if seen
+/// already. The next is then predicted to exceed base + x with probability (1 + x/E)^-n, which allows for
+/// what is not known of the mean.
 ///
 /// Three scalars; a limit takes `limit_cost` multiply-adds.
 template <class Scalar>
 class ExcursionTail {
   public:
     static constexpr Scalar base = 4;
-    static constexpr Scalar prior = 10; ///< excursions …
+    static constexpr Scalar prior = 10;               ///< excursions …
     static constexpr Scalar prior_mean = Scalar(1.5); ///< … of this height, at the start
-    static constexpr Scalar memory = 1000; ///< excursions; then all of them count half
-    static constexpr Scalar most = 8;      ///< mean heights that one excursion counts at most
+    static constexpr Scalar memory = 1000;            ///< excursions; then all of them count half
+    static constexpr Scalar most = 8;                 ///< mean heights that one excursion counts at most
 
     static constexpr int limit_cost = 2 * function_cost + 5;
 

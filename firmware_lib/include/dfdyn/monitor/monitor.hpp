@@ -51,9 +51,9 @@ class Monitor {
         [[no_unique_address]] Extent<M> lags; ///< of the motion's window, even
         typename Arm::template Constants<Scalar> chain;
         typename Motion::template Constants<Scalar, n> motion; ///< `centred_motion_rows` in difference form
-        Storage<Scalar, m> output_gain;     ///< output per N·m (N): 1, or 1 / torque constant (A/N·m)
-        Scalar tip[3];                      ///< m, where a force on the tool acts, in the last link's frame
-        Scalar sign_velocity;               ///< rad/s: friction's sign is tanh(q̇ / v)
+        Storage<Scalar, m> output_gain; ///< output per N·m (N): 1, or 1 / torque constant (A/N·m)
+        Scalar tip[3];                  ///< m, where a force on the tool acts, in the last link's frame
+        Scalar sign_velocity;           ///< rad/s: friction's sign is tanh(q̇ / v)
         SpeedClasses<Scalar> speed;
         std::int32_t block_samples;         ///< about 0.1 s
         Scalar blocks_between_false_alarms; ///< their mean; of all outputs together
@@ -87,7 +87,8 @@ class Monitor {
         since_renewal_ = 2 * constants.renewal_blocks;
     }
 
-    /// One tick; one of values that are not finite counts as a gap. True: there is news of `change()`, which is found, is better known, or is over.
+    /// One tick; one of values that are not finite counts as a gap. True: there is news of `change()`, which
+    /// is found, is better known, or is over.
     bool tick(const Observation<Scalar>& observation) noexcept {
         if (!finite(observation)) {
             interrupt();
@@ -145,12 +146,14 @@ class Monitor {
     [[nodiscard]] static constexpr std::int64_t cost(const typename Arm::Sizes& sizes, int lags) noexcept {
         const int joints = sizes.joint_count;
         const int outputs = sizes.output_count;
-        const std::int64_t tick = Motion::template Map<Scalar, n>::cost(joints, lags, 3) +
-                                  tool_columns_cost(joints, outputs) + FrozenWatch<Scalar, 1>::cost * (joints + outputs) +
-                                  std::int64_t{outputs} * (function_cost + 30);
-        const std::int64_t scaling = std::int64_t{history} * outputs * (2 * (payload_columns + force_columns) + 2);
+        const std::int64_t tick =
+            Motion::template Map<Scalar, n>::cost(joints, lags, 3) + tool_columns_cost(joints, outputs) +
+            FrozenWatch<Scalar, 1>::cost * (joints + outputs) + std::int64_t{outputs} * (function_cost + 30);
+        const std::int64_t scaling =
+            std::int64_t{history} * outputs * (2 * (payload_columns + force_columns) + 2);
         return tick + ChangeDetector<Scalar, m>::cost(outputs) + scaling +
-               catch_up * CauseBank<Scalar, m>::cost_of_add(outputs) + CauseBank<Scalar, m>::cost_of_judge(outputs);
+               catch_up * CauseBank<Scalar, m>::cost_of_add(outputs) +
+               CauseBank<Scalar, m>::cost_of_judge(outputs);
     }
 
   private:
@@ -178,8 +181,8 @@ class Monitor {
         }
         for (int k = 0; k < outputs(); ++k) {
             all = all && std::isfinite(observation.output[k]) && std::isfinite(observation.prediction[k]) &&
-                  std::isfinite(observation.held_prediction[k]) &&
-                  observation.standard_deviation[k] > 0 && std::isfinite(observation.standard_deviation[k]);
+                  std::isfinite(observation.held_prediction[k]) && observation.standard_deviation[k] > 0 &&
+                  std::isfinite(observation.standard_deviation[k]);
         }
         return all;
     }
@@ -285,6 +288,8 @@ class Monitor {
         change_.end_ns = 0;
         change_.channel = alarm ? detector_.channel() : -1;
         by_detector_ = alarm;
+        fitting_ = false;
+        alarm_ = newest_;
         const std::int64_t first = newest_ - std::min<std::int64_t>(newest_, history - 1) + 1;
         bank_.start([this, first](int b) { return block_at(first + b); },
                     static_cast<int>(newest_ - first + 1));
@@ -294,7 +299,7 @@ class Monitor {
     bool follow(std::int64_t time_ns, bool alarm) noexcept {
         for (int b = 0; b < catch_up && next_ <= newest_; ++b, ++next_) {
             if (newest_ - next_ + 1 < unbroken_) { // the one before belongs to it
-                bank_.add(block_at(next_), block_at(next_ - 1), constants_->speed);
+                fit(block_at(next_), block_at(next_ - 1));
             }
         }
         if (const int channel = repeats(); channel >= 0) {
@@ -318,6 +323,17 @@ class Monitor {
         const bool news = over || !told_ || before != change_.cause;
         told_ = true;
         return news;
+    }
+
+    /// From the block on that follows the first unusual one: sums may have begun to rise by chance before the
+    /// change, and it may have begun within that block.
+    void fit(const OutputBlock<Scalar>* now, const OutputBlock<Scalar>* before) noexcept {
+        if (fitting_) {
+            bank_.add(now, before, constants_->speed);
+        } else if (next_ >= alarm_ || bank_.unusual(now, before, constants_->speed)) {
+            fitting_ = true;
+            change_.onset_ns = ends_ns_[slot(next_ - 1)];
+        }
     }
 
     void end(std::int64_t time_ns, bool goes_on) noexcept {
@@ -350,12 +366,12 @@ class Monitor {
     Scalar repeats_limit_; ///< evidence of a channel that repeats itself
     Change change_;
     int samples_ = 0; ///< of the block at hand
-    std::int64_t newest_ = 0, onset_ = 0, next_ = 0;
+    std::int64_t newest_ = 0, onset_ = 0, next_ = 0, alarm_ = 0;
     int unbroken_ = 0; ///< blocks up to the newest without a gap
     int since_renewal_ = 0;
     int frozen_channel_ = -1, told_frozen_ = -1;
     Scalar frozen_evidence_ = 0;
-    bool follows_ = false, changing_ = false, told_ = false, by_detector_ = false;
+    bool follows_ = false, changing_ = false, told_ = false, by_detector_ = false, fitting_ = false;
 };
 
 } // namespace dfdyn

@@ -3,8 +3,9 @@
 
 namespace dfdyn {
 
-inline constexpr int payload_columns = 4;  ///< mass, first moment about the tool's tip, in the last link's frame
-inline constexpr int force_columns = 3;    ///< force on the arm at the tool's tip, in the base frame
+inline constexpr int payload_columns =
+    4;                                  ///< mass, first moment about the tool's tip, in the last link's frame
+inline constexpr int force_columns = 3; ///< force on the arm at the tool's tip, in the base frame
 inline constexpr int friction_columns = 2; ///< Coulomb, viscous; of the output's own joint
 
 /// What a block of samples says of one output, all of it means over the block. Columns are derivatives of the
