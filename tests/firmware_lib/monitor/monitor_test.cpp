@@ -3,6 +3,7 @@
 #include "dfdyn/monitor/held_weights.hpp"
 #include "dfdyn/monitor/monitor.hpp"
 
+#include "tests/firmware_lib/support/counted.hpp"
 #include "tests/firmware_lib/support/two_link_arm.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/catch.hpp"
@@ -19,6 +20,7 @@ using namespace dfdyn::tests;
 
 constexpr double period_s = 0.01;
 constexpr int lags = 8;
+constexpr double tip_x = 0.3; // m
 using Arm = Chain<2>;
 
 template <class Scalar>
@@ -33,8 +35,9 @@ typename TestMonitor<Scalar>::Constants constants() {
     to_difference_form(rows.data(), 3, lags, result.motion.rows.data());
     std::ranges::fill(result.motion.scale, Scalar(1));
     result.output_gain = {{1, 1}};
-    result.tip[0] = Scalar(0.3);
+    result.tip[0] = Scalar(tip_x);
     result.sign_velocity = Scalar(0.02);
+    result.speed = {Scalar(0.03), Scalar(0.15)};
     result.block_samples = 10;
     result.blocks_between_false_alarms = 360000;
     result.report_blocks = 20;
@@ -55,6 +58,33 @@ constexpr double coulomb = 0.9;
 constexpr double moved = 0.7;
 constexpr double force_x = 12;
 
+/// What a fault of a sample does to its values; nothing by itself.
+struct Fault {
+    int kind = 0;
+
+    template <class Scalar>
+    void operator()(Scalar* position, Scalar* output, Scalar* predicted) const {
+        constexpr Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();
+        constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
+        switch (kind) {
+        case 1:
+            position[0] = nan;
+            break;
+        case 2:
+            output[1] = infinity;
+            break;
+        case 3:
+            predicted[0] = nan;
+            break;
+        case 4:
+            output[0] = 1e30F;
+            break;
+        default:
+            break;
+        }
+    }
+};
+
 /// A planar arm that swings in two tones per joint; its torques beyond what is predicted.
 template <class Scalar>
 class Swinging {
@@ -62,7 +92,7 @@ class Swinging {
     explicit Swinging(Hidden hidden) : hidden_(hidden) { set_two_links(chain_); }
 
     /// The next sample into the monitor. True: there is news.
-    bool step(TestMonitor<Scalar>& monitor, std::mt19937_64& engine) {
+    bool step(TestMonitor<Scalar>& monitor, std::mt19937_64& engine, const Fault& fault = {}) {
         const double t = period_s * tick_++;
         std::normal_distribution<double> normal;
         const ArmState arm = state(t);
@@ -76,6 +106,7 @@ class Swinging {
                 output_[i] = static_cast<Scalar>(arm.torque(i) + extra[i] + noise_[i]);
             }
         }
+        fault(position_.data(), output_.data(), predicted_.data());
         const auto time_ns = static_cast<std::int64_t>(std::llround(1e9 * t));
         return monitor.tick({time_ns, position_.data(), output_.data(), predicted_.data(), deviation_.data(),
                              predicted_.data()});
@@ -186,7 +217,7 @@ TEMPLATE_TEST_CASE("The monitor names what changed, where and by how much, witho
     switch (cause) {
     case Cause::payload:
         CHECK(change.size[0] == Approx(payload_mass).epsilon(0.2));
-        CHECK(change.size[1] == Approx(payload_mass * payload_x).epsilon(0.2));
+        CHECK(change.size[1] == Approx(payload_mass * (payload_x - tip_x)).epsilon(0.2));
         break;
     case Cause::friction:
         CHECK(change.where == 1);
@@ -215,6 +246,61 @@ TEST_CASE("Where nothing changes the monitor is silent, and it survives gaps", "
         CHECK(run(monitor, arm, 20.0 * (part + 1), engine) == 0);
         monitor.interrupt();
     }
+}
+
+TEST_CASE("samples that are not numbers count as gaps, and the monitor goes on", "[monitor]") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const auto fixed = constants<float>();
+    TestMonitor<float> monitor(fixed);
+    Swinging<float> arm({Cause::bias, 60, 1e9});
+    int early = 0;
+    while (arm.time_s() < 60) {
+        const bool faulty = engine() % 100 == 0;
+        early += arm.step(monitor, engine, {faulty ? static_cast<int>(engine() % 4 + 1) : 0}) ? 1 : 0;
+    }
+    CHECK(early == 0);
+    REQUIRE(run(monitor, arm, 80, engine) > 0);
+    CHECK(name(monitor.change().cause) == std::string(name(Cause::bias)));
+    CHECK(std::isfinite(monitor.change().confidence));
+}
+
+TEST_CASE("after a restart the monitor begins anew: no alarm by what was before", "[monitor]") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const auto fixed = constants<double>();
+    TestMonitor<double> monitor(fixed);
+    Swinging<double> arm({Cause::bias, 40, 1e9});
+    while (!monitor.changing() && arm.time_s() < 60) {
+        arm.step(monitor, engine);
+    }
+    REQUIRE(monitor.changing());
+    monitor.restart();
+    CHECK_FALSE(monitor.changing());
+    Swinging<double> sound({});
+    CHECK(run(monitor, sound, 30, engine) == 0);
+    CHECK_FALSE(monitor.changing());
+}
+
+TEST_CASE("no tick of the monitor costs more than it says", "[monitor]") {
+    DFDYN_SEEDED_ENGINE(engine);
+    using Scalar = Counted<double>;
+    constexpr std::int64_t cost = TestMonitor<Scalar>::cost({}, lags);
+    std::int64_t most = 0;
+    for (const Cause cause : {Cause::payload, Cause::friction, Cause::bias, Cause::contact, Cause::frozen}) {
+        const auto fixed = constants<Scalar>();
+        TestMonitor<Scalar> monitor(fixed);
+        Swinging<Scalar> arm({cause, 25, cause == Cause::contact ? 26.5 : 1e9});
+        bool changed = false;
+        while (arm.time_s() < 50) {
+            counted_operations = 0;
+            arm.step(monitor, engine);
+            most = std::max(most, counted_operations);
+            changed = changed || monitor.changing();
+        }
+        CHECK(changed);
+    }
+    CAPTURE(most, cost);
+    CHECK(most <= cost);
+    CHECK(2 * most > cost); // nor is the bound absurd
 }
 
 TEST_CASE("Held weights are between one and two periods old", "[monitor]") {

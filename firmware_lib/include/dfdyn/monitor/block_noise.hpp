@@ -37,8 +37,8 @@ struct SpeedClasses {
 /// autocorrelation are kept for each class of its speed; within one, what is left is nearly Gaussian.
 ///
 /// The scale is Huber's: s² follows E[min(x², c² s²)] = κ s², c = 2.5, κ its value for Gaussian noise (P. J.
-/// Huber, "Robust Statistics", 1981, proposal 2), so that a burst counts for little. The gain of a class's
-/// block n is 2/(n+2), then 1/`memory`. Ten operations per block; 15 scalars.
+/// Huber, "Robust Statistics", 1981, proposal 2), so that a burst counts for little. It begins with the
+/// smallest of the `first` blocks of a class; the gain of block n is 2/(n+2), then 1/`memory`. 12 scalars.
 template <class Scalar>
 class BlockNoise {
   public:
@@ -50,19 +50,22 @@ class BlockNoise {
     static constexpr int cost = 2 * function_cost + 25; ///< of `learn`, `smallest` and `whitening`
 
     /// A block of class `c`, after one of class `before` (-1: after none).
-    void learn(Scalar value, Scalar value_before, int c, int before) noexcept {
+    void learn(Scalar block, Scalar block_before, int c, int before) noexcept {
         Class& one = class_[c];
-        if (one.blocks == 0) {
-            one.square = std::max(value * value, least);
-        }
+        const Scalar value = std::clamp(block, -largest, largest);
         one.blocks = std::min(one.blocks + 1, 2 * memory);
+        if (one.blocks <= first) {
+            one.square =
+                std::max(std::min(value * value, one.blocks > 1 ? one.square : largest * largest), least);
+            return;
+        }
         const Scalar gain = 2 / (one.blocks + 2);
         const Scalar square = std::min(value * value, clip * clip * one.square);
         one.square = std::max(one.square + gain * (square / consistency - one.square), least);
         if (c == before) {
             const Scalar limit = clip * scale(c);
             const Scalar now = std::clamp(value, -limit, limit) / limit;
-            const Scalar last = std::clamp(value_before, -limit, limit) / limit;
+            const Scalar last = std::clamp(block_before, -limit, limit) / limit;
             one.power += gain * (last * last - one.power);
             one.product += gain * (now * last - one.product);
         }
@@ -108,7 +111,9 @@ class BlockNoise {
     }
 
   private:
-    static constexpr Scalar least = Scalar(1e-12); ///< square of a scale
+    static constexpr Scalar least = Scalar(1e-12);  ///< square of a scale
+    static constexpr Scalar largest = Scalar(1e15); ///< value that is looked at
+    static constexpr Scalar first = 5;              ///< blocks
     static constexpr Scalar clip = Scalar(2.5);
     static constexpr Scalar consistency = Scalar(0.9776); ///< E[min(z², clip²)] of a standard normal z
 

@@ -45,16 +45,22 @@ class CauseBank {
             recent_[k] = peaks_[k] = 0;
         }
         std::fill_n(force_peak_, force_columns, Scalar(0));
+        loudest_ = 0;
     }
 
     /// A block since the onset, and the one before it.
     void add(const Block* now, const Block* before, const Speed& speed) noexcept {
         fits_.add(now, before, speed);
+        Scalar loudness = 0;
         for (int k = 0; k < outputs_; ++k) {
             const Scalar share = now[k].residual / fits_.noise(k).scale(speed.of(now[k].speed));
             recent_[k] += (std::min(share * share, Scalar(16)) - recent_[k]) / 5;
+            loudness += share * share;
         }
-        note_peaks();
+        if (loudness > loudest_) { // where a push shows best, it is known best
+            loudest_ = loudness;
+            note_push();
+        }
     }
 
     /// Fills in cause, runner-up, confidence and size. `frozen`: log odds of a channel that repeats itself,
@@ -75,9 +81,12 @@ class CauseBank {
         describe(channel, change);
     }
 
-    /// Multiply-adds of `add`, at most, and of `judge`.
+    /// Multiply-adds of `add`, `start` and `judge`, at most.
     static constexpr std::int64_t cost_of_add(int outputs) noexcept {
         return CauseFits<Scalar, m>::cost(outputs) + outputs * (function_cost + 4) + 10;
+    }
+    static constexpr std::int64_t cost_of_start(int outputs, int count) noexcept {
+        return CauseFits<Scalar, m>::cost_of_start(outputs, count);
     }
     static constexpr std::int64_t cost_of_judge(int outputs) noexcept {
         constexpr int evidences = 20; // of an output, those that are asked for twice included
@@ -87,30 +96,20 @@ class CauseBank {
   private:
     static constexpr Scalar impossible = 50;
 
-    void note_peaks() noexcept {
-        Scalar force[force_columns];
+    void note_push() noexcept {
         for (int i = 0; i < force_columns; ++i) {
-            force[i] = fits_.force.parameters()[i] * fits_.force_scale[i];
-        }
-        if (norm_square(force) > norm_square(force_peak_)) {
-            std::copy_n(force, force_columns, force_peak_);
+            force_peak_[i] = fits_.force.parameters()[i] * fits_.force_scale[i];
         }
         for (int k = 0; k < outputs_; ++k) {
-            using std::abs;
-            const Scalar push = *fits_.push[k].parameters();
-            peaks_[k] = abs(push) > abs(peaks_[k]) ? push : peaks_[k];
+            peaks_[k] = *fits_.push[k].parameters();
         }
-    }
-
-    [[nodiscard]] static Scalar norm_square(const Scalar* v) noexcept {
-        return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     }
 
     /// Of the fits of output k's own parameters, over none.
     template <class Fits>
     [[nodiscard]] Scalar gain(const Fits& fits, int k) const noexcept {
         using std::log;
-        return fits[k].evidence().of(0) - fits_.nothing.of(k) - log(2 * static_cast<Scalar>(outputs_));
+        return fits[k].evidence().of(0) - fits_.nothing.of(k) - log(static_cast<Scalar>(2 * int{outputs_}));
     }
 
     /// Where they gain most.
@@ -222,7 +221,8 @@ class CauseBank {
     bool has_friction_;
     CauseFits<Scalar, m> fits_;
     Storage<Scalar, m> recent_; ///< mean square of the last residuals, in units of the noise
-    Storage<Scalar, m> peaks_;
+    Scalar loudest_ = 0;        ///< of the blocks so far: their residuals' sum of squares …
+    Storage<Scalar, m> peaks_;  ///< … and what the pushes were estimated to be then
     Scalar force_peak_[force_columns] = {};
 };
 

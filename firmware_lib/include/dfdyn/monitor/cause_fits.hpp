@@ -61,6 +61,13 @@ class CauseFits {
         }
     }
 
+    /// Multiply-adds of `start`, at most.
+    static constexpr std::int64_t cost_of_start(int outputs, int count) noexcept {
+        constexpr int columns = payload_columns + force_columns;
+        return std::int64_t{outputs} * (function_cost + 2 + 2 * columns * std::int64_t{count}) +
+               columns * (function_cost + 1);
+    }
+
     /// A block since the onset, and the one before it.
     void add(const Block* now, const Block* before, const Speed& speed) noexcept {
         for (int k = 0; k < outputs_; ++k) {
@@ -88,7 +95,8 @@ class CauseFits {
             using std::abs;
             const Whitening<Scalar> whitening =
                 noise_[k].whitening(speed.of(now[k].speed), speed.of(before[k].speed));
-            most = std::max(most, abs(whitening.of(now[k].residual, before[k].residual)));
+            const Scalar one = abs(whitening.of(now[k].residual, before[k].residual));
+            most = std::max(most, one);
         }
         return most;
     }
@@ -122,19 +130,20 @@ class CauseFits {
     template <class BlockAt>
     void scale_columns(const BlockAt& block_at, int count) noexcept {
         Scalar powers[payload_columns + force_columns] = {};
-        for (int b = 0; b < count; ++b) {
-            const Block* block = block_at(b);
-            for (int k = 0; k < outputs_; ++k) {
-                const Scalar weight = unit(k) > 0 ? 1 / (unit(k) * unit(k)) : Scalar(0);
+        for (int k = 0; k < outputs_; ++k) {
+            const Scalar one = unit(k);
+            const Scalar weight = one > 0 ? 1 / (one * one) : Scalar(0);
+            for (int b = 0; b < count; ++b) {
+                const Block& block = block_at(b)[k];
                 for (int i = 0; i < payload_columns; ++i) {
-                    powers[i] += weight * block[k].payload[i] * block[k].payload[i];
+                    powers[i] += weight * block.payload[i] * block.payload[i];
                 }
                 for (int i = 0; i < force_columns; ++i) {
-                    powers[payload_columns + i] += weight * block[k].force[i] * block[k].force[i];
+                    powers[payload_columns + i] += weight * block.force[i] * block.force[i];
                 }
             }
         }
-        const auto rows = static_cast<Scalar>(count * outputs_);
+        const auto rows = static_cast<Scalar>(count * int{outputs_});
         using std::sqrt;
         for (int i = 0; i < payload_columns + force_columns; ++i) {
             const Scalar scale = powers[i] > 0 ? sqrt(rows / powers[i]) : Scalar(0);

@@ -149,11 +149,9 @@ class Monitor {
         const std::int64_t tick =
             Motion::template Map<Scalar, n>::cost(joints, lags, 3) + tool_columns_cost(joints, outputs) +
             FrozenWatch<Scalar, 1>::cost * (joints + outputs) + std::int64_t{outputs} * (function_cost + 30);
-        const std::int64_t scaling =
-            std::int64_t{history} * outputs * (2 * (payload_columns + force_columns) + 2);
-        return tick + ChangeDetector<Scalar, m>::cost(outputs) + scaling +
-               catch_up * CauseBank<Scalar, m>::cost_of_add(outputs) +
-               CauseBank<Scalar, m>::cost_of_judge(outputs);
+        using Bank = CauseBank<Scalar, m>;
+        return tick + ChangeDetector<Scalar, m>::cost(outputs) + catch_up * Bank::cost_of_add(outputs) +
+               std::max(Bank::cost_of_start(outputs, history), Bank::cost_of_judge(outputs));
     }
 
   private:
