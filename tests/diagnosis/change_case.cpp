@@ -19,7 +19,7 @@ namespace {
 
 constexpr double rate_hz = 100;
 constexpr double integration_rate_hz = 2000;
-/// The learner and what is usual settle before.
+/// The learner, and the monitor's idea of what is usual, settle before.
 constexpr double earliest_s = 60;
 constexpr double trained_s = 25;
 

@@ -15,7 +15,7 @@ using namespace tools;
 
 namespace {
 
-constexpr double settled_s = 10.5;
+constexpr double settled_s = 20;
 constexpr double latest_s = 10; ///< after the change: an alarm still belongs to it
 
 constexpr std::array causes{Cause::payload, Cause::friction, Cause::bias, Cause::contact, Cause::frozen};
@@ -91,16 +91,23 @@ std::string causes_table(const std::vector<ChangeScore>& scores) {
     return table;
 }
 
-std::string mistakes_table(const std::vector<ChangeScore>& scores) {
-    std::map<std::pair<std::string, std::string>, int> counts;
+std::string confusion_table(const std::vector<ChangeScore>& scores) {
+    std::map<std::pair<Cause, std::string>, int> counts;
     for (const ChangeScore& score : scores) {
-        if (score.change.cause && score.hit != nullptr && !score.right_cause()) {
-            ++counts[{name(*score.change.cause), name(score.hit->cause)}];
+        if (score.change.cause) {
+            ++counts[{*score.change.cause, score.hit == nullptr ? "nothing" : name(score.hit->cause)}];
         }
     }
-    std::string table = "\n| changed | named instead | cases |\n| --- | --- | --- |\n";
-    for (const auto& [pair, count] : counts) {
-        table += "| " + pair.first + " | " + pair.second + " | " + std::to_string(count) + " |\n";
+    std::string table =
+        "\n| changed, named | payload | friction | bias | contact | frozen | unknown | nothing "
+        "|\n| --- | --- | --- | --- | --- | --- | --- | --- |\n";
+    for (const Cause changed : causes) {
+        table += std::string("| ") + name(changed);
+        for (const Cause named : causes) {
+            table += " | " + std::to_string(counts[{changed, name(named)}]);
+        }
+        table += " | " + std::to_string(counts[{changed, name(Cause::unknown)}]) + " | " +
+                 std::to_string(counts[{changed, "nothing"}]) + " |\n";
     }
     return table;
 }
@@ -169,8 +176,12 @@ std::string change_tables(const std::vector<ChangeScore>& scores) {
         watched_s += score.watched_s;
         false_alarms += score.false_alarms;
     }
-    return causes_table(scores) + mistakes_table(scores) + confidence_table(scores) +
-           "\nFalse alarms: " + std::to_string(false_alarms) + formatted(" in %.2f h.\n", watched_s / 3600);
+    const bool changes =
+        std::ranges::any_of(scores, [](const ChangeScore& one) { return one.change.cause.has_value(); });
+    const std::string tables =
+        changes ? causes_table(scores) + confusion_table(scores) + confidence_table(scores) : "";
+    return tables + "\nFalse alarms: " + std::to_string(false_alarms) +
+           formatted(" in %.2f h.\n", watched_s / 3600);
 }
 
 } // namespace dfdyn::tests

@@ -4,41 +4,40 @@
 
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
+
 namespace {
 
-using namespace dfdyn;
 using namespace dfdyn::tests;
 
-ChangeScore run_one(std::uint64_t seed, const ChangeMix& mix) {
-    return run_change_panel(seed, 1, mix, [](const ChangeScore&) {}).front();
+int count(const std::vector<ChangeScore>& scores, bool (*holds)(const ChangeScore&)) {
+    return static_cast<int>(std::ranges::count_if(scores, holds));
 }
 
 } // namespace
 
-TEST_CASE("A change hidden in a simulated arm is found, named and placed", "[changes]") {
-    // of the panel's seeds from 100: one of each cause, fixed, so that it costs seconds
-    const auto [seed, robot] = GENERATE(table<std::uint64_t, std::string>({{105, "icub_wrench"},
-                                                                           {111, "icub_wrench"},
-                                                                           {113, "icub_wrench"},
-                                                                           {121, "icub_wrench"},
-                                                                           {117, "ur5_torque"}}));
+// The floors are what these seeds have to give at least; docs/monitor.md has the shares of many more.
+TEST_CASE("most changes hidden in simulated arms are found, named and placed", "[changes]") {
     ChangeMix mix;
-    mix.robot = robot;
-    const ChangeScore score = run_one(seed, mix);
-    INFO(describe(score));
-    CHECK(score.false_alarms == 0);
-    REQUIRE(score.hit != nullptr);
-    CHECK(score.delay_s < 3);
-    CHECK(score.right_cause());
-    CHECK(score.right_place());
-    CHECK(score.hit->confidence > 0.6);
+    mix.duration_s = 82;
+    std::string all;
+    const std::vector<ChangeScore> scores =
+        run_change_panel(600, 15, mix, [&all](const ChangeScore& one) { all += describe(one) + '\n'; });
+    INFO(all);
+    CHECK(count(scores, [](const ChangeScore& one) { return one.hit != nullptr; }) >= 12);
+    CHECK(count(scores, [](const ChangeScore& one) { return one.right_cause(); }) >= 11);
+    CHECK(count(scores, [](const ChangeScore& one) { return one.right_place(); }) >= 10);
+    CHECK(count(scores, [](const ChangeScore& one) { return one.false_alarms > 0; }) == 0);
 }
 
-TEST_CASE("Where nothing changes in a simulated arm the monitor is silent", "[changes]") {
+TEST_CASE("where nothing changes in a simulated arm the monitor is silent", "[changes]") {
     ChangeMix mix;
-    mix.robot = "icub_wrench";
     mix.never = true;
-    const ChangeScore score = run_one(300, mix);
-    INFO(describe(score));
-    CHECK(score.found.empty());
+    mix.duration_s = 120;
+    for (const std::string& robot : change_robot_names()) {
+        mix.robot = robot;
+        const ChangeScore score = run_change_panel(300, 1, mix, [](const ChangeScore&) {}).front();
+        INFO(describe(score));
+        CHECK(score.found.empty());
+    }
 }

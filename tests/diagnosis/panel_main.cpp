@@ -125,7 +125,7 @@ CLI::App* add_changes(CLI::App& app, PanelOptions& options) {
             {"payload", "friction_changed", "bias_moved", "external_contact", "sensor_frozen"}));
     command->add_flag("--never", options.changes.never, "Nothing changes");
     command->add_option("--duration", options.changes.duration_s, "Seconds per case")
-        ->check(CLI::Range(45.0, 1e5));
+        ->check(CLI::Range(81.0, 1e5));
     command->add_option("-o,--output", options.tables, "The tables, as Markdown");
     return command;
 }

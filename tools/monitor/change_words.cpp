@@ -62,7 +62,7 @@ void describe_contact(const Change<float, m>& change, const MonitorSetup& setup,
     }
     const std::string& output = setup.outputs[static_cast<std::size_t>(change.where)];
     named.where = setup.chain.sensor ? "ft_sensor" : numbered("joint", change.where);
-    named.parameters.push_back({"peak", unit_of(output), static_cast<double>(change.size[0])});
+    named.parameters.push_back({"mean", unit_of(output), static_cast<double>(change.size[0])});
 }
 
 template <int m>

@@ -230,7 +230,7 @@ TEMPLATE_TEST_CASE("The monitor names what changed, where and by how much, witho
         break;
     case Cause::contact:
         CHECK(change.where == -1);
-        CHECK(change.size[0] == Approx(force_x).epsilon(0.3));
+        CHECK(change.size[0] == Approx(force_x).epsilon(0.5));
         break;
     default:
         CHECK(change.where == 3); // the second output

@@ -54,7 +54,7 @@ struct Change {
     /// joints + the output. Otherwise -1.
     int where = -1;
     /// Payload: mass (kg) and first moment (kg·m, 3) about the tip in the last link's frame. Friction:
-    /// Coulomb (N·m) and viscous (N·m·s/rad). Contact: peak of the force on the tool (N, 3, base frame), or
+    /// Coulomb (N·m) and viscous (N·m·s/rad). Contact: mean of the force on the tool (N, 3, base frame), or
     /// of the joint's torque.
     Scalar size[4] = {};
     Storage<Scalar, m> bias; ///< by how much each offset moved, in the outputs' units; bias only

@@ -18,13 +18,13 @@ class CauseBank {
     using Block = OutputBlock<Scalar>;
     using Speed = SpeedClasses<Scalar>;
     static constexpr Scalar trust = Scalar(0.2);
-    static constexpr Scalar far = Scalar(2.5); ///< deviations
+    static constexpr Scalar far = Scalar(3.5); ///< deviations
     static constexpr Scalar goes_on = 6;       ///< log odds against a contact that has not ended so far
 
     /// `friction`: whether outputs are the torques of joints of their own.
     CauseBank(Extent<m> outputs, bool friction) noexcept
         : outputs_(outputs), has_friction_(friction), fits_(outputs),
-          recent_(Storage<Scalar, m>::zeros(outputs)), peaks_(recent_) {}
+          recent_(Storage<Scalar, m>::zeros(outputs)), mean_push_(recent_) {}
 
     /// A block while nothing happens, and the one before it (null after a gap).
     void learn(const Block* now, const Block* before, const Speed& speed) noexcept {
@@ -42,10 +42,10 @@ class CauseBank {
     void start(const BlockAt& block_at, int count) noexcept {
         fits_.start(block_at, count);
         for (int k = 0; k < outputs_; ++k) {
-            recent_[k] = peaks_[k] = 0;
+            recent_[k] = mean_push_[k] = 0;
         }
-        std::fill_n(force_peak_, force_columns, Scalar(0));
-        loudest_ = 0;
+        std::fill_n(mean_force_, force_columns, Scalar(0));
+        loudness_ = 0;
     }
 
     /// A block since the onset, and the one before it.
@@ -57,10 +57,7 @@ class CauseBank {
             recent_[k] += (std::min(share * share, Scalar(16)) - recent_[k]) / 5;
             loudness += share * share;
         }
-        if (loudness > loudest_) { // where a push shows best, it is known best
-            loudest_ = loudness;
-            note_push();
-        }
+        note_push(loudness);
     }
 
     /// Fills in cause, runner-up, confidence and size. `frozen`: log odds of a channel that repeats itself,
@@ -96,12 +93,15 @@ class CauseBank {
   private:
     static constexpr Scalar impossible = 50;
 
-    void note_push() noexcept {
+    /// Means over the blocks, weighted by how much they show.
+    void note_push(Scalar loudness) noexcept {
+        loudness_ += loudness;
+        const Scalar share = loudness_ > 0 ? loudness / loudness_ : Scalar(0);
         for (int i = 0; i < force_columns; ++i) {
-            force_peak_[i] = fits_.force.parameters()[i] * fits_.force_scale[i];
+            mean_force_[i] += share * (fits_.force.parameters()[i] * fits_.force_scale[i] - mean_force_[i]);
         }
         for (int k = 0; k < outputs_; ++k) {
-            peaks_[k] = *fits_.push[k].parameters();
+            mean_push_[k] += share * (*fits_.push[k].parameters() * fits_.unit(k) - mean_push_[k]);
         }
     }
 
@@ -210,20 +210,20 @@ class CauseBank {
 
     void describe_contact(Change<Scalar, m>& change) const noexcept {
         if (fits_.force.evidence().of_all() - fits_.nothing.of_all() >= gain_of_some(fits_.push)) {
-            std::copy_n(force_peak_, force_columns, change.size);
+            std::copy_n(mean_force_, force_columns, change.size);
             return;
         }
         change.where = best_output(fits_.push);
-        change.size[0] = -peaks_[change.where] * fits_.unit(change.where);
+        change.size[0] = -mean_push_[change.where];
     }
 
     [[no_unique_address]] Extent<m> outputs_;
     bool has_friction_;
     CauseFits<Scalar, m> fits_;
     Storage<Scalar, m> recent_; ///< mean square of the last residuals, in units of the noise
-    Scalar loudest_ = 0;        ///< of the blocks so far: their residuals' sum of squares …
-    Storage<Scalar, m> peaks_;  ///< … and what the pushes were estimated to be then
-    Scalar force_peak_[force_columns] = {};
+    Scalar loudness_ = 0;       ///< of the residuals so far: sum of squares, in units of the noise
+    Storage<Scalar, m> mean_push_;
+    Scalar mean_force_[force_columns] = {};
 };
 
 } // namespace dfdyn

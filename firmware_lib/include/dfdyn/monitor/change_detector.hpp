@@ -205,7 +205,9 @@ class ChangeDetector {
     }
 
     void decide() noexcept {
-        settled_ = settled_ < settling_blocks ? settled_ + 1 : settled_;
+        if (settled_ < settling_blocks && ++settled_ == settling_blocks) {
+            restart(); // sums of noise that was not known yet
+        }
         if (alarm_) {
             ++since_onset_;
             if (calm()) {
