@@ -13,8 +13,8 @@
 namespace dfdyn {
 
 /// In what way innovations depart from what is usual.
-enum class Departure : std::uint8_t { growth, shift, friction, payload, force };
-inline constexpr int departure_count = 5;
+enum class Departure : std::uint8_t { growth, shift, friction, payload, force, burst };
+inline constexpr int departure_count = 6;
 
 /// Watches the block means of m normalised innovations for a change.
 ///
@@ -25,8 +25,12 @@ inline constexpr int departure_count = 5;
 /// - friction, per joint and sign: a torque against its motion (joint torques only);
 /// - payload, per sign: weight and inertia of a mass at the tool, in all outputs;
 /// - force, per axis of the base and sign: one at the tool, in all outputs;
-/// with each innovation cut off at three deviations, so that no single block raises an alarm. How large a
-/// shift … is looked for, is said in deviations of a block (`shift_size`, `force_size`).
+/// with each innovation cut off at three deviations; how large a shift, friction … is looked for, is said in
+/// deviations of a block (`shift_size`, `force_size`). For what is short and large there is one more sum:
+/// - burst: log(e²/2²) of each innovation of e > 2 deviations, all outputs together, at most `burst_limit`
+/// per
+///   block, less 2.
+/// So no single block raises an alarm.
 ///
 /// The alarm is at a limit that each kind's own excursions set (`ExcursionTail`), so that all kinds together
 /// exceed theirs at most once in `blocks_between_false_alarms` while innovations stay as they were. The onset
@@ -43,6 +47,9 @@ class ChangeDetector {
     static constexpr Scalar shift_size = Scalar(1.5);
     static constexpr Scalar force_size = Scalar(1.5);
     static constexpr Scalar cut_off = 3;
+    static constexpr Scalar burst_from = 2;
+    static constexpr Scalar burst_drift = 2;
+    static constexpr Scalar burst_limit = 12;
     /// The limits are for so many times fewer false alarms than asked for: tails of real arms' sums are a bit
     /// heavier than exponential (docs/monitor.md: measured).
     static constexpr Scalar caution = 10;
@@ -110,8 +117,8 @@ class ChangeDetector {
     /// Multiply-adds of `add`, at most.
     static constexpr std::int64_t cost(int outputs) noexcept {
         const std::int64_t limits = std::int64_t{departure_count} * ExcursionTail<Scalar>::limit_cost;
-        return limits + outputs * (BlockNoise<Scalar>::cost + 60) + shared_columns * (function_cost + 8) +
-               2 * sums_of(outputs);
+        return limits + outputs * (BlockNoise<Scalar>::cost + function_cost + 60) +
+               shared_columns * (function_cost + 8) + 2 * sums_of(outputs);
     }
 
     [[nodiscard]] const BlockNoise<Scalar>& noise(int output) const noexcept { return noise_[output]; }
@@ -132,14 +139,18 @@ class ChangeDetector {
     /// Of all outputs: Σ g e and Σ g² of the columns g that they share.
     struct Shared {
         Scalar product[shared_columns] = {}, square[shared_columns] = {};
+        Scalar burst = 0;
     };
 
     static constexpr int sums_of(int outputs) noexcept {
-        return outputs == dynamic ? dynamic : 5 * outputs + 2 * shared_columns;
+        return outputs == dynamic ? dynamic : 5 * outputs + 2 * shared_columns + 1;
     }
     [[nodiscard]] Departure kind_of(int index) const noexcept {
         if (index >= 5 * outputs_) {
-            return index < 5 * outputs_ + 2 ? Departure::payload : Departure::force;
+            const int shared = index - 5 * outputs_;
+            return shared < 2                    ? Departure::payload
+                   : shared < 2 * shared_columns ? Departure::force
+                                                 : Departure::burst;
         }
         return index < outputs_       ? Departure::growth
                : index < 3 * outputs_ ? Departure::shift
@@ -151,9 +162,14 @@ class ChangeDetector {
 
     void sum_output(int k, const Whitening<Scalar>& whitening, const Block& now, const Block& before,
                     Shared& shared) noexcept {
-        const Scalar e = std::clamp(whitening.of(now.innovation, before.innovation), -cut_off, cut_off);
+        const Scalar whole = whitening.of(now.innovation, before.innovation);
+        const Scalar e = std::clamp(whole, -cut_off, cut_off);
         constexpr Scalar log_two = Scalar(0.693147);
         rise(k, Scalar(0.375) * e * e - log_two);
+        if (whole * whole > burst_from * burst_from) {
+            using std::log;
+            shared.burst += log(std::min(whole * whole, Scalar(1e6)) / (burst_from * burst_from));
+        }
         const Scalar size = shift_size * noise_[k].smallest();
         const Scalar shift = size * whitening.of(1, 1);
         both_signs(outputs_ + 2 * k, shift * e, shift * shift);
@@ -180,6 +196,7 @@ class ChangeDetector {
                 both_signs(5 * outputs_ + 2 * i, size * shared.product[i], size * size * shared.square[i]);
             }
         }
+        rise(5 * outputs_ + 2 * shared_columns, std::min(shared.burst, burst_limit) - burst_drift);
     }
 
     /// Of a shift g δ and one of -g δ: δ Σ g e and δ² Σ g².
