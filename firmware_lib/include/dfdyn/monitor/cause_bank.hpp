@@ -19,7 +19,9 @@ class CauseBank {
     using Speed = SpeedClasses<Scalar>;
     static constexpr Scalar trust = Scalar(0.2);
     static constexpr Scalar far = Scalar(3.5); ///< deviations
-    static constexpr Scalar goes_on = 6;       ///< log odds against a contact that has not ended so far
+    /// Log odds against a contact that goes on, and against anything else that was large and went away.
+    static constexpr Scalar goes_on = 6;
+    static constexpr Scalar large = 8; ///< mean square of residuals, in units of the noise
 
     /// `friction`: whether outputs are the torques of joints of their own.
     CauseBank(Extent<m> outputs, bool friction) noexcept
@@ -45,7 +47,7 @@ class CauseBank {
             recent_[k] = mean_push_[k] = 0;
         }
         std::fill_n(mean_force_, force_columns, Scalar(0));
-        loudness_ = 0;
+        loudness_ = loudest_ = 0;
     }
 
     /// A block since the onset, and the one before it.
@@ -56,6 +58,7 @@ class CauseBank {
             const Scalar share = now[k].residual / fits_.noise(k).scale(speed.of(now[k].speed));
             recent_[k] += (std::min(share * share, Scalar(16)) - recent_[k]) / 5;
             loudness += share * share;
+            loudest_ = std::max(loudest_, recent_[k]);
         }
         note_push(loudness);
     }
@@ -148,11 +151,13 @@ class CauseBank {
         const auto set = [logs](Cause cause, Scalar value) { logs[static_cast<int>(cause)] = value; };
         const Scalar none = fits_.nothing.of_all();
         const Scalar contact = std::max(fits_.force.evidence().of_all() - none, gain_of_some(fits_.push));
+        const bool passed = ended();
+        const Scalar stays = passed && loudest_ > large ? -goes_on : Scalar(0);
         set(Cause::unknown, 0);
-        set(Cause::payload, trust * (fits_.payload.evidence().of_all() - none));
-        set(Cause::friction, has_friction_ ? trust * gain_of_some(fits_.friction) : -impossible);
-        set(Cause::bias, trust * gain_of_some(fits_.bias));
-        set(Cause::contact, trust * contact - (ended() ? Scalar(0) : goes_on));
+        set(Cause::payload, stays + trust * (fits_.payload.evidence().of_all() - none));
+        set(Cause::friction, has_friction_ ? stays + trust * gain_of_some(fits_.friction) : -impossible);
+        set(Cause::bias, stays + trust * gain_of_some(fits_.bias));
+        set(Cause::contact, trust * contact - (passed ? Scalar(0) : goes_on));
         set(Cause::frozen, -impossible);
     }
 
@@ -221,6 +226,7 @@ class CauseBank {
     bool has_friction_;
     CauseFits<Scalar, m> fits_;
     Storage<Scalar, m> recent_; ///< mean square of the last residuals, in units of the noise
+    Scalar loudest_ = 0;        ///< `recent_` of any output so far
     Scalar loudness_ = 0;       ///< of the residuals so far: sum of squares, in units of the noise
     Storage<Scalar, m> mean_push_;
     Scalar mean_force_[force_columns] = {};

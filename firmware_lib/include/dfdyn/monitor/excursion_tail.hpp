@@ -26,7 +26,7 @@ class ExcursionTail {
     static constexpr Scalar prior = 10;               ///< excursions …
     static constexpr Scalar prior_mean = Scalar(1.5); ///< … of this height, at the start
     static constexpr Scalar memory = 1000;            ///< excursions; then all of them count half
-    static constexpr Scalar most = 8;                 ///< mean heights that one excursion counts at most
+    static constexpr Scalar most = 4;                 ///< mean heights that one excursion counts at most
 
     static constexpr int limit_cost = 2 * function_cost + 5;
 

@@ -63,7 +63,6 @@ class Monitor {
     };
 
     static constexpr int catch_up = 3; ///< blocks of the past that the bank takes in per block
-    static constexpr int patience = 3; ///< report times that a change without a cause has to last to be told
 
     explicit Monitor(const Constants&&) = delete; // it would refer to a temporary
     explicit Monitor(const Constants& constants) noexcept
@@ -314,9 +313,6 @@ class Monitor {
         bank_.judge(frozen_evidence_, frozen_channel_, change_);
         if (over) {
             end(time_ns, alarm);
-        }
-        if (change_.cause == Cause::unknown && !told_ && age < patience * constants_->report_blocks) {
-            return false; // a burst that nothing explains: no news unless it lasts
         }
         const bool news = over || !told_ || before != change_.cause;
         told_ = true;
