@@ -69,6 +69,7 @@ class Monitor {
         : constants_(&constants), motion_(constants.motion, constants.sizes.joint_count, constants.lags, {}),
           innovations_(constants.sizes.output_count, constants.lags),
           residuals_(constants.sizes.output_count, constants.lags),
+          screws_(Storage<Screw<Scalar>, m>::zeros(constants.sizes.output_count)),
           xi_(Inputs::zeros(extent<product(3, n)>(3 * joints()))),
           payload_(Storage<Scalar, product(payload_columns, m)>::zeros(
               extent<product(payload_columns, m)>(payload_columns * outputs()))),
@@ -99,8 +100,9 @@ class Monitor {
             return false;
         }
         motion_.evaluate(xi_.data());
-        tool_columns<Arm, Scalar>(constants_->chain, constants_->sizes, xi_.data(), constants_->tip,
-                                  payload_.data(), force_.data());
+        if (samples_ == constants_->block_samples / 2) {
+            take_tool_columns();
+        }
         accumulate();
         if (++samples_ < constants_->block_samples) {
             return false;
@@ -197,25 +199,34 @@ class Monitor {
         residuals_.push(scaled_.data());
     }
 
+    /// Of the block's middle; they change little within it.
+    void take_tool_columns() noexcept {
+        tool_columns<Arm, Scalar>(constants_->chain, constants_->sizes, xi_.data(), constants_->tip,
+                                  screws_.data(), payload_.data(), force_.data());
+        for (int k = 0; k < outputs(); ++k) {
+            const Scalar gain = constants_->output_gain[k];
+            for (int i = 0; i < payload_columns; ++i) {
+                block_[k].payload[i] = gain * payload_[payload_columns * k + i];
+            }
+            for (int i = 0; i < force_columns; ++i) {
+                block_[k].force[i] = gain * force_[force_columns * k + i];
+            }
+        }
+    }
+
     void accumulate() noexcept {
         const int middle = constants_->lags / 2;
         const Scalar share = 1 / static_cast<Scalar>(constants_->block_samples);
         for (int k = 0; k < outputs(); ++k) {
-            const Scalar gain = share * constants_->output_gain[k];
             OutputBlock<Scalar>& sum = block_[k];
             sum.innovation += share * innovations_.row(middle)[k];
             sum.deviation += share * deviations_[k];
             sum.residual += share * residuals_.row(middle)[k];
-            for (int i = 0; i < payload_columns; ++i) {
-                sum.payload[i] += gain * payload_[payload_columns * k + i];
-            }
-            for (int i = 0; i < force_columns; ++i) {
-                sum.force[i] += gain * force_[force_columns * k + i];
-            }
             if constexpr (torques) {
                 const Scalar velocity = xi_[3 * k + 1];
                 using std::abs;
                 using std::tanh;
+                const Scalar gain = share * constants_->output_gain[k];
                 sum.speed += share * abs(velocity);
                 sum.friction[0] += gain * tanh(velocity / constants_->sign_velocity);
                 sum.friction[1] += gain * velocity;
@@ -347,6 +358,7 @@ class Monitor {
     const Constants* constants_;
     typename Motion::template Map<Scalar, n> motion_;
     LagWindow<Scalar, m, M> innovations_, residuals_;
+    Storage<Screw<Scalar>, m> screws_; ///< room for them
     Inputs xi_;
     Storage<Scalar, product(payload_columns, m)> payload_;
     Storage<Scalar, product(force_columns, m)> force_;

@@ -8,8 +8,8 @@ inline constexpr int payload_columns =
 inline constexpr int force_columns = 3; ///< force on the arm at the tool's tip, in the base frame
 inline constexpr int friction_columns = 2; ///< Coulomb, viscous; of the output's own joint
 
-/// What a block of samples says of one output, all of it means over the block. Columns are derivatives of the
-/// output, in its unit, by a payload, a force and friction.
+/// What a block of samples says of one output: means over the block, and columns, which are derivatives of
+/// the output, in its unit, by a payload and a force in the middle of the block and by friction.
 template <class Scalar>
 struct OutputBlock {
     Scalar innovation; ///< in units of its predicted standard deviation …
