@@ -17,7 +17,8 @@ void MonitorOptions::add_to(CLI::App& command) {
     command.add_option("--changes", file, "Likewise, and write the changes here")->type_name("CHANGES.json");
     command
         .add_option("--false-alarms", false_alarm_hours,
-                    "Of --monitor: hours between two false alarms, on average; default: 10")
+                    "Of --monitor: hours between two false alarms, on average; default: 5, the rate that was "
+                    "measured")
         ->check(CLI::Range(0.01, 1e5))
         ->type_name("HOURS");
     robot.add_to(command, false);

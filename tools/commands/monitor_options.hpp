@@ -12,7 +12,7 @@ namespace dfdyn::tools {
 struct MonitorOptions {
     bool chosen = false;
     std::filesystem::path file; ///< changes.json; empty: none
-    double false_alarm_hours = 10;
+    double false_alarm_hours = 5;
     RobotOptions robot; ///< for models without physics
 
     bool wanted() const { return chosen || !file.empty(); }

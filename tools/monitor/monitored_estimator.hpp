@@ -18,7 +18,7 @@ struct MonitorSetup {
     std::vector<double> output_gain; ///< per output: output per N·m (N)
     Eigen::Isometry3d tip_placement =
         Eigen::Isometry3d::Identity(); ///< of the tool's frame in the last link's
-    double false_alarm_hours = 10;     ///< mean time between false alarms, > 0
+    double false_alarm_hours = 5;      ///< mean time between false alarms, > 0
 };
 
 /// For outputs of `model`: the chain of its physics, or else that of `robot`. Throws InputError, naming

@@ -52,7 +52,7 @@ class ChangeDetector {
     static constexpr Scalar burst_limit = 12;
     /// The limits are for so many times fewer false alarms than asked for: tails of real arms' sums are a bit
     /// heavier than exponential (docs/monitor.md: measured).
-    static constexpr Scalar caution = 10;
+    static constexpr Scalar caution = 20;
 
     /// `friction`: whether outputs are the torques of joints. `blocks_between_false_alarms` > 1: their mean.
     ChangeDetector(Extent<m> outputs, bool friction, Scalar blocks_between_false_alarms) noexcept
