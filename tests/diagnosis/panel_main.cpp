@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes recordings with hidden effects, and their answers; and scores the diagnosis on them.
+#include "tests/diagnosis/change_panel.hpp"
 #include "tests/diagnosis/panel_files.hpp"
 #include "tests/diagnosis/panel_table.hpp"
 #include "tests/diagnosis/run_panel.hpp"
@@ -24,8 +25,9 @@ struct PanelOptions {
     PanelMix mix;
     std::filesystem::path directory; ///< of generate
     int threads = 2;                 ///< of score
-    std::filesystem::path tables;    ///< of score
+    std::filesystem::path tables;    ///< of score and changes
     bool hold = false;               ///< of score: fail where it is worse than it has been
+    ChangeMix changes;
 };
 
 std::string case_name(int number) {
@@ -85,6 +87,49 @@ int score(const PanelOptions& options) {
     return worse.empty() ? 0 : 1;
 }
 
+int watch(const PanelOptions& options) {
+    const std::vector<ChangeScore> scores =
+        run_change_panel(*options.seed, options.cases, options.changes, [](const ChangeScore& one) {
+            std::printf("%s\n", describe(one).c_str());
+            std::fflush(stdout);
+        });
+    const std::string tables = change_tables(scores);
+    std::printf("%d recordings, seeds from %llu\n\n%s", options.cases,
+                static_cast<unsigned long long>(*options.seed), tables.c_str());
+    if (!options.tables.empty()) {
+        dfdyn::tools::write_file(options.tables, tables);
+    }
+    return 0;
+}
+
+CLI::App* add_changes(CLI::App& app, PanelOptions& options) {
+    CLI::App* command = app.add_subcommand(
+        "changes", "Watches arms that change while they are learned, and tells what the monitor found");
+    command->add_option("--seed", options.seed,
+                        "Of the first case; each further one has the next. Without it a new one is drawn");
+    command->add_option("--cases", options.cases, "How many")->required()->check(CLI::PositiveNumber);
+    command->add_option("--robot", options.changes.robot, "Always this arm")
+        ->check(CLI::IsMember(change_robot_names()));
+    command
+        ->add_option_function<std::string>(
+            "--cause",
+            [&options](const std::string& text) {
+                for (int c = 0; c < dfdyn::cause_count; ++c) {
+                    const auto cause = static_cast<dfdyn::Cause>(c);
+                    options.changes.cause =
+                        text == dfdyn::name(cause) ? std::optional(cause) : options.changes.cause;
+                }
+            },
+            "Always this change")
+        ->check(CLI::IsMember(
+            {"payload", "friction_changed", "bias_moved", "external_contact", "sensor_frozen"}));
+    command->add_flag("--never", options.changes.never, "Nothing changes");
+    command->add_option("--duration", options.changes.duration_s, "Seconds per case")
+        ->check(CLI::Range(81.0, 1e5));
+    command->add_option("-o,--output", options.tables, "The tables, as Markdown");
+    return command;
+}
+
 void add_mix(CLI::App& command, PanelOptions& options) {
     command.add_option("--seed", options.seed,
                        "Of the first case; each further one has the next. Without it a new one is drawn");
@@ -120,10 +165,14 @@ int main(int argc, char** argv) {
     scoring->add_option("-o,--output", options.tables, "The tables, as Markdown");
     scoring->add_flag("--hold", options.hold,
                       "Status 1 where less is right than has been on the tests' panel");
+    const CLI::App* const changes = add_changes(app, options);
     CLI11_PARSE(app, argc, argv);
     try {
         if (!options.seed) {
             options.seed = std::random_device{}();
+        }
+        if (changes->parsed()) {
+            return watch(options);
         }
         return generating->parsed() ? generate(options) : score(options);
     } catch (const dfdyn::tools::InputError& error) {

@@ -75,6 +75,18 @@ void show_tracking(const LoopParts& parts, const LoopOptions& options, const std
     }
 }
 
+/// What the learner's monitor found: on the terminal, and beside the tracking.
+void show_changes(const LoopOptions& options, const ControlLoop& loop) {
+    if (const LearnedFeedForward* const learned = loop.feed_forward().learned()) {
+        const RecordedChanges changes = learned->changes();
+        print_changes(std::cout, changes);
+        if (!options.folder.empty()) {
+            write_file(options.folder / "changes.json",
+                       changes_json(std::span(&changes, 1), MonitorSetup().false_alarm_hours));
+        }
+    }
+}
+
 /// Nothing where the loop stopped by itself.
 std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOptions& options, bool learned) {
     ClosedLoop loop(parts.robot, parts.scenario, shown(options.scenario), learned ? &*parts.model : nullptr,
@@ -93,6 +105,7 @@ std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOption
     }
     std::cout << name << ' ';
     print_loop(std::cout, loop.loop());
+    show_changes(options, loop.loop());
     return loop.loop().state() == LoopState::running ? std::optional(TrackingRun{name, tracking.windows()})
                                                      : std::nullopt;
 }
@@ -126,6 +139,7 @@ int run_on_bus(const LoopOptions& options) {
     print_loop(std::cout, *loop);
     print_port(std::cout, port.counters());
     print_pace(std::cout, pace);
+    show_changes(options, *loop);
     const std::string name = parts.model ? "learned" : "nominal";
     if (!options.folder.empty()) {
         log.recording.write(options.folder / (name + ".csv"));
@@ -177,8 +191,8 @@ void add_loop_command(CLI::App& app, Command& chosen) {
     command
         ->add_option(
             "-o,--output", options->folder,
-            "Tracking error as tracking.csv, .svg and .html, and a recording of each run (at most 10 minutes "
-            "without --duration)")
+            "Tracking error as tracking.csv, .svg and .html, a recording of each run (at most 10 minutes "
+            "without --duration), and changes.json: changes of the arm that the learner's monitor found")
         ->type_name("DIR");
     command->footer(
         "Examples:\n"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/build_flags.hpp"
 #include "tools/commands/command.hpp"
+#include "tools/commands/monitor_options.hpp"
 #include "tools/commands/options.hpp"
 #include "tools/commands/stop_signal.hpp"
 #include "tools/common/atomic_file.hpp"
@@ -31,6 +32,7 @@ struct ReplayOptions {
     std::filesystem::path report;
     std::optional<std::size_t> horizon;
     bool from_prior = false;
+    MonitorOptions monitor;
 
     std::filesystem::path bus; ///< the recordings are candump logs, or there is an interface
     std::string log_interface;
@@ -58,6 +60,32 @@ void check_usage(const ReplayOptions& options) {
            "--duration, --record: expected --can, found a recording");
 }
 
+/// What replays, and what watches it, if anything does.
+struct Replaying {
+    std::unique_ptr<HostEstimator> estimator;
+    MonitoredEstimator* monitor = nullptr;
+    std::vector<RecordedChanges> changes;
+
+    /// Moves the changes of the recording that was just replayed.
+    void collect(const ReplayedRecording& replayed) {
+        if (monitor != nullptr) {
+            changes.push_back({std::filesystem::path(replayed.source).filename().string(),
+                               replayed.clock_origin_s, monitor->take_changes()});
+        }
+    }
+};
+
+Replaying make_replaying(const ReplayOptions& options, std::span<const TrainedModel> models) {
+    Replaying replaying{make_estimator(models, options.from_prior), nullptr, {}};
+    if (options.monitor.wanted()) {
+        auto watched = monitored(std::move(replaying.estimator),
+                                 options.monitor.setup(models, shown(options.models.front())));
+        replaying.monitor = watched.get();
+        replaying.estimator = std::move(watched);
+    }
+    return replaying;
+}
+
 /// Models of the same joints and outputs.
 std::vector<TrainedModel> read_models(const std::vector<std::filesystem::path>& paths) {
     std::vector<TrainedModel> models;
@@ -75,7 +103,7 @@ std::vector<TrainedModel> read_models(const std::vector<std::filesystem::path>& 
 }
 
 std::vector<ReplayedRecording> replay_all(const ReplayOptions& options, std::span<const TrainedModel> models,
-                                          HostEstimator& estimator) {
+                                          Replaying& replaying) {
     const auto joints = static_cast<std::size_t>(models.front().joints);
     ReadOptions columns;
     columns.joint_count = joints;
@@ -84,30 +112,34 @@ std::vector<ReplayedRecording> replay_all(const ReplayOptions& options, std::spa
     std::vector<ReplayedRecording> replayed;
     for (const Recording& recording : options.recordings.read(columns)) {
         Progress progress("replaying " + recording.source, recording.row_count());
-        replayed.push_back(replay(estimator, models, recording, options.chosen_horizon(),
+        replayed.push_back(replay(*replaying.estimator, models, recording, options.chosen_horizon(),
                                   [&progress](std::size_t done) { progress.update(done); }));
+        replaying.collect(replayed.back());
     }
     return replayed;
 }
 
 std::vector<ReplayedBus> replay_bus(const ReplayOptions& options, std::span<const TrainedModel> models,
-                                    HostEstimator& estimator) {
+                                    Replaying& replaying) {
     const BusDescription description = read_bus_description(options.bus);
+    HostEstimator& estimator = *replaying.estimator;
     std::vector<ReplayedBus> replayed;
     if (options.live()) {
         replayed.push_back(replay_interface(estimator, models, description, options.can,
                                             options.chosen_horizon(), stop_on_signals()));
+        replaying.collect(replayed.back().replayed);
     }
     for (const std::filesystem::path& log : options.recordings.logs) {
         replayed.push_back(
             replay_log(estimator, models, description, log, options.log_interface, options.chosen_horizon()));
+        replaying.collect(replayed.back().replayed);
     }
     return replayed;
 }
 
 void write_results(const ReplayOptions& options, std::span<const TrainedModel> models,
-                   const HostEstimator& estimator, std::span<const ReplayedRecording> replayed) {
-    const ReplaySummary summary = summarise(models, estimator, replayed, options.chosen_horizon());
+                   const Replaying& replaying, std::span<const ReplayedRecording> replayed) {
+    const ReplaySummary summary = summarise(models, *replaying.estimator, replayed, options.chosen_horizon());
     if (!options.csv.empty()) {
         AtomicFile file(options.csv);
         write_replay_csv(file.stream(), models.front(), replayed);
@@ -117,6 +149,9 @@ void write_results(const ReplayOptions& options, std::span<const TrainedModel> m
         write_file(options.report, render_report(make_replay_report(models.front(), replayed, summary)));
     }
     print_summary(std::cout, summary);
+    if (replaying.monitor != nullptr) {
+        options.monitor.show(replaying.changes);
+    }
 }
 
 /// Whether a bus gave any prediction.
@@ -129,20 +164,22 @@ int run(const ReplayOptions& options) {
     std::vector<std::filesystem::path> inputs = options.recordings.logs;
     inputs.insert(inputs.end(), options.models.begin(), options.models.end());
     inputs.push_back(options.bus);
-    check_distinct({options.csv, options.report, options.can.record}, std::move(inputs));
+    check_distinct({options.csv, options.report, options.can.record, options.monitor.file},
+                   std::move(inputs));
     const std::vector<TrainedModel> models = read_models(options.models);
-    const auto estimator = make_estimator(models, options.from_prior);
+    Replaying replaying = make_replaying(options, models);
     if (options.bus.empty()) {
-        write_results(options, models, *estimator, replay_all(options, models, *estimator));
+        const std::vector<ReplayedRecording> replayed = replay_all(options, models, replaying);
+        write_results(options, models, replaying, replayed);
         return 0;
     }
-    std::vector<ReplayedBus> buses = replay_bus(options, models, *estimator);
+    std::vector<ReplayedBus> buses = replay_bus(options, models, replaying);
     const bool all_predicted = std::ranges::all_of(buses, predicted);
     std::vector<ReplayedRecording> replayed;
     for (ReplayedBus& one : buses) {
         replayed.push_back(std::move(one.replayed));
     }
-    write_results(options, models, *estimator, replayed);
+    write_results(options, models, replaying, replayed);
     for (const ReplayedBus& one : buses) {
         print_bus(std::cout, one.bus);
     }
@@ -191,8 +228,10 @@ void add_replay_command(CLI::App& app, Command& chosen) {
         ->check(CLI::Range(0, 10000));
     command->add_flag("--from-prior", options->from_prior,
                       "Start with nothing learned: keep the hyperparameters, drop the trained start");
+    options->monitor.add_to(*command);
     command->footer(
         "Example:\n  dfdyn replay --model model.json --log run.csv -o out.csv --report report.html\n"
+        "  dfdyn replay --model model.json --log run.csv --monitor --changes changes.json\n"
         "  dfdyn replay --model model.json --bus bus.json --log run.log -o out.csv\n"
         "  dfdyn replay --model model.json --bus bus.json --can can0 --record run.log -o out.csv\n"
         "Exit status: 0 done, 1 a bus gave no prediction at all, 2 bad usage or input.");

@@ -39,11 +39,16 @@ Budget share_of(const Cost& cost, int ticks) {
 } // namespace
 
 LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prior, int joints, int ticks,
-                                       const std::string& source)
+                                       const std::string& source, const MonitorSetup* monitor)
     : sample_period_ns_(std::llround(model.sample_period_s * 1e9)),
       lags_(std::max(model.input.lags, model.physics ? model.physics->motion.lags : 0)) {
     check_model(model, joints, source);
     learner_ = make_estimator(model, from_prior);
+    if (monitor != nullptr) {
+        auto watched = monitored(std::move(learner_), *monitor);
+        monitor_ = watched.get();
+        learner_ = std::move(watched);
+    }
     follower_ = make_estimator(model, from_prior);
     share_ = share_of(learner_->cost(), ticks);
     weights_.resize(learner_->weight_count());
@@ -52,6 +57,7 @@ LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prio
 }
 
 void LearnedFeedForward::begin(std::int64_t time_ns, const JointVector& position) {
+    begin_ns_ = time_ns;
     learner_->begin_recording();
     follower_->begin_recording();
     for (int lag = lags_; lag >= 0; --lag) {
@@ -71,6 +77,14 @@ void LearnedFeedForward::learn(std::int64_t time_ns, const JointVector& position
         ++counters_.faults;
         counters_.last_fault = status.reason();
     }
+}
+
+RecordedChanges LearnedFeedForward::changes() const {
+    RecordedChanges recorded{"learned", -1e-9 * static_cast<double>(begin_ns_), {}};
+    if (monitor_ != nullptr) {
+        recorded.changes = monitor_->changes();
+    }
+    return recorded;
 }
 
 void LearnedFeedForward::go_on() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/host/host_estimator.hpp"
+#include "tools/monitor/monitored_estimator.hpp"
 #include "tools/simulation/joint_vector.hpp"
 
 #include <cstdint>
@@ -31,8 +31,9 @@ class LearnedFeedForward {
     /// `from_prior`: without the start that training computed. `ticks`: of control per sample. Throws
     /// InputError, naming `source`, for a model that is not of `joints` joints and their torques, or needs
     /// measured derivatives.
+    /// `monitor`: watches the learner; none without.
     LearnedFeedForward(const TrainedModel& model, bool from_prior, int joints, int ticks,
-                       const std::string& source);
+                       const std::string& source, const MonitorSetup* monitor = nullptr);
 
     /// The arm rests at `position`, and has long since; `time_ns`: of now. Restarts both windows.
     void begin(std::int64_t time_ns, const JointVector& position);
@@ -50,6 +51,8 @@ class LearnedFeedForward {
     /// Multiply-adds of a control tick, at most.
     std::int64_t tick_cost() const;
     const LearningCounters& counters() const noexcept { return counters_; }
+    /// What the monitor found so far, with times since `begin`.
+    RecordedChanges changes() const;
 
   private:
     void take_over();
@@ -57,7 +60,9 @@ class LearnedFeedForward {
     std::int64_t sample_period_ns_;
     int lags_;
     std::unique_ptr<HostEstimator> learner_, follower_;
-    Budget share_;             ///< of a control tick
+    const MonitoredEstimator* monitor_ = nullptr; ///< the learner, if it is watched
+    Budget share_;                                ///< of a control tick
+    std::int64_t begin_ns_ = 0;
     bool in_progress_ = false; ///< the learner knows more than `weights_`
     std::vector<float> weights_, prediction_;
     LearningCounters counters_;

@@ -87,7 +87,9 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
     std::optional<LearnedFeedForward> model;
     if (learned != nullptr) {
         config.knot_ticks = knot_ticks(config.period_s, learned->model.sample_period_s, learned->source);
-        model.emplace(learned->model, learned->from_prior, joints, config.knot_ticks, learned->source);
+        const MonitorSetup monitor = monitor_setup(learned->model, &robot, learned->source);
+        model.emplace(learned->model, learned->from_prior, joints, config.knot_ticks, learned->source,
+                      &monitor);
     }
     FeedForward feed_forward(robot, scenario.actuators.rotor_inertia, std::move(model),
                              config.knot_ticks * config.period_s);

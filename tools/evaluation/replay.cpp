@@ -64,6 +64,7 @@ Replayer::Replayer(HostEstimator& estimator, std::string source, std::size_t out
 
 void Replayer::tick(double time_s, const MeasuredSample& sample) {
     const Tick tick = estimator_.tick(sample);
+    replayed_.clock_origin_s = time_s - 1e-9 * static_cast<double>(sample.time_ns);
     replayed_.time_s.push_back(time_s);
     append(tick, sample.output);
     if (!tick.status.predicted() || sample.output.empty()) {

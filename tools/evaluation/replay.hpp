@@ -19,6 +19,7 @@ namespace dfdyn::tools {
 /// by row.
 struct ReplayedRecording {
     std::string source;
+    double clock_origin_s = 0; ///< `time_s` of a sample stamped 0
     std::vector<double> time_s;
     std::vector<double> measured;                     ///< ticks × m; NaN where nothing was measured
     std::vector<float> predicted;                     ///< ticks × m; NaN where nothing was predicted

@@ -33,25 +33,6 @@ Placement<Scalar> placement(const ChainModel::Frame& frame) {
     return result;
 }
 
-template <class Scalar, class Arm>
-typename Arm::template Constants<Scalar> host_chain(const ChainModel& chain) {
-    typename Arm::template Constants<Scalar> result{};
-    result.joint = Storage<ChainJoint<Scalar>, dynamic>::zeros({static_cast<int>(chain.joints.size())});
-    for (int i = 0; i < result.joint.size(); ++i) {
-        const ChainModel::Joint& joint = chain.joints[static_cast<std::size_t>(i)];
-        result.joint[i] = {placement<Scalar>(joint.placement), {}, joint.prismatic};
-        std::ranges::transform(joint.axis, result.joint[i].axis,
-                               [](double x) { return static_cast<Scalar>(x); });
-    }
-    std::ranges::transform(chain.gravity, result.gravity, [](double x) { return static_cast<Scalar>(x); });
-    if constexpr (std::is_same_v<Arm, WrenchArm>) {
-        const ChainModel::Sensor& sensor = *chain.sensor;
-        result.output = {sensor.link, placement<Scalar>(sensor.placement),
-                         static_cast<Scalar>(sensor.parent_to_child ? 1 : -1)};
-    }
-    return result;
-}
-
 template <class Scalar, int k>
 typename AnyInput<k>::template Constants<Scalar, dynamic> host_input(const InputModel& input) {
     auto scale = converted<Scalar>(firmware_scale(input));
@@ -201,6 +182,25 @@ void set_columns(typename Model::Constants& constants, const TrainedModel& model
 
 } // namespace
 
+template <class Scalar, class Arm>
+typename Arm::template Constants<Scalar> host_chain(const ChainModel& chain) {
+    typename Arm::template Constants<Scalar> result{};
+    result.joint = Storage<ChainJoint<Scalar>, dynamic>::zeros({static_cast<int>(chain.joints.size())});
+    for (int i = 0; i < result.joint.size(); ++i) {
+        const ChainModel::Joint& joint = chain.joints[static_cast<std::size_t>(i)];
+        result.joint[i] = {placement<Scalar>(joint.placement), {}, joint.prismatic};
+        std::ranges::transform(joint.axis, result.joint[i].axis,
+                               [](double x) { return static_cast<Scalar>(x); });
+    }
+    std::ranges::transform(chain.gravity, result.gravity, [](double x) { return static_cast<Scalar>(x); });
+    if constexpr (std::is_same_v<Arm, WrenchArm>) {
+        const ChainModel::Sensor& sensor = *chain.sensor;
+        result.output = {sensor.link, placement<Scalar>(sensor.placement),
+                         static_cast<Scalar>(sensor.parent_to_child ? 1 : -1)};
+    }
+    return result;
+}
+
 std::int64_t gap_ns(const TrainedModel& model) { return std::llround(1.5e9 * model.sample_period_s); }
 
 std::vector<double> firmware_scale(const InputModel& input) {
@@ -322,6 +322,9 @@ template std::unique_ptr<HostConstants<HostMean<TorqueArm>>> make_host_constants
 template std::unique_ptr<HostConstants<HostMean<WrenchArm>>> make_host_constants(const TrainedModel&, bool);
 template std::unique_ptr<HostConstants<HostKernel<TorqueArm>>> make_host_constants(const TrainedModel&, bool);
 template std::unique_ptr<HostConstants<HostKernel<WrenchArm>>> make_host_constants(const TrainedModel&, bool);
+
+template TorqueArm::Constants<float> host_chain<float, TorqueArm>(const ChainModel&);
+template WrenchArm::Constants<float> host_chain<float, WrenchArm>(const ChainModel&);
 
 template HostPhysics::Constants<double, TorqueArm> host_physics<double, TorqueArm>(const PhysicsModel&);
 template HostPhysics::Constants<double, WrenchArm> host_physics<double, WrenchArm>(const PhysicsModel&);

@@ -70,6 +70,10 @@ int body_count(const ChainModel& chain);
 /// Multiply-adds of the input map.
 std::int64_t cost_of_input(const InputModel& input, int joints);
 
+/// The geometry of a stored chain, as the firmware has it.
+template <class Scalar, class Arm>
+typename Arm::template Constants<Scalar> host_chain(const ChainModel& chain);
+
 /// The constants of the physics in any scalar, in every effect: the firmware's and the tools' columns are the
 /// same code.
 template <class Scalar, class Arm>

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/monitor/cause.hpp"
+#include "dfdyn/monitor/cause_fits.hpp"
+
+namespace dfdyn {
+
+/// Weighs the causes of a change against each other, by how well they explain the residuals since its onset
+/// (`CauseFits`).
+///
+/// A bias, a friction or a push at a joint may show on some outputs only, so for each output the better of
+/// "with" and "without" counts, at the price of log(2 m). Evidence counts a share `trust`: real residuals are
+/// neither Gaussian nor quite white, and columns are not exact.
+template <class Scalar, int m>
+class CauseBank {
+  public:
+    using Block = OutputBlock<Scalar>;
+    using Speed = SpeedClasses<Scalar>;
+    static constexpr Scalar trust = Scalar(0.2);
+    static constexpr Scalar far = Scalar(3.5); ///< deviations
+    /// Log odds against a contact that goes on, and against anything else that was large and went away.
+    static constexpr Scalar goes_on = 6;
+    static constexpr Scalar large = 8; ///< mean square of residuals, in units of the noise
+
+    /// `friction`: whether outputs are the torques of joints of their own.
+    CauseBank(Extent<m> outputs, bool friction) noexcept
+        : outputs_(outputs), has_friction_(friction), fits_(outputs),
+          recent_(Storage<Scalar, m>::zeros(outputs)), mean_push_(recent_) {}
+
+    /// A block while nothing happens, and the one before it (null after a gap).
+    void learn(const Block* now, const Block* before, const Speed& speed) noexcept {
+        fits_.learn(now, before, speed);
+    }
+    void relearn() noexcept { fits_.relearn(); }
+
+    /// Whether a residual is far from what is usual after the block before.
+    [[nodiscard]] bool unusual(const Block* now, const Block* before, const Speed& speed) const noexcept {
+        return fits_.largest(now, before, speed) > far;
+    }
+
+    /// Begins to fit. `block_at(b)`, 0 ≤ b < `count`: what there is of the past.
+    template <class BlockAt>
+    void start(const BlockAt& block_at, int count) noexcept {
+        fits_.start(block_at, count);
+        for (int k = 0; k < outputs_; ++k) {
+            recent_[k] = mean_push_[k] = 0;
+        }
+        std::fill_n(mean_force_, force_columns, Scalar(0));
+        loudness_ = loudest_ = 0;
+    }
+
+    /// A block since the onset, and the one before it.
+    void add(const Block* now, const Block* before, const Speed& speed) noexcept {
+        fits_.add(now, before, speed);
+        Scalar loudness = 0;
+        for (int k = 0; k < outputs_; ++k) {
+            const Scalar share = now[k].residual / fits_.noise(k).scale(speed.of(now[k].speed));
+            recent_[k] += (std::min(share * share, Scalar(16)) - recent_[k]) / 5;
+            loudness += share * share;
+            loudest_ = std::max(loudest_, recent_[k]);
+        }
+        note_push(loudness);
+    }
+
+    /// Fills in cause, runner-up, confidence and size. `frozen`: log odds of a channel that repeats itself,
+    /// 0 for none, and which.
+    void judge(Scalar frozen, int channel, Change<Scalar, m>& change) const noexcept {
+        Scalar logs[cause_count];
+        weigh(logs);
+        Scalar best = *std::max_element(logs, logs + cause_count);
+        logs[static_cast<int>(Cause::frozen)] = frozen > 0 ? best + frozen : best - impossible;
+        best = std::max(best, logs[static_cast<int>(Cause::frozen)]);
+        Scalar total = 0;
+        for (Scalar& log : logs) {
+            using std::exp;
+            log = exp(log - best);
+            total += log;
+        }
+        rank(logs, total, change);
+        describe(channel, change);
+    }
+
+    /// Multiply-adds of `add`, `start` and `judge`, at most.
+    static constexpr std::int64_t cost_of_add(int outputs) noexcept {
+        return CauseFits<Scalar, m>::cost(outputs) + outputs * (function_cost + 4) + 10;
+    }
+    static constexpr std::int64_t cost_of_start(int outputs, int count) noexcept {
+        return CauseFits<Scalar, m>::cost_of_start(outputs, count);
+    }
+    static constexpr std::int64_t cost_of_judge(int outputs) noexcept {
+        constexpr int evidences = 20; // of an output, those that are asked for twice included
+        return outputs * evidences * (function_cost + 6) + cause_count * (function_cost + 2) + 10;
+    }
+
+  private:
+    static constexpr Scalar impossible = 50;
+
+    /// Means over the blocks, weighted by how much they show.
+    void note_push(Scalar loudness) noexcept {
+        loudness_ += loudness;
+        const Scalar share = loudness_ > 0 ? loudness / loudness_ : Scalar(0);
+        for (int i = 0; i < force_columns; ++i) {
+            mean_force_[i] += share * (fits_.force.parameters()[i] * fits_.force_scale[i] - mean_force_[i]);
+        }
+        for (int k = 0; k < outputs_; ++k) {
+            mean_push_[k] += share * (*fits_.push[k].parameters() * fits_.unit(k) - mean_push_[k]);
+        }
+    }
+
+    /// Of the fits of output k's own parameters, over none.
+    template <class Fits>
+    [[nodiscard]] Scalar gain(const Fits& fits, int k) const noexcept {
+        using std::log;
+        return fits[k].evidence().of(0) - fits_.nothing.of(k) - log(static_cast<Scalar>(2 * int{outputs_}));
+    }
+
+    /// Where they gain most.
+    template <class Fits>
+    [[nodiscard]] int best_output(const Fits& fits) const noexcept {
+        int best = 0;
+        for (int k = 1; k < outputs_; ++k) {
+            best = gain(fits, k) > gain(fits, best) ? k : best;
+        }
+        return best;
+    }
+
+    /// Of the outputs where they are better than none, and of the best one anyway.
+    template <class Fits>
+    [[nodiscard]] Scalar gain_of_some(const Fits& fits) const noexcept {
+        Scalar total = 0;
+        Scalar best = gain(fits, 0);
+        for (int k = 0; k < outputs_; ++k) {
+            const Scalar one = gain(fits, k);
+            best = std::max(best, one);
+            total += std::max(one, Scalar(0));
+        }
+        return total + std::min(best, Scalar(0));
+    }
+
+    /// The residuals are as usual again.
+    [[nodiscard]] bool ended() const noexcept {
+        bool all = true;
+        for (int k = 0; k < outputs_; ++k) {
+            all = all && recent_[k] < 4;
+        }
+        return all;
+    }
+
+    void weigh(Scalar* logs) const noexcept {
+        const auto set = [logs](Cause cause, Scalar value) { logs[static_cast<int>(cause)] = value; };
+        const Scalar none = fits_.nothing.of_all();
+        const Scalar contact = std::max(fits_.force.evidence().of_all() - none, gain_of_some(fits_.push));
+        const bool passed = ended();
+        const Scalar stays = passed && loudest_ > large ? -goes_on : Scalar(0);
+        set(Cause::unknown, 0);
+        set(Cause::payload, stays + trust * (fits_.payload.evidence().of_all() - none));
+        set(Cause::friction, has_friction_ ? stays + trust * gain_of_some(fits_.friction) : -impossible);
+        set(Cause::bias, stays + trust * gain_of_some(fits_.bias));
+        set(Cause::contact, trust * contact - (passed ? Scalar(0) : goes_on));
+        set(Cause::frozen, -impossible);
+    }
+
+    static void rank(const Scalar* weights, Scalar total, Change<Scalar, m>& change) noexcept {
+        int best = 0;
+        for (int c = 1; c < cause_count; ++c) {
+            best = weights[c] > weights[best] ? c : best;
+        }
+        int second = best == 0 ? 1 : 0;
+        for (int c = 0; c < cause_count; ++c) {
+            second = c != best && weights[c] > weights[second] ? c : second;
+        }
+        change.cause = static_cast<Cause>(best);
+        change.runner_up = static_cast<Cause>(second);
+        change.confidence = weights[best] / total;
+        change.runner_up_confidence = weights[second] / total;
+    }
+
+    void describe(int channel, Change<Scalar, m>& change) const noexcept {
+        change.where = -1;
+        std::fill_n(change.size, 4, Scalar(0));
+        switch (change.cause) {
+        case Cause::payload:
+            for (int i = 0; i < payload_columns; ++i) {
+                change.size[i] = fits_.payload.parameters()[i] * fits_.payload_scale[i];
+            }
+            break;
+        case Cause::friction:
+            change.where = best_output(fits_.friction);
+            for (int i = 0; i < friction_columns; ++i) {
+                change.size[i] = fits_.friction[change.where].parameters()[i] * fits_.unit(change.where);
+            }
+            break;
+        case Cause::bias:
+            describe_bias(change);
+            break;
+        case Cause::contact:
+            describe_contact(change);
+            break;
+        case Cause::frozen:
+            change.where = channel;
+            break;
+        case Cause::unknown:
+            break;
+        }
+    }
+
+    void describe_bias(Change<Scalar, m>& change) const noexcept {
+        change.where = best_output(fits_.bias);
+        for (int k = 0; k < outputs_; ++k) {
+            const bool moved = gain(fits_.bias, k) > 0 || k == change.where;
+            change.bias[k] = moved ? *fits_.bias[k].parameters() * fits_.unit(k) : Scalar(0);
+        }
+    }
+
+    void describe_contact(Change<Scalar, m>& change) const noexcept {
+        if (fits_.force.evidence().of_all() - fits_.nothing.of_all() >= gain_of_some(fits_.push)) {
+            std::copy_n(mean_force_, force_columns, change.size);
+            return;
+        }
+        change.where = best_output(fits_.push);
+        change.size[0] = -mean_push_[change.where];
+    }
+
+    [[no_unique_address]] Extent<m> outputs_;
+    bool has_friction_;
+    CauseFits<Scalar, m> fits_;
+    Storage<Scalar, m> recent_; ///< mean square of the last residuals, in units of the noise
+    Scalar loudest_ = 0;        ///< `recent_` of any output so far
+    Scalar loudness_ = 0;       ///< of the residuals so far: sum of squares, in units of the noise
+    Storage<Scalar, m> mean_push_;
+    Scalar mean_force_[force_columns] = {};
+};
+
+} // namespace dfdyn

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/monitor/block_noise.hpp"
+#include "dfdyn/monitor/cause_fit.hpp"
+#include "dfdyn/monitor/output_block.hpp"
+
+namespace dfdyn {
+
+/// Every cause of a change, fitted to the residuals since its onset.
+///
+/// The residuals are those of a prediction that does not learn the change. Their usual noise is learned while
+/// nothing happens (`BlockNoise`); residuals and columns then pass through the same whitening (D. Cochrane
+/// and G. H. Orcutt, 1949). Columns are scaled to the noise, so that one prior suits all.
+///
+/// Cost per block while fitting: `cost(m)`.
+template <class Scalar, int m>
+class CauseFits {
+  public:
+    using Block = OutputBlock<Scalar>;
+    using Speed = SpeedClasses<Scalar>;
+    template <int p, bool forgets>
+    using OfOutput = CauseFit<Scalar, p, 1, forgets>;
+
+    explicit CauseFits(Extent<m> outputs) noexcept
+        : nothing(outputs), payload(outputs), force(outputs),
+          friction(Storage<OfOutput<friction_columns, false>, m>::zeros(outputs)),
+          bias(Storage<OfOutput<1, false>, m>::zeros(outputs)),
+          push(Storage<OfOutput<1, true>, m>::zeros(outputs)), outputs_(outputs),
+          noise_(Storage<BlockNoise<Scalar>, m>::zeros(outputs)),
+          whitening_(Storage<Whitening<Scalar>, m>::zeros(outputs)),
+          targets_(Storage<Scalar, m>::zeros(outputs)),
+          rows_(Rows::zeros(extent<product(m, payload_columns)>(outputs * payload_columns))) {}
+
+    /// A block while nothing happens, and the one before it (null after a gap).
+    void learn(const Block* now, const Block* before, const Speed& speed) noexcept {
+        for (int k = 0; k < outputs_; ++k) {
+            const Block& other = before == nullptr ? now[k] : before[k];
+            const int last = before == nullptr ? -1 : speed.of(other.speed);
+            noise_[k].learn(now[k].residual, other.residual, speed.of(now[k].speed), last);
+        }
+    }
+    /// The noise is learned anew, from where it is.
+    void relearn() noexcept {
+        for (BlockNoise<Scalar>& noise : noise_) {
+            noise.relearn();
+        }
+    }
+
+    /// Begins to fit. `block_at(b)`, 0 ≤ b < `count`: what there is of the past, for the size of the columns.
+    template <class BlockAt>
+    void start(const BlockAt& block_at, int count) noexcept {
+        scale_columns(block_at, count);
+        nothing.restart();
+        payload.restart();
+        force.restart();
+        for (int k = 0; k < outputs_; ++k) {
+            friction[k].restart();
+            bias[k].restart();
+            push[k].restart();
+        }
+    }
+
+    /// Multiply-adds of `start`, at most.
+    static constexpr std::int64_t cost_of_start(int outputs, int count) noexcept {
+        constexpr int columns = payload_columns + force_columns;
+        return std::int64_t{outputs} * (function_cost + 2 + 2 * columns * std::int64_t{count}) +
+               columns * (function_cost + 1);
+    }
+
+    /// A block since the onset, and the one before it.
+    void add(const Block* now, const Block* before, const Speed& speed) noexcept {
+        for (int k = 0; k < outputs_; ++k) {
+            const Whitening<Scalar> whitening =
+                noise_[k].whitening(speed.of(now[k].speed), speed.of(before[k].speed));
+            whitening_[k] = whitening;
+            targets_[k] = whitening.of(now[k].residual, before[k].residual);
+            nothing.add(k, targets_[k], 1);
+            const Scalar constant = unit(k) * whitening.of(1, 1);
+            bias[k].add(&constant, &targets_[k]);
+            push[k].add(&constant, &targets_[k]);
+            const Scalar rubbing[friction_columns] = {
+                unit(k) * whitening.of(now[k].friction[0], before[k].friction[0]),
+                unit(k) * whitening.of(now[k].friction[1], before[k].friction[1])};
+            friction[k].add(rubbing, &targets_[k]);
+        }
+        add_shared(payload, payload_scale, &Block::payload, now, before);
+        add_shared(force, force_scale, &Block::force, now, before);
+    }
+
+    /// Of a block's residuals, in deviations.
+    [[nodiscard]] Scalar largest(const Block* now, const Block* before, const Speed& speed) const noexcept {
+        Scalar most = 0;
+        for (int k = 0; k < outputs_; ++k) {
+            using std::abs;
+            const Whitening<Scalar> whitening =
+                noise_[k].whitening(speed.of(now[k].speed), speed.of(before[k].speed));
+            const Scalar one = abs(whitening.of(now[k].residual, before[k].residual));
+            most = std::max(most, one);
+        }
+        return most;
+    }
+
+    [[nodiscard]] const BlockNoise<Scalar>& noise(int output) const noexcept { return noise_[output]; }
+    /// What a parameter of 1 of a bias, a friction or a push is in the output's unit.
+    [[nodiscard]] Scalar unit(int output) const noexcept { return noise_[output].smallest(); }
+
+    /// Multiply-adds of `add`, at most.
+    static constexpr std::int64_t cost(int outputs) noexcept {
+        const std::int64_t own = OfOutput<1, false>::cost(1) + OfOutput<1, true>::cost(1) +
+                                 OfOutput<friction_columns, false>::cost(1);
+        return outputs * (own + Evidence<Scalar, m>::cost + 4 * function_cost + 60) +
+               CauseFit<Scalar, payload_columns, m, false>::cost(outputs) +
+               CauseFit<Scalar, force_columns, m, true>::cost(outputs);
+    }
+
+    // Fits that forget follow a push and its end.
+    Evidence<Scalar, m> nothing;
+    CauseFit<Scalar, payload_columns, m, false> payload;
+    CauseFit<Scalar, force_columns, m, true> force;
+    Storage<OfOutput<friction_columns, false>, m> friction;
+    Storage<OfOutput<1, false>, m> bias;
+    Storage<OfOutput<1, true>, m> push;
+    /// A parameter of 1 is so much, in kg, kg·m or N.
+    Scalar payload_scale[payload_columns] = {}, force_scale[force_columns] = {};
+
+  private:
+    using Rows = Storage<Scalar, product(m, payload_columns)>;
+
+    template <class BlockAt>
+    void scale_columns(const BlockAt& block_at, int count) noexcept {
+        Scalar powers[payload_columns + force_columns] = {};
+        for (int k = 0; k < outputs_; ++k) {
+            const Scalar one = unit(k);
+            const Scalar weight = one > 0 ? 1 / (one * one) : Scalar(0);
+            for (int b = 0; b < count; ++b) {
+                const Block& block = block_at(b)[k];
+                for (int i = 0; i < payload_columns; ++i) {
+                    powers[i] += weight * block.payload[i] * block.payload[i];
+                }
+                for (int i = 0; i < force_columns; ++i) {
+                    powers[payload_columns + i] += weight * block.force[i] * block.force[i];
+                }
+            }
+        }
+        const auto rows = static_cast<Scalar>(count * int{outputs_});
+        using std::sqrt;
+        for (int i = 0; i < payload_columns + force_columns; ++i) {
+            const Scalar scale = powers[i] > 0 ? sqrt(rows / powers[i]) : Scalar(0);
+            (i < payload_columns ? payload_scale[i] : force_scale[i - payload_columns]) = scale;
+        }
+    }
+
+    /// Parameters that all outputs share.
+    template <class Fit, int p>
+    void add_shared(Fit& fit, const Scalar (&scale)[p], Scalar (Block::*columns)[p], const Block* now,
+                    const Block* before) noexcept {
+        for (int k = 0; k < outputs_; ++k) {
+            for (int i = 0; i < p; ++i) {
+                rows_[p * k + i] = scale[i] * whitening_[k].of((now[k].*columns)[i], (before[k].*columns)[i]);
+            }
+        }
+        fit.add(rows_.data(), targets_.data());
+    }
+
+    [[no_unique_address]] Extent<m> outputs_;
+    Storage<BlockNoise<Scalar>, m> noise_;
+    Storage<Whitening<Scalar>, m> whitening_;
+    Storage<Scalar, m> targets_;
+    Rows rows_;
+};
+
+} // namespace dfdyn

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/budget.hpp"
+#include "dfdyn/monitor/block_noise.hpp"
+#include "dfdyn/monitor/excursion_tail.hpp"
+#include "dfdyn/monitor/output_block.hpp"
+#include "dfdyn/storage.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+namespace dfdyn {
+
+/// In what way innovations depart from what is usual.
+enum class Departure : std::uint8_t { growth, shift, friction, payload, force, burst };
+inline constexpr int departure_count = 6;
+
+/// Watches the block means of m normalised innovations for a change.
+///
+/// Each is divided by its usual scale at this speed of its joint and freed of its usual autocorrelation
+/// (`BlockNoise`). CUSUMs (E. S. Page, 1954) sum log likelihood ratios of Gaussian noise with against without
+/// - growth, per output: twice the deviation;
+/// - shift, per output and sign: a constant;
+/// - friction, per joint and sign: a torque against its motion (joint torques only);
+/// - payload, per sign: weight and inertia of a mass at the tool, in all outputs;
+/// - force, per axis of the base and sign: one at the tool, in all outputs;
+/// with each innovation cut off at three deviations; how large a shift, friction … is looked for, is said in
+/// deviations of a block (`shift_size`, `force_size`). For what is short and large there is one more sum:
+/// - burst: log(e²/2²) of each innovation of e > 2 deviations, all outputs together, at most `burst_limit`
+/// per
+///   block, less 2.
+/// So no single block raises an alarm.
+///
+/// The alarm is at a limit that each kind's own excursions set (`ExcursionTail`), so that all kinds together
+/// exceed theirs at most once in `blocks_between_false_alarms` while innovations stay as they were. The onset
+/// is where the alarm's sum last left zero. The alarm is over when every sum is below half its limit: the
+/// change was learned, or went away. An alarm that turns out to be nothing is to be told
+/// (`nothing_happened`).
+///
+/// Cost per block: `cost(m)`. Memory: about 45 m numbers.
+template <class Scalar, int m>
+class ChangeDetector {
+  public:
+    using Block = OutputBlock<Scalar>;
+    static constexpr int settling_blocks = 200; ///< before the first alarm
+    static constexpr Scalar shift_size = Scalar(1.5);
+    static constexpr Scalar force_size = Scalar(1.5);
+    static constexpr Scalar cut_off = 3;
+    static constexpr Scalar burst_from = 2;
+    static constexpr Scalar burst_drift = 2;
+    static constexpr Scalar burst_limit = 12;
+    /// The limits are for so many times fewer false alarms than asked for: tails of real arms' sums are a bit
+    /// heavier than exponential (docs/monitor.md: measured).
+    static constexpr Scalar caution = 20;
+
+    /// `friction`: whether outputs are the torques of joints. `blocks_between_false_alarms` > 1: their mean.
+    ChangeDetector(Extent<m> outputs, bool friction, Scalar blocks_between_false_alarms) noexcept
+        : outputs_(outputs), has_friction_(friction),
+          blocks_between_(departure_count * caution * blocks_between_false_alarms),
+          noise_(Storage<BlockNoise<Scalar>, m>::zeros(outputs)),
+          sums_(Storage<Cusum, sums_of(m)>::zeros(extent<sums_of(m)>(sums_of(outputs)))) {
+        set_limits();
+    }
+
+    /// Takes in the next block, and the one before it (null after a gap); m values each. True while the alarm
+    /// is on.
+    bool add(const Block* now, const Block* before, const SpeedClasses<Scalar>& speed) noexcept {
+        Shared shared;
+        for (int k = 0; k < outputs_; ++k) {
+            const int c = speed.of(now[k].speed);
+            const int last = before == nullptr ? -1 : speed.of(before[k].speed);
+            const Block& other = before == nullptr ? now[k] : before[k];
+            const Whitening<Scalar> whitening = noise_[k].whitening(c, last);
+            if (whitening.now > 0) {
+                sum_output(k, whitening, now[k], other, shared);
+            }
+            if (!alarm_) {
+                noise_[k].learn(now[k].innovation, other.innovation, c, last);
+            }
+        }
+        sum_shared(shared);
+        decide();
+        return alarm_;
+    }
+
+    [[nodiscard]] bool alarm() const noexcept { return alarm_; }
+    /// What raised the last alarm, and on which output; m: on all together.
+    [[nodiscard]] Departure departure() const noexcept { return kind_of(raised_); }
+    [[nodiscard]] int channel() const noexcept { return output_of(raised_); }
+    /// Blocks since the onset of the present alarm, that of the onset included.
+    [[nodiscard]] int blocks_since_onset() const noexcept { return since_onset_; }
+
+    /// Begins anew, also while an alarm is on; what is usual stays.
+    void restart() noexcept {
+        alarm_ = false;
+        for (Cusum& sum : sums_) {
+            sum = {};
+        }
+    }
+
+    /// Takes what goes on to be usual from now on.
+    void adopt() noexcept {
+        for (BlockNoise<Scalar>& noise : noise_) {
+            noise.relearn();
+        }
+        settled_ = 0;
+        restart();
+    }
+
+    /// The last alarm's excursion was one of those that are usual.
+    void nothing_happened() noexcept {
+        ExcursionTail<Scalar>& tail = tails_[static_cast<int>(departure())];
+        tail.add(limits_[static_cast<int>(departure())]);
+    }
+
+    /// Multiply-adds of `add`, at most.
+    static constexpr std::int64_t cost(int outputs) noexcept {
+        const std::int64_t limits = std::int64_t{departure_count} * ExcursionTail<Scalar>::limit_cost;
+        return limits + outputs * (BlockNoise<Scalar>::cost + function_cost + 60) +
+               shared_columns * (function_cost + 8) + 2 * sums_of(outputs);
+    }
+
+    [[nodiscard]] const BlockNoise<Scalar>& noise(int output) const noexcept { return noise_[output]; }
+    [[nodiscard]] Scalar limit(Departure kind) const noexcept { return limits_[static_cast<int>(kind)]; }
+    [[nodiscard]] const ExcursionTail<Scalar>& tail(Departure kind) const noexcept {
+        return tails_[static_cast<int>(kind)];
+    }
+
+  private:
+    static constexpr int shared_columns = 1 + force_columns; ///< payload's mass, force
+    static constexpr Scalar power_memory = 600;              ///< blocks
+
+    struct Cusum {
+        Scalar sum, peak;
+        int blocks; ///< since it was zero
+    };
+
+    /// Of all outputs: Σ g e and Σ g² of the columns g that they share.
+    struct Shared {
+        Scalar product[shared_columns] = {}, square[shared_columns] = {};
+        Scalar burst = 0;
+    };
+
+    static constexpr int sums_of(int outputs) noexcept {
+        return outputs == dynamic ? dynamic : 5 * outputs + 2 * shared_columns + 1;
+    }
+    [[nodiscard]] Departure kind_of(int index) const noexcept {
+        if (index >= 5 * outputs_) {
+            const int shared = index - 5 * outputs_;
+            return shared < 2                    ? Departure::payload
+                   : shared < 2 * shared_columns ? Departure::force
+                                                 : Departure::burst;
+        }
+        return index < outputs_       ? Departure::growth
+               : index < 3 * outputs_ ? Departure::shift
+                                      : Departure::friction;
+    }
+    [[nodiscard]] int output_of(int index) const noexcept {
+        return index < outputs_ ? index : index < 5 * outputs_ ? (index - outputs_) / 2 % outputs_ : outputs_;
+    }
+
+    void sum_output(int k, const Whitening<Scalar>& whitening, const Block& now, const Block& before,
+                    Shared& shared) noexcept {
+        const Scalar whole = whitening.of(now.innovation, before.innovation);
+        const Scalar e = std::clamp(whole, -cut_off, cut_off);
+        constexpr Scalar log_two = Scalar(0.693147);
+        rise(k, Scalar(0.375) * e * e - log_two);
+        if (whole * whole > burst_from * burst_from) {
+            using std::log;
+            shared.burst += log(std::min(whole * whole, Scalar(1e6)) / (burst_from * burst_from));
+        }
+        const Scalar size = shift_size * noise_[k].smallest();
+        const Scalar shift = size * whitening.of(1, 1);
+        both_signs(outputs_ + 2 * k, shift * e, shift * shift);
+        if (has_friction_) {
+            const Scalar friction = size * whitening.of(now.friction[0], before.friction[0]);
+            both_signs(3 * outputs_ + 2 * k, friction * e, friction * friction);
+        }
+        const Whitening<Scalar> columns{whitening.now / now.deviation, whitening.before / before.deviation};
+        for (int i = 0; i < shared_columns; ++i) {
+            const Scalar column = i == 0 ? columns.of(now.payload[0], before.payload[0])
+                                         : columns.of(now.force[i - 1], before.force[i - 1]);
+            shared.product[i] += column * e;
+            shared.square[i] += column * column;
+        }
+    }
+
+    void sum_shared(const Shared& shared) noexcept {
+        powers_ = std::min(powers_ + 1, power_memory);
+        for (int i = 0; i < shared_columns; ++i) {
+            power_[i] += (shared.square[i] - power_[i]) / powers_;
+            if (power_[i] > 0) {
+                using std::sqrt;
+                const Scalar size = (i == 0 ? shift_size : force_size) / sqrt(power_[i]);
+                both_signs(5 * outputs_ + 2 * i, size * shared.product[i], size * size * shared.square[i]);
+            }
+        }
+        rise(5 * outputs_ + 2 * shared_columns, std::min(shared.burst, burst_limit) - burst_drift);
+    }
+
+    /// Of a shift g δ and one of -g δ: δ Σ g e and δ² Σ g².
+    void both_signs(int index, Scalar product, Scalar square) noexcept {
+        rise(index, product - square / 2);
+        rise(index + 1, -product - square / 2);
+    }
+
+    void rise(int index, Scalar ratio) noexcept {
+        Cusum& one = sums_[index];
+        one.sum += ratio;
+        if (one.sum > 0) {
+            const Scalar limit = limits_[static_cast<int>(kind_of(index))];
+            one.sum = alarm_ ? std::min(one.sum, limit) : one.sum;
+            one.peak = std::max(one.peak, one.sum);
+            ++one.blocks;
+            return;
+        }
+        if (!alarm_ && 2 * settled_ >= settling_blocks) {
+            tails_[static_cast<int>(kind_of(index))].add(one.peak);
+        }
+        one = {};
+    }
+
+    void decide() noexcept {
+        if (settled_ < settling_blocks && ++settled_ == settling_blocks) {
+            restart(); // sums of noise that was not known yet
+        }
+        if (alarm_) {
+            ++since_onset_;
+            if (calm()) {
+                restart();
+            }
+            return;
+        }
+        if (2 * settled_ >= settling_blocks) {
+            for (ExcursionTail<Scalar>& tail : tails_) {
+                tail.add_block();
+            }
+            set_limits();
+        }
+        if (settled_ == settling_blocks) {
+            look();
+        }
+    }
+
+    void set_limits() noexcept {
+        for (int kind = 0; kind < departure_count; ++kind) {
+            limits_[kind] = tails_[kind].limit(blocks_between_);
+        }
+    }
+
+    /// Raises the alarm of the sum that is farthest beyond its limit, if one is.
+    void look() noexcept {
+        Scalar farthest = 1;
+        for (int index = 0; index < sums_.size(); ++index) {
+            const Scalar share = sums_[index].sum / limits_[static_cast<int>(kind_of(index))];
+            if (share > farthest) {
+                farthest = share;
+                alarm_ = true;
+                raised_ = index;
+                since_onset_ = sums_[index].blocks;
+            }
+        }
+    }
+
+    [[nodiscard]] bool calm() const noexcept {
+        bool all = true;
+        for (int index = 0; index < sums_.size(); ++index) {
+            all = all && sums_[index].sum <= limits_[static_cast<int>(kind_of(index))] / 2;
+        }
+        return all;
+    }
+
+    [[no_unique_address]] Extent<m> outputs_;
+    bool has_friction_;
+    Scalar blocks_between_; ///< false alarms of one kind
+    Storage<BlockNoise<Scalar>, m> noise_;
+    Storage<Cusum, sums_of(m)> sums_;
+    ExcursionTail<Scalar> tails_[departure_count];
+    Scalar limits_[departure_count] = {};
+    Scalar power_[shared_columns] = {}; ///< mean of Σ g²
+    Scalar powers_ = 0;
+    int settled_ = 0; ///< blocks seen, as far as they are counted
+    int since_onset_ = 0;
+    int raised_ = 0;
+    bool alarm_ = false;
+};
+
+} // namespace dfdyn

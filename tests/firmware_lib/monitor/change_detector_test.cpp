@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/monitor/change_detector.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace {
+
+using namespace dfdyn;
+
+constexpr std::size_t outputs = 3;
+constexpr double blocks_per_hour = 36000; // of 0.1 s
+
+/// What is added to the innovations.
+struct Extra {
+    double growth = 1, shift = 0, friction = 0, payload = 0, force = 0, burst = 0;
+};
+
+/// Block means of the innovations of an arm whose joints stand and move in turn: larger and slower while a
+/// joint stands, with a first-order autocorrelation from block to block, and tails of Student's t with four
+/// degrees of freedom or none.
+template <class Scalar>
+class Innovations {
+  public:
+    using Blocks = std::array<OutputBlock<Scalar>, outputs>;
+
+    Innovations(double autocorrelation, bool heavy) : a_(autocorrelation), heavy_(heavy) {}
+
+    /// The next block, by `extra` away from what is usual on output 1 (or in all, if it shows in all).
+    const Blocks& next(std::mt19937_64& engine, const Extra& extra = {}) {
+        before_ = now_;
+        ++block_;
+        for (std::size_t k = 0; k < outputs; ++k) {
+            const double velocity =
+                std::sin(0.3 * block_ + 2 * static_cast<double>(k)) + 0.4 * std::sin(0.71 * block_);
+            const bool stands = std::abs(velocity) < 0.15;
+            const double fresh = heavy_ ? heavy_draw_(engine) : normal_(engine);
+            state_[k] = a_ * state_[k] + std::sqrt(1 - a_ * a_) * fresh;
+            OutputBlock<Scalar>& block = now_[k];
+            block = {};
+            block.deviation = 1;
+            block.speed = static_cast<Scalar>(std::abs(velocity));
+            block.friction[0] = static_cast<Scalar>(std::tanh(velocity / 0.02));
+            block.payload[0] = static_cast<Scalar>(2 * std::cos(0.11 * block_ + 2 * static_cast<double>(k)));
+            block.force[0] = static_cast<Scalar>(std::sin(0.9 * block_ + static_cast<double>(k)));
+            const double own = k == 1 ? 1 : 0;
+            const double noise = (stands ? 2 : 0.4) * state_[k] * (k == 1 ? extra.growth : 1);
+            block.innovation = static_cast<Scalar>(
+                noise + extra.burst * normal_(engine) +
+                own * (extra.shift + extra.friction * static_cast<double>(block.friction[0])) +
+                extra.payload * static_cast<double>(block.payload[0]) +
+                extra.force * static_cast<double>(block.force[0]));
+        }
+        return now_;
+    }
+    const OutputBlock<Scalar>* before() const { return block_ > 1 ? before_.data() : nullptr; }
+
+  private:
+    double a_;
+    bool heavy_;
+    int block_ = 0;
+    Blocks now_{}, before_{};
+    std::array<double, outputs> state_{};
+    std::normal_distribution<double> normal_;
+    std::student_t_distribution<double> heavy_draw_{4};
+};
+
+template <class Scalar>
+constexpr SpeedClasses<Scalar> speed{Scalar(0.05), Scalar(0.15)};
+
+template <class Scalar>
+using Detector = ChangeDetector<Scalar, outputs>;
+
+template <class Scalar>
+bool step(Detector<Scalar>& detector, Innovations<Scalar>& innovations, std::mt19937_64& engine,
+          const Extra& extra = {}) {
+    const auto& now = innovations.next(engine, extra);
+    return detector.add(now.data(), innovations.before(), speed<Scalar>);
+}
+
+/// Alarms that begin within so many blocks.
+template <class Scalar>
+int alarms(Detector<Scalar>& detector, Innovations<Scalar>& innovations, int blocks,
+           std::mt19937_64& engine) {
+    int count = 0;
+    for (int block = 0; block < blocks; ++block) {
+        const bool before = detector.alarm();
+        count += step(detector, innovations, engine) && !before ? 1 : 0;
+    }
+    return count;
+}
+
+} // namespace
+
+TEMPLATE_TEST_CASE("white, coloured and heavy-tailed innovations raise no more false alarms than stated",
+                   "[monitor]", float, double) {
+    DFDYN_SEEDED_ENGINE(engine);
+    const bool heavy = GENERATE(false, true);
+    const double autocorrelation = GENERATE(0.0, 0.6, 0.9);
+    CAPTURE(heavy, autocorrelation);
+    Innovations<TestType> innovations(autocorrelation, heavy);
+    // one in six minutes, so that some might come
+    Detector<TestType> detector({}, true, TestType(blocks_per_hour / 10));
+    CHECK(alarms(detector, innovations, static_cast<int>(3 * blocks_per_hour), engine) <= 30);
+}
+
+TEMPLATE_TEST_CASE("every departure is found, with its onset, and is over in the end", "[monitor]", float,
+                   double) {
+    DFDYN_SEEDED_ENGINE(engine);
+    const auto [kind, extra, channel] =
+        GENERATE(table<Departure, Extra, int>({{Departure::growth, {.growth = 6}, 1},
+                                               {Departure::shift, {.shift = 1.6}, 1},
+                                               {Departure::friction, {.friction = -1.6}, 1},
+                                               {Departure::payload, {.payload = 0.4}, 3},
+                                               {Departure::force, {.force = 1.2}, 3},
+                                               {Departure::burst, {.burst = 8}, 3}}));
+    CAPTURE(static_cast<int>(kind));
+    Innovations<TestType> innovations(0.3, false);
+    Detector<TestType> detector({}, true, TestType(10 * blocks_per_hour));
+    REQUIRE(alarms(detector, innovations, 2000, engine) == 0);
+    int block = 0;
+    while (block < 80 && !detector.alarm()) {
+        step(detector, innovations, engine, extra);
+        ++block;
+    }
+    CAPTURE(block);
+    REQUIRE(detector.alarm());
+    if (kind == Departure::friction || kind == Departure::burst) { // others may look alike over a second
+        CHECK(static_cast<int>(detector.departure()) == static_cast<int>(kind));
+        CHECK(detector.channel() == channel);
+    }
+    CHECK(detector.blocks_since_onset() >= block - 10); // earlier only if the sum happened to be above zero
+    CHECK(detector.blocks_since_onset() <= block + 80);
+    int over = 0;
+    for (; over < 300 && detector.alarm(); ++over) {
+        step(detector, innovations, engine);
+    }
+    CHECK(over < 150);
+    CHECK(alarms(detector, innovations, 5000, engine) == 0);
+}
+
+TEST_CASE("one block, however large, raises no alarm", "[monitor]") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Innovations<float> innovations(0.3, false);
+    Detector<float> detector({}, true, 10 * static_cast<float>(blocks_per_hour));
+    REQUIRE(alarms(detector, innovations, 1000, engine) == 0);
+    CHECK_FALSE(step(detector, innovations, engine, {.shift = 1e30}));
+    CHECK(alarms(detector, innovations, 1000, engine) == 0);
+}
+
+TEST_CASE("alarms that were nothing raise the limit of their kind", "[monitor]") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Innovations<double> innovations(0.3, false);
+    Detector<double> detector({}, true, 10 * blocks_per_hour);
+    alarms(detector, innovations, 2000, engine);
+    while (!step(detector, innovations, engine, {.shift = 2})) {
+    }
+    const double limit = detector.limit(detector.departure());
+    detector.nothing_happened();
+    detector.restart();
+    step(detector, innovations, engine);
+    CHECK(detector.limit(detector.departure()) > limit + 0.5);
+}
+
+TEST_CASE("a level that stays is adopted as usual", "[monitor]") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Innovations<double> innovations(0, false);
+    Detector<double> detector({}, true, 10 * blocks_per_hour);
+    REQUIRE(alarms(detector, innovations, 1000, engine) == 0);
+    for (int block = 0; block < 50; ++block) {
+        step(detector, innovations, engine, {.growth = 20});
+    }
+    REQUIRE(detector.alarm());
+    detector.adopt();
+    int alarmed = 0;
+    for (int block = 0; block < 3000; ++block) {
+        alarmed += step(detector, innovations, engine, {.growth = 20}) ? 1 : 0;
+    }
+    CHECK(alarmed == 0);
+    CHECK(detector.noise(1).scale(2) == Approx(8).epsilon(0.2));
+}
+
+TEST_CASE("after a gap the block before does not count", "[monitor]") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Innovations<double> innovations(0.9, false);
+    Detector<double> detector({}, true, 10 * blocks_per_hour);
+    int alarms = 0;
+    for (int block = 0; block < 20000; ++block) {
+        const auto& now = innovations.next(engine);
+        const bool gap = block % 7 == 0;
+        const bool alarm = detector.alarm();
+        alarms +=
+            detector.add(now.data(), gap ? nullptr : innovations.before(), speed<double>) && !alarm ? 1 : 0;
+    }
+    CHECK(alarms <= 1);
+}

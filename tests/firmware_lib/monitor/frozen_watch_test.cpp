@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/monitor/frozen_watch.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace {
+
+using namespace dfdyn;
+
+constexpr int joints = 2;
+constexpr int channels = 3;
+constexpr double count_rad = 4e-4; ///< of the encoders
+
+/// Two joints that swing, the second one with rests, and a noisy output; each can be frozen.
+struct Readings {
+    std::array<float, joints> position{};
+    std::array<float, 1> output{};
+
+    void move_to(double time_s, int frozen, std::mt19937_64& engine) {
+        const double swing = std::sin(2 * time_s);
+        const std::array<double, joints> angle{std::sin(1.3 * time_s), swing * swing * swing};
+        for (std::size_t i = 0; i < joints; ++i) {
+            if (frozen != static_cast<int>(i)) {
+                position[i] = static_cast<float>(count_rad * std::round(angle[i] / count_rad));
+            }
+        }
+        std::normal_distribution<double> noise(0, 0.1);
+        if (frozen != joints) {
+            output[0] = static_cast<float>(3 * static_cast<double>(position[0]) + noise(engine));
+        }
+    }
+};
+
+} // namespace
+
+TEST_CASE("A reading that freezes while the arm moves is told from one that rests", "[monitor]") {
+    DFDYN_SEEDED_ENGINE(engine);
+    FrozenWatch<float, channels> watch({}, joints);
+    Readings readings;
+    int tick = 0;
+    const auto run = [&](int ticks, int frozen) {
+        float most = 0;
+        for (int i = 0; i < ticks; ++i) {
+            readings.move_to(0.01 * tick++, frozen, engine);
+            watch.add(readings.position.data(), readings.output.data());
+            for (int c = 0; c < channels; ++c) {
+                most = std::max(most, c == frozen ? 0.0F : watch.evidence(c));
+            }
+        }
+        return most;
+    };
+    run(1000, -1);
+    CHECK(run(3000, -1) < 15); // the rests of the second joint are no evidence
+    const int frozen = GENERATE(0, 1, 2);
+    CAPTURE(frozen);
+    while (std::abs(std::sin(0.04 * tick)) < 0.7 ||
+           std::cos(0.013 * tick) < 0.2) { // both joints on their way
+        run(1, -1);
+    }
+    CHECK(run(30, frozen) < 15);
+    CHECK(watch.evidence(frozen) > 30);
+    CHECK(watch.run(frozen) >= 25);
+    run(100, -1);
+    CHECK(watch.run(frozen) < 25);
+}
+
+TEST_CASE("An arm that stands as a whole repeats without evidence", "[monitor]") {
+    DFDYN_SEEDED_ENGINE(engine);
+    FrozenWatch<double, 2> watch({}, 2);
+    for (int tick = 0; tick < 3000; ++tick) {
+        const double phase = 0.01 * std::min(tick, 2000);
+        const std::array<double, 2> position{std::sin(phase), std::cos(phase)};
+        watch.add(position.data(), nullptr);
+    }
+    CHECK(watch.evidence(0) < 15);
+    CHECK(watch.evidence(1) < 15);
+}

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/monitor/change_words.hpp"
+
+#include "tools/host/dynamic_storage.hpp"
+
+#include <algorithm>
+
+namespace dfdyn::tools {
+
+namespace {
+
+std::string numbered(const char* what, int index) { return what + std::to_string(index + 1); }
+
+/// N·m, N or A.
+std::string unit_of(const std::string& output) {
+    if (output.starts_with("i")) {
+        return "A";
+    }
+    return output.starts_with("f") ? "N" : "N·m";
+}
+
+/// Currents whose torque constants are unknown: sizes are in what they cost in current.
+bool per_current(const MonitorSetup& setup) {
+    return setup.outputs.front().starts_with("i") &&
+           std::ranges::all_of(setup.output_gain, [](double gain) { return gain == 1; });
+}
+
+template <int m>
+void describe_payload(const Change<float, m>& change, const MonitorSetup& setup, NamedChange& named) {
+    const double mass = static_cast<double>(change.size[0]);
+    const Eigen::Vector3d moment(static_cast<double>(change.size[1]), static_cast<double>(change.size[2]),
+                                 static_cast<double>(change.size[3]));
+    const Eigen::Vector3d centre = setup.tip_placement.linear().transpose() * (moment / mass);
+    named.where = "tool";
+    named.parameters = {{"mass", per_current(setup) ? "kg·A/(N·m)" : "kg", mass},
+                        {"com_x", "m", centre.x()},
+                        {"com_y", "m", centre.y()},
+                        {"com_z", "m", centre.z()}};
+}
+
+template <int m>
+void describe_bias(const Change<float, m>& change, const MonitorSetup& setup, NamedChange& named) {
+    named.where = setup.chain.sensor ? "ft_sensor" : numbered("joint", change.where);
+    for (std::size_t k = 0; k < setup.outputs.size(); ++k) {
+        const auto moved = static_cast<double>(change.bias[static_cast<int>(k)]);
+        if (moved != 0) {
+            named.parameters.push_back({setup.outputs[k], unit_of(setup.outputs[k]), moved});
+        }
+    }
+}
+
+template <int m>
+void describe_contact(const Change<float, m>& change, const MonitorSetup& setup, NamedChange& named) {
+    if (change.where < 0) {
+        named.where = setup.chain.sensor ? "ft_sensor" : "tool";
+        for (int i = 0; i < 3; ++i) {
+            named.parameters.push_back({std::string("force_") + "xyz"[i],
+                                        per_current(setup) ? "N·A/(N·m)" : "N",
+                                        static_cast<double>(change.size[i])});
+        }
+        return;
+    }
+    const std::string& output = setup.outputs[static_cast<std::size_t>(change.where)];
+    named.where = setup.chain.sensor ? "ft_sensor" : numbered("joint", change.where);
+    named.parameters.push_back({"mean", unit_of(output), static_cast<double>(change.size[0])});
+}
+
+template <int m>
+void describe(const Change<float, m>& change, const MonitorSetup& setup, NamedChange& named) {
+    const int joints = static_cast<int>(setup.chain.joints.size());
+    switch (change.cause) {
+    case Cause::payload:
+        describe_payload(change, setup, named);
+        break;
+    case Cause::friction:
+        named.where = numbered("joint", change.where);
+        named.parameters = {
+            {"coulomb", per_current(setup) ? "A" : "N·m", static_cast<double>(change.size[0])},
+            {"viscous", per_current(setup) ? "A·s/rad" : "N·m·s/rad", static_cast<double>(change.size[1])}};
+        break;
+    case Cause::bias:
+        describe_bias(change, setup, named);
+        break;
+    case Cause::contact:
+        describe_contact(change, setup, named);
+        break;
+    case Cause::frozen:
+        named.where = change.where < joints ? numbered("encoder", change.where)
+                                            : setup.outputs[static_cast<std::size_t>(change.where - joints)];
+        break;
+    case Cause::unknown:
+        break;
+    }
+}
+
+std::string shown_by(int channel, const MonitorSetup& setup) {
+    const auto outputs = static_cast<int>(setup.outputs.size());
+    if (channel < 0) {
+        return "repeats";
+    }
+    return channel < outputs ? setup.outputs[static_cast<std::size_t>(channel)] : "all";
+}
+
+template <int m>
+NamedChange in_words(const Change<float, m>& change, const MonitorSetup& setup) {
+    NamedChange named;
+    named.onset_ns = change.onset_ns;
+    named.alarm_ns = change.alarm_ns;
+    named.end_ns = change.end_ns;
+    named.cause = change.cause;
+    named.runner_up = change.runner_up;
+    named.confidence = static_cast<double>(change.confidence);
+    named.runner_up_confidence = static_cast<double>(change.runner_up_confidence);
+    named.shown_by = shown_by(change.channel, setup);
+    describe(change, setup, named);
+    return named;
+}
+
+} // namespace
+
+NamedChange named(const Change<float, dynamic>& change, const MonitorSetup& setup) {
+    return in_words(change, setup);
+}
+
+NamedChange named(const Change<float, 6>& change, const MonitorSetup& setup) {
+    return in_words(change, setup);
+}
+
+} // namespace dfdyn::tools

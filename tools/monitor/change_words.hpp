@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/monitor/monitored_estimator.hpp"
+
+namespace dfdyn::tools {
+
+/// What a monitor of the host found, with the names of the arm that it watches.
+NamedChange named(const Change<float, dynamic>& change, const MonitorSetup& setup);
+NamedChange named(const Change<float, 6>& change, const MonitorSetup& setup);
+
+} // namespace dfdyn::tools

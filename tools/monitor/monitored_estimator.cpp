@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/monitor/monitored_estimator.hpp"
+
+#include "dfdyn/monitor/centred_motion.hpp"
+#include "dfdyn/monitor/held_weights.hpp"
+#include "dfdyn/monitor/monitor.hpp"
+#include "tools/common/error.hpp"
+#include "tools/common/text.hpp"
+#include "tools/host/host_model.hpp"
+#include "tools/monitor/change_words.hpp"
+#include "tools/physics/chain_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr double block_s = 0.1;
+constexpr double motion_window_s = 0.12;
+constexpr double report_s = 2;
+constexpr double longest_s = 20;
+constexpr double renewal_s = 3;
+constexpr float sign_velocity = 0.02F;             // rad/s
+constexpr SpeedClasses<float> speed{0.03F, 0.15F}; // rad/s
+
+template <class Arm>
+using HostMonitor = Monitor<float, Arm, dynamic>;
+
+/// Even, at least 4.
+int motion_lags(double period_s) {
+    return std::max(4, 2 * static_cast<int>(std::lround(motion_window_s / period_s / 2)));
+}
+
+template <class Arm>
+typename HostMonitor<Arm>::Constants monitor_constants(const MonitorSetup& setup) {
+    typename HostMonitor<Arm>::Constants constants{};
+    const int joints = static_cast<int>(setup.chain.joints.size());
+    const int outputs = static_cast<int>(setup.outputs.size());
+    constants.sizes = {extent<Arm::joints>(joints), extent<Arm::outputs>(outputs),
+                       extent<Arm::bodies>(body_count(setup.chain))};
+    constants.lags = {motion_lags(setup.sample_period_s)};
+    constants.chain = host_chain<float, Arm>(setup.chain);
+    const int window = constants.lags + 1;
+    std::vector<float> rows(3 * static_cast<std::size_t>(window));
+    centred_motion_rows(constants.lags, static_cast<float>(setup.sample_period_s), rows.data());
+    constants.motion.rows = Storage<float, dynamic>::zeros({3 * window});
+    to_difference_form(rows.data(), 3, constants.lags, constants.motion.rows.data());
+    constants.motion.scale = Storage<float, dynamic>::zeros({3 * joints});
+    std::ranges::fill(constants.motion.scale, 1.0F);
+    constants.output_gain = Storage<float, Arm::outputs>::zeros(extent<Arm::outputs>(outputs));
+    std::ranges::transform(setup.output_gain, constants.output_gain.begin(),
+                           [](double x) { return static_cast<float>(x); });
+    for (int i = 0; i < 3; ++i) {
+        constants.tip[i] = static_cast<float>(setup.tip_placement.translation()[i]);
+    }
+    constants.sign_velocity = sign_velocity;
+    constants.speed = speed;
+    constants.block_samples = std::max(1, static_cast<int>(std::lround(block_s / setup.sample_period_s)));
+    const double blocks_per_s = 1 / (setup.sample_period_s * constants.block_samples);
+    constants.blocks_between_false_alarms = static_cast<float>(3600 * setup.false_alarm_hours * blocks_per_s);
+    constants.report_blocks = static_cast<int>(std::lround(report_s * blocks_per_s));
+    constants.longest_blocks = static_cast<int>(std::lround(longest_s * blocks_per_s));
+    constants.renewal_blocks = static_cast<int>(std::lround(renewal_s * blocks_per_s));
+    return constants;
+}
+
+template <class Arm>
+class Monitored final : public MonitoredEstimator {
+  public:
+    Monitored(std::unique_ptr<HostEstimator> estimator, const MonitorSetup& setup)
+        : estimator_(std::move(estimator)), setup_(setup), constants_(monitor_constants<Arm>(setup)),
+          monitor_(constants_), held_(Extent<dynamic>{static_cast<int>(estimator_->weight_count())}),
+          held_prediction_(setup.outputs.size()), position_(setup.chain.joints.size()),
+          output_(setup.outputs.size()), changes_(kept, monitor_.change()) {
+        renew();
+    }
+
+    Tick tick(const MeasuredSample& sample, Budget budget) override {
+        const Tick tick = estimator_->tick(sample, budget);
+        if (tick.status.predicted() && measured(tick.status.learning)) {
+            watch(sample, tick);
+        } else {
+            monitor_.interrupt();
+        }
+        renew();
+        return tick;
+    }
+    bool advance(Budget budget) override {
+        const bool idle = estimator_->advance(budget);
+        renew();
+        return idle;
+    }
+    void predict_with(std::span<const float> weights, std::span<float> prediction) const override {
+        estimator_->predict_with(weights, prediction);
+    }
+    std::size_t weight_count() const override { return estimator_->weight_count(); }
+    void copy_weights(std::span<float> weights) const override { estimator_->copy_weights(weights); }
+    void begin_recording() override {
+        estimator_->begin_recording();
+        monitor_.restart();
+        known_ = false;
+    }
+    std::vector<std::byte> snapshot() const override { return estimator_->snapshot(); }
+    bool restore(std::span<const std::byte> snapshot) override { return estimator_->restore(snapshot); }
+    std::size_t state_bytes() const override { return estimator_->state_bytes(); }
+    /// With the prediction of the held weights, and the monitor.
+    Cost cost() const override {
+        Cost cost = estimator_->cost();
+        cost.predict += cost.predict + HostMonitor<Arm>::cost(constants_.sizes, constants_.lags);
+        return cost;
+    }
+
+    std::vector<NamedChange> changes() const override {
+        std::vector<NamedChange> result;
+        for (std::size_t number = count_ > kept ? count_ - kept : 0; number < count_; ++number) {
+            result.push_back(named(changes_[number % kept], setup_));
+        }
+        return result;
+    }
+    std::vector<NamedChange> take_changes() override {
+        std::vector<NamedChange> taken = changes();
+        count_ = 0;
+        known_ = false;
+        return taken;
+    }
+
+  private:
+    static constexpr std::size_t kept = 256; ///< changes; older ones are forgotten
+
+    static bool measured(Reason learning) {
+        return learning != Reason::output_missing && learning != Reason::output_not_finite &&
+               learning != Reason::output_out_of_range;
+    }
+
+    void watch(const MeasuredSample& sample, const Tick& tick) {
+        const auto narrow = [](double x) { return static_cast<float>(x); };
+        std::ranges::transform(sample.position, position_.begin(), narrow);
+        std::ranges::transform(sample.output, output_.begin(), narrow);
+        estimator_->predict_with({held_.older(), weight_count()}, held_prediction_);
+        if (monitor_.tick({sample.time_ns, position_.data(), output_.data(), tick.prediction.data(),
+                           tick.standard_deviation.data(), held_prediction_.data()})) {
+            note();
+        }
+    }
+
+    /// The first word on a change adds it, every later one replaces it. There is room for all of it already:
+    /// a loop's tick does not touch the heap.
+    void note() {
+        count_ += known_ && count_ > 0 ? 0 : 1;
+        changes_[(count_ - 1) % kept] = monitor_.change();
+        known_ = monitor_.changing();
+    }
+
+    /// When it is due and the estimator has nothing left to learn.
+    void renew() {
+        while (monitor_.renewal_due() && estimator_->advance(Budget::predict_only())) {
+            estimator_->copy_weights({held_.renew(), weight_count()});
+            monitor_.renewed();
+        }
+    }
+
+    std::unique_ptr<HostEstimator> estimator_;
+    MonitorSetup setup_;
+    typename HostMonitor<Arm>::Constants constants_;
+    HostMonitor<Arm> monitor_;
+    HeldWeights<float, dynamic> held_;
+    std::vector<float> held_prediction_, position_, output_;
+    std::vector<typename HostMonitor<Arm>::Change> changes_;
+    std::size_t count_ = 0; ///< of them, those forgotten included
+    bool known_ = false;    ///< the last of them is the present one
+};
+
+} // namespace
+
+MonitorSetup monitor_setup(const TrainedModel& model, const Robot* robot, const std::string& source) {
+    MonitorSetup setup;
+    setup.outputs = model.outputs.names;
+    setup.sample_period_s = model.sample_period_s;
+    setup.output_gain.assign(setup.outputs.size(), 1);
+    const auto joints = static_cast<std::size_t>(model.joints);
+    const bool wrench = setup.outputs == output_names(OutputKind::wrench, joints);
+    if (robot != nullptr) {
+        if (robot->joints.size() != joints) {
+            throw InputError(source + ": expected a robot of " + std::to_string(joints) +
+                             " joints as the model, found " + std::to_string(robot->joints.size()));
+        }
+        setup.chain = chain_model(*robot, wrench ? OutputKind::wrench : OutputKind::joint_torque);
+        setup.tip_placement = robot->tip_placement;
+    } else if (!model.physics) {
+        throw InputError(source + ": expected a model with physics, or --robot and --tip, found neither");
+    }
+    if (model.physics) {
+        setup.chain = model.physics->chain;
+        setup.output_gain = model.physics->output_gain;
+    }
+    return setup;
+}
+
+std::unique_ptr<MonitoredEstimator> monitored(std::unique_ptr<HostEstimator> estimator,
+                                              const MonitorSetup& setup) {
+    if (setup.chain.sensor) {
+        return std::make_unique<Monitored<WrenchArm>>(std::move(estimator), setup);
+    }
+    return std::make_unique<Monitored<TorqueArm>>(std::move(estimator), setup);
+}
+
+} // namespace dfdyn::tools
