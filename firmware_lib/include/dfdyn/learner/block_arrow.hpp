@@ -171,7 +171,10 @@ class BlockArrow {
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         Factor::visit_state(self.factor_, visitor);
         CommonParameters<Scalar, p, m>::visit_state(self.common_, visitor);
-        visitor.array(self.weights_.data(), self.weights_.size());
+        const int stride = self.weights_.size() / self.regression_count();
+        for (int i = 0; i < self.regression_count(); ++i) {
+            visitor.array(self.weights_.data() + i * stride, self.columns_);
+        }
         visitor.array(self.in_hand_.rows.data(), self.in_hand_.rows.size());
         visitor.array(self.in_hand_.output.data(), self.in_hand_.output.size());
         visitor.positive_array(&self.alpha_, 1);

@@ -126,7 +126,10 @@ class UdCovariance {
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         Factor::visit_state(self.factor_, visitor);
-        visitor.array(self.weights_.data(), self.weights_.size());
+        const int stride = self.weights_.size() / self.outputs_;
+        for (int k = 0; k < self.outputs_; ++k) {
+            visitor.array(self.weights_.data() + k * stride, self.columns_);
+        }
         visitor.array(self.innovation_.data(), self.innovation_.size());
         visitor.positive_array(&self.noise_variance_, 1);
         visitor.positive_array(&self.ratio_, 1);
