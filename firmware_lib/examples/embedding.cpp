@@ -3,10 +3,8 @@
 // tick.
 #include "embedding.hpp"
 
-#include "ur5_model.hpp"   // constants, in flash
-#include "ur5_samples.hpp" // a stretch of a recording in place of the sensors
-
-#include <algorithm>
+#include "ur5_model.hpp" // constants, in flash
+#include "ur5_ticks.hpp"
 
 namespace {
 
@@ -17,24 +15,6 @@ constexpr dfdyn::Budget budget{Estimator::cost().learn /
                                2}; // of one tick: a sample is learned over two or three
 static_assert(budget.affords(Estimator::cost().largest_step), "a smaller budget would never learn anything");
 
-Estimator::Sample read_sensors(const Ur5Sample& recorded) {
-    Estimator::Sample sample{
-        .time_ns = 1000 * recorded.time_us, .position = {}, .output = {}, .output_valid = true};
-    std::ranges::copy(recorded.position_rad, sample.position.begin());
-    std::ranges::copy(recorded.current_A, sample.output.begin());
-    return sample;
-}
-
-TickOutcome outcome_of(const Estimator::Estimate& estimate) {
-    TickOutcome outcome{.prediction = {},
-                        .standard_deviation = {},
-                        .predicted = estimate.status.predicted(),
-                        .learned = estimate.status.learned()};
-    std::ranges::copy(estimate.prediction, outcome.prediction.begin());
-    std::ranges::copy(estimate.standard_deviation, outcome.standard_deviation.begin());
-    return outcome;
-}
-
 } // namespace
 
 int run_example(void (*after_tick)(const TickOutcome&)) {
@@ -42,7 +22,7 @@ int run_example(void (*after_tick)(const TickOutcome&)) {
     float error_square = 0;
     float output_square = 0;
     for (const Ur5Sample& recorded : ur5_samples) {
-        const auto estimate = estimator.tick(read_sensors(recorded), budget);
+        const auto estimate = estimator.tick(read_sensors<Estimator::Sample>(recorded), budget);
         if (estimate.status.predicted()) { // in a robot: feed estimate.prediction forward
             error_square += estimate.innovation[1] * estimate.innovation[1];
             output_square += recorded.current_A[1] * recorded.current_A[1];

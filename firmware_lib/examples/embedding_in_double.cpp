@@ -3,7 +3,7 @@
 #include "embedding.hpp"
 
 #include "ur5_model.hpp"
-#include "ur5_samples.hpp"
+#include "ur5_ticks.hpp"
 
 #include <algorithm>
 
@@ -50,19 +50,10 @@ Estimator estimator(constants);
 int run_example_in_double(void (*after_tick)(const TickOutcome&)) {
     estimator.reset();
     for (const Ur5Sample& recorded : ur5_samples) {
-        Estimator::Sample sample{
-            .time_ns = 1000 * recorded.time_us, .position = {}, .output = {}, .output_valid = true};
-        std::ranges::copy(recorded.position_rad, sample.position.begin());
-        std::ranges::copy(recorded.current_A, sample.output.begin());
-        const auto estimate = estimator.tick(sample, dfdyn::Budget::unlimited());
-        TickOutcome outcome{.prediction = {},
-                            .standard_deviation = {},
-                            .predicted = estimate.status.predicted(),
-                            .learned = estimate.status.learned()};
-        std::ranges::copy(estimate.prediction, outcome.prediction.begin());
-        std::ranges::copy(estimate.standard_deviation, outcome.standard_deviation.begin());
+        const auto estimate =
+            estimator.tick(read_sensors<Estimator::Sample>(recorded), dfdyn::Budget::unlimited());
         if (after_tick != nullptr) {
-            after_tick(outcome);
+            after_tick(outcome_of(estimate));
         }
     }
     return estimator.counters().learned > 200 ? 0 : 1;

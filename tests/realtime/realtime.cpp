@@ -15,7 +15,7 @@
 #include "dfdyn/hal/device/robotous_rft.hpp"
 #include "dfdyn/hal/sample_assembly.hpp"
 #include "firmware_lib/examples/ur5_model.hpp"
-#include "firmware_lib/examples/ur5_samples.hpp"
+#include "firmware_lib/examples/ur5_ticks.hpp"
 #include "tests/firmware_lib/support/test_model.hpp"
 
 #include <cstdio>
@@ -87,10 +87,7 @@ bool run_ur5() {
     static Estimator<ur5_model::Model> estimator(ur5_model::constants);
     int predicted = 0;
     for (const Ur5Sample& recorded : ur5_samples) {
-        ur5_model::Model::Sample sample{
-            .time_ns = 1000 * recorded.time_us, .position = {}, .output = {}, .output_valid = true};
-        std::copy_n(recorded.position_rad, 6, sample.position.begin());
-        std::copy_n(recorded.current_A, 6, sample.output.begin());
+        const auto sample = read_sensors<ur5_model::Model::Sample>(recorded);
         predicted += tick(estimator, sample, {estimator.cost().learn / 2}) ? 1 : 0;
     }
     return predicted > 250;
