@@ -123,6 +123,11 @@ class UdCovariance {
                 .largest_step = std::max({Factor::largest_step(columns), finish, forget_cost(columns)})};
     }
 
+    [[nodiscard]] static constexpr std::int64_t state_bytes(int columns, int outputs) noexcept {
+        return Factor::state_bytes(columns) + storage_bytes<Scalar>(std::int64_t{outputs} * padded(columns)) +
+               storage_bytes<Scalar>(outputs);
+    }
+
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         Factor::visit_state(self.factor_, visitor);

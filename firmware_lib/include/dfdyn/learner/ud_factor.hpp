@@ -24,8 +24,8 @@ template <class Scalar, int p>
 class UdFactor {
   public:
     static constexpr int padded(int columns) noexcept {
-        constexpr int rows = detail::block_rows<Scalar>;
-        return columns == dynamic ? dynamic : (columns + rows - 1) / rows * rows;
+        constexpr int whole = detail::block_rows<Scalar>;
+        return columns == dynamic ? dynamic : (columns + whole - 1) / whole * whole;
     }
 
     /// A row or a gain, padded with zeros to whole blocks.
@@ -150,18 +150,18 @@ class UdFactor {
     /// Multiply-adds of a sweep, and of the largest part that a sweep can be sliced into.
     [[nodiscard]] static constexpr std::int64_t sweep_cost(int columns) noexcept {
         std::int64_t total = 0;
-        for (int b = 0; b < panel_count(columns); ++b) {
+        for (int b = 0; b < panels_of(columns); ++b) {
             total += panel_cost(b);
         }
         return total;
     }
     [[nodiscard]] static constexpr std::int64_t largest_step(int columns) noexcept {
-        return panel_cost(panel_count(columns) - 1);
+        return panel_cost(panels_of(columns) - 1);
     }
     /// Of `variance`, and what it takes beyond that while a sweep is under way, at most.
     [[nodiscard]] static constexpr std::int64_t variance_cost(int columns) noexcept {
         std::int64_t total = 0;
-        for (int b = 0; b < panel_count(columns); ++b) {
+        for (int b = 0; b < panels_of(columns); ++b) {
             total += projection_cost(b) + 2 * width;
         }
         return total;
@@ -172,6 +172,10 @@ class UdFactor {
     /// Of `scale` and `begin_bound`, at most.
     [[nodiscard]] static constexpr std::int64_t scale_and_bound_cost(int columns) noexcept {
         return std::int64_t{3} * columns;
+    }
+
+    [[nodiscard]] static constexpr std::int64_t state_bytes(int columns) noexcept {
+        return storage_bytes<Scalar>(panels_size(columns)) + 3 * storage_bytes<Scalar>(padded(columns));
     }
 
     /// Column after column, so that every machine writes the same.
@@ -195,7 +199,7 @@ class UdFactor {
     static constexpr int rows = detail::block_rows<Scalar>;
     static constexpr int size = detail::block_size<Scalar>;
 
-    static constexpr int panel_count(int columns) noexcept { return (columns + width - 1) / width; }
+    static constexpr int panels_of(int columns) noexcept { return (columns + width - 1) / width; }
     static constexpr int block_count(int panel) noexcept { return width * panel / rows + 1; }
     /// Elements before a panel: 1 … whole blocks, so many panels each, and some of one block more.
     static constexpr int panel_offset(int panel) noexcept {
@@ -204,7 +208,7 @@ class UdFactor {
         return size * (panels * whole * (whole + 1) / 2 + panel % panels * (whole + 1));
     }
     static constexpr int panels_size(int columns) noexcept {
-        return columns == dynamic ? dynamic : panel_offset(panel_count(columns));
+        return columns == dynamic ? dynamic : panel_offset(panels_of(columns));
     }
     static constexpr std::int64_t projection_cost(int panel) noexcept {
         return std::int64_t{size} * block_count(panel);
@@ -228,7 +232,7 @@ class UdFactor {
         }
     }
 
-    [[nodiscard]] int panel_count() const noexcept { return panel_count(columns_); }
+    [[nodiscard]] int panel_count() const noexcept { return panels_of(columns_); }
     [[nodiscard]] Scalar* panel(int b) noexcept { return panels_.data() + panel_offset(b); }
     [[nodiscard]] const Scalar* panel(int b) const noexcept { return panels_.data() + panel_offset(b); }
 
