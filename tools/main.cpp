@@ -25,6 +25,7 @@ int run(int argc, char** argv) {
     dfdyn::tools::add_plant_command(app, command);
     dfdyn::tools::add_buscheck_command(app, command);
     dfdyn::tools::add_diagnose_command(app, command);
+    dfdyn::tools::add_bench_command(app, command);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {

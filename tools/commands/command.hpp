@@ -22,5 +22,6 @@ void add_play_command(CLI::App& app, Command& chosen);
 void add_loop_command(CLI::App& app, Command& chosen);
 void add_plant_command(CLI::App& app, Command& chosen);
 void add_buscheck_command(CLI::App& app, Command& chosen);
+void add_bench_command(CLI::App& app, Command& chosen);
 
 } // namespace dfdyn::tools

@@ -42,6 +42,10 @@ class LagWindow {
         return rows_.data() + (newest_ + lag) * joints_;
     }
 
+    [[nodiscard]] static constexpr std::int64_t state_bytes(int joints, int lags) noexcept {
+        return storage_bytes<Scalar>(std::int64_t{2} * (lags + 1) * joints);
+    }
+
   private:
     static constexpr int size = product(2, product(sum(M, 1), n));
     using Rows = Storage<Scalar, size>;

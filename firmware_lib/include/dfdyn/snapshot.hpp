@@ -36,7 +36,7 @@ constexpr std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t cr
 /// The head of a snapshot, in the machine's byte order.
 struct SnapshotHeader {
     static constexpr std::uint32_t expected_magic = 0x59444644; // "DFDY"
-    static constexpr std::uint32_t expected_version = 3;
+    static constexpr std::uint32_t expected_version = 4;
 
     std::uint32_t magic = expected_magic;
     std::uint32_t version = expected_version;

@@ -3,14 +3,28 @@
 
 #include "dfdyn/extent.hpp"
 
+#include <cstdint>
+
 namespace dfdyn {
+
+/// Where the arrays of a state begin, for vector loads.
+inline constexpr int storage_alignment = 32;
+
+/// The bytes that `count` numbers take in place. The `state_bytes` of the maps and learners are sums of
+/// these, functions of the sizes: what an object takes beyond them, pointers and indices, is the same
+/// whatever the sizes.
+template <class T>
+constexpr std::int64_t storage_bytes(std::int64_t count) noexcept {
+    const std::int64_t bytes = count * static_cast<std::int64_t>(sizeof(T));
+    return (bytes + storage_alignment - 1) / storage_alignment * storage_alignment;
+}
 
 /// `count` numbers in place, aligned for vector loads. An aggregate, so that a table of constants can live in
 /// flash. Eigen's fixed-size matrices are limited to 128 KB; this is not.
 template <class T, int count>
 struct Storage {
     static_assert(count > 0);
-    alignas(32) T values[count];
+    alignas(storage_alignment) T values[count];
 
     static constexpr Storage zeros(Extent<count> /*size*/) noexcept { return Storage{}; }
 

@@ -47,21 +47,46 @@ bool close(Scalar value, double exact, double tolerance) {
     return std::abs(static_cast<double>(value) - exact) <= tolerance;
 }
 
+/// Element i of a panel's column c.
+template <class Scalar>
+std::size_t place(int i, int c) {
+    constexpr int rows = detail::block_rows<Scalar>;
+    return static_cast<std::size_t>((i / rows * panel_width + c) * rows + i % rows);
+}
+
 /// Bierman's update of four columns, one after the other.
 template <class Scalar>
-void naive_panel_update(std::vector<Scalar>& columns, std::vector<Scalar>& gain, int count,
-                        const Scalar (&v)[panel_width], const Scalar (&mu)[panel_width]) {
+void naive_panel_update(std::vector<Scalar>& panel, std::vector<Scalar>& gain,
+                        const detail::PanelFactors<Scalar>& factors) {
+    const int count = static_cast<int>(gain.size()) - 1;
     for (int c = 0; c < panel_width; ++c) {
-        Scalar* const column = columns.data() + static_cast<std::ptrdiff_t>(c) * count;
         for (int i = 0; i < count; ++i) {
-            Scalar& u = column[i];
+            Scalar& u = panel[place<Scalar>(i, c)];
             Scalar& k = gain[static_cast<std::size_t>(i)];
             const Scalar old = u;
-            u += mu[c] * k;
-            k += v[c] * old;
+            u += factors.mu[c] * k;
+            k += factors.v[c] * old;
         }
     }
 }
+
+/// Whether `products` are those of the panel's columns with the row.
+template <class Scalar>
+bool are_products(const Scalar (&products)[panel_width], const std::vector<Scalar>& panel,
+                  const std::vector<Scalar>& row) {
+    const int count = static_cast<int>(row.size()) - 1;
+    std::vector<Scalar> column(row.size());
+    bool all = true;
+    for (int c = 0; c < panel_width; ++c) {
+        for (int i = 0; i < count; ++i) {
+            column[static_cast<std::size_t>(i)] = panel[place<Scalar>(i, c)];
+        }
+        all = all && close(products[c], exact_dot(column.data(), row.data(), count), rounding<Scalar>(count));
+    }
+    return all;
+}
+
+constexpr int most_blocks = 17;
 
 template <class Scalar>
 bool all_close(const std::vector<Scalar>& values, const std::vector<Scalar>& expected, double tolerance) {
@@ -90,32 +115,58 @@ TEMPLATE_TEST_CASE("dot and add_scaled are right for every count, and stay withi
 
 TEMPLATE_TEST_CASE("a panel's products are those of its four columns", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
-    for (int count = 0; count <= largest_count; count += panel_width) {
-        CAPTURE(count);
-        const auto columns = random_numbers<TestType>(engine, panel_width * count);
-        const auto row = random_numbers<TestType>(engine, count);
+    for (int blocks = 0; blocks <= most_blocks; ++blocks) {
+        CAPTURE(blocks);
+        const auto panel = random_numbers<TestType>(engine, blocks * detail::block_size<TestType>);
+        const auto row = random_numbers<TestType>(engine, blocks * detail::block_rows<TestType>);
         TestType products[panel_width] = {9, 9, 9, 9};
-        detail::panel_dots(columns.data(), row.data(), count, products);
-        for (int c = 0; c < panel_width; ++c) {
-            CHECK(close(products[c], exact_dot(columns.data() + c * count, row.data(), count),
-                        rounding<TestType>(count)));
-        }
+        detail::panel_products(panel.data(), blocks, row.data(), products);
+        CHECK(are_products(products, panel, row));
     }
 }
 
 TEMPLATE_TEST_CASE("a panel's update is that of its columns one after the other", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
-    const TestType v[panel_width] = {TestType(0.3), TestType(-0.8), TestType(0.5), TestType(0.1)};
-    const TestType mu[panel_width] = {TestType(-0.6), TestType(0.2), TestType(0.9), TestType(-0.4)};
-    for (int count = 0; count <= largest_count; count += panel_width) {
-        CAPTURE(count);
-        auto columns = random_numbers<TestType>(engine, panel_width * count);
-        auto gain = random_numbers<TestType>(engine, count);
-        auto expected_columns = columns;
+    const detail::PanelFactors<TestType> factors = {
+        {TestType(0.3), TestType(-0.8), TestType(0.5), TestType(0.1)},
+        {TestType(-0.6), TestType(0.2), TestType(0.9), TestType(-0.4)}};
+    for (int blocks = 0; blocks <= most_blocks; ++blocks) {
+        CAPTURE(blocks);
+        auto panel = random_numbers<TestType>(engine, blocks * detail::block_size<TestType>);
+        auto gain = random_numbers<TestType>(engine, blocks * detail::block_rows<TestType>);
+        auto expected_panel = panel;
         auto expected_gain = gain;
-        naive_panel_update(expected_columns, expected_gain, count, v, mu);
-        detail::panel_update(columns.data(), gain.data(), count, v, mu);
-        CHECK(all_close(columns, expected_columns, rounding<TestType>(panel_width)));
+        naive_panel_update(expected_panel, expected_gain, factors);
+        detail::update_panel(panel.data(), blocks, gain.data(), factors);
+        CHECK(all_close(panel, expected_panel, rounding<TestType>(panel_width)));
         CHECK(all_close(gain, expected_gain, rounding<TestType>(panel_width)));
+    }
+}
+
+// Bit for bit: whether a sweep is sliced after a panel must not show.
+TEMPLATE_TEST_CASE("an update with the next panel's products is the update, and they are the products", "",
+                   float, double) {
+    DFDYN_SEEDED_ENGINE(engine);
+    const detail::PanelFactors<TestType> factors = {
+        {TestType(0.3), TestType(-0.8), TestType(0.5), TestType(0.1)},
+        {TestType(-0.6), TestType(0.2), TestType(0.9), TestType(-0.4)}};
+    for (int blocks = 0; blocks <= most_blocks; ++blocks) {
+        const int next_blocks = blocks + blocks % 2;
+        CAPTURE(blocks, next_blocks);
+        auto panel = random_numbers<TestType>(engine, blocks * detail::block_size<TestType>);
+        auto gain = random_numbers<TestType>(engine, blocks * detail::block_rows<TestType>);
+        const auto next = random_numbers<TestType>(engine, next_blocks * detail::block_size<TestType>);
+        const auto row = random_numbers<TestType>(engine, next_blocks * detail::block_rows<TestType>);
+        auto expected_panel = panel;
+        auto expected_gain = gain;
+        TestType expected[panel_width];
+        detail::update_panel(expected_panel.data(), blocks, expected_gain.data(), factors);
+        detail::panel_products(next.data(), next_blocks, row.data(), expected);
+        TestType products[panel_width];
+        detail::update_panel(panel.data(), blocks, gain.data(), factors, next.data(), next_blocks, row.data(),
+                             products);
+        CHECK(panel == expected_panel);
+        CHECK(gain == expected_gain);
+        CHECK(std::equal(products, products + panel_width, expected));
     }
 }

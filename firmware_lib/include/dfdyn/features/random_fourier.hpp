@@ -45,6 +45,12 @@ struct RandomFourier {
     [[nodiscard]] static constexpr std::int64_t cost(int input_count, int feature_count) noexcept {
         return std::int64_t{feature_count} * input_count + cos_sin_cost<Scalar>(feature_count);
     }
+
+    /// Of the constants; a feature map keeps no state.
+    template <class Scalar>
+    [[nodiscard]] static constexpr std::int64_t constant_bytes(int input_count, int feature_count) noexcept {
+        return storage_bytes<Scalar>(std::int64_t{input_count} * feature_count);
+    }
 };
 
 } // namespace dfdyn

@@ -55,6 +55,11 @@ struct DerivativeFree {
             return std::int64_t{joints} * (lag_count + 1);
         }
 
+        [[nodiscard]] static constexpr std::int64_t state_bytes(int joints, int lag_count,
+                                                                int /*rows*/) noexcept {
+            return LagWindow<Scalar, n, M>::state_bytes(joints, lag_count);
+        }
+
       private:
         const Scalar* scale_;
         [[no_unique_address]] Extent<n> joints_;

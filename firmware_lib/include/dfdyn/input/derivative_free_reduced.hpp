@@ -77,6 +77,11 @@ struct DerivativeFreeReduced {
             return std::int64_t{joints} * rows * (lag_count + 2);
         }
 
+        [[nodiscard]] static constexpr std::int64_t state_bytes(int joints, int lag_count,
+                                                                int /*rows*/) noexcept {
+            return LagWindow<Scalar, n, M>::state_bytes(joints, lag_count);
+        }
+
       private:
         const Constants* constants_;
         [[no_unique_address]] Extent<n> joints_;

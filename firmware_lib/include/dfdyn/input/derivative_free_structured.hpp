@@ -102,6 +102,11 @@ struct DerivativeFreeStructuredRecursive {
             return std::int64_t{joints} * 7;
         }
 
+        [[nodiscard]] static constexpr std::int64_t state_bytes(int joints, int /*lags*/,
+                                                                int /*rows*/) noexcept {
+            return 4 * storage_bytes<Scalar>(joints);
+        }
+
       private:
         using Joints = Storage<Scalar, n>;
         static constexpr Joints zeros(Extent<n> joints) noexcept { return Joints::zeros(joints); }

@@ -68,6 +68,13 @@ struct Standard {
             return joints * (AdaptiveWindow<Scalar>::cost(count) + 3) + count;
         }
 
+        [[nodiscard]] static constexpr std::int64_t state_bytes(int joints, int lag_count,
+                                                                int /*rows*/) noexcept {
+            return LagWindow<Scalar, n, M>::state_bytes(joints, lag_count) +
+                   LagWindow<std::int64_t, 1, M>::state_bytes(1, lag_count) +
+                   storage_bytes<Scalar>(lag_count + 1);
+        }
+
       private:
         using Ages = Storage<Scalar, sum(M, 1)>;
 
@@ -122,6 +129,11 @@ struct StandardMeasured {
 
         [[nodiscard]] static constexpr std::int64_t cost(int joints, int /*lags*/, int /*rows*/) noexcept {
             return std::int64_t{joints} * 3;
+        }
+
+        [[nodiscard]] static constexpr std::int64_t state_bytes(int joints, int /*lags*/,
+                                                                int /*rows*/) noexcept {
+            return storage_bytes<Scalar>(std::int64_t{3} * joints);
         }
 
       private:

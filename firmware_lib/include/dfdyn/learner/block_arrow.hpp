@@ -167,11 +167,24 @@ class BlockArrow {
                                           forget_cost(column_count), shared.largest_step})};
     }
 
+    [[nodiscard]] static constexpr std::int64_t state_bytes(int column_count, int parameters,
+                                                            int outputs) noexcept {
+        const std::int64_t residual =
+            storage_bytes<Scalar>(std::int64_t{outputs} * parameters) + storage_bytes<Scalar>(outputs);
+        return Factor::state_bytes(column_count) +
+               CommonParameters<Scalar, p, m>::state_bytes(parameters, outputs) +
+               storage_bytes<Scalar>(std::int64_t{outputs} * (1 + parameters) * padded(column_count)) +
+               2 * residual;
+    }
+
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         Factor::visit_state(self.factor_, visitor);
         CommonParameters<Scalar, p, m>::visit_state(self.common_, visitor);
-        visitor.array(self.weights_.data(), self.weights_.size());
+        const int stride = self.weights_.size() / self.regression_count();
+        for (int i = 0; i < self.regression_count(); ++i) {
+            visitor.array(self.weights_.data() + i * stride, self.columns_);
+        }
         visitor.array(self.in_hand_.rows.data(), self.in_hand_.rows.size());
         visitor.array(self.in_hand_.output.data(), self.in_hand_.output.size());
         visitor.positive_array(&self.alpha_, 1);

@@ -120,6 +120,12 @@ class CholeskyInformation {
                 .largest_step = std::max({learn, forget, bound})};
     }
 
+    [[nodiscard]] static constexpr std::int64_t state_bytes(int columns, int outputs) noexcept {
+        return storage_bytes<Scalar>(factor_size(columns)) +
+               2 * storage_bytes<Scalar>(std::int64_t{outputs} * columns) +
+               2 * storage_bytes<Scalar>(columns) + storage_bytes<Scalar>(outputs);
+    }
+
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         for (int i = 0; i < self.columns_; ++i) {

@@ -103,6 +103,11 @@ class CommonParameters {
                 .largest_step = std::max(variance, row.largest_step)};
     }
 
+    [[nodiscard]] static constexpr std::int64_t state_bytes(int parameters, int outputs) noexcept {
+        return UdCovariance<Scalar, p, 1>::state_bytes(parameters, 1) +
+               storage_bytes<Scalar>(std::int64_t{outputs} * parameters) + 2 * storage_bytes<Scalar>(outputs);
+    }
+
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         UdCovariance<Scalar, p, 1>::visit_state(self.learner_, visitor);

@@ -3,11 +3,21 @@
 
 #include "dfdyn/vector.hpp"
 
+#include <algorithm>
+
 namespace dfdyn::detail {
 
 /// Columns that one pass of a sweep treats together, so that the row and the gain are read once for all of
 /// them.
 inline constexpr int panel_width = 4;
+
+/// A panel is stored in blocks of so many rows: of each of its columns as many as a vector of the machine has
+/// lanes, at least four. A block is contiguous, so that every load is aligned as the panel is.
+template <class Scalar>
+inline constexpr int block_rows = std::max(panel_width, wide<Scalar>);
+
+template <class Scalar>
+inline constexpr int block_size = panel_width* block_rows<Scalar>;
 
 /// Where the last whole vector of elements `begin` … `count` - 1 ends.
 template <int lanes>
@@ -15,37 +25,39 @@ constexpr int whole_vectors(int begin, int count) noexcept {
     return begin + (count - begin) / lanes * lanes;
 }
 
-/// Adds the products of elements `begin` … of `columns` columns with one row, `lanes` at a time as far as
-/// they go; returns where that is.
-template <class Scalar, int lanes, int columns>
-int add_dots(const Scalar* matrix, const Scalar* row, int begin, int count,
-             Scalar (&products)[columns]) noexcept {
-    using Lanes = Vector<Scalar, lanes>;
-    typename Lanes::Type partial[columns] = {};
-    typename Lanes::Type x;
-    typename Lanes::Type u;
-    const int whole = whole_vectors<lanes>(begin, count);
-    for (int i = begin; i < whole; i += lanes) {
-        Lanes::load(row + i, x);
-        for (int c = 0; c < columns; ++c) {
-            Lanes::load(matrix + c * count + i, u);
-            partial[c] += u * x;
+/// a'b over what whole vectors leave of `count` elements: from `begin` on, fewer than 2 `lanes`.
+template <class Scalar, int lanes>
+Scalar dot_of_rest(const Scalar* a, const Scalar* b, int begin, int count) noexcept {
+    if constexpr (lanes == 0) {
+        return 0;
+    } else {
+        if (begin + lanes > count) {
+            return dot_of_rest<Scalar, lanes / 2>(a, b, begin, count);
         }
+        using Lanes = Vector<Scalar, lanes>;
+        typename Lanes::Type x;
+        typename Lanes::Type y;
+        Lanes::load(a + begin, x);
+        Lanes::load(b + begin, y);
+        return Lanes::total(x * y) + dot_of_rest<Scalar, lanes / 2>(a, b, begin + lanes, count);
     }
-    for (int c = 0; c < columns; ++c) {
-        products[c] += Lanes::total(partial[c]);
-    }
-    return whole;
 }
 
 /// a'b over `count` elements.
 template <class Scalar>
 Scalar dot(const Scalar* a, const Scalar* b, int count) noexcept {
-    Scalar product[1] = {};
-    for (int i = add_dots<Scalar, wide<Scalar>>(a, b, 0, count, product); i < count; ++i) {
-        product[0] += a[i] * b[i];
+    constexpr int lanes = wide<Scalar>;
+    using Wide = Vector<Scalar, lanes>;
+    typename Wide::Type partial{};
+    typename Wide::Type x;
+    typename Wide::Type y;
+    const int whole = whole_vectors<lanes>(0, count);
+    for (int i = 0; i < whole; i += lanes) {
+        Wide::load(a + i, x);
+        Wide::load(b + i, y);
+        partial += x * y;
     }
-    return product[0];
+    return Wide::total(partial) + dot_of_rest<Scalar, lanes / 2>(a, b, whole, count);
 }
 
 /// y += factor x over `count` elements.
@@ -66,44 +78,92 @@ void add_scaled(Scalar factor, const Scalar* x, Scalar* y, int count) noexcept {
     }
 }
 
-/// The products of four columns, each `count` long (a multiple of four) and stored one after the other, with
-/// one row.
+/// What the four columns of a panel do to one another and to the gain.
 template <class Scalar>
-void panel_dots(const Scalar* columns, const Scalar* row, int count,
-                Scalar (&products)[panel_width]) noexcept {
-    for (Scalar& product : products) {
-        product = 0;
-    }
-    const int done = add_dots<Scalar, wide<Scalar>>(columns, row, 0, count, products);
-    add_dots<Scalar, panel_width>(columns, row, done, count, products);
-}
+struct PanelFactors {
+    Scalar v[panel_width];  ///< onto the gain, per unit of the column
+    Scalar mu[panel_width]; ///< onto the column, per unit of the gain
+};
 
-template <class Scalar, int lanes>
-int update_panel_from(Scalar* columns, Scalar* gain, int begin, int count, const Scalar (&v)[panel_width],
-                      const Scalar (&mu)[panel_width]) noexcept {
-    using Lanes = Vector<Scalar, lanes>;
+/// The products of a panel's columns with a row, as they are summed up block by block.
+template <class Scalar>
+class PanelProducts {
+  public:
+    void add(const Scalar* block, const Scalar* row) noexcept {
+        typename Lanes::Type x;
+        typename Lanes::Type u;
+        for (int i = 0; i < block_rows<Scalar>; i += wide<Scalar>) {
+            Lanes::load(row + i, x);
+            for (int c = 0; c < panel_width; ++c) {
+                Lanes::load(block + c * block_rows<Scalar> + i, u);
+                partial_[c] += u * x;
+            }
+        }
+    }
+
+    void total(Scalar (&products)[panel_width]) const noexcept {
+        for (int c = 0; c < panel_width; ++c) {
+            products[c] = Lanes::total(partial_[c]);
+        }
+    }
+
+  private:
+    using Lanes = Vector<Scalar, wide<Scalar>>;
+    typename Lanes::Type partial_[panel_width] = {};
+};
+
+/// Bierman's update of one block: for each column in turn u += mu·gain, gain += v·u (the old u).
+template <class Scalar>
+void update_block(Scalar* block, Scalar* gain, const PanelFactors<Scalar>& factors) noexcept {
+    using Lanes = Vector<Scalar, wide<Scalar>>;
     typename Lanes::Type k;
     typename Lanes::Type u;
-    const int whole = whole_vectors<lanes>(begin, count);
-    for (int i = begin; i < whole; i += lanes) {
+    for (int i = 0; i < block_rows<Scalar>; i += wide<Scalar>) {
         Lanes::load(gain + i, k);
         for (int c = 0; c < panel_width; ++c) {
-            Lanes::load(columns + c * count + i, u);
-            Lanes::store(u + mu[c] * k, columns + c * count + i);
-            k += v[c] * u;
+            Scalar* const column = block + c * block_rows<Scalar> + i;
+            Lanes::load(column, u);
+            Lanes::store(u + factors.mu[c] * k, column);
+            k += factors.v[c] * u;
         }
         Lanes::store(k, gain + i);
     }
-    return whole;
 }
 
-/// Bierman's update of four columns (as in `panel_dots`) above their diagonal block: for each column in turn
-/// u += mu·gain, gain += v·u (the old u).
+/// The products of a panel of `blocks` blocks with a row, which is as long as they are.
 template <class Scalar>
-void panel_update(Scalar* columns, Scalar* gain, int count, const Scalar (&v)[panel_width],
-                  const Scalar (&mu)[panel_width]) noexcept {
-    const int done = update_panel_from<Scalar, wide<Scalar>>(columns, gain, 0, count, v, mu);
-    update_panel_from<Scalar, panel_width>(columns, gain, done, count, v, mu);
+[[gnu::always_inline]] inline void panel_products(const Scalar* panel, int blocks, const Scalar* row,
+                                                  Scalar (&products)[panel_width]) noexcept {
+    PanelProducts<Scalar> sums;
+    for (int k = 0; k < blocks; ++k) {
+        sums.add(panel + k * block_size<Scalar>, row + k * block_rows<Scalar>);
+    }
+    sums.total(products);
+}
+
+template <class Scalar>
+[[gnu::always_inline]] inline void update_panel(Scalar* panel, int blocks, Scalar* gain,
+                                                PanelFactors<Scalar> factors) noexcept {
+    for (int k = 0; k < blocks; ++k) {
+        update_block(panel + k * block_size<Scalar>, gain + k * block_rows<Scalar>, factors);
+    }
+}
+
+/// `update_panel`, and `panel_products` of the panel `next` of at least as many blocks: while the one is
+/// worked on in the nearest cache, the other comes from farther away.
+template <class Scalar>
+[[gnu::always_inline]] inline void
+update_panel(Scalar* panel, int blocks, Scalar* gain, PanelFactors<Scalar> factors, const Scalar* next,
+             int next_blocks, const Scalar* row, Scalar (&products)[panel_width]) noexcept {
+    PanelProducts<Scalar> sums;
+    for (int k = 0; k < blocks; ++k) {
+        sums.add(next + k * block_size<Scalar>, row + k * block_rows<Scalar>);
+        update_block(panel + k * block_size<Scalar>, gain + k * block_rows<Scalar>, factors);
+    }
+    for (int k = blocks; k < next_blocks; ++k) {
+        sums.add(next + k * block_size<Scalar>, row + k * block_rows<Scalar>);
+    }
+    sums.total(products);
 }
 
 } // namespace dfdyn::detail

@@ -123,10 +123,18 @@ class UdCovariance {
                 .largest_step = std::max({Factor::largest_step(columns), finish, forget_cost(columns)})};
     }
 
+    [[nodiscard]] static constexpr std::int64_t state_bytes(int columns, int outputs) noexcept {
+        return Factor::state_bytes(columns) + storage_bytes<Scalar>(std::int64_t{outputs} * padded(columns)) +
+               storage_bytes<Scalar>(outputs);
+    }
+
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         Factor::visit_state(self.factor_, visitor);
-        visitor.array(self.weights_.data(), self.weights_.size());
+        const int stride = self.weights_.size() / self.outputs_;
+        for (int k = 0; k < self.outputs_; ++k) {
+            visitor.array(self.weights_.data() + k * stride, self.columns_);
+        }
         visitor.array(self.innovation_.data(), self.innovation_.size());
         visitor.positive_array(&self.noise_variance_, 1);
         visitor.positive_array(&self.ratio_, 1);

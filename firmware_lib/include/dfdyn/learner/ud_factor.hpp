@@ -12,9 +12,10 @@ namespace dfdyn {
 /// folds a row into it (G. J. Bierman, "Factorization Methods for Discrete Sequential Estimation", 1977): 1.5
 /// p² multiply-adds, no square root, and the gain and the predictive variance come with it.
 ///
-/// U is stored in panels of four columns: panel b holds rows 0 … 4b-1 of columns 4b … 4b+3, column after
-/// column, then come the six entries of its triangular block. Columns beyond p pad the last panel with zeros.
-/// Memory about p²/2 + 3 p.
+/// U is stored in panels of four columns: panel b holds its columns down to their diagonal, of ones, and
+/// zeros below it to the end of a block (see `block_rows`). So a sweep needs to know nothing of the triangle:
+/// zeros stay zeros and ones stay ones. Columns beyond p fill the last panel and do nothing. Memory about
+/// p²/2 + 5 p, in scalars.
 ///
 /// A sweep can stop after any panel and go on later. Until it is closed `variance` is that of the old
 /// covariance, exactly: after j columns the part of P already updated is that of a rank-one downdate,
@@ -23,22 +24,23 @@ template <class Scalar, int p>
 class UdFactor {
   public:
     static constexpr int padded(int columns) noexcept {
-        constexpr int width = detail::panel_width;
-        return columns == dynamic ? dynamic : (columns + width - 1) / width * width;
+        constexpr int whole = detail::block_rows<Scalar>;
+        return columns == dynamic ? dynamic : (columns + whole - 1) / whole * whole;
     }
 
-    /// A row or a gain, padded with zeros to whole panels.
+    /// A row or a gain, padded with zeros to whole blocks.
     using Columns = Storage<Scalar, padded(p)>;
 
     explicit UdFactor(Extent<p> columns) noexcept
         : columns_(columns), panels_(Panels::zeros(extent<panels_size(p)>(panels_size(columns)))),
-          triangles_(Triangles::zeros(extent<triangles_size(p)>(triangles_size(columns)))),
           diagonal_(zero_columns()), row_(zero_columns()), gain_(zero_columns()) {}
 
     /// P = `variance` I; forgets a sweep under way.
     void reset(Scalar variance) noexcept {
         clear(panels_);
-        clear(triangles_);
+        for (int j = 0; j < width * panel_count(); ++j) {
+            element(*this, j, j) = 1;
+        }
         for (Scalar& d : diagonal_) {
             d = variance;
         }
@@ -55,7 +57,7 @@ class UdFactor {
             diagonal_[j] = diagonal[j];
             const Scalar* column = unit_upper + j * (j - 1) / 2;
             for (int i = 0; i < j; ++i) {
-                upper_element(*this, i, j) = column[i];
+                element(*this, i, j) = column[i];
             }
         }
     }
@@ -64,15 +66,15 @@ class UdFactor {
     [[nodiscard]] Scalar variance(const Scalar* row) const noexcept {
         Scalar total = 0;
         for (int b = 0; b < panel_count(); ++b) {
-            Scalar f[detail::panel_width];
+            Scalar f[width];
             project(b, row, f);
-            for (int c = 0; c < detail::panel_width; ++c) {
-                total += f[c] * f[c] * diagonal_[detail::panel_width * b + c];
+            for (int c = 0; c < width; ++c) {
+                total += f[c] * f[c] * diagonal_[width * b + c];
             }
         }
         if (sweeping()) {
-            const int done = panel_width_up_to(panel_);
-            const Scalar taken = detail::dot(gain_.data(), row, done);
+            const int done = width * panel_;
+            const Scalar taken = detail::dot(gain_.data(), row, done < columns_ ? done : int{columns_});
             total += taken * taken / alpha_;
         }
         return total;
@@ -85,6 +87,7 @@ class UdFactor {
         for (int j = 0; j < columns_; ++j) {
             row_[j] = row[j];
         }
+        clear(gain_);
         begin_at(0, noise_variance);
     }
 
@@ -98,19 +101,20 @@ class UdFactor {
         clear(row_);
         clear(gain_);
         row_[i] = 1;
-        begin_at(i / detail::panel_width, ceiling * (present / (present - ceiling)));
+        begin_at(i / width, ceiling * (present / (present - ceiling)));
         return true;
     }
 
     /// Sweeps as far as the budget goes; true when all columns are done.
     [[nodiscard]] bool sweep(Budget& budget) noexcept {
-        for (; panel_ < panel_count(); ++panel_) {
-            if (!budget.spend(panel_cost(panel_, columns_))) {
-                return false;
-            }
-            fold_panel(panel_);
+        int end = panel_;
+        while (end < panel_count() && budget.spend(panel_cost(end))) {
+            ++end;
         }
-        return true;
+        if (panel_ < end) {
+            fold_panels(end);
+        }
+        return panel_ == panel_count();
     }
 
     /// Ends a sweep that is done: from now on the new covariance counts.
@@ -140,25 +144,25 @@ class UdFactor {
     }
 
     /// Element of U above the diagonal, i < j.
-    [[nodiscard]] Scalar upper(int i, int j) const noexcept { return upper_element(*this, i, j); }
+    [[nodiscard]] Scalar upper(int i, int j) const noexcept { return element(*this, i, j); }
     [[nodiscard]] Scalar diagonal(int j) const noexcept { return diagonal_[j]; }
 
     /// Multiply-adds of a sweep, and of the largest part that a sweep can be sliced into.
     [[nodiscard]] static constexpr std::int64_t sweep_cost(int columns) noexcept {
         std::int64_t total = 0;
-        for (int b = 0; b < panel_count(columns); ++b) {
-            total += panel_cost(b, columns);
+        for (int b = 0; b < panels_of(columns); ++b) {
+            total += panel_cost(b);
         }
         return total;
     }
     [[nodiscard]] static constexpr std::int64_t largest_step(int columns) noexcept {
-        return panel_cost(panel_count(columns) - 1, columns);
+        return panel_cost(panels_of(columns) - 1);
     }
     /// Of `variance`, and what it takes beyond that while a sweep is under way, at most.
     [[nodiscard]] static constexpr std::int64_t variance_cost(int columns) noexcept {
         std::int64_t total = 0;
-        for (int b = 0; b < panel_count(columns); ++b) {
-            total += projection_cost(b, columns) + 2 * detail::panel_width;
+        for (int b = 0; b < panels_of(columns); ++b) {
+            total += projection_cost(b) + 2 * width;
         }
         return total;
     }
@@ -170,41 +174,52 @@ class UdFactor {
         return std::int64_t{3} * columns;
     }
 
+    [[nodiscard]] static constexpr std::int64_t state_bytes(int columns) noexcept {
+        return storage_bytes<Scalar>(panels_size(columns)) + 3 * storage_bytes<Scalar>(padded(columns));
+    }
+
+    /// Column after column, so that every machine writes the same.
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
-        visitor.array(self.panels_.data(), self.panels_.size());
-        visitor.array(self.triangles_.data(), self.triangles_.size());
-        visitor.positive_array(self.diagonal_.data(), self.diagonal_.size());
-        visitor.array(self.row_.data(), self.row_.size());
-        visitor.array(self.gain_.data(), self.gain_.size());
+        for (int j = 1; j < self.columns_; ++j) {
+            for (int i = 0; i < j; i += rows) {
+                visitor.array(&element(self, i, j), i + rows < j ? rows : j - i);
+            }
+        }
+        visitor.positive_array(self.diagonal_.data(), self.columns_);
+        visitor.array(self.row_.data(), self.columns_);
+        visitor.array(self.gain_.data(), self.columns_);
         visitor.positive_array(&self.alpha_, 1);
         visitor.ranged(self.panel_, 0, self.panel_count());
         visitor.ranged(self.sweeping_, 0, 1);
     }
 
   private:
+    static constexpr int width = detail::panel_width;
+    static constexpr int rows = detail::block_rows<Scalar>;
+    static constexpr int size = detail::block_size<Scalar>;
+
+    static constexpr int panels_of(int columns) noexcept { return (columns + width - 1) / width; }
+    static constexpr int block_count(int panel) noexcept { return width * panel / rows + 1; }
+    /// Elements before a panel: 1 … whole blocks, so many panels each, and some of one block more.
+    static constexpr int panel_offset(int panel) noexcept {
+        constexpr int panels = rows / width;
+        const int whole = panel / panels;
+        return size * (panels * whole * (whole + 1) / 2 + panel % panels * (whole + 1));
+    }
     static constexpr int panels_size(int columns) noexcept {
-        if (columns == dynamic) {
-            return dynamic;
-        }
-        const int panels = padded(columns) / detail::panel_width;
-        return panels > 1 ? 8 * panels * (panels - 1) : 1;
+        return columns == dynamic ? dynamic : panel_offset(panels_of(columns));
     }
-    static constexpr int triangles_size(int columns) noexcept {
-        return columns == dynamic ? dynamic : 6 * (padded(columns) / detail::panel_width);
+    static constexpr std::int64_t projection_cost(int panel) noexcept {
+        return std::int64_t{size} * block_count(panel);
     }
-    static constexpr int panel_count(int columns) noexcept { return padded(columns) / detail::panel_width; }
-    static constexpr std::int64_t projection_cost(int b, int columns) noexcept {
-        const int width = std::min(detail::panel_width, columns - detail::panel_width * b);
-        return std::int64_t{16} * b + width * (width - 1) / 2;
-    }
-    /// Five for each column's gain, two for each element above the diagonal.
-    static constexpr std::int64_t panel_cost(int b, int columns) noexcept {
-        return projection_cost(b, columns) + std::int64_t{32} * b + 5 * detail::panel_width + 2 * 6;
+    /// One for each element's product, two for its update, five for each column's part of the gain.
+    static constexpr std::int64_t panel_cost(int panel) noexcept {
+        return 3 * projection_cost(panel) + 5 * width;
     }
 
+    using Factors = detail::PanelFactors<Scalar>;
     using Panels = Storage<Scalar, panels_size(p)>;
-    using Triangles = Storage<Scalar, triangles_size(p)>;
 
     [[nodiscard]] Columns zero_columns() const noexcept {
         return Columns::zeros(extent<padded(p)>(padded(columns_)));
@@ -217,21 +232,13 @@ class UdFactor {
         }
     }
 
-    [[nodiscard]] int panel_count() const noexcept { return panel_count(columns_); }
-    [[nodiscard]] int panel_width_up_to(int panel) const noexcept {
-        const int columns = detail::panel_width * panel;
-        return columns < columns_ ? columns : static_cast<int>(columns_);
-    }
-    static constexpr int panel_offset(int b) noexcept { return 8 * b * (b - 1); }
-    /// Index of entry (r, c), r < c, of a panel's triangular block.
-    static constexpr int triangle_index(int b, int r, int c) noexcept { return 6 * b + c * (c - 1) / 2 + r; }
+    [[nodiscard]] int panel_count() const noexcept { return panels_of(columns_); }
+    [[nodiscard]] Scalar* panel(int b) noexcept { return panels_.data() + panel_offset(b); }
+    [[nodiscard]] const Scalar* panel(int b) const noexcept { return panels_.data() + panel_offset(b); }
 
     template <class Self>
-    static auto& upper_element(Self& self, int i, int j) noexcept {
-        const int b = j / detail::panel_width;
-        const int first = detail::panel_width * b;
-        return i < first ? self.panels_[panel_offset(b) + (j - first) * first + i]
-                         : self.triangles_[triangle_index(b, i - first, j - first)];
+    static auto& element(Self& self, int i, int j) noexcept {
+        return self.panel(j / width)[i / rows * size + j % width * rows + i % rows];
     }
 
     void begin_at(int panel, Scalar noise_variance) noexcept {
@@ -240,53 +247,55 @@ class UdFactor {
         sweeping_ = 1;
     }
 
-    /// f = U'h for the four columns of panel b.
-    void project(int b, const Scalar* row, Scalar (&f)[detail::panel_width]) const noexcept {
-        const int first = detail::panel_width * b;
-        detail::panel_dots(panels_.data() + panel_offset(b), row, first, f);
-        for (int c = 0; c < detail::panel_width && first + c < columns_; ++c) {
-            for (int r = 0; r < c; ++r) {
-                f[c] += triangles_[triangle_index(b, r, c)] * row[first + r];
-            }
-            f[c] += row[first + c];
+    /// f = U'h for the four columns of panel b, of a row of p values.
+    void project(int b, const Scalar* row, Scalar (&f)[width]) const noexcept {
+        const int blocks = block_count(b);
+        if (rows * blocks <= columns_) {
+            detail::panel_products(panel(b), blocks, row, f);
+            return;
+        }
+        Scalar last[rows] = {};
+        const int first = rows * (blocks - 1);
+        std::copy(row + first, row + columns_, last);
+        Scalar rest[width];
+        detail::panel_products(panel(b), blocks - 1, row, f);
+        detail::panel_products(panel(b) + size * (blocks - 1), 1, last, rest);
+        for (int c = 0; c < width; ++c) {
+            f[c] += rest[c];
         }
     }
 
-    void fold_panel(int b) noexcept {
-        Scalar f[detail::panel_width];
-        project(b, row_.data(), f);
-        Scalar v[detail::panel_width];
-        Scalar mu[detail::panel_width];
-        const int first = detail::panel_width * b;
-        for (int c = 0; c < detail::panel_width; ++c) {
-            Scalar& d = diagonal_[first + c];
-            v[c] = d * f[c];
-            mu[c] = -f[c] / alpha_;
-            const Scalar next = alpha_ + f[c] * v[c];
-            d *= alpha_ / next;
-            alpha_ = next;
+    /// Folds the row into the panels before `end`, at least one. What a panel does to the gain follows from
+    /// U'h alone: while one panel is updated, the next is already multiplied with the row.
+    void fold_panels(int end) noexcept {
+        Scalar f[width];
+        detail::panel_products(panel(panel_), block_count(panel_), row_.data(), f);
+        for (; panel_ + 1 < end; ++panel_) {
+            const Factors factors = fold_diagonal(panel_, f);
+            detail::update_panel(panel(panel_), block_count(panel_), gain_.data(), factors, panel(panel_ + 1),
+                                 block_count(panel_ + 1), row_.data(), f);
         }
-        detail::panel_update(panels_.data() + panel_offset(b), gain_.data(), first, v, mu);
-        fold_triangle(b, v, mu);
+        detail::update_panel(panel(panel_), block_count(panel_), gain_.data(), fold_diagonal(panel_, f));
+        ++panel_;
     }
 
-    void fold_triangle(int b, const Scalar (&v)[detail::panel_width],
-                       const Scalar (&mu)[detail::panel_width]) noexcept {
-        for (int r = 0; r < detail::panel_width; ++r) {
-            Scalar gain = v[r];
-            for (int c = r + 1; c < detail::panel_width; ++c) {
-                Scalar& u = triangles_[triangle_index(b, r, c)];
-                const Scalar old = u;
-                u += mu[c] * gain;
-                gain += v[c] * old;
-            }
-            gain_[detail::panel_width * b + r] = gain;
+    [[nodiscard]] Factors fold_diagonal(int b, const Scalar (&f)[width]) noexcept {
+        Factors factors;
+        Scalar alpha = alpha_;
+        for (int c = 0; c < width; ++c) {
+            Scalar& d = diagonal_[width * b + c];
+            factors.v[c] = d * f[c];
+            factors.mu[c] = -f[c] / alpha;
+            const Scalar next = alpha + f[c] * factors.v[c];
+            d *= alpha / next;
+            alpha = next;
         }
+        alpha_ = alpha;
+        return factors;
     }
 
     [[no_unique_address]] Extent<p> columns_;
     Panels panels_;
-    Triangles triangles_;
     Columns diagonal_;
     Columns row_;
     Columns gain_;

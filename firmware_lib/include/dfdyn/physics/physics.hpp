@@ -103,6 +103,11 @@ struct Physics {
                    rigid_body_cost<Arm>(sizes.chain()) + written + effects_cost(sizes.column_count);
         }
 
+        [[nodiscard]] static constexpr std::int64_t state_bytes(const Sizes& sizes) noexcept {
+            return MotionMap::state_bytes(sizes.joint_count, sizes.lag_count, 3) +
+                   storage_bytes<Scalar>(std::int64_t{3} * sizes.joint_count);
+        }
+
       private:
         template <class Effect>
         static constexpr std::int64_t effect_cost(int selected) noexcept {

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/bench/endurance_bench.hpp"
+#include "tools/bench/hour_bench.hpp"
+#include "tools/bench/machine.hpp"
+#include "tools/bench/model_bench.hpp"
+#include "tools/bench/tick_bench.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+struct BenchOptions {
+    std::vector<int> columns = contender_columns();
+    int largest_peer = 1000; ///< sizes beyond are measured without peers
+    RepetitionOptions repetitions;
+    int dense_ticks = 5;                  ///< of SPK's dense form, whose ticks are long
+    bool small_models = false;            ///< few columns in the part about SPK
+    std::int64_t stretch_ticks = 200'000; ///< a tenth of a learner's life in the part about endurance
+    std::size_t replay_rows = 0;          ///< 0: nothing is replayed
+};
+
+/// All that a run of `dfdyn bench` found.
+struct BenchResults {
+    MachineFacts machine;
+    double vectors_per_ns = 0; ///< multiply-adds of the probe at its best
+    TickBench ticks;
+    ModelBench models;
+    EnduranceBench endurance;
+    std::optional<HourBench> hour;
+};
+
+BenchResults run_bench(const BenchOptions& options, const std::function<void(double)>& on_share_done);
+
+/// What is wanted of a figure.
+struct BenchTarget {
+    std::string name;
+    double measured = 0;
+    double limit = 0;
+    bool at_most = true; ///< otherwise at least
+
+    bool met() const { return at_most ? measured <= limit : measured >= limit; }
+};
+
+/// Of what was measured.
+std::vector<BenchTarget> bench_targets(const BenchResults& results);
+
+/// The exponent of our time in float over the sizes of 200 columns and more; 0 if these are fewer than two.
+double growth_exponent(const TickBench& bench);
+
+} // namespace dfdyn::tools

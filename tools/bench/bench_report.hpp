@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/bench/bench.hpp"
+#include "tools/report/figure_page.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <filesystem>
+
+namespace dfdyn::tools {
+
+/// The results as tables, with a chart of time against size.
+FigurePage bench_page(const BenchResults& results);
+
+/// The same as numbers, schema `dfdyn.bench/1`.
+nlohmann::json bench_json(const BenchResults& results);
+
+/// Writes bench.json, bench.md (the page), and pictures/tick-time.svg into `folder`, which is made.
+void write_bench(const std::filesystem::path& folder, const BenchResults& results);
+
+} // namespace dfdyn::tools

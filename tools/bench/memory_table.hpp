@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/budget.hpp"
+
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// What the firmware's estimator of model NP takes: six joints, six outputs, input DFR of eleven positions.
+struct MemoryRow {
+    std::string scalar;
+    int columns;
+    Footprint bytes;
+};
+
+std::vector<MemoryRow> memory_rows();
+
+} // namespace dfdyn::tools

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// The Cholesky route with the Fortran libraries that GURLS' kind of tool is made of. Compiled in if qrupdate,
+// LAPACK and BLAS were there at build time.
+#include "tools/bench/typed_contender.hpp"
+
+#ifdef DFDYN_HAS_QRUPDATE
+
+extern "C" {
+void sch1up_(const int* n, float* r, const int* ldr, float* u, float* w);
+void dch1up_(const int* n, double* r, const int* ldr, double* u, double* w);
+void spotrs_(const char* uplo, const int* n, const int* nrhs, const float* a, const int* lda, float* b,
+             const int* ldb, int* info);
+void dpotrs_(const char* uplo, const int* n, const int* nrhs, const double* a, const int* lda, double* b,
+             const int* ldb, int* info);
+}
+
+namespace dfdyn::tools {
+
+namespace {
+
+void update(const int& n, float* r, float* u, float* w) { sch1up_(&n, r, &n, u, w); }
+void update(const int& n, double* r, double* u, double* w) { dch1up_(&n, r, &n, u, w); }
+
+void solve(const int& n, const int& count, const float* r, float* b) {
+    int info = 0;
+    spotrs_("U", &n, &count, r, &n, b, &n, &info);
+}
+void solve(const int& n, const int& count, const double* r, double* b) {
+    int info = 0;
+    dpotrs_("U", &n, &count, r, &n, b, &n, &info);
+}
+
+template <class Scalar>
+class Qrupdate final : public TypedContender<Scalar> {
+    using Base = TypedContender<Scalar>;
+    using Row = Eigen::Map<const typename Base::Vector>;
+
+  public:
+    explicit Qrupdate(const RegressionTask& task)
+        : Base("qrupdate ch1up and LAPACK potrs", Contender::Kind::other, task),
+          factor_(Base::Matrix::Identity(this->columns(), this->columns()) /
+                  std::sqrt(Scalar(RegressionTask::prior_variance))),
+          right_(Base::Matrix::Zero(this->columns(), RegressionTask::outputs)), weights_(right_),
+          row_(this->columns()), work_(this->columns()) {}
+
+  private:
+    void learn(const Scalar* row, const Scalar* targets) override {
+        row_ = Row(row, this->columns());
+        const Eigen::Map<const typename Base::Outputs> y(targets);
+        const typename Base::Outputs means = weights_.transpose() * row_;
+        keep(means);
+        right_.noalias() += row_ * y.transpose();
+        update(this->columns(), factor_.data(), row_.data(), work_.data());
+        weights_ = right_;
+        solve(this->columns(), RegressionTask::outputs, factor_.data(), weights_.data());
+    }
+    void predict(const Scalar* row, Scalar* means) override {
+        for (int k = 0; k < RegressionTask::outputs; ++k) {
+            means[k] = weights_.col(k).dot(Row(row, this->columns()));
+        }
+    }
+
+    typename Base::Matrix factor_, right_, weights_;
+    typename Base::Vector row_, work_;
+};
+
+} // namespace
+
+bool has_qrupdate() { return true; }
+
+Contenders qrupdate_peers(const RegressionTask& task) {
+    Contenders both;
+    both.push_back(std::make_unique<Qrupdate<float>>(task));
+    both.push_back(std::make_unique<Qrupdate<double>>(task));
+    return both;
+}
+
+} // namespace dfdyn::tools
+
+#else
+
+namespace dfdyn::tools {
+
+bool has_qrupdate() { return false; }
+
+Contenders qrupdate_peers(const RegressionTask& /*task*/) { return {}; }
+
+} // namespace dfdyn::tools
+
+#endif

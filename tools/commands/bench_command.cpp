@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/bench/bench_report.hpp"
+#include "tools/commands/command.hpp"
+#include "tools/common/progress.hpp"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr std::size_t rows_of_an_hour = 3'600'000;
+
+struct BenchCommandOptions {
+    BenchOptions bench;
+    std::filesystem::path folder;
+    bool hour = false;
+    bool quick = false;
+};
+
+/// Shows that every part runs; the figures mean little.
+BenchOptions quick_options(BenchOptions options) {
+    options.columns = {100};
+    options.repetitions.passes = 3;
+    options.repetitions.repetition_us = 50;
+    options.dense_ticks = 2;
+    options.small_models = true;
+    options.stretch_ticks = 1000;
+    return options;
+}
+
+bool all_of_ours_right(const TickBench& bench) {
+    return std::ranges::all_of(
+        bench.ticks, [](const TickResult& one) { return one.kind != Contender::Kind::ours || one.right; });
+}
+
+int run(const BenchCommandOptions& options) {
+    BenchOptions bench = options.quick ? quick_options(options.bench) : options.bench;
+    if (options.hour) {
+        bench.replay_rows = options.quick ? 2000 : rows_of_an_hour;
+    }
+    if (!is_optimised()) {
+        std::cerr << "dfdyn bench: this program was built without optimisation: its times mean nothing\n";
+    }
+    BenchResults results;
+    {
+        Progress progress("measuring, %", 100);
+        results = run_bench(bench, [&](double share) { progress.update_part(100 * share); });
+    }
+    if (!options.folder.empty()) {
+        write_bench(options.folder, results);
+    }
+    std::cout << figure_page_markdown(bench_page(results));
+    return all_of_ours_right(results.ticks) ? 0 : 1;
+}
+
+} // namespace
+
+void add_bench_command(CLI::App& app, Command& chosen) {
+    const auto options = std::make_shared<BenchCommandOptions>();
+    CLI::App* command = app.add_subcommand(
+        "bench", "Times a tick on this machine, against other learners and against what the machine can do");
+    command
+        ->add_option("-o,--output", options->folder,
+                     "Folder for bench.json, bench.md and pictures/tick-time.svg")
+        ->type_name("DIR");
+    command
+        ->add_option("--passes", options->bench.repetitions.passes,
+                     "Repetitions of each learner, all in turn; more on a busy machine")
+        ->check(CLI::Range(1, 100'000))
+        ->capture_default_str();
+    command
+        ->add_option("--stretch", options->bench.stretch_ticks,
+                     "Ticks of a tenth of the long run; an hour at 1 kHz is 3600000")
+        ->check(CLI::Range(1, 100'000'000))
+        ->capture_default_str();
+    command->add_flag(
+        "--hour", options->hour,
+        "Also replay a generated recording of one hour at 1 kHz (1 GB of memory, and for a while 0.9 "
+        "GB of temporary files)");
+    command->add_flag("--quick", options->quick, "Few and small: shows that it runs, not how fast it is");
+    command->footer("Example:\n  dfdyn bench --output bench --hour\n"
+                    "Learners whose predictions are wrong are named, without a time.\n"
+                    "Exit status: 0 done, whether or not targets are met, 1 dfdyn's own predictions are "
+                    "wrong, 2 bad usage.");
+    command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+}
+
+} // namespace dfdyn::tools
