@@ -52,6 +52,9 @@ BenchResults run_bench(const BenchOptions& options, const std::function<void(dou
         results.hour =
             run_hour_bench(options.replay_rows, [&](double share) { on_share_done(0.9 + 0.1 * share); });
     }
+    if (options.loop_s > 0) {
+        results.loop = run_loop_bench(options.loop_s);
+    }
     results.vectors_per_ns = probe.best();
     return results;
 }

@@ -3,6 +3,7 @@
 
 #include "tools/bench/endurance_bench.hpp"
 #include "tools/bench/hour_bench.hpp"
+#include "tools/bench/loop_bench.hpp"
 #include "tools/bench/machine.hpp"
 #include "tools/bench/model_bench.hpp"
 #include "tools/bench/tick_bench.hpp"
@@ -22,6 +23,7 @@ struct BenchOptions {
     bool small_models = false;            ///< few columns in the part about SPK
     std::int64_t stretch_ticks = 200'000; ///< a tenth of a learner's life in the part about endurance
     std::size_t replay_rows = 0;          ///< 0: nothing is replayed
+    double loop_s = 0;                    ///< of the periodic loop; 0: none
 };
 
 /// All that a run of `dfdyn bench` found.
@@ -32,6 +34,7 @@ struct BenchResults {
     ModelBench models;
     EnduranceBench endurance;
     std::optional<HourBench> hour;
+    std::optional<LoopBench> loop;
 };
 
 BenchResults run_bench(const BenchOptions& options, const std::function<void(double)>& on_share_done);

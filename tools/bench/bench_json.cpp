@@ -73,6 +73,24 @@ json hour_json(const HourBench& hour) {
             {"learned", hour.learned},   {"times_real_time", hour.times_real_time()}};
 }
 
+json loop_times_json(const LoopTimes& times) {
+    return {{"median_us", times.median},
+            {"p99_us", times.p99},
+            {"p999_us", times.p999},
+            {"p9999_us", times.p9999},
+            {"max_us", times.most}};
+}
+
+json loop_json(const LoopBench& loop) {
+    return {{"ticks", loop.pace.ticks},
+            {"missed", loop.pace.missed},
+            {"learned", loop.learned},
+            {"late", loop_times_json(loop.late)},
+            {"tick", loop_times_json(loop.duration)},
+            {"not_granted", loop.not_real_time},
+            {"cores", loop.cores}};
+}
+
 json memory_json() {
     json all = json::array();
     for (const MemoryRow& row : memory_rows()) {
@@ -117,6 +135,9 @@ json bench_json(const BenchResults& results) {
              {"missing", missing_peers()}};
     if (results.hour) {
         all["replay"] = hour_json(*results.hour);
+    }
+    if (results.loop) {
+        all["loop"] = loop_json(*results.loop);
     }
     return all;
 }

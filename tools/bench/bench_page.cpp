@@ -144,6 +144,28 @@ std::string hour_words(const HourBench& hour) {
            " times real time.";
 }
 
+std::string loop_words(const LoopBench& loop) {
+    return "The loop: " + std::to_string(loop.pace.ticks) +
+           " ticks at 1 kHz, six joints, six outputs, model NP with 200 columns, every sample learned in its "
+           "tick (" +
+           std::to_string(loop.learned) + "), beside a thread that works on 64 MiB" +
+           (loop.cores > 1 ? " on another core" : ", on the only core") +
+           ". Deadlines missed: " + std::to_string(loop.pace.missed) + ". " +
+           (loop.not_real_time.empty()
+                ? "SCHED_FIFO and locked memory were granted."
+                : "Not granted, so the timing is that of an ordinary program: " + loop.not_real_time + ".");
+}
+
+ReportTable loop_table(const LoopBench& loop) {
+    ReportTable table{"The loop, µs", {"what", "median", "p99", "p99.9", "p99.99", "max"}, {}, ""};
+    const auto add = [&](const std::string& name, const LoopTimes& times) {
+        table.rows.push_back({name, times.median, times.p99, times.p999, times.p9999, times.most});
+    };
+    add("from when a tick is due until it begins (jitter)", loop.late);
+    add("the estimator's tick", loop.duration);
+    return table;
+}
+
 ReportTable memory_table() {
     ReportTable table{"Bytes of the firmware's estimator, model NP, six joints and outputs",
                       {"scalar", "2d", "state", "constants", "stack, at most"},
@@ -213,6 +235,10 @@ FigurePage bench_page(const BenchResults& results) {
                      {model_table(results.models, results.endurance), memory_table()}};
     if (results.hour) {
         rest.paragraphs.push_back(hour_words(*results.hour));
+    }
+    if (results.loop) {
+        rest.paragraphs.push_back(loop_words(*results.loop));
+        rest.tables.push_back(loop_table(*results.loop));
     }
     page.sections.push_back(std::move(rest));
     page.facts = as_report_facts(results.machine);

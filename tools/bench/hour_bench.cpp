@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/bench/hour_bench.hpp"
 
+#include "tools/bench/bench_arm.hpp"
 #include "tools/common/atomic_file.hpp"
 #include "tools/common/remove_on_signal.hpp"
 #include "tools/evaluation/replay.hpp"
@@ -8,61 +9,26 @@
 #include "tools/recording/recording.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <ctime>
 #include <filesystem>
-#include <random>
 #include <unistd.h>
 
 namespace dfdyn::tools {
 
 namespace {
 
-constexpr int joints = 6;
-constexpr int lags = 10;
-constexpr int features = 100; // 2d = 200
-constexpr double period_s = 0.001;
+constexpr int joints = BenchArm::joints;
 
-std::vector<double> random_numbers(std::mt19937_64& engine, std::size_t count, double deviation) {
-    std::normal_distribution<double> normal(0, deviation);
-    std::vector<double> numbers(count);
-    std::ranges::generate(numbers, [&] { return normal(engine); });
-    return numbers;
-}
-
-TrainedModel make_model() {
-    std::mt19937_64 engine(4);
-    TrainedModel model;
-    model.joints = joints;
-    model.sample_period_s = period_s;
-    model.input.lags = lags;
-    model.input.rows_per_joint = 3;
-    model.input.rows = random_numbers(engine, 3 * (lags + 1), 0.3);
-    model.input.scale.assign(3 * joints, 1.0);
-    model.features = {false, features, 4, random_numbers(engine, features * 3 * joints, 1), 4};
-    model.outputs = {joint_names("tau", joints), std::vector<double>(joints, 0.0),
-                     std::vector<double>(joints, 0.1), 100};
-    model.limits = {std::vector<double>(joints, 10.0), std::vector<double>(joints, 1e3), 1e9, 0};
-    return model;
-}
-
-/// A joint's position and a torque that depends on it and on how it moves.
 void write_recording(const std::filesystem::path& path, std::size_t rows) {
     std::vector<std::string> columns{"t"};
     std::ranges::copy(joint_names("q", joints), std::back_inserter(columns));
     std::ranges::copy(joint_names("tau", joints), std::back_inserter(columns));
     AtomicFile file(path);
     CsvWriter writer(file.stream(), columns);
+    BenchArm arm;
     for (std::size_t row = 0; row < rows; ++row) {
-        const double t = period_s * static_cast<double>(row);
-        std::vector<double> position;
-        std::vector<double> torque;
-        for (int i = 0; i < joints; ++i) {
-            const double pace = 0.3 + 0.17 * i;
-            position.push_back(std::sin(pace * t) + 0.5 * std::sin(2.7 * pace * t));
-            torque.push_back(5 * std::sin(position.back()) + 0.3 * std::cos(pace * t));
-        }
-        writer.field(t).fields(position).fields(torque).end_row();
+        arm.move_to(row);
+        writer.field(arm.time_s()).fields(arm.position()).fields(arm.torque()).end_row();
     }
     file.commit();
 }
@@ -99,7 +65,7 @@ double seconds(const Work& work) {
 
 HourBench run_hour_bench(std::size_t rows, const std::function<void(double)>& on_share_done) {
     constexpr std::size_t horizon = 25; // as `dfdyn replay` without --horizon
-    const TrainedModel model = make_model();
+    const TrainedModel model = BenchArm::model();
     const TemporaryFile file;
     HourBench bench;
     bench.rows = rows;

@@ -80,6 +80,10 @@ void add_bench_command(CLI::App& app, Command& chosen) {
         "--hour", options->hour,
         "Also replay a generated recording of one hour at 1 kHz (1 GB of memory, and for a while 0.9 "
         "GB of temporary files)");
+    command
+        ->add_option("--loop", options->bench.loop_s,
+                     "Also tick once per millisecond for this many seconds beside a load on another core")
+        ->check(CLI::Range(1.0, 3600.0));
     command->add_flag("--quick", options->quick, "Few and small: shows that it runs, not how fast it is");
     command->footer("Example:\n  dfdyn bench --output bench --hour\n"
                     "Learners whose predictions are wrong are named, without a time.\n"

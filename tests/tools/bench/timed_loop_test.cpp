@@ -2,6 +2,7 @@
 #include "tools/bench/timed_loop.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tools/bench/loop_bench.hpp"
 #include "tools/common/error.hpp"
 
 #include <algorithm>
@@ -35,4 +36,18 @@ TEST_CASE("a timed loop refuses times that make none") {
     CHECK_THROWS_AS(time_loop({.period_s = 0, .duration_s = 1}, nothing), InputError);
     CHECK_THROWS_AS(time_loop({.period_s = 2, .duration_s = 1}, nothing), InputError);
     CHECK_THROWS_AS(time_loop({.period_s = 0.001, .duration_s = 4000}, nothing), InputError);
+}
+
+TEST_CASE("a loop beside a load learns every sample once its window is full, and its quantiles ascend") {
+    const LoopBench bench = run_loop_bench(0.2);
+    CHECK(bench.pace.ticks == 200);
+    CHECK(bench.learned == 190); // ten lags first
+    for (const LoopTimes& times : {bench.late, bench.duration}) {
+        CHECK(times.median >= 0);
+        CHECK(times.p99 >= times.median);
+        CHECK(times.p999 >= times.p99);
+        CHECK(times.p9999 >= times.p999);
+        CHECK(times.most >= times.p9999);
+    }
+    CHECK(bench.duration.median > 0);
 }
