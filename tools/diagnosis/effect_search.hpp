@@ -71,8 +71,45 @@ struct Replacement {
     double score = 0; ///< of the whole model; candidates that are not allowed or not excited are left out
 };
 
-/// Every candidate that is not in `chosen`, in its best shape, added to it; best first.
-std::vector<Replacement> additions(const SearchProblem& problem, const std::vector<ChosenShape>& chosen);
+/// A model, and what every other column of the problem is beyond it: the models with one effect more, less or
+/// another one, without a new factor for each. `problem` must outlive it. Cost: k² p for k columns of the
+/// model and p of the problem; k p for each effect that is exchanged.
+class Neighbours {
+  public:
+    Neighbours(const SearchProblem& problem, const std::vector<ChosenShape>& chosen);
+
+    double score() const noexcept { return score_; }
+    /// Of the model without the chosen one at `index`.
+    double score_without(std::size_t index) const;
+    /// Every candidate that is not in the model, in its best shape, added to it; best first.
+    std::vector<Replacement> additions() const;
+    /// The same in the place of the chosen one at `index`, which may come back in any of its shapes.
+    std::vector<Replacement> exchanges(std::size_t index) const;
+
+  private:
+    /// What the model leaves of a shape's columns, and of their products with what is to be explained.
+    struct Beyond {
+        Eigen::VectorXd own; ///< squares of the columns themselves
+        Eigen::MatrixXd left;
+        Eigen::VectorXd moment;
+    };
+    /// What a smaller model leaves more, of all columns: squares of these are to be added.
+    struct Returned {
+        Eigen::MatrixXd columns; ///< effect's columns x p
+        Eigen::VectorXd moment;
+    };
+    Returned returned(std::size_t index) const;
+    std::vector<Replacement> ranked(const std::vector<ChosenShape>& chosen, double base,
+                                    const Returned& returned) const;
+
+    const SearchProblem& problem_;
+    std::vector<ChosenShape> chosen_;
+    std::vector<Eigen::Index> columns_, first_; ///< of the model; where each effect's begin among them
+    Eigen::VectorXd coefficients_;
+    Eigen::MatrixXd covariance_, products_; ///< model x model, model x p
+    std::vector<Beyond> beyond_;            ///< of all shapes of all candidates
+    double score_ = 0;
+};
 
 /// Adds, drops and exchanges, always the best step, until none raises the evidence.
 std::vector<ChosenShape> search_effects(const SearchProblem& problem, std::vector<ChosenShape> start);

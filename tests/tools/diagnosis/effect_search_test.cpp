@@ -96,9 +96,9 @@ TEST_CASE("a copy of a chosen column is no addition, and a near copy is the clos
     const VectorXd target = columns.col(0) + random_columns(1, engine);
     const SearchProblem problem = problem_of(columns, target);
     const std::vector<ChosenShape> chosen{{0, 0}};
-    const std::vector<Replacement> more = additions(problem, chosen);
+    const std::vector<Replacement> more = Neighbours(problem, chosen).additions();
     CHECK(std::ranges::none_of(more, [](const Replacement& one) { return one.with.candidate == 3; }));
-    const std::vector<Replacement> instead = additions(problem, {});
+    const std::vector<Replacement> instead = Neighbours(problem, {}).additions();
     CHECK(std::abs(instead[0].score - instead[1].score) < 1e-9);
     CHECK(instead[2].with.candidate == 4);
 }
