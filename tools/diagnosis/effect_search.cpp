@@ -80,7 +80,14 @@ double gain_of(const SearchCandidate::Shape& shape, const Eigen::VectorXd& own, 
         return never;
     }
     const Eigen::VectorXd coefficients = factor.solve(moment);
-    return shape.allowed(coefficients) ? coefficients.dot(moment) : never;
+    if (shape.allowed(coefficients)) {
+        return coefficients.dot(moment);
+    }
+    if (!shape.nearest) {
+        return never;
+    }
+    const Eigen::VectorXd nearest = shape.nearest(left, moment);
+    return shape.allowed(nearest) ? 2 * nearest.dot(moment) - nearest.dot(left * nearest) : never;
 }
 
 bool excludes(const std::vector<SearchCandidate>& candidates, std::size_t one, std::size_t other) {

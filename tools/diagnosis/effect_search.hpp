@@ -15,6 +15,7 @@ struct SearchCandidate {
         std::vector<Eigen::Index> columns; ///< of the normal equations
         CoefficientRule allowed;
         double bounded = 0; ///< how many of the coefficients are bounded by another one: half of one each
+        NearestCoefficients nearest = {};
     };
     std::vector<Shape> shapes;
     std::size_t family = 0; ///< of those with the same number, one at most; 0: of none
