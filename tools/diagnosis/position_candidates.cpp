@@ -107,7 +107,11 @@ Eigen::VectorXd travel_in_gap(const DiagnosisSignals& signals, Eigen::Index join
 } // namespace
 
 Eigen::MatrixXd play_course(const DiagnosisSignals& signals, std::size_t joint, double gap) {
-    return signals.of_position(joint, travel_in_gap(signals, static_cast<Eigen::Index>(joint), gap) / gap);
+    constexpr double sure_hz = 7; // how hard the flanks hit each other, nobody knows
+    const auto index = static_cast<Eigen::Index>(joint);
+    const Eigen::VectorXd travel = travel_in_gap(signals, index, gap) / gap;
+    return signals.of_position(
+        joint, smooth(signals, joint, travel, std::min(1.0, sure_hz / signals.measured.smoothing_hz[index])));
 }
 
 Candidate backlash_candidate(const DiagnosisSignals& signals, std::size_t joint,
