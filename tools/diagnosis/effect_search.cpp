@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -20,14 +21,24 @@ const SearchCandidate::Shape& shape_of(const SearchProblem& problem, const Chose
     return problem.candidates[chosen.candidate].shapes[chosen.shape];
 }
 
-/// What a candidate costs for being one of many, of many shapes, with so many coefficients.
-double price(const SearchProblem& problem, const ChosenShape& chosen) {
+/// What coefficients cost that explain a sum of squares of `explained`: before anything was measured, every
+/// order of magnitude of their joint size was as likely as any other within `orders` (of e), and every
+/// direction.
+double price_of_coefficients(double count, double explained) {
+    constexpr double orders = 7; // from a twentieth of what can be noticed to fifty times as much
+    const double size = std::sqrt(std::max(explained, 1.0));
+    const double sphere = std::log(2.0) + count / 2 * std::log(std::numbers::pi) - std::lgamma(count / 2);
+    return std::log(orders) + sphere + count * std::log(size) - count / 2 * std::log(2 * std::numbers::pi);
+}
+
+/// What a candidate costs for being one of many, of many shapes, with coefficients that explain so much.
+double price(const SearchProblem& problem, const ChosenShape& chosen, double explained) {
     const SearchCandidate& candidate = problem.candidates[chosen.candidate];
     const SearchCandidate::Shape& shape = candidate.shapes[chosen.shape];
     const double parameters = static_cast<double>(shape.columns.size()) - 0.5 * shape.bounded;
     return candidate.extra_price +
            std::log(candidate.rivals * static_cast<double>(candidate.shapes.size()) * candidate.tried) +
-           0.5 * parameters * std::log1p(candidate.rows);
+           price_of_coefficients(parameters, explained);
 }
 
 std::vector<Eigen::Index> columns_of(const SearchProblem& problem, const std::vector<ChosenShape>& chosen) {
@@ -140,7 +151,9 @@ EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShap
         const SearchCandidate::Shape& shape = shape_of(problem, one);
         const auto count = static_cast<Eigen::Index>(shape.columns.size());
         fit.allowed = fit.allowed && shape.allowed(fit.coefficients.segment(at, count));
-        fit.score -= price(problem, one);
+        const Eigen::VectorXd own = fit.coefficients.segment(at, count);
+        fit.score -=
+            price(problem, one, own.dot(fit.covariance.block(at, at, count, count).llt().solve(own)));
         at += count;
     }
     return fit;
@@ -174,9 +187,11 @@ Neighbours::Neighbours(const SearchProblem& problem, const std::vector<ChosenSha
     score_ = 0.5 * coefficients_.dot(moment) - nuisance_price(problem, system);
     auto first = static_cast<Eigen::Index>(problem.nuisance.size());
     for (const ChosenShape& one : chosen) {
-        score_ -= price(problem, one);
         first_.push_back(first);
         first += std::ssize(shape_of(problem, one).columns);
+    }
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        score_ -= price(problem, chosen[i], returned(i).moment.squaredNorm());
     }
     for (const SearchCandidate& candidate : problem.candidates) {
         for (const SearchCandidate::Shape& shape : candidate.shapes) {
@@ -197,7 +212,8 @@ Neighbours::Returned Neighbours::returned(std::size_t index) const {
 }
 
 double Neighbours::score_without(std::size_t index) const {
-    return score_ + price(problem_, chosen_[index]) - 0.5 * returned(index).moment.squaredNorm();
+    const double explained = returned(index).moment.squaredNorm();
+    return score_ + price(problem_, chosen_[index], explained) - 0.5 * explained;
 }
 
 std::vector<Replacement> Neighbours::additions() const {
@@ -207,8 +223,7 @@ std::vector<Replacement> Neighbours::additions() const {
 
 std::vector<Replacement> Neighbours::exchanges(std::size_t index) const {
     const Returned what = returned(index);
-    return ranked(without(chosen_, index),
-                  score_ + price(problem_, chosen_[index]) - 0.5 * what.moment.squaredNorm(), what);
+    return ranked(without(chosen_, index), score_without(index), what);
 }
 
 std::vector<Replacement> Neighbours::ranked(const std::vector<ChosenShape>& chosen, double base,
@@ -231,8 +246,8 @@ std::vector<Replacement> Neighbours::ranked(const std::vector<ChosenShape>& chos
             const double gain = gain_of(shapes[shape], left.own, left.left + back.transpose() * back,
                                         left.moment + back.transpose() * returned.moment);
             const ChosenShape one{index, shape};
-            const double score = base + 0.5 * gain - price(problem_, one);
-            if (score > best.score) {
+            const double score = base + 0.5 * gain - price(problem_, one, gain);
+            if (gain > 0 && score > best.score) {
                 best = {one, score};
             }
         }

@@ -22,7 +22,6 @@ struct SearchCandidate {
     double rivals = 1;      ///< how many candidates there are of its sort
     double tried = 1;       ///< how many alternatives it was picked from beforehand
     double extra_price = 0; ///< what it costs beside
-    double rows = 1;        ///< how many rows it acts on: what its parameters are paid for by
 };
 
 /// A candidate in one of its shapes.
@@ -54,8 +53,8 @@ struct EffectFit {
     bool allowed = true;               ///< every coefficient has the sign it must have
 };
 
-/// Evidence of unit-information priors (Schwarz) for the effects' coefficients, of the given deviations for
-/// the nuisance; one in so many candidates of a sort is there, and any of its shapes is as likely.
+/// Evidence of priors by which every order of magnitude of an effect is as likely, of the given deviations
+/// for the nuisance; one in so many candidates of a sort is there, and any of its shapes is as likely.
 EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShape>& chosen);
 
 /// How well what fits all other blocks of rows predicts each, summed over the blocks: half the fall of the

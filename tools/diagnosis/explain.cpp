@@ -33,9 +33,9 @@ bool is_of_the_arm(const Candidate& candidate) {
            candidate.effect != "external_contact";
 }
 
-/// Looked for anew in what each model leaves; those that were chosen stay.
-bool is_scanned(const Candidate& candidate) {
-    return candidate.effect == "torque_ripple" || candidate.effect == "external_contact" ||
+/// A push, or a payload that is taken up.
+bool is_event(const Candidate& candidate) {
+    return candidate.effect == "external_contact" ||
            (candidate.effect == "payload" && !candidate.detail.empty());
 }
 
@@ -108,6 +108,7 @@ class Search {
     void estimate_noise(bool white);
     void decide_masses();
     std::vector<WeighedSums> sums_of_blocks() const;
+    Eigen::VectorXd of_events() const;
     void keep_what_predicts();
     void fit_named();
     std::vector<std::string> chosen_keys() const;
@@ -193,7 +194,7 @@ std::vector<CandidateEntry> Search::passing() const {
             const Eigen::Index first = at_.first_column(i);
             add({about(chosen, chosen.shapes[at_.chosen[i].shape],
                        at_.fit.coefficients.segment(first, at_.first_column(i + 1) - first))});
-        } else if (is_scanned(chosen)) {
+        } else if (chosen.effect == "torque_ripple") { // looked for anew in what each model leaves
             add({chosen});
         }
     }
@@ -247,7 +248,6 @@ void Search::gather(std::vector<CandidateEntry> passing) {
         candidate.family = families.emplace(entry.candidate.family, families.size()).first->second;
         candidate.tried = entry.candidate.tried;
         candidate.extra_price = entry.candidate.extra_price;
-        candidate.rows = static_cast<double>(rows_.bins() * regression_.fitted_frames());
         for (const EffectShape& shape : entry.candidate.shapes) {
             SearchCandidate::Shape one{{}, shape.allowed, shape.bounded, shape.nearest};
             for (const std::size_t column : shape.columns) {
@@ -363,32 +363,54 @@ std::vector<WeighedSums> Search::sums_of_blocks() const {
     return blocks;
 }
 
+/// Of all columns: coefficients of the chosen events, whose time no other time tells of; zero of all others.
+Eigen::VectorXd Search::of_events() const {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(regression_.columns());
+    const Eigen::VectorXd all = all_coefficients();
+    for (const ChosenShape& one : at_.chosen) {
+        if (is_event(at_.candidates[one.candidate])) {
+            const auto& columns = at_.problem.candidates[one.candidate].shapes[one.shape].columns;
+            result(columns) = all(columns);
+        }
+    }
+    return result;
+}
+
 /// Drops, one after the other, lasting effects without which blocks of time are predicted no worse by what
-/// fits the other blocks.
+/// fits the other blocks; what the events explain is taken out of all.
 void Search::keep_what_predicts() {
     if (regression_.fitted_frames() < validation_blocks) {
         return; // too short a recording to leave any of it out
     }
-    const std::vector<WeighedSums> blocks = sums_of_blocks();
+    SearchProblem problem = at_.problem;
+    std::vector<WeighedSums> blocks = sums_of_blocks();
+    const Eigen::VectorXd events = of_events();
+    problem.sums.moment -= problem.sums.gram * events;
+    for (WeighedSums& block : blocks) {
+        block.moment -= block.gram * events;
+    }
+    const auto lasting =
+        std::stable_partition(at_.chosen.begin(), at_.chosen.end(), [this](const ChosenShape& one) {
+            return is_event(at_.candidates[one.candidate]);
+        });
+    std::vector<ChosenShape> kept(lasting, at_.chosen.end());
+    at_.chosen.erase(lasting, at_.chosen.end());
+    double best = held_out_score(problem, blocks, kept);
     while (true) {
-        const double all = held_out_score(at_.problem, blocks, at_.chosen);
-        std::size_t worst = at_.chosen.size();
-        double best = all;
-        for (std::size_t i = 0; i < at_.chosen.size(); ++i) {
-            if (at_.candidates[at_.chosen[i].candidate].effect == "external_contact") {
-                continue; // an event is in one block only
-            }
-            const double others = held_out_score(at_.problem, blocks, without(at_.chosen, i));
+        std::size_t worst = kept.size();
+        for (std::size_t i = 0; i < kept.size(); ++i) {
+            const double others = held_out_score(problem, blocks, without(kept, i));
             if (others >= best) {
                 best = others;
                 worst = i;
             }
         }
-        if (worst == at_.chosen.size()) {
+        if (worst == kept.size()) {
             break;
         }
-        at_.chosen = without(at_.chosen, worst);
+        kept = without(kept, worst);
     }
+    at_.chosen.insert(at_.chosen.end(), kept.begin(), kept.end());
 }
 
 void Search::fit_named() {
