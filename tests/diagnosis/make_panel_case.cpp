@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tests/diagnosis/panel_band.hpp"
 #include "tests/diagnosis/panel_run.hpp"
 
 #include "tools/common/error.hpp"
@@ -65,8 +66,10 @@ Fitted draw_fitted(const PanelSetup& setup, const std::vector<std::string>& name
 
 void describe(const PanelSetup& setup, const Fitted& fitted, PanelCase& result) {
     const std::string output = setup.output_name(fitted.main_output);
+    const double evidence = band_evidence(contribution(setup, fitted.run, fitted.effect, fitted.size),
+                                          setup.noise_rows, setup.scenario.recording.rate_hz);
     result.hidden.push_back({fitted.effect.effect, fitted.effect.where, fitted.effect.parameters(fitted.size),
-                             output, fitted.strength, fitted.effect.depends_on});
+                             output, fitted.strength, evidence, fitted.effect.depends_on});
     if (fitted.effect.companion) {
         result.hidden.push_back(*fitted.effect.companion);
         result.hidden.back().main_output = output;

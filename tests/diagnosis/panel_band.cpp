@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/diagnosis/panel_band.hpp"
 
+#include "tools/diagnosis/lapped_transform.hpp"
 #include "tools/simulation/low_pass.hpp"
 
 #include <cmath>
@@ -27,6 +28,20 @@ Eigen::MatrixXd filtered(const Eigen::MatrixXd& rows, double rate_hz) {
 Eigen::MatrixXd in_band(const Eigen::MatrixXd& rows, double rate_hz) {
     const Eigen::MatrixXd backwards = filtered(rows, rate_hz).colwise().reverse();
     return filtered(backwards, rate_hz).colwise().reverse();
+}
+
+double band_evidence(const Eigen::MatrixXd& course, const Eigen::MatrixXd& noise, double rate_hz) {
+    constexpr double block_s = 2;
+    const tools::LappedTransform transform(std::lround(block_s * rate_hz),
+                                           std::lround(2 * block_s * band_hz));
+    double evidence = 0;
+    for (Eigen::Index output = 0; output < noise.cols(); ++output) {
+        const Eigen::VectorXd spectrum = transform.analyse(noise.col(output)).rowwise().squaredNorm();
+        const Eigen::MatrixXd rows = transform.analyse(course.col(output));
+        evidence += 0.5 * static_cast<double>(rows.cols()) *
+                    rows.rowwise().squaredNorm().cwiseQuotient(spectrum).sum();
+    }
+    return evidence;
 }
 
 Eigen::VectorXd band_rms(const Eigen::MatrixXd& rows, double rate_hz) {

@@ -12,4 +12,8 @@ Eigen::MatrixXd in_band(const Eigen::MatrixXd& rows, double rate_hz);
 /// Root mean square of each column below 5 Hz, half a second at both ends left out.
 Eigen::VectorXd band_rms(const Eigen::MatrixXd& rows, double rate_hz);
 
+/// Logarithm of the likelihood ratio between noise with a known course in it and noise alone, both in band,
+/// where the noise is Gaussian with the spectrum that these rows of it have. T x m each.
+double band_evidence(const Eigen::MatrixXd& course, const Eigen::MatrixXd& noise, double rate_hz);
+
 } // namespace dfdyn::tests

@@ -22,6 +22,9 @@ struct HiddenEffect {
     std::string main_output;     ///< where it is largest relative to the noise
     /// rms of what it adds there / rms of the noise there, both below 5 Hz; it alone, without other effects
     double strength = 0;
+    /// Logarithm of the likelihood ratio to nothing, below 5 Hz, for someone who knows its exact course, the
+    /// noise's spectrum and the arm: no method has more to decide by. 0 of the second of two effects.
+    double evidence = 0;
     std::string depends_on = {}; ///< outside the catalogue: the input that it is a function of
 };
 

@@ -15,12 +15,15 @@ bool is(const tools::Finding& finding, const HiddenEffect& hidden) {
     return finding.effect == hidden.effect && finding.where == hidden.where;
 }
 
+/// Whether it tells few enough causes to be an answer.
+bool answers(const tools::Finding& finding) { return finding.indistinguishable.size() < largest_class; }
+
 bool has(const tools::Finding& finding, const HiddenEffect& hidden) {
-    return finding.indistinguishable.size() < largest_class &&
-           std::any_of(finding.indistinguishable.begin(), finding.indistinguishable.end(),
-                       [&](const tools::OtherCause& cause) {
-                           return cause.effect == hidden.effect && cause.where == hidden.where;
-                       });
+    return answers(finding) && std::any_of(finding.indistinguishable.begin(), finding.indistinguishable.end(),
+                                           [&](const tools::OtherCause& cause) {
+                                               return cause.effect == hidden.effect &&
+                                                      cause.where == hidden.where;
+                                           });
 }
 
 void score_parameter(EffectScore& score, const HiddenEffect& hidden, const tools::Finding& finding) {
@@ -39,10 +42,11 @@ void score_parameter(EffectScore& score, const HiddenEffect& hidden, const tools
 std::string name_of(const tools::Finding& finding) { return finding.effect + "@" + finding.where; }
 
 EffectScore score_effect(const HiddenEffect& hidden, const tools::Diagnosis& diagnosis) {
-    EffectScore score{hidden.effect, hidden.where, hidden.strength, false, false, false, "nothing", {},
-                      false};
+    EffectScore score{
+        hidden.effect, hidden.where, hidden.strength, hidden.evidence, false, false, false, "nothing", {},
+        false};
     for (const tools::Finding& finding : diagnosis.findings) {
-        if (is(finding, hidden)) {
+        if (is(finding, hidden) && answers(finding)) {
             score.named = true;
             score.alone = finding.indistinguishable.empty();
             score.named_as = name_of(finding);
@@ -112,9 +116,10 @@ std::string describe(const CaseScore& score) {
                        (score.masses_off ? " off" : " exact");
     std::array<char, 200> part{};
     for (const EffectScore& effect : score.effects) {
-        std::snprintf(part.data(), part.size(), " | %s %s@%s x%.2g%s",
+        std::snprintf(part.data(), part.size(), " | %s %s@%s x%.2g (%.3g)%s",
                       effect.found() ? (effect.named ? "OK" : "ok-class") : "MISS", effect.effect.c_str(),
-                      effect.where.c_str(), effect.strength, score.outside ? " outside" : "");
+                      effect.where.c_str(), effect.strength, effect.evidence,
+                      score.outside ? " outside" : "");
         text += part.data();
         if (effect.relative_error) {
             std::snprintf(part.data(), part.size(), " err %.0f%%%s", 100 * *effect.relative_error,

@@ -13,7 +13,7 @@ namespace dfdyn::tests {
 /// What became of one hidden effect.
 struct EffectScore {
     std::string effect, where;
-    double strength = 0;
+    double strength = 0, evidence = 0;
     bool named = false;                   ///< the finding's own name and place
     bool in_class = false;                ///< or a class of at most three that has it
     bool alone = false;                   ///< the finding that has it has no ties

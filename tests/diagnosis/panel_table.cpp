@@ -127,6 +127,34 @@ ReportTable effect_table(const std::vector<CaseScore>& scores) {
     return table;
 }
 
+/// Found or not, by what there is to decide by: no method can do more.
+ReportTable evidence_table(const std::vector<CaseScore>& scores) {
+    constexpr std::array edges{0.0, 3.0, 6.0, 10.0, 20.0, 50.0, 1e300};
+    std::array<std::array<Rate, 3>, edges.size() - 1> found;
+    for (const CaseScore& score : scores) {
+        if (score.outside || score.effects.size() != 1) {
+            continue;
+        }
+        const EffectScore& effect = score.effects.front();
+        const auto band =
+            static_cast<std::size_t>(std::ranges::upper_bound(edges, effect.evidence) - edges.begin()) - 1;
+        const std::size_t column = effect.strength >= 2 ? 2 : effect.strength >= nominal_strength ? 1 : 0;
+        found[std::min(band, found.size() - 1)][column].add(effect.found());
+    }
+    ReportTable table{"Found, by the evidence that there is", {"evidence", "0.3", "1", "3 and more"}, {}, ""};
+    for (std::size_t band = 0; band < found.size(); ++band) {
+        std::array<char, 48> range{};
+        if (band + 1 < found.size()) {
+            std::snprintf(range.data(), range.size(), "%.0f to %.0f", edges[band], edges[band + 1]);
+        } else {
+            std::snprintf(range.data(), range.size(), "above %.0f", edges[band]);
+        }
+        table.rows.push_back({std::string(range.data()), percent(found[band][0]), percent(found[band][1]),
+                              percent(found[band][2])});
+    }
+    return table;
+}
+
 std::string kind_of(const std::string& name) { return name.substr(0, name.find('@')); }
 
 ReportTable confusion_table(const std::vector<CaseScore>& scores) {
@@ -209,7 +237,7 @@ std::vector<std::string> setbacks(const PanelSummary& summary) {
 std::string panel_tables(const std::vector<CaseScore>& scores) {
     std::string text;
     for (const ReportTable& table : {target_table(summarise(scores)), reliability_table(scores),
-                                     effect_table(scores), confusion_table(scores)}) {
+                                     evidence_table(scores), effect_table(scores), confusion_table(scores)}) {
         text += tools::table_markdown(table) + "\n";
     }
     return text;

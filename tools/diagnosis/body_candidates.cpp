@@ -3,6 +3,8 @@
 #include "tools/diagnosis/candidates.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
+#include <Eigen/Cholesky>
+
 namespace dfdyn::tools {
 
 namespace {
@@ -31,29 +33,59 @@ std::vector<EffectColumn> mass_columns(const DiagnosisSignals& signals, Eigen::I
     return columns;
 }
 
+constexpr double farthest_payload = 0.5; // m from the tip
+
+/// The best mass and moments with the centre of mass as far off as it may be, by the multiplier of that
+/// bound.
+Eigen::VectorXd at_farthest(const Eigen::MatrixXd& squares, const Eigen::VectorXd& moments) {
+    constexpr double margin = 0.999;
+    const double bound = margin * farthest_payload;
+    const Eigen::Vector4d cone(-bound * bound, 1, 1, 1); // times the coefficients' squares: 0 at the bound
+    const auto at = [&](double multiplier) {
+        Eigen::MatrixXd system = squares;
+        system.diagonal() += multiplier * cone;
+        const Eigen::LLT<Eigen::MatrixXd> factor(system);
+        return factor.info() == Eigen::Success ? Eigen::VectorXd(factor.solve(moments))
+                                               : Eigen::VectorXd::Zero(4).eval();
+    };
+    double low = 0;
+    double high = 1e-9 * squares.trace();
+    const auto outside = [&](const Eigen::VectorXd& c) { return c.cwiseAbs2().dot(cone) > 0; };
+    for (int doubling = 0; doubling < 60 && outside(at(high)); ++doubling) {
+        low = high;
+        high *= 2;
+    }
+    for (int halving = 0; halving < 50; ++halving) {
+        const double middle = (low + high) / 2;
+        (outside(at(middle)) ? low : high) = middle;
+    }
+    return at(high);
+}
+
+bool within_reach(const Eigen::VectorXd& coefficients) {
+    return coefficients[0] > 0 &&
+           coefficients.tail(coefficients.size() - 1).norm() <= farthest_payload * coefficients[0];
+}
+
+std::vector<EffectParameter> payload_parameters(const Eigen::VectorXd& coefficients, const EffectShape&) {
+    std::vector<EffectParameter> values{{"mass", "kg", coefficients[0]}};
+    constexpr std::array names{"com_x", "com_y", "com_z"};
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const bool fitted = coefficients.size() == 4;
+        values.push_back({names[static_cast<std::size_t>(axis)], "m",
+                          fitted ? coefficients[axis + 1] / coefficients[0] : 0.0});
+    }
+    return values;
+}
+
 Candidate payload(const DiagnosisSignals& signals) {
     Candidate result;
     result.effect = "payload";
     result.where = "tool";
     result.span = last_body;
-    const Eigen::Index last = signals.regressor.cols() / 10 - 1;
-    result.columns = mass_columns(signals, last, Eigen::Vector3d::Zero(), signals.robot.tip_placement);
-    const auto within_reach = [](const Eigen::VectorXd& coefficients) {
-        constexpr double farthest = 0.5; // m from the tip
-        return coefficients[0] > 0 &&
-               coefficients.tail(coefficients.size() - 1).norm() <= farthest * coefficients[0];
-    };
-    result.shapes = {{{0}, within_reach, 0}, {{0, 1, 2, 3}, within_reach, 0, 3}};
-    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
-        std::vector<EffectParameter> values{{"mass", "kg", coefficients[0]}};
-        constexpr std::array names{"com_x", "com_y", "com_z"};
-        for (Eigen::Index axis = 0; axis < 3; ++axis) {
-            const bool fitted = coefficients.size() == 4;
-            values.push_back({names[static_cast<std::size_t>(axis)], "m",
-                              fitted ? coefficients[axis + 1] / coefficients[0] : 0.0});
-        }
-        return values;
-    };
+    result.columns = payload_columns(signals);
+    result.shapes = {{{0}, within_reach, 0}, {{0, 1, 2, 3}, within_reach, 0, 3, at_farthest}};
+    result.parameters = payload_parameters;
     return result;
 }
 
@@ -93,21 +125,28 @@ Candidate link_inertia(const DiagnosisSignals& signals, Eigen::Index number) {
     return result;
 }
 
-Candidate tilt(const DiagnosisSignals& signals) {
+/// The outputs of an arm whose base turned by +x, then +y: it sees gravity turned the other way.
+Eigen::MatrixXd tilted(const DiagnosisSignals& signals, double x, double y) {
+    Robot robot = signals.robot;
+    robot.gravity = Eigen::AngleAxisd(-x, Eigen::Vector3d::UnitX()) *
+                    (Eigen::AngleAxisd(-y, Eigen::Vector3d::UnitY()) * robot.gravity);
+    return rigid_outputs(robot, signals.kind, signals.measured.motion);
+}
+
+/// About a tilt by x and y: the columns' sum with these coefficients is what that tilt brings, exactly.
+Candidate tilt(const DiagnosisSignals& signals, double x, double y) {
     Candidate result;
     result.effect = "gravity_tilt";
     result.where = "base";
-    constexpr double step = 1e-4; // rad
-    for (const Eigen::Vector3d& axis : {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitY().eval()}) {
-        // a base that turns by +step sees gravity turned by -step
-        const auto tilted = [&](double angle) {
-            Robot robot = signals.robot;
-            robot.gravity = Eigen::AngleAxisd(-angle, axis) * robot.gravity;
-            return rigid_outputs(robot, signals.kind, signals.measured.motion);
-        };
-        result.columns.push_back(on_outputs((tilted(step) - tilted(-step)) / (2 * step)));
-    }
+    const double along_x = at_least_small(x);
+    const double along_y = at_least_small(y);
+    const Eigen::MatrixXd first = tilted(signals, 0, along_y);
+    result.columns = {on_outputs((tilted(signals, along_x, along_y) - first) / along_x),
+                      on_outputs((first - signals.nominal) / along_y)};
     result.shapes = {whole_shape(result, up_to(0.6))};
+    result.about = [&signals](const EffectShape&, const Eigen::VectorXd& coefficients) {
+        return tilt(signals, coefficients[0], coefficients[1]);
+    };
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
         return std::vector<EffectParameter>{{"tilt_x", "rad", coefficients[0]},
                                             {"tilt_y", "rad", coefficients[1]}};
@@ -117,8 +156,46 @@ Candidate tilt(const DiagnosisSignals& signals) {
 
 } // namespace
 
+std::vector<EffectColumn> payload_columns(const DiagnosisSignals& signals) {
+    const Eigen::Index last = signals.regressor.cols() / 10 - 1;
+    return mass_columns(signals, last, Eigen::Vector3d::Zero(), signals.robot.tip_placement);
+}
+
+Candidate taken_payload(const DiagnosisSignals& signals, const std::vector<EffectColumn>& lasting,
+                        const std::vector<double>& times_s) {
+    Candidate result;
+    result.effect = "payload";
+    result.where = "tool";
+    result.detail = "taken";
+    result.family = "payload";
+    for (const double time_s : times_s) {
+        const std::size_t first = result.columns.size();
+        const Eigen::VectorXd there = (signals.measured.time_s.array() >= time_s).cast<double>();
+        for (EffectColumn column : lasting) {
+            for (EffectColumn::Part& part : column.parts) {
+                part.series = part.series.cwiseProduct(there);
+            }
+            result.columns.push_back(std::move(column));
+        }
+        result.shapes.push_back({{first}, within_reach, time_s});
+        result.shapes.push_back({{first, first + 1, first + 2, first + 3}, within_reach, time_s, 3});
+    }
+    result.about = [&signals, &lasting](const EffectShape& shape, const Eigen::VectorXd&) {
+        const double time_s = shape.value;
+        return taken_payload(signals, lasting,
+                             {time_s, time_s - 0.12, time_s - 0.04, time_s + 0.04, time_s + 0.12});
+    };
+    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
+        std::vector<EffectParameter> values = payload_parameters(coefficients, shape);
+        values.push_back({"attached", "s", shape.value});
+        return values;
+    };
+    return result;
+}
+
 std::vector<Candidate> body_candidates(const DiagnosisSignals& signals) {
-    std::vector<Candidate> result{payload(signals), tilt(signals)};
+    std::vector<Candidate> result{payload(signals), tilt(signals, 0, 0)};
+    result.front().family = "payload";
     for (Eigen::Index body = 0; body < signals.regressor.cols() / 10; ++body) {
         result.push_back(link_inertia(signals, body));
     }

@@ -26,12 +26,18 @@ struct EffectParameter {
 /// Whether a machine can have these coefficients.
 using CoefficientRule = std::function<bool(const Eigen::VectorXd& coefficients)>;
 
+using NearestCoefficients =
+    std::function<Eigen::VectorXd(const Eigen::MatrixXd& squares, const Eigen::VectorXd& moments)>;
+
 /// One way in which a candidate can act: some of its columns, and what their coefficients may be.
 struct EffectShape {
     std::vector<std::size_t> columns; ///< of the candidate
     CoefficientRule allowed;
     double value = 0;   ///< the shape's own parameter, where the effect has one
     double bounded = 0; ///< how many of the coefficients can only be small where another one is
+    /// Where the coefficients that explain most may not be: those that do among all that may, from the normal
+    /// equations. Empty: none are looked for.
+    NearestCoefficients nearest = {};
 };
 
 /// A named cause at a place: an effect of the catalogue; or, without a name, what an output would show if it
@@ -49,6 +55,10 @@ struct Candidate {
     /// The last column of a shape for another value of its parameter; empty where there is none, or only the
     /// listed ones make sense.
     std::function<EffectColumn(const EffectShape& shape, double value)> at_value;
+    /// The same candidate made anew about what was found of it, the first shape of as many columns the one at
+    /// hand: times closer to those found, a large angle's effect in the place of a small one's. Empty: it
+    /// would be the same.
+    std::function<Candidate(const EffectShape& shape, const Eigen::VectorXd& coefficients)> about;
     /// The catalogue's parameters, the main one first, from the coefficients of a shape.
     std::function<std::vector<EffectParameter>(const Eigen::VectorXd& coefficients, const EffectShape& shape)>
         parameters;

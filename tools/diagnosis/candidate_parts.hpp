@@ -4,6 +4,7 @@
 #include "tools/diagnosis/candidate.hpp"
 #include "tools/diagnosis/signals.hpp"
 
+#include <cmath>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -13,6 +14,12 @@ namespace dfdyn::tools {
 inline std::string numbered(const char* what, std::size_t index_from_0) {
     std::string result(what);
     return result += std::to_string(index_from_0 + 1);
+}
+
+/// A step from zero that is as good as none: what an effect of this size brings, over it, is a slope.
+inline double at_least_small(double size) {
+    constexpr double small = 1e-4;
+    return std::abs(size) > small ? size : std::copysign(small, size);
 }
 
 inline EffectColumn on_output(Eigen::Index output, Eigen::VectorXd series) {

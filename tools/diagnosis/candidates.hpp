@@ -13,7 +13,7 @@ std::vector<Candidate> joint_candidates(const DiagnosisSignals& signals);
 /// Payload, single links' inertia, gravity's direction.
 std::vector<Candidate> body_candidates(const DiagnosisSignals& signals);
 
-/// Encoders' errors, and what lies between encoder and link: backlash and flexibility.
+/// Encoders' errors, and the flexibility between encoder and link.
 std::vector<Candidate> position_candidates(const DiagnosisSignals& signals);
 
 /// Gains, delays, biases, drifts and crosstalk of what was measured. `modelled` (T x m): what the model at
@@ -37,14 +37,44 @@ std::vector<Candidate> dependence_candidates(const DiagnosisSignals& signals,
 Candidate ripple_candidate(const DiagnosisSignals& signals, std::size_t joint,
                            const std::vector<int>& cycles);
 
+/// What one unit of a payload's mass at the tip adds to the outputs, then of its three first moments.
+std::vector<EffectColumn> payload_columns(const DiagnosisSignals& signals);
+
+/// A payload (`lasting`: its columns) that is taken up at one of these times, two shapes for each: at the
+/// tip, and with its centre of mass anywhere.
+Candidate taken_payload(const DiagnosisSignals& signals, const std::vector<EffectColumn>& lasting,
+                        const std::vector<double>& times_s);
+
+/// What play of `gap` at a joint adds to the outputs, over the gap (T x m): its link is carried on one flank
+/// of the gear's teeth, falls freely where its load turns over, and is caught by the other flank without
+/// springing back.
+Eigen::MatrixXd play_course(const DiagnosisSignals& signals, std::size_t joint, double gap);
+
+/// Play, with some gaps as shapes, each for coefficients near its own: the fall takes as long as the gap is
+/// wide.
+Candidate backlash_candidate(const DiagnosisSignals& signals, std::size_t joint,
+                             const std::vector<double>& gaps);
+
 /// A push: from start to end, rising and falling within `rise_s`.
 struct ContactPulse {
     double start_s = 0, end_s = 0, rise_s = 0;
 };
 
-/// A torque or force from outside on `output`, with a pulse per shape; the first one names it.
-Candidate contact_candidate(const DiagnosisSignals& signals, Eigen::Index output,
-                            const std::vector<ContactPulse>& pulses);
+/// Where the surroundings can push, and what one unit of each component of a push adds to the outputs.
+struct ContactSite {
+    std::string where, unit;
+    std::vector<EffectColumn> components;
+};
+
+/// A torque at each joint; for a wrench, a force at the tip along each of the base's axes.
+std::vector<ContactSite> contact_sites(const DiagnosisSignals& signals);
+
+/// A push at `site`, with a pulse per shape; `first` names it.
+Candidate contact_candidate(const DiagnosisSignals& signals, const ContactSite& site,
+                            const ContactPulse& first, const std::vector<ContactPulse>& pulses);
+
+/// Pulses about one: its ends moved by `reach` (of its length), its flanks steeper and softer; itself first.
+std::vector<ContactPulse> pulses_about(const ContactPulse& pulse, double reach);
 
 /// The pulse over the recording, T; its height is one.
 Eigen::VectorXd pulse_series(const DiagnosisSignals& signals, const ContactPulse& pulse);

@@ -22,8 +22,7 @@ struct JointInputs {
     JointInputs(const DiagnosisSignals& signals, Eigen::Index joint)
         : position_name(numbered("q", static_cast<std::size_t>(joint))),
           velocity_name(numbered("qd", static_cast<std::size_t>(joint))),
-          velocity(signals.measured.motion.velocity.col(joint)),
-          direction((velocity.array() / signals.sign_velocity[joint]).tanh()),
+          velocity(signals.measured.motion.velocity.col(joint)), direction(signals.direction(joint)),
           of_position(harmonics(signals.measured.motion.position.col(joint), 5)) {}
 };
 

@@ -60,11 +60,16 @@ std::string causes_sentence(const Diagnosis& diagnosis) {
                "no "
                "name.";
     }
-    const Finding& first = diagnosis.findings.front();
+    const auto is_likely = [](const Finding& finding) { return finding.confidence >= likely_confidence; };
+    const auto likely = std::ranges::count_if(diagnosis.findings, is_likely);
+    const auto perhaps = std::ssize(diagnosis.findings) - likely;
+    const auto found = std::ranges::find_if(diagnosis.findings, is_likely);
+    const Finding& first = found == diagnosis.findings.end() ? diagnosis.findings.front() : *found;
     const std::string parameter = main_parameter_words(first);
-    std::string text = std::to_string(diagnosis.findings.size());
-    return text
-        .append(diagnosis.findings.size() == 1 ? " cause is named: " : " causes are named, first of all ")
+    std::string text = std::to_string(likely);
+    return text.append(likely == 1 ? " cause is likely" : " causes are likely")
+        .append(perhaps == 0 ? "" : ", " + std::to_string(perhaps) + " more possible")
+        .append(", first of all ")
         .append(cause_words(first))
         .append(parameter.empty() ? "" : " (" + parameter + ")")
         .append(", with confidence ")

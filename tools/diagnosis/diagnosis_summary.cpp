@@ -70,12 +70,24 @@ void print_findings(std::ostream& out, const Diagnosis& diagnosis) {
         out << "no cause found\n";
         return;
     }
-    out << "causes, by gain, with their confidence:\n";
-    for (std::size_t i = 0; i < std::min(findings.size(), most_findings); ++i) {
-        print_finding(out, diagnosis, findings[i]);
+    std::vector<const Finding*> likely;
+    std::string perhaps;
+    for (const Finding& finding : findings) {
+        if (finding.confidence >= likely_confidence) {
+            likely.push_back(&finding);
+        } else {
+            perhaps.append(perhaps.empty() ? "" : "; ").append(cause_words(finding));
+        }
     }
-    if (findings.size() > most_findings) {
-        out << "  … and " << findings.size() - most_findings << " more in the report\n";
+    out << (likely.empty() ? "no likely cause found\n" : "likely causes, by gain, with their confidence:\n");
+    for (std::size_t i = 0; i < std::min(likely.size(), most_findings); ++i) {
+        print_finding(out, diagnosis, *likely[i]);
+    }
+    if (likely.size() > most_findings) {
+        out << "  … and " << likely.size() - most_findings << " more in the report\n";
+    }
+    if (!perhaps.empty()) {
+        out << "perhaps: " << perhaps << '\n';
     }
 }
 

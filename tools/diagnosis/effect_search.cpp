@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -20,14 +21,24 @@ const SearchCandidate::Shape& shape_of(const SearchProblem& problem, const Chose
     return problem.candidates[chosen.candidate].shapes[chosen.shape];
 }
 
-/// What a candidate costs for being one of many, of many shapes, with so many coefficients.
-double price(const SearchProblem& problem, const ChosenShape& chosen) {
+/// What coefficients cost that explain a sum of squares of `explained`: before anything was measured, every
+/// order of magnitude of their joint size was as likely as any other within `orders` (of e), and every
+/// direction.
+double price_of_coefficients(double count, double explained) {
+    constexpr double orders = 7; // from a twentieth of what can be noticed to fifty times as much
+    const double size = std::sqrt(std::max(explained, 1.0));
+    const double sphere = std::log(2.0) + count / 2 * std::log(std::numbers::pi) - std::lgamma(count / 2);
+    return std::log(orders) + sphere + count * std::log(size) - count / 2 * std::log(2 * std::numbers::pi);
+}
+
+/// What a candidate costs for being one of many, of many shapes, with coefficients that explain so much.
+double price(const SearchProblem& problem, const ChosenShape& chosen, double explained) {
     const SearchCandidate& candidate = problem.candidates[chosen.candidate];
     const SearchCandidate::Shape& shape = candidate.shapes[chosen.shape];
     const double parameters = static_cast<double>(shape.columns.size()) - 0.5 * shape.bounded;
     return candidate.extra_price +
            std::log(candidate.rivals * static_cast<double>(candidate.shapes.size()) * candidate.tried) +
-           0.5 * parameters * std::log1p(candidate.rows);
+           price_of_coefficients(parameters, explained);
 }
 
 std::vector<Eigen::Index> columns_of(const SearchProblem& problem, const std::vector<ChosenShape>& chosen) {
@@ -66,34 +77,28 @@ double nuisance_price(const SearchProblem& problem, const Eigen::MatrixXd& syste
     return result;
 }
 
-/// A model's factor, with all columns of the problem projected out of it.
-struct Projection {
-    Eigen::MatrixXd seen;  ///< model x p
-    Eigen::VectorXd known; ///< model
-};
-
-Projection project(const SearchProblem& problem, const std::vector<Eigen::Index>& columns) {
-    const Eigen::LLT<Eigen::MatrixXd> factor(system_of(problem, columns));
-    return {factor.matrixL().solve(problem.sums.gram(columns, Eigen::all)),
-            factor.matrixL().solve(problem.sums.moment(columns))};
-}
-
-/// What a shape explains beyond the model; negative infinity when it may not, or the model leaves nothing of
+/// What a shape explains beyond a model, from what the model leaves of its columns (`left`) and of their
+/// products with what is to be explained; negative infinity when it may not, or next to nothing is left of
 /// it.
-double gain_of(const SearchProblem& problem, const Projection& projection,
-               const SearchCandidate::Shape& shape) {
+double gain_of(const SearchCandidate::Shape& shape, const Eigen::VectorXd& own, const Eigen::MatrixXd& left,
+               const Eigen::VectorXd& moment) {
     constexpr double never = -std::numeric_limits<double>::infinity();
-    const Eigen::MatrixXd seen = projection.seen(Eigen::all, shape.columns);
-    const Eigen::MatrixXd own = problem.sums.gram(shape.columns, shape.columns);
-    const Eigen::MatrixXd left = own - seen.transpose() * seen;
-    const Eigen::VectorXd moment = problem.sums.moment(shape.columns) - seen.transpose() * projection.known;
+    if ((left.diagonal().array() <= least_independent * own.array()).any()) {
+        return never;
+    }
     const Eigen::LDLT<Eigen::MatrixXd> factor(left);
-    if ((left.diagonal().array() <= least_independent * own.diagonal().array()).any() ||
-        !(factor.vectorD().array() > 1e-4 * left.diagonal().minCoeff()).all()) {
+    if (!(factor.vectorD().array() > 1e-4 * left.diagonal().minCoeff()).all()) {
         return never;
     }
     const Eigen::VectorXd coefficients = factor.solve(moment);
-    return shape.allowed(coefficients) ? coefficients.dot(moment) : never;
+    if (shape.allowed(coefficients)) {
+        return coefficients.dot(moment);
+    }
+    if (!shape.nearest) {
+        return never;
+    }
+    const Eigen::VectorXd nearest = shape.nearest(left, moment);
+    return shape.allowed(nearest) ? 2 * nearest.dot(moment) - nearest.dot(left * nearest) : never;
 }
 
 bool excludes(const std::vector<SearchCandidate>& candidates, std::size_t one, std::size_t other) {
@@ -113,10 +118,10 @@ void keep_best(Step& best, const SearchProblem& problem, const std::vector<Chose
     }
 }
 
-/// The best of `chosen` with one more.
-void try_addition(Step& best, const SearchProblem& problem, const std::vector<ChosenShape>& chosen) {
+/// The best of `chosen` with one more, of those `ranked` by their scores.
+void keep_best_addition(Step& best, const SearchProblem& problem, const std::vector<ChosenShape>& chosen,
+                        const std::vector<Replacement>& ranked) {
     constexpr std::size_t tried = 3; // the first may give another effect a sign that it may not have
-    const std::vector<Replacement> ranked = additions(problem, chosen);
     for (std::size_t i = 0; i < std::min(tried, ranked.size()) && ranked[i].score > best.score; ++i) {
         std::vector<ChosenShape> more = chosen;
         more.push_back(ranked[i].with);
@@ -146,7 +151,9 @@ EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShap
         const SearchCandidate::Shape& shape = shape_of(problem, one);
         const auto count = static_cast<Eigen::Index>(shape.columns.size());
         fit.allowed = fit.allowed && shape.allowed(fit.coefficients.segment(at, count));
-        fit.score -= price(problem, one);
+        const Eigen::VectorXd own = fit.coefficients.segment(at, count);
+        fit.score -=
+            price(problem, one, own.dot(fit.covariance.block(at, at, count, count).llt().solve(own)));
         at += count;
     }
     return fit;
@@ -167,22 +174,80 @@ double held_out_score(const SearchProblem& problem, const std::vector<WeighedSum
     return score;
 }
 
-std::vector<Replacement> additions(const SearchProblem& problem, const std::vector<ChosenShape>& chosen) {
-    const EffectFit base = fit_effects(problem, chosen);
-    const Projection projection = project(problem, base.columns);
+Neighbours::Neighbours(const SearchProblem& problem, const std::vector<ChosenShape>& chosen)
+    : problem_(problem), chosen_(chosen), columns_(columns_of(problem, chosen)) {
+    const Eigen::MatrixXd system = system_of(problem, columns_);
+    const Eigen::LLT<Eigen::MatrixXd> factor(system);
+    const Eigen::VectorXd moment = problem.sums.moment(columns_);
+    coefficients_ = factor.solve(moment);
+    covariance_ = factor.solve(Eigen::MatrixXd::Identity(system.rows(), system.cols()));
+    products_ = problem.sums.gram(columns_, Eigen::all);
+    const Eigen::MatrixXd seen = factor.matrixL().solve(products_);
+    const Eigen::VectorXd known = factor.matrixL().solve(moment);
+    score_ = 0.5 * coefficients_.dot(moment) - nuisance_price(problem, system);
+    auto first = static_cast<Eigen::Index>(problem.nuisance.size());
+    for (const ChosenShape& one : chosen) {
+        first_.push_back(first);
+        first += std::ssize(shape_of(problem, one).columns);
+    }
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        score_ -= price(problem, chosen[i], returned(i).moment.squaredNorm());
+    }
+    for (const SearchCandidate& candidate : problem.candidates) {
+        for (const SearchCandidate::Shape& shape : candidate.shapes) {
+            const Eigen::MatrixXd own = problem.sums.gram(shape.columns, shape.columns);
+            const Eigen::MatrixXd part = seen(Eigen::all, shape.columns);
+            beyond_.push_back({own.diagonal(), own - part.transpose() * part,
+                               problem.sums.moment(shape.columns) - part.transpose() * known});
+        }
+    }
+}
+
+Neighbours::Returned Neighbours::returned(std::size_t index) const {
+    const Eigen::Index first = first_[index];
+    const auto count = std::ssize(shape_of(problem_, chosen_[index]).columns);
+    const Eigen::LLT<Eigen::MatrixXd> factor(covariance_.block(first, first, count, count));
+    return {factor.matrixL().solve(covariance_.middleRows(first, count) * products_),
+            factor.matrixL().solve(coefficients_.segment(first, count))};
+}
+
+double Neighbours::score_without(std::size_t index) const {
+    const double explained = returned(index).moment.squaredNorm();
+    return score_ + price(problem_, chosen_[index], explained) - 0.5 * explained;
+}
+
+std::vector<Replacement> Neighbours::additions() const {
+    const Returned nothing{Eigen::MatrixXd(0, products_.cols()), Eigen::VectorXd(0)};
+    return ranked(chosen_, score_, nothing);
+}
+
+std::vector<Replacement> Neighbours::exchanges(std::size_t index) const {
+    const Returned what = returned(index);
+    return ranked(without(chosen_, index), score_without(index), what);
+}
+
+std::vector<Replacement> Neighbours::ranked(const std::vector<ChosenShape>& chosen, double base,
+                                            const Returned& returned) const {
     std::vector<Replacement> result;
-    for (std::size_t index = 0; index < problem.candidates.size(); ++index) {
+    auto beyond = beyond_.begin();
+    for (std::size_t index = 0; index < problem_.candidates.size(); ++index) {
+        const std::vector<SearchCandidate::Shape>& shapes = problem_.candidates[index].shapes;
+        const auto first = beyond;
+        beyond += std::ssize(shapes);
         if (std::any_of(chosen.begin(), chosen.end(), [&](const ChosenShape& one) {
-                return excludes(problem.candidates, one.candidate, index);
+                return excludes(problem_.candidates, one.candidate, index);
             })) {
             continue;
         }
         Replacement best{{}, -std::numeric_limits<double>::infinity()};
-        for (std::size_t shape = 0; shape < problem.candidates[index].shapes.size(); ++shape) {
+        for (std::size_t shape = 0; shape < shapes.size(); ++shape) {
+            const Beyond& left = first[static_cast<std::ptrdiff_t>(shape)];
+            const Eigen::MatrixXd back = returned.columns(Eigen::all, shapes[shape].columns);
+            const double gain = gain_of(shapes[shape], left.own, left.left + back.transpose() * back,
+                                        left.moment + back.transpose() * returned.moment);
             const ChosenShape one{index, shape};
-            const double score =
-                base.score + 0.5 * gain_of(problem, projection, shape_of(problem, one)) - price(problem, one);
-            if (score > best.score) {
+            const double score = base + 0.5 * gain - price(problem_, one, gain);
+            if (gain > 0 && score > best.score) {
                 best = {one, score};
             }
         }
@@ -198,16 +263,19 @@ std::vector<ChosenShape> search_effects(const SearchProblem& problem, std::vecto
     Step at{{}, fit_effects(problem, {}).score};
     keep_best(at, problem, start);
     for (int round = 0; round < 100; ++round) {
+        const Neighbours near(problem, at.chosen);
         Step best = at;
         if (at.chosen.size() < most_effects) {
-            try_addition(best, problem, at.chosen);
+            keep_best_addition(best, problem, at.chosen, near.additions());
         }
         if (best.chosen.size() <=
             at.chosen.size()) { // nothing to add: is what there is the best of its kind?
             for (std::size_t i = 0; i < at.chosen.size(); ++i) {
                 const std::vector<ChosenShape> fewer = without(at.chosen, i);
-                keep_best(best, problem, fewer);
-                try_addition(best, problem, fewer);
+                if (near.score_without(i) > best.score) {
+                    keep_best(best, problem, fewer);
+                }
+                keep_best_addition(best, problem, fewer, near.exchanges(i));
             }
         }
         if (!(best.score > at.score + least_gain)) {

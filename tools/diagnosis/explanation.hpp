@@ -45,7 +45,8 @@ struct Explanation {
   private:
     Eigen::MatrixXd of_fit(const DiagnosisSignals& signals, const EffectFit& of,
                            const std::function<bool(const Candidate&)>& wanted) const;
-    void add_nuisance(Eigen::MatrixXd& sum, const EffectFit& of) const;
+    Eigen::MatrixXd with_nuisance(const DiagnosisSignals& signals, const EffectFit& of,
+                                  const std::function<bool(const Candidate&)>& wanted) const;
 };
 
 /// Searches among all candidates at once, in rounds: the noise is what the model at hand leaves, candidates

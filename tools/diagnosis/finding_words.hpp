@@ -9,6 +9,9 @@
 
 namespace dfdyn::tools {
 
+/// From here on a cause is rather there than not.
+constexpr double likely_confidence = 0.5;
+
 /// Two decimals, and no certainty: `> 0.99` above that.
 std::string confidence_text(double confidence);
 

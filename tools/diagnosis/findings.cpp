@@ -51,13 +51,13 @@ std::vector<FoundParameter> found_parameters(const Candidate& candidate, const E
 }
 
 /// What else could stand in the place of a chosen effect, and how much less likely that is.
-void weigh_alternatives(Finding& finding, const Explanation& explanation, std::size_t index) {
-    const std::vector<ChosenShape> others = without(explanation.chosen, index);
+void weigh_alternatives(Finding& finding, const Explanation& explanation, const Neighbours& near,
+                        std::size_t index) {
     const double own = explanation.fit.score;
     const Candidate& own_candidate = explanation.candidates[explanation.chosen[index].candidate];
-    finding.margin_to_nothing = own - fit_effects(explanation.problem, others).score;
+    finding.margin_to_nothing = own - near.score_without(index);
     finding.margin_to_others = std::numeric_limits<double>::infinity();
-    for (const Replacement& other : additions(explanation.problem, others)) {
+    for (const Replacement& other : near.exchanges(index)) {
         const Candidate& candidate = explanation.candidates[other.with.candidate];
         const double margin = own - other.score;
         if (!candidate.named() || other.with.candidate == explanation.chosen[index].candidate ||
@@ -129,6 +129,7 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
                                  const Eigen::MatrixXd& measured,
                                  const std::vector<std::string>& output_names) {
     const Eigen::MatrixXd left = measured - signals.nominal - explanation.all(signals);
+    const Neighbours near(explanation.problem, explanation.chosen);
     std::vector<Finding> findings;
     for (std::size_t i = 0; i < explanation.chosen.size(); ++i) {
         const std::size_t number = explanation.chosen[i].candidate;
@@ -143,7 +144,7 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
         finding.detail = candidate.detail;
         finding.parameters =
             found_parameters(candidate, shape, explanation.coefficients(i), explanation.covariance(i));
-        weigh_alternatives(finding, explanation, i);
+        weigh_alternatives(finding, explanation, near, i);
         const Eigen::MatrixXd contribution =
             explanation.effects(signals, [&](const Candidate& one) { return one.key() == candidate.key(); });
         measure_gain(finding, contribution, left);

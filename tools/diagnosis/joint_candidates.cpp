@@ -19,8 +19,7 @@ struct JointSignals {
     JointSignals(const DiagnosisSignals& signals, std::size_t number)
         : all(signals), joint(number), where(numbered("joint", number)),
           output(static_cast<Eigen::Index>(number)), position(signals.measured.motion.position.col(output)),
-          velocity(signals.measured.motion.velocity.col(output)),
-          direction((velocity.array() / signals.sign_velocity[output]).tanh()) {}
+          velocity(signals.measured.motion.velocity.col(output)), direction(signals.direction(output)) {}
 
     Candidate candidate(const char* effect) const {
         Candidate result;

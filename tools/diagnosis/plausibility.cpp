@@ -199,7 +199,7 @@ double foreign_share(const DiagnosisSignals& signals, const Eigen::MatrixXd& mea
             const RobotMotion& motion = signals.measured.motion;
             columns.col(2) = motion.position.col(output);
             columns.col(3) = motion.velocity.col(output);
-            columns.col(4) = (motion.velocity.col(output).array() / signals.sign_velocity[output]).tanh();
+            columns.col(4) = signals.direction(output);
         }
         const Eigen::VectorXd centred = measured.col(output).array() - measured.col(output).mean();
         const Eigen::VectorXd fit = columns.colPivHouseholderQr().solve(centred);

@@ -24,6 +24,18 @@ Eigen::MatrixXd rigid_outputs(const Robot& robot, OutputKind outputs, const Robo
     return result;
 }
 
+Eigen::MatrixXd joint_inertias(const Robot& robot, const RobotMotion& motion) {
+    const Eigen::Index joints = motion.position.cols();
+    const ArmDynamics dynamics(robot, JointVector::Zero(joints));
+    ArmDynamics::Configuration configuration;
+    Eigen::MatrixXd result(motion.rows(), joints);
+    for (Eigen::Index row = 0; row < motion.rows(); ++row) {
+        dynamics.configure(motion.position.row(row), configuration);
+        result.row(row) = dynamics.mass_matrix(configuration).diagonal();
+    }
+    return result;
+}
+
 Eigen::MatrixXd MotionSensitivity::of(std::size_t joint, const Eigen::VectorXd& change,
                                       const Eigen::VectorXd& change_velocity,
                                       const Eigen::VectorXd& change_acceleration) const {

@@ -15,6 +15,9 @@ namespace dfdyn::tools {
 /// wrench at the sensor. T x m. Cost: T times one recursive Newton-Euler pass.
 Eigen::MatrixXd rigid_outputs(const Robot& robot, OutputKind outputs, const RobotMotion& motion);
 
+/// T x n, kg·m² (kg): the diagonal of the mass matrix along a motion.
+Eigen::MatrixXd joint_inertias(const Robot& robot, const RobotMotion& motion);
+
 /// How the outputs answer to small changes of the motion, joint by joint (T x m each; central differences).
 struct MotionSensitivity {
     std::vector<Eigen::MatrixXd> position, velocity, acceleration; ///< per joint

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/diagnosis/candidate.hpp"
+#include "tools/diagnosis/candidates.hpp"
 #include "tools/diagnosis/effect_regression.hpp"
 #include "tools/diagnosis/signals.hpp"
 
@@ -16,9 +16,30 @@ Eigen::MatrixXd weighed_residual(const EffectRegression& regression, const Eigen
 std::vector<Candidate> scan_ripples(const DiagnosisSignals& signals, const EffectRegression& regression,
                                     const Eigen::MatrixXd& weighed);
 
-/// The stretches of time in which a push from outside explains most of the residual, over all outputs; a few,
-/// the best first.
+/// Of each site the stretch of time in which a push there explains most of the residual. `sites` must outlive
+/// the candidates.
 std::vector<Candidate> scan_contacts(const DiagnosisSignals& signals, const EffectRegression& regression,
-                                     const Eigen::MatrixXd& weighed);
+                                     const Eigen::MatrixXd& weighed, const std::vector<ContactSite>& sites);
+
+/// A payload (`payload`: its columns) that is taken up when that explains most.
+std::vector<Candidate> scan_taken_payload(const DiagnosisSignals& signals, const EffectRegression& regression,
+                                          const Eigen::MatrixXd& weighed,
+                                          const std::vector<EffectColumn>& payload);
+
+/// Looks for the gap at each joint whose course goes best with a residual.
+class PlayScan {
+  public:
+    PlayScan(const DiagnosisSignals& signals, const SpectralRows& rows);
+    std::vector<Candidate> candidates(const DiagnosisSignals& signals, const EffectRegression& regression,
+                                      const Eigen::MatrixXd& weighed) const;
+
+  private:
+    struct Course {
+        double gap = 0;
+        Eigen::MatrixXd series; ///< T x m
+        Eigen::MatrixXd power;  ///< bins x m: sums of squares
+    };
+    std::vector<std::vector<Course>> courses_; ///< per joint
+};
 
 } // namespace dfdyn::tools

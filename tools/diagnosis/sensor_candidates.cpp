@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/common/number.hpp"
 #include "tools/diagnosis/candidate_parts.hpp"
 #include "tools/diagnosis/candidates.hpp"
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace dfdyn::tools {
 
@@ -132,38 +130,6 @@ std::vector<Candidate> sensor_candidates(const DiagnosisSignals& signals, const 
             result.push_back(std::move(gain));
         }
     }
-    return result;
-}
-
-Eigen::VectorXd pulse_series(const DiagnosisSignals& signals, const ContactPulse& pulse) {
-    Eigen::VectorXd series(signals.rows());
-    for (Eigen::Index row = 0; row < series.size(); ++row) {
-        const double time_s = signals.measured.time_s[row];
-        const double inside = std::min(time_s - pulse.start_s, pulse.end_s - time_s);
-        series[row] = (1 - std::cos(std::numbers::pi * std::clamp(inside / pulse.rise_s, 0.0, 1.0))) / 2;
-    }
-    return series;
-}
-
-Candidate contact_candidate(const DiagnosisSignals& signals, Eigen::Index output,
-                            const std::vector<ContactPulse>& pulses) {
-    Candidate result;
-    result.effect = "external_contact";
-    result.where = signals.wrench() ? "ft_sensor" : numbered("joint", static_cast<std::size_t>(output));
-    result.detail = number_text(pulses.front().start_s) + " s on output " + std::to_string(output);
-    for (const ContactPulse& pulse : pulses) {
-        result.shapes.push_back(
-            {{result.columns.size()}, is_anything, static_cast<double>(result.shapes.size())});
-        // what the surroundings exert, the actuators need not
-        const double sign = signals.wrench() ? 1 : -1;
-        result.columns.push_back(on_output(output, sign * pulse_series(signals, pulse)));
-    }
-    const std::string unit(signals.wrench() && output < 3 ? "N" : "N·m");
-    result.parameters = [pulses, unit](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
-        const ContactPulse& pulse = pulses[static_cast<std::size_t>(shape.value)];
-        return std::vector<EffectParameter>{
-            {"start", "s", pulse.start_s}, {"end", "s", pulse.end_s}, {"peak", unit, coefficients[0]}};
-    };
     return result;
 }
 

@@ -9,6 +9,10 @@
 
 namespace dfdyn::tools {
 
+Eigen::VectorXd DiagnosisSignals::direction(Eigen::Index joint) const {
+    return (measured.motion.velocity.col(joint).array() / sign_velocity[joint]).tanh();
+}
+
 Eigen::VectorXd DiagnosisSignals::rate(const Eigen::VectorXd& series) const {
     Eigen::VectorXd result(series.size());
     for (const Stretch& stretch : measured.stretches) {
@@ -61,6 +65,7 @@ DiagnosisSignals diagnosis_signals(const Robot& robot, OutputKind kind, Measured
     signals.joint_torque =
         signals.wrench() ? rigid_outputs(robot, OutputKind::joint_torque, motion) : signals.nominal;
     signals.regressor = stacked_regressor(robot, kind, motion);
+    signals.joint_inertia = joint_inertias(robot, motion);
     signals.sensitivity = motion_sensitivity(robot, kind, motion);
     constexpr double slowest = 2e-3; // rad/s
     signals.sign_velocity = (2 * signals.measured.velocity_noise).cwiseMax(slowest);

@@ -16,12 +16,15 @@ struct DiagnosisSignals {
         joint_torque;          ///< T x n: the rigid body's torques; `nominal` unless the outputs are a wrench
     Eigen::MatrixXd regressor; ///< T m x 10 bodies, rows t m + k: of the rigid body
     MotionSensitivity sensitivity;
+    Eigen::MatrixXd joint_inertia; ///< T x n, kg·m²: of each joint while the others are held
     Eigen::VectorXd sign_velocity; ///< n, rad/s: below it the direction of motion is not certain
 
     Eigen::Index rows() const { return measured.time_s.size(); }
     std::size_t joints() const { return robot.joints.size(); }
     Eigen::Index outputs() const { return nominal.cols(); }
     bool wrench() const { return kind == OutputKind::wrench; }
+    /// Which way a joint moves, from -1 to 1; nearly 0 where that is not certain. T.
+    Eigen::VectorXd direction(Eigen::Index joint) const;
 
     /// Derivative per second, stretch by stretch.
     Eigen::VectorXd rate(const Eigen::VectorXd& series) const;

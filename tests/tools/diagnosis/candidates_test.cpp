@@ -3,6 +3,7 @@
 #include "tools/diagnosis/candidates.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/tools/diagnosis/swinging_arm.hpp"
 #include "tests/tools/robot/arms.hpp"
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/robot/regressor.hpp"
@@ -14,63 +15,16 @@
 namespace {
 
 using namespace dfdyn::tools;
+using namespace dfdyn::tests;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// Every joint swings with two frequencies; 20 s at 100 Hz, without any noise.
-MeasuredMotion swing(Index joints) {
-    constexpr Index rows = 2000;
-    MeasuredMotion measured;
-    measured.rate_hz = 100;
-    measured.time_s = VectorXd::LinSpaced(rows, 0, (rows - 1) / 100.0);
-    measured.motion = {MatrixXd(rows, joints), MatrixXd(rows, joints), MatrixXd(rows, joints)};
-    measured.smoothing_hz = VectorXd::Constant(joints, 20);
-    measured.velocity_noise = VectorXd::Zero(joints);
-    measured.stretches = {{0, rows}};
-    for (Index joint = 0; joint < joints; ++joint) {
-        const double omega = 1.1 + 0.37 * static_cast<double>(joint);
-        const Eigen::ArrayXd slow = omega * measured.time_s.array() + static_cast<double>(joint);
-        const Eigen::ArrayXd fast = 2.3 * omega * measured.time_s.array();
-        measured.motion.position.col(joint) = 0.6 * slow.sin() + 0.2 * fast.cos() + 0.3;
-        measured.motion.velocity.col(joint) = omega * (0.6 * slow.cos() - 0.46 * fast.sin());
-        measured.motion.acceleration.col(joint) = -omega * omega * (0.6 * slow.sin() + 1.058 * fast.cos());
-    }
-    return measured;
-}
-
-DiagnosisSignals signals_of(const Robot& robot, OutputKind kind) {
-    return diagnosis_signals(robot, kind, swing(static_cast<Index>(robot.joints.size())));
-}
-
-const Candidate& find(const std::vector<Candidate>& candidates, const std::string& effect,
-                      const std::string& where) {
-    const auto found = std::ranges::find_if(
-        candidates, [&](const Candidate& one) { return one.effect == effect && one.where == where; });
-    REQUIRE(found != candidates.end());
-    return *found;
-}
-
-MatrixXd contribution(const DiagnosisSignals& signals, const Candidate& candidate, std::size_t column) {
-    MatrixXd sum = MatrixXd::Zero(signals.rows(), signals.outputs());
-    for (const EffectColumn::Part& part : candidate.columns[column].parts) {
-        sum.col(part.output) += part.series;
-    }
-    return sum;
-}
-
-/// Away from the ends, where derivatives by differences are worse.
-void check_same(const MatrixXd& found, const MatrixXd& expected, double tolerance) {
-    const Index inner = found.rows() - 20;
-    CHECK((found - expected).middleRows(10, inner).cwiseAbs().maxCoeff() <
-          tolerance * expected.middleRows(10, inner).cwiseAbs().maxCoeff());
-}
 
 } // namespace
 
 TEST_CASE("the rigid body along a motion is the firmware's regressor times the nominal parameters") {
     for (const OutputKind kind : {OutputKind::joint_torque, OutputKind::wrench}) {
-        const DiagnosisSignals signals = signals_of(dfdyn::tests::icub_right_arm(), kind);
+        const DiagnosisSignals signals = signals_of(icub_right_arm(), kind);
         const MatrixXd expected =
             unstacked(signals.regressor * nominal_parameters(signals.robot, kind), signals.outputs());
         CHECK((signals.nominal - expected).cwiseAbs().maxCoeff() < 1e-10);
@@ -78,7 +32,7 @@ TEST_CASE("the rigid body along a motion is the firmware's regressor times the n
 }
 
 TEST_CASE("a tilted base is one whose gravity points elsewhere: tilt_x, then tilt_y, about the root's axes") {
-    const DiagnosisSignals signals = signals_of(dfdyn::tests::ur5(), OutputKind::joint_torque);
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const std::vector<Candidate> candidates = body_candidates(signals);
     const Candidate& tilt = find(candidates, "gravity_tilt", "base");
     constexpr double angle = 1e-4;
@@ -94,7 +48,7 @@ TEST_CASE("a tilted base is one whose gravity points elsewhere: tilt_x, then til
 }
 
 TEST_CASE("a payload is a point mass at the tip, and a link's error one at its centre of mass") {
-    const DiagnosisSignals signals = signals_of(dfdyn::tests::ur5(), OutputKind::joint_torque);
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const std::vector<Candidate> candidates = body_candidates(signals);
     const auto with_mass = [&](std::size_t joint, const Eigen::Vector3d& centre) {
         Robot heavier = signals.robot;
@@ -109,7 +63,7 @@ TEST_CASE("a payload is a point mass at the tip, and a link's error one at its c
 }
 
 TEST_CASE("an encoder that reads too much puts the arm where it is not") {
-    const DiagnosisSignals signals = signals_of(dfdyn::tests::ur5(), OutputKind::joint_torque);
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const std::vector<Candidate> candidates = position_candidates(signals);
     constexpr double amount = 1e-4;
     // what is measured is the swing; the true position is less by the encoder's error
@@ -132,7 +86,7 @@ TEST_CASE("an encoder that reads too much puts the arm where it is not") {
 }
 
 TEST_CASE("friction opposes the motion, keeps its direction at rest, and builds up where it is presliding") {
-    DiagnosisSignals signals = signals_of(dfdyn::tests::ur5(), OutputKind::joint_torque);
+    DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     // joint 1: forward, stand, back
     auto position = signals.measured.motion.position.col(0);
     auto velocity = signals.measured.motion.velocity.col(0);
@@ -158,7 +112,7 @@ TEST_CASE("friction opposes the motion, keeps its direction at rest, and builds 
 }
 
 TEST_CASE("parameters follow the catalogue's signs and units") {
-    const DiagnosisSignals signals = signals_of(dfdyn::tests::icub_right_arm(), OutputKind::wrench);
+    const DiagnosisSignals signals = signals_of(icub_right_arm(), OutputKind::wrench);
     const std::vector<Candidate> candidates =
         sensor_candidates(signals, signals.nominal, VectorXd::Zero(6), true);
     const Candidate& delay = find(candidates, "delay", "ft_sensor");
@@ -173,7 +127,7 @@ TEST_CASE("parameters follow the catalogue's signs and units") {
         std::ranges::find_if(candidates, [](const Candidate& one) { return one.effect == "ft_gain"; });
     REQUIRE(gain != candidates.end());
     CHECK(gain->parameters(VectorXd::Constant(1, 0.2), gain->shapes[0])[0].value == Approx(1.2));
-    const DiagnosisSignals torques = signals_of(dfdyn::tests::ur5(), OutputKind::joint_torque);
+    const DiagnosisSignals torques = signals_of(ur5(), OutputKind::joint_torque);
     const std::vector<Candidate> actuators =
         sensor_candidates(torques, torques.nominal, VectorXd::Zero(6), true);
     // true over assumed: the log has the true torque divided by it
@@ -185,7 +139,7 @@ TEST_CASE("parameters follow the catalogue's signs and units") {
 }
 
 TEST_CASE("an unnamed dependence is on inputs, and no larger than what the rigid body leaves") {
-    const Robot robot = dfdyn::tests::ur5();
+    const Robot robot = ur5();
     const DiagnosisSignals signals = signals_of(robot, OutputKind::joint_torque);
     const VectorXd velocity = signals.measured.motion.velocity.col(2);
     MatrixXd unexplained = MatrixXd::Zero(signals.rows(), 6);
@@ -216,7 +170,7 @@ TEST_CASE("an unnamed dependence is on inputs, and no larger than what the rigid
 }
 
 TEST_CASE("what a delay adds is the series of earlier less that of now, over the delay") {
-    const DiagnosisSignals signals = signals_of(dfdyn::tests::ur5(), OutputKind::joint_torque);
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const Eigen::ArrayXd time = signals.measured.time_s.array();
     const VectorXd series = (7 * time).sin();
     for (const double delay : {0.0034, 0.02, 0.083}) {

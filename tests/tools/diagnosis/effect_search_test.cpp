@@ -36,7 +36,6 @@ SearchProblem problem_of(const MatrixXd& columns, const VectorXd& target) {
         SearchCandidate candidate;
         candidate.shapes.push_back({{column}, anything});
         candidate.rivals = static_cast<double>(columns.cols());
-        candidate.rows = rows;
         problem.candidates.push_back(candidate);
     }
     return problem;
@@ -67,6 +66,35 @@ TEST_CASE("what was planted is found, with its coefficients; noise alone yields 
     }
 }
 
+TEST_CASE("the models with one effect more, less or another one are scored as if each had been fitted") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const MatrixXd columns = random_columns(12, engine);
+    const VectorXd target = 0.5 * columns.col(2) + 0.4 * columns.col(3) - 0.3 * columns.col(7) +
+                            0.2 * columns.col(8) + random_columns(1, engine);
+    SearchProblem problem = problem_of(columns, target);
+    problem.candidates[2].shapes = {{{2, 3}, anything}, {{2}, anything}};
+    problem.nuisance = {{11, 0.1}};
+    problem.candidates.resize(11);
+    const std::vector<ChosenShape> chosen{{2, 0}, {7, 0}};
+    const Neighbours near(problem, chosen);
+    CHECK(near.score() == Approx(fit_effects(problem, chosen).score));
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const std::vector<ChosenShape> fewer = without(chosen, i);
+        // prices go by what each effect explains, which hardly changes with others that are independent of it
+        CHECK(near.score_without(i) == Approx(fit_effects(problem, fewer).score).margin(0.5));
+        for (const Replacement& other : near.exchanges(i)) {
+            std::vector<ChosenShape> exchanged = fewer;
+            exchanged.push_back(other.with);
+            CHECK(other.score == Approx(fit_effects(problem, exchanged).score).margin(0.5));
+        }
+    }
+    for (const Replacement& one : near.additions()) {
+        std::vector<ChosenShape> more = chosen;
+        more.push_back(one.with);
+        CHECK(one.score == Approx(fit_effects(problem, more).score).margin(0.5));
+    }
+}
+
 TEST_CASE("a column that stood in for two others goes when they come") {
     DFDYN_SEEDED_ENGINE(engine);
     MatrixXd columns = random_columns(10, engine);
@@ -94,9 +122,9 @@ TEST_CASE("a copy of a chosen column is no addition, and a near copy is the clos
     const VectorXd target = columns.col(0) + random_columns(1, engine);
     const SearchProblem problem = problem_of(columns, target);
     const std::vector<ChosenShape> chosen{{0, 0}};
-    const std::vector<Replacement> more = additions(problem, chosen);
+    const std::vector<Replacement> more = Neighbours(problem, chosen).additions();
     CHECK(std::ranges::none_of(more, [](const Replacement& one) { return one.with.candidate == 3; }));
-    const std::vector<Replacement> instead = additions(problem, {});
+    const std::vector<Replacement> instead = Neighbours(problem, {}).additions();
     CHECK(std::abs(instead[0].score - instead[1].score) < 1e-9);
     CHECK(instead[2].with.candidate == 4);
 }

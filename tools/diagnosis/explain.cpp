@@ -1,0 +1,430 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/explanation.hpp"
+
+#include "tools/diagnosis/candidate_entry.hpp"
+#include "tools/diagnosis/candidate_parts.hpp"
+#include "tools/diagnosis/candidates.hpp"
+#include "tools/diagnosis/scans.hpp"
+#include "tools/robot/firmware_chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr int most_rounds = 10;
+constexpr int white_rounds = 3;
+constexpr Eigen::Index validation_blocks = 6;
+constexpr double mass_deviation = 0.058; ///< of a link's relative mass error that is uniform within ±10 %
+
+bool is_friction(const Candidate& candidate) {
+    return candidate.effect == "viscous_friction" || candidate.effect == "coulomb_friction" ||
+           candidate.effect == "stribeck_friction" || candidate.effect == "presliding_hysteresis" ||
+           candidate.effect == "load_dependent_friction";
+}
+
+bool is_of_the_arm(const Candidate& candidate) {
+    return candidate.where != "ft_sensor" && candidate.where.rfind("actuator", 0) != 0 &&
+           candidate.effect != "external_contact";
+}
+
+/// A push, or a payload that is taken up.
+bool is_event(const Candidate& candidate) {
+    return candidate.effect == "external_contact" ||
+           (candidate.effect == "payload" && !candidate.detail.empty());
+}
+
+/// A chosen candidate, made anew about what was found of it. That it has other shapes now makes it no
+/// likelier.
+Candidate about(const Candidate& chosen, const EffectShape& shape, const Eigen::VectorXd& coefficients) {
+    Candidate result = chosen.about(shape, coefficients);
+    result.family = chosen.family;
+    result.extra_price = chosen.extra_price;
+    result.tried =
+        chosen.tried * static_cast<double>(chosen.shapes.size()) / static_cast<double>(result.shapes.size());
+    return result;
+}
+
+class Search {
+  public:
+    Search(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
+           const ExplanationOptions& options)
+        : signals_(signals), options_(options), rows_(signals.measured), sites_(contact_sites(signals)),
+          payload_(payload_columns(signals)), play_(signals, rows_),
+          regression_(rows_, measured - signals.nominal,
+                      std::max<Eigen::Index>(
+                          1, std::llround(options.fitted_share * static_cast<double>(rows_.frames())))) {
+        add_nuisance();
+        for (auto* make : {&joint_candidates, &body_candidates, &position_candidates}) {
+            for (Candidate& candidate : (*make)(signals_)) {
+                lasting_.emplace_back(rows_, std::move(candidate));
+            }
+        }
+        for (Candidate& candidate : dependence_candidates(signals_, measured - signals.nominal)) {
+            lasting_.emplace_back(rows_, std::move(candidate));
+        }
+        gather({});
+        at_.fit = fit_effects(at_.problem, {});
+        estimate_noise(true);
+    }
+
+    Explanation run() {
+        std::vector<std::string> last;
+        for (int round = 0; round < most_rounds; ++round) {
+            if (options_.progress) {
+                options_.progress(round);
+            }
+            std::vector<CandidateEntry> dependent = passing();
+            refine();
+            gather(std::move(dependent));
+            at_.chosen = search_effects(at_.problem, at_.chosen);
+            at_.fit = fit_effects(at_.problem, at_.chosen);
+            // weighed by the spectrum of what is not explained yet, an effect would be taken for noise
+            estimate_noise(round + 1 < white_rounds);
+            std::vector<std::string> keys = chosen_keys();
+            if (keys == last && round > white_rounds) {
+                break;
+            }
+            last = std::move(keys);
+        }
+        decide_masses();
+        keep_what_predicts();
+        fit_named();
+        return std::move(at_);
+    }
+
+  private:
+    void add_nuisance();
+    std::vector<Candidate> demanding_as_chosen(std::vector<Candidate> contacts) const;
+    Eigen::VectorXd delays() const;
+    std::vector<CandidateEntry> passing() const;
+    void refine();
+    void gather(std::vector<CandidateEntry> passing);
+    void estimate_noise(bool white);
+    void decide_masses();
+    std::vector<WeighedSums> sums_of_blocks() const;
+    Eigen::VectorXd of_events() const;
+    void keep_what_predicts();
+    void fit_named();
+    std::vector<std::string> chosen_keys() const;
+    Eigen::VectorXd all_coefficients() const;
+    Eigen::VectorXd of_named(Eigen::VectorXd coefficients) const;
+
+    const DiagnosisSignals& signals_;
+    const ExplanationOptions& options_;
+    SpectralRows rows_;
+    std::vector<ContactSite> sites_;
+    std::vector<EffectColumn> payload_;
+    PlayScan play_;
+    EffectRegression regression_;
+    std::vector<CandidateEntry> lasting_; ///< candidates that do not depend on the model at hand
+    std::vector<SpectralColumnPointer> nuisance_;
+    std::vector<double> nuisance_deviation_;
+    Explanation at_;
+};
+
+/// Links whose masses are a little off, and joints whose torque constants nobody knows.
+void Search::add_nuisance() {
+    const auto add = [this](EffectColumn column, double deviation) {
+        nuisance_.push_back(std::make_shared<const SpectralColumn>(rows_, column));
+        nuisance_deviation_.push_back(deviation);
+        at_.nuisance.push_back(std::move(column));
+    };
+    const Eigen::VectorXd parameters = nominal_parameters(signals_.robot, signals_.kind);
+    for (Eigen::Index body = 0; body < parameters.size() / 10; ++body) {
+        add(on_outputs(signals_.of_body(body, parameters.segment<10>(10 * body))), mass_deviation);
+    }
+    for (Eigen::Index joint = 0; !options_.gains_known && joint < signals_.outputs(); ++joint) {
+        add(on_output(joint, signals_.nominal.col(joint)), 10);
+    }
+    at_.masses_uncertain = true;
+}
+
+/// Once the largest events are chosen, those left stand out less against each other: they are judged as the
+/// first were.
+std::vector<Candidate> Search::demanding_as_chosen(std::vector<Candidate> contacts) const {
+    for (Candidate& contact : contacts) {
+        for (const ChosenShape& one : at_.chosen) {
+            const Candidate& chosen = at_.candidates[one.candidate];
+            if (chosen.effect == contact.effect && chosen.where == contact.where) {
+                contact.extra_price = std::max(contact.extra_price, chosen.extra_price);
+            }
+        }
+    }
+    return contacts;
+}
+
+/// Per output, the delay that the model at hand has there.
+Eigen::VectorXd Search::delays() const {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(signals_.outputs());
+    for (std::size_t i = 0; i < at_.chosen.size(); ++i) {
+        const Candidate& candidate = at_.candidates[at_.chosen[i].candidate];
+        if (candidate.effect == "delay") {
+            for (const EffectColumn::Part& part : candidate.columns.front().parts) {
+                result[part.output] = at_.fit.coefficients[at_.first_column(i)];
+            }
+        }
+    }
+    return result;
+}
+
+/// Candidates that depend on the model at hand.
+std::vector<CandidateEntry> Search::passing() const {
+    std::vector<Candidate> found;
+    const auto add = [&](std::vector<Candidate> more) {
+        for (Candidate& candidate : more) {
+            if (std::ranges::find(found, candidate.key(), &Candidate::key) == found.end()) {
+                found.push_back(std::move(candidate));
+            }
+        }
+    };
+    add(sensor_candidates(signals_, signals_.nominal + at_.effects(signals_, is_of_the_arm), delays(),
+                          options_.gains_known));
+    if (!signals_.wrench()) {
+        add(drift_candidates(signals_, at_.effects(signals_, is_friction)));
+    }
+    for (std::size_t i = 0; i < at_.chosen.size(); ++i) {
+        const Candidate& chosen = at_.candidates[at_.chosen[i].candidate];
+        if (chosen.about) {
+            const Eigen::Index first = at_.first_column(i);
+            add({about(chosen, chosen.shapes[at_.chosen[i].shape],
+                       at_.fit.coefficients.segment(first, at_.first_column(i + 1) - first))});
+        } else if (chosen.effect == "torque_ripple") { // looked for anew in what each model leaves
+            add({chosen});
+        }
+    }
+    const Eigen::VectorXd coefficients = all_coefficients();
+    // a free function of the position can hide a ripple
+    add(scan_ripples(signals_, regression_, weighed_residual(regression_, of_named(coefficients))));
+    const Eigen::MatrixXd weighed = weighed_residual(regression_, coefficients);
+    add(demanding_as_chosen(scan_contacts(signals_, regression_, weighed, sites_)));
+    add(scan_taken_payload(signals_, regression_, weighed, payload_));
+    add(play_.candidates(signals_, regression_, weighed));
+    std::vector<CandidateEntry> result;
+    for (Candidate& candidate : found) {
+        result.emplace_back(rows_, std::move(candidate));
+    }
+    return result;
+}
+
+/// Chosen candidates with a continuous shape get shapes around the chosen one.
+void Search::refine() {
+    for (ChosenShape& one : at_.chosen) {
+        const Candidate& chosen = at_.candidates[one.candidate];
+        if (chosen.at_value) {
+            const auto entry =
+                std::find_if(lasting_.begin(), lasting_.end(), [&](const CandidateEntry& candidate) {
+                    return candidate.candidate.key() == chosen.key();
+                });
+            one.shape = entry->refine(one.shape, rows_);
+        }
+    }
+}
+
+/// The problem of all candidates with the noise at hand; chosen ones stay chosen where they are still there.
+void Search::gather(std::vector<CandidateEntry> passing) {
+    struct Kept {
+        std::string key;
+        std::size_t shape, columns;
+        bool made_anew;
+    };
+    std::vector<Kept> chosen;
+    for (const ChosenShape& one : at_.chosen) {
+        const Candidate& candidate = at_.candidates[one.candidate];
+        chosen.push_back({candidate.key(), one.shape, candidate.shapes[one.shape].columns.size(),
+                          static_cast<bool>(candidate.about)});
+    }
+    std::vector<SpectralColumnPointer> columns = nuisance_;
+    std::map<std::string, std::size_t> families{{"", 0}};
+    at_.candidates.clear();
+    at_.problem.candidates.clear();
+    const auto add = [&](const CandidateEntry& entry) {
+        SearchCandidate candidate;
+        candidate.family = families.emplace(entry.candidate.family, families.size()).first->second;
+        candidate.tried = entry.candidate.tried;
+        candidate.extra_price = entry.candidate.extra_price;
+        for (const EffectShape& shape : entry.candidate.shapes) {
+            SearchCandidate::Shape one{{}, shape.allowed, shape.bounded, shape.nearest};
+            for (const std::size_t column : shape.columns) {
+                one.columns.push_back(static_cast<Eigen::Index>(columns.size() + column));
+            }
+            candidate.shapes.push_back(std::move(one));
+        }
+        columns.insert(columns.end(), entry.columns.begin(), entry.columns.end());
+        at_.problem.candidates.push_back(std::move(candidate));
+        at_.candidates.push_back(entry.candidate);
+    };
+    for (const CandidateEntry& entry : lasting_) {
+        const std::string key = entry.candidate.key();
+        if (std::ranges::none_of(passing,
+                                 [&](const CandidateEntry& one) { return one.candidate.key() == key; })) {
+            add(entry);
+        }
+    }
+    std::ranges::for_each(passing, add);
+    const auto named = std::ranges::count_if(at_.candidates, &Candidate::named);
+    const auto unnamed = std::ssize(at_.candidates) - named;
+    for (std::size_t i = 0; i < at_.candidates.size(); ++i) {
+        at_.problem.candidates[i].rivals = static_cast<double>(at_.candidates[i].named() ? named : unnamed);
+    }
+    at_.problem.nuisance.clear();
+    for (std::size_t i = 0; i < nuisance_.size(); ++i) {
+        at_.problem.nuisance.push_back({static_cast<Eigen::Index>(i), nuisance_deviation_[i]});
+    }
+    regression_.set_columns(std::move(columns));
+    at_.problem.sums = regression_.weighed_sums();
+    at_.chosen.clear();
+    for (const Kept& one : chosen) {
+        const auto found = std::ranges::find(at_.candidates, one.key, &Candidate::key);
+        if (found == at_.candidates.end()) {
+            continue;
+        }
+        const auto same = std::ranges::find_if(
+            found->shapes, [&](const EffectShape& shape) { return shape.columns.size() == one.columns; });
+        at_.chosen.push_back(
+            {static_cast<std::size_t>(found - at_.candidates.begin()),
+             one.made_anew ? static_cast<std::size_t>(same - found->shapes.begin()) : one.shape});
+    }
+}
+
+Eigen::VectorXd Search::all_coefficients() const {
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(regression_.columns());
+    all(at_.fit.columns) = at_.fit.coefficients;
+    return all;
+}
+
+Eigen::VectorXd Search::of_named(Eigen::VectorXd coefficients) const {
+    for (const ChosenShape& one : at_.chosen) {
+        if (!at_.candidates[one.candidate].named()) {
+            coefficients(at_.problem.candidates[one.candidate].shapes[one.shape].columns).setZero();
+        }
+    }
+    return coefficients;
+}
+
+void Search::estimate_noise(bool white) {
+    const Eigen::VectorXd coefficients = all_coefficients();
+    Eigen::MatrixXd noise(rows_.bins(), regression_.outputs());
+    std::vector<Eigen::MatrixXd> unrest;
+    for (Eigen::Index output = 0; output < noise.cols(); ++output) {
+        const Eigen::MatrixXd left = regression_.residual(output, coefficients);
+        noise.col(output) = noise_spectrum(left, static_cast<double>(at_.fit.columns.size()) /
+                                                     static_cast<double>(noise.cols()));
+        unrest.push_back(white ? Eigen::MatrixXd::Ones(left.rows(), left.cols()).eval()
+                               : noise_unrest(left, noise.col(output)));
+    }
+    if (white) {
+        noise = noise.colwise().mean().replicate(noise.rows(), 1).eval();
+    }
+    regression_.set_noise(noise, unrest);
+    at_.noise = std::move(noise);
+}
+
+std::vector<std::string> Search::chosen_keys() const {
+    std::vector<std::string> keys;
+    for (const ChosenShape& one : at_.chosen) {
+        keys.push_back(at_.candidates[one.candidate].key());
+    }
+    std::ranges::sort(keys);
+    return keys;
+}
+
+/// Are the links' masses as the robot's file says? The search went on as if they need not be.
+void Search::decide_masses() {
+    at_.problem.sums = regression_.weighed_sums();
+    at_.chosen = search_effects(at_.problem, at_.chosen);
+    at_.fit = fit_effects(at_.problem, at_.chosen);
+    SearchProblem exact = at_.problem;
+    const auto bodies = static_cast<std::ptrdiff_t>(signals_.regressor.cols() / 10);
+    exact.nuisance.erase(exact.nuisance.begin(), exact.nuisance.begin() + bodies);
+    const std::vector<ChosenShape> chosen = search_effects(exact, at_.chosen);
+    const EffectFit fit = fit_effects(exact, chosen);
+    if (fit.score >= at_.fit.score) {
+        at_.problem = std::move(exact);
+        at_.chosen = chosen;
+        at_.fit = fit;
+        at_.masses_uncertain = false;
+        at_.nuisance.erase(at_.nuisance.begin(), at_.nuisance.begin() + bodies);
+    }
+}
+
+std::vector<WeighedSums> Search::sums_of_blocks() const {
+    std::vector<WeighedSums> blocks;
+    const Eigen::Index frames = regression_.fitted_frames();
+    for (Eigen::Index block = 0; block < validation_blocks; ++block) {
+        const Eigen::Index first = block * frames / validation_blocks;
+        blocks.push_back(regression_.weighed_sums(first, (block + 1) * frames / validation_blocks - first));
+    }
+    return blocks;
+}
+
+/// Of all columns: coefficients of the chosen events, whose time no other time tells of; zero of all others.
+Eigen::VectorXd Search::of_events() const {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(regression_.columns());
+    const Eigen::VectorXd all = all_coefficients();
+    for (const ChosenShape& one : at_.chosen) {
+        if (is_event(at_.candidates[one.candidate])) {
+            const auto& columns = at_.problem.candidates[one.candidate].shapes[one.shape].columns;
+            result(columns) = all(columns);
+        }
+    }
+    return result;
+}
+
+/// Drops, one after the other, lasting effects without which blocks of time are predicted no worse by what
+/// fits the other blocks; what the events explain is taken out of all.
+void Search::keep_what_predicts() {
+    if (regression_.fitted_frames() < validation_blocks) {
+        return; // too short a recording to leave any of it out
+    }
+    SearchProblem problem = at_.problem;
+    std::vector<WeighedSums> blocks = sums_of_blocks();
+    const Eigen::VectorXd events = of_events();
+    problem.sums.moment -= problem.sums.gram * events;
+    for (WeighedSums& block : blocks) {
+        block.moment -= block.gram * events;
+    }
+    const auto lasting =
+        std::stable_partition(at_.chosen.begin(), at_.chosen.end(), [this](const ChosenShape& one) {
+            return is_event(at_.candidates[one.candidate]);
+        });
+    std::vector<ChosenShape> kept(lasting, at_.chosen.end());
+    at_.chosen.erase(lasting, at_.chosen.end());
+    double best = held_out_score(problem, blocks, kept);
+    while (true) {
+        std::size_t worst = kept.size();
+        for (std::size_t i = 0; i < kept.size(); ++i) {
+            const double others = held_out_score(problem, blocks, without(kept, i));
+            if (others >= best) {
+                best = others;
+                worst = i;
+            }
+        }
+        if (worst == kept.size()) {
+            break;
+        }
+        kept = without(kept, worst);
+    }
+    at_.chosen.insert(at_.chosen.end(), kept.begin(), kept.end());
+}
+
+void Search::fit_named() {
+    const auto has_name = [this](const ChosenShape& one) { return at_.candidates[one.candidate].named(); };
+    const auto unnamed = std::stable_partition(at_.chosen.begin(), at_.chosen.end(), has_name);
+    at_.fit = fit_effects(at_.problem, at_.chosen);
+    at_.named = fit_effects(at_.problem, {at_.chosen.begin(), unnamed});
+}
+
+} // namespace
+
+Explanation explain(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
+                    const ExplanationOptions& options) {
+    return Search(signals, measured, options).run();
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// What begins, or happens, at a time that nobody knows.
+#include "tools/diagnosis/candidates.hpp"
+#include "tools/diagnosis/scans.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace dfdyn::tools {
+
+namespace {
+
+/// Per output, how much energy a series has when it is weighed by the noise, of that before.
+Eigen::VectorXd weighed_share(const EffectRegression& regression, const Eigen::VectorXd& series) {
+    const Eigen::MatrixXd rows = regression.rows().analyse(series);
+    const Eigen::MatrixXd precision = regression.noise().cwiseInverse();
+    return (precision.transpose() * rows.cwiseAbs2().rowwise().sum()) / series.squaredNorm();
+}
+
+/// A series per row: of the weighed residual's products with some columns (p), and of their own (p (p + 1) /
+/// 2), summed over the outputs.
+struct Products {
+    Eigen::MatrixXd moment, square;
+    Eigen::Index columns;
+
+    Products(const std::vector<EffectColumn>& of, const Eigen::MatrixXd& weighed,
+             const Eigen::VectorXd& share)
+        : moment(Eigen::MatrixXd::Zero(weighed.rows(), std::ssize(of))),
+          square(Eigen::MatrixXd::Zero(weighed.rows(), std::ssize(of) * (std::ssize(of) + 1) / 2)),
+          columns(std::ssize(of)) {
+        for (Eigen::Index output = 0; output < weighed.cols(); ++output) {
+            Eigen::Index at = 0;
+            for (Eigen::Index i = 0; i < columns; ++i) {
+                const Eigen::VectorXd* const one = series(of, i, output);
+                if (one != nullptr) {
+                    moment.col(i) += weighed.col(output).cwiseProduct(*one);
+                }
+                for (Eigen::Index j = 0; j <= i; ++j, ++at) {
+                    const Eigen::VectorXd* const other = series(of, j, output);
+                    if (one != nullptr && other != nullptr) {
+                        square.col(at) += share[output] * one->cwiseProduct(*other);
+                    }
+                }
+            }
+        }
+    }
+
+    static const Eigen::VectorXd* series(const std::vector<EffectColumn>& of, Eigen::Index column,
+                                         Eigen::Index output) {
+        const auto& parts = of[static_cast<std::size_t>(column)].parts;
+        const auto found = std::ranges::find(parts, output, &EffectColumn::Part::output);
+        return found == parts.end() ? nullptr : &found->series;
+    }
+
+    /// Sum of squares that the columns explain where these are the sums of their products.
+    double gain(const Eigen::VectorXd& moments, const Eigen::VectorXd& squares) const {
+        Eigen::MatrixXd gram(columns, columns);
+        Eigen::Index at = 0;
+        for (Eigen::Index i = 0; i < columns; ++i) {
+            for (Eigen::Index j = 0; j <= i; ++j, ++at) {
+                gram(i, j) = gram(j, i) = squares[at];
+            }
+        }
+        gram.diagonal().array() *= 1 + 1e-6;
+        const Eigen::LDLT<Eigen::MatrixXd> factor(gram);
+        return factor.isPositive() && gram.trace() > 0 ? moments.dot(factor.solve(moments)) : 0;
+    }
+};
+
+struct Window {
+    double gain = 0, start_s = 0, end_s = 0;
+};
+
+constexpr double apart_s = 2;  ///< windows closer than this tell of the same event
+constexpr double flanks = 0.3; ///< of a window: where the push rises, and falls
+
+/// The best window of each event, the best event first.
+std::vector<Window> events_of(std::vector<Window> windows) {
+    std::ranges::sort(windows, std::greater<>{}, &Window::gain);
+    std::vector<Window> events;
+    for (const Window& window : windows) {
+        if (std::none_of(events.begin(), events.end(), [&](const Window& one) {
+                return one.start_s < window.end_s + apart_s && window.start_s < one.end_s + apart_s;
+            })) {
+            events.push_back(window);
+        }
+    }
+    return events;
+}
+
+/// All windows of one length.
+void scan_windows(const DiagnosisSignals& signals, const EffectRegression& regression,
+                  const Eigen::MatrixXd& weighed, const ContactSite& site, double length_s,
+                  std::vector<Window>& found) {
+    const Eigen::VectorXd& time = signals.measured.time_s;
+    const auto length = static_cast<Eigen::Index>(length_s * signals.measured.rate_hz);
+    const Eigen::Index middle = time.size() / 2;
+    if (middle + length >= time.size()) {
+        return;
+    }
+    const Eigen::VectorXd series =
+        pulse_series(signals, {time[middle], time[middle + length], flanks * length_s});
+    const Products products(site.components, weighed, weighed_share(regression, series));
+    const Eigen::VectorXd shape = series.segment(middle, length);
+    const Eigen::VectorXd shape_square = shape.cwiseAbs2();
+    for (Eigen::Index first = 0; first + length < time.size();
+         first += std::max<Eigen::Index>(1, length / 8)) {
+        const double gain =
+            products.gain(products.moment.middleRows(first, length).transpose() * shape,
+                          products.square.middleRows(first, length).transpose() * shape_square);
+        found.push_back({gain, time[first], time[first + length]});
+    }
+}
+
+/// Without what happens around a joint's reversals: there a friction that is not quite right leaves pulses of
+/// its own.
+Eigen::MatrixXd away_from_reversals(const DiagnosisSignals& signals, Eigen::MatrixXd series) {
+    if (signals.wrench()) {
+        return series;
+    }
+    const auto reach = static_cast<Eigen::Index>(0.12 * signals.measured.rate_hz);
+    for (Eigen::Index joint = 0; joint < series.cols(); ++joint) {
+        const Eigen::VectorXd velocity = signals.measured.motion.velocity.col(joint);
+        for (Eigen::Index row = 1; row < velocity.size(); ++row) {
+            if ((velocity[row] > 0) != (velocity[row - 1] > 0)) {
+                const Eigen::Index first = std::max<Eigen::Index>(0, row - reach);
+                series.col(joint).segment(first, std::min(2 * reach, series.rows() - first)).setZero();
+            }
+        }
+    }
+    return series;
+}
+
+} // namespace
+
+std::vector<Candidate> scan_contacts(const DiagnosisSignals& signals, const EffectRegression& regression,
+                                     const Eigen::MatrixXd& weighed, const std::vector<ContactSite>& sites) {
+    constexpr std::size_t usual = 3; // an event must explain three times what this one of its kind does
+    const Eigen::MatrixXd calm = away_from_reversals(signals, weighed);
+    std::vector<Candidate> result;
+    for (const ContactSite& site : sites) {
+        std::vector<Window> windows;
+        for (const double length_s : {0.5, 0.75, 1.1, 1.7, 2.5, 3.75, 5.5}) {
+            scan_windows(signals, regression, calm, site, length_s, windows);
+        }
+        const std::vector<Window> events = events_of(windows);
+        if (events.size() > usual) {
+            const Window& best = events.front();
+            const ContactPulse pulse{best.start_s, best.end_s, flanks * (best.end_s - best.start_s)};
+            result.push_back(contact_candidate(signals, site, pulse, pulses_about(pulse, 0.15)));
+            result.back().tried = static_cast<double>(windows.size());
+            result.back().extra_price = 1.5 * events[usual].gain;
+        }
+    }
+    return result;
+}
+
+std::vector<Candidate> scan_taken_payload(const DiagnosisSignals& signals, const EffectRegression& regression,
+                                          const Eigen::MatrixXd& weighed,
+                                          const std::vector<EffectColumn>& payload) {
+    constexpr double least_share = 0.05; // of the time, before and after
+    Eigen::VectorXd share = Eigen::VectorXd::Zero(weighed.cols());
+    for (const EffectColumn::Part& part : payload.front().parts) {
+        share[part.output] = part.series.isZero(0) ? 0 : weighed_share(regression, part.series)[part.output];
+    }
+    const Products products(payload, weighed, share);
+    const auto margin = static_cast<Eigen::Index>(least_share * static_cast<double>(signals.rows()));
+    Eigen::VectorXd moments = Eigen::VectorXd::Zero(products.moment.cols());
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(products.square.cols());
+    double best = 0;
+    Eigen::Index taken = -1;
+    for (Eigen::Index row = signals.rows() - 1; row >= margin; --row) {
+        moments += products.moment.row(row).transpose();
+        squares += products.square.row(row).transpose();
+        const double gain = row + margin < signals.rows() ? products.gain(moments, squares) : 0;
+        if (gain > best) {
+            best = gain;
+            taken = row;
+        }
+    }
+    if (taken < 0) {
+        return {};
+    }
+    const double time_s = signals.measured.time_s[taken];
+    Candidate candidate =
+        taken_payload(signals, payload, {time_s, time_s - 0.3, time_s - 0.1, time_s + 0.1, time_s + 0.3});
+    candidate.tried = signals.measured.time_s[signals.rows() - 1] - signals.measured.time_s[0];
+    return {std::move(candidate)};
+}
+
+} // namespace dfdyn::tools
