@@ -17,8 +17,8 @@ using namespace tools;
 
 namespace {
 
-constexpr double rate_hz = 100;
-constexpr double integration_rate_hz = 2000;
+constexpr double change_rate_hz = 100;
+constexpr double change_integration_rate_hz = 2000;
 /// The learner, and the monitor's idea of what is usual, settle before.
 constexpr double earliest_s = 60;
 constexpr double trained_s = 25;
@@ -61,9 +61,9 @@ Scenario change_scenario(const PanelRobot& kind, const Robot& robot, double dura
     const JointVector share = shares(arm);
     Scenario scenario;
     scenario.seed = draw.seed();
-    scenario.integration_rate_hz = integration_rate_hz;
-    scenario.recording.rate_hz = rate_hz;
-    scenario.recording.samples = static_cast<std::size_t>(duration_s * rate_hz);
+    scenario.integration_rate_hz = change_integration_rate_hz;
+    scenario.recording.rate_hz = change_rate_hz;
+    scenario.recording.samples = static_cast<std::size_t>(duration_s * change_rate_hz);
     scenario.task = random_task(kind, robot, duration_s, draw);
     scenario.controller.rate_hz = 500;
     scenario.controller.position_gain = JointVector::Constant(share.size(), 400);
@@ -176,7 +176,7 @@ Recording simulate_rows(const PanelRobot& kind, const Robot& robot, const Scenar
     recording.position.names = joint_names("q", robot.joints.size());
     recording.output.names = output_names(kind.outputs, robot.joints.size());
     for (std::size_t row = 0; row < scenario.recording.samples; ++row) {
-        *clock = static_cast<double>(row) / rate_hz;
+        *clock = static_cast<double>(row) / change_rate_hz;
         const SimulatedSample sample = simulation.next();
         recording.time_s.push_back(sample.time_s);
         recording.time_ns.push_back(std::llround(sample.time_s * 1e9));
@@ -197,7 +197,7 @@ Recording simulate_rows(const PanelRobot& kind, const Robot& robot, const Scenar
 
 /// What there is to train on.
 Recording beginning(Recording recording) {
-    const auto rows = static_cast<std::size_t>(trained_s * rate_hz);
+    const auto rows = static_cast<std::size_t>(trained_s * change_rate_hz);
     recording.time_s.resize(rows);
     recording.time_ns.resize(rows);
     recording.gap_before.resize(rows);

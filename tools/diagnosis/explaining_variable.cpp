@@ -12,7 +12,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double turn = 2 * std::numbers::pi;
+constexpr double full_turn = 2 * std::numbers::pi;
 
 /// Where a finding is, and what there is to draw it over.
 struct Place {
@@ -72,7 +72,7 @@ ExplainingVariable over_driven_load(const Place& at) {
 ExplainingVariable over_angle(const Place& at) {
     constexpr double most_waves = 12;
     const double cycles = std::max(1.0, at.parameter("cycles_per_rev"));
-    const double period = cycles > most_waves ? turn / cycles : turn;
+    const double period = cycles > most_waves ? full_turn / cycles : full_turn;
     const Eigen::ArrayXd position = at.signals.measured.motion.position.col(at.joint());
     if (position.maxCoeff() - position.minCoeff() < period) {
         return at.whole(at.named("angle") + " (rad)", position.matrix());

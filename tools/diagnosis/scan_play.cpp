@@ -7,13 +7,13 @@ namespace {
 
 constexpr double narrowest = 5e-4; // rad
 constexpr double widest = 0.1;
-constexpr double step = 1.5; // from one gap to the next
+constexpr double gap_ratio = 1.5; // from one gap to the next
 
 } // namespace
 
 PlayScan::PlayScan(const DiagnosisSignals& signals, const SpectralRows& rows) : courses_(signals.joints()) {
     for (std::size_t joint = 0; joint < signals.joints(); ++joint) {
-        for (double gap = narrowest; gap < widest; gap *= step) {
+        for (double gap = narrowest; gap < widest; gap *= gap_ratio) {
             Course course{gap, play_course(signals, joint, gap),
                           Eigen::MatrixXd(rows.bins(), signals.outputs())};
             for (Eigen::Index output = 0; output < signals.outputs(); ++output) {
