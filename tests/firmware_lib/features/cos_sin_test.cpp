@@ -12,7 +12,7 @@
 #include <limits>
 #include <vector>
 
-namespace {
+namespace cos_sin_test {
 
 using dfdyn::cos_sin;
 using dfdyn::largest_cos_sin_argument;
@@ -95,8 +95,6 @@ bool accepted(Scalar argument) {
     Scalar sine = 0;
     return cos_sin(&argument, 1, Scalar(1), &cosine, &sine);
 }
-
-} // namespace
 
 TEMPLATE_TEST_CASE("cosine and sine are as accurate as documented over the whole range", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
@@ -193,3 +191,5 @@ TEMPLATE_TEST_CASE("the cosines may be written over the arguments", "", float, d
     CHECK(arguments == cosine);
     CHECK(other_sine == sine);
 }
+
+} // namespace cos_sin_test

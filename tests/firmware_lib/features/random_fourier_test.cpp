@@ -11,7 +11,7 @@
 #include <numeric>
 #include <vector>
 
-namespace {
+namespace random_fourier_test {
 
 using namespace dfdyn;
 
@@ -70,8 +70,6 @@ double kernel_error(std::mt19937_64& engine, int feature_count) {
     return std::sqrt(sum / draws);
 }
 
-} // namespace
-
 TEST_CASE("the columns are the cosines, then the sines, of the frequencies' products with the input") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const std::size_t feature_count : {1U, 2U, 7U, 33U, 250U}) {
@@ -123,3 +121,5 @@ TEST_CASE("inputs that are not numbers, or far outside anything trained, are fla
         }
     }
 }
+
+} // namespace random_fourier_test

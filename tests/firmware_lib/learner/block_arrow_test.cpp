@@ -15,7 +15,7 @@
 #include <cmath>
 #include <memory>
 
-namespace {
+namespace block_arrow_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -201,8 +201,6 @@ void check_equal_to_dense(const ArrowProblem& problem, double tolerance) {
     }
 }
 
-} // namespace
-
 TEST_CASE("the block arrow is the dense solution of all unknowns, for every size") {
     DFDYN_SEEDED_ENGINE(engine);
     struct Size {
@@ -345,3 +343,5 @@ TEST_CASE("the cost of the block arrow is that of its parts, far below that of a
     static_assert(arrow.largest_step < arrow.learn / 40);
     SUCCEED();
 }
+
+} // namespace block_arrow_test

@@ -9,7 +9,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace {
+namespace bounded_variance_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -72,8 +72,6 @@ Regression partly_excited(std::mt19937_64& engine, RegressionSize size) {
     return regression;
 }
 
-} // namespace
-
 TEMPLATE_TEST_CASE("variances that outgrow the prior's are taken back as documented", "", UdFloat, UdDouble,
                    InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
@@ -96,3 +94,5 @@ TEMPLATE_TEST_CASE("variances that outgrow the prior's are taken back as documen
               TestType::tolerance);
     }
 }
+
+} // namespace bounded_variance_test

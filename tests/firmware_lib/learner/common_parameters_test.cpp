@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace common_parameters_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -59,8 +59,6 @@ const LearnerStart<double, parameters, 1>& start_below_ceiling() {
 }
 
 using Shared = CommonParameters<double, parameters, dynamic>;
-
-} // namespace
 
 TEST_CASE("common parameters are those of the batch solution, forgetting once per instant") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -114,3 +112,5 @@ TEST_CASE("the noise of an instant weighs its rows") {
     const Eigen::Map<const VectorXd> learned(learner.parameters(), parameters);
     CHECK(relative_error(learned, solve_by_qr(weighed).weights) < 1e-9);
 }
+
+} // namespace common_parameters_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace forgetting_test {
 
 using dfdyn::Forgetting;
 
@@ -23,8 +23,6 @@ double forgotten_at_rest(Forgetting<Scalar>& forgetting, int samples) {
     }
     return nats;
 }
-
-} // namespace
 
 TEMPLATE_TEST_CASE("a factor of one never forgets", "", float, double) {
     Forgetting<TestType> forgetting(1, 10);
@@ -123,3 +121,5 @@ TEST_CASE("the parameters come in turn") {
     forgetting.restart();
     CHECK(forgetting.next_parameter() == 0);
 }
+
+} // namespace forgetting_test

@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-namespace {
+namespace kernels_test {
 
 using namespace dfdyn;
 using detail::panel_width;
@@ -94,8 +94,6 @@ bool all_close(const std::vector<Scalar>& values, const std::vector<Scalar>& exp
                       [&](Scalar a, Scalar b) { return close(a, static_cast<double>(b), tolerance); });
 }
 
-} // namespace
-
 TEMPLATE_TEST_CASE("dot and add_scaled are right for every count, and stay within it", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     for (int count = 0; count <= largest_count; ++count) {
@@ -170,3 +168,5 @@ TEMPLATE_TEST_CASE("an update with the next panel's products is the update, and 
         CHECK(std::equal(products, products + panel_width, expected));
     }
 }
+
+} // namespace kernels_test

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <type_traits>
 
-namespace {
+namespace learner_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -121,8 +121,6 @@ constexpr auto all_checks = [](const Problem& problem, const auto& learned) {
     check_new_predictions(problem, learned);
     check_variances(problem, learned);
 };
-
-} // namespace
 
 TEST_CASE("weights and variances are those of the batch solution, for every size and kind of columns") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -264,3 +262,5 @@ TEMPLATE_TEST_CASE("the ratio of a row is one plus its variance before it was le
         CHECK(static_cast<double>(learned.learner().last_ratio()) == Approx(1 + variance).epsilon(1e-5));
     }
 }
+
+} // namespace learner_test

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace {
+namespace sliced_learning_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -47,8 +47,6 @@ Regression rows_for_slices(std::mt19937_64& engine, double forgetting_factor) {
     regression.rows.rightCols(columns / 2).setZero();
     return with_prior(regression, 100, forgetting_factor);
 }
-
-} // namespace
 
 TEMPLATE_TEST_CASE("any sequence of budgets learns the same, bit for bit", "", UdFloat, UdDouble,
                    InformationFloat, InformationDouble) {
@@ -150,3 +148,5 @@ TEST_CASE("the costs are constant expressions of the sizes, in the documented pr
     static_assert(information.learn > ud.learn); // for several outputs the weights cost more than the update
     SUCCEED();
 }
+
+} // namespace sliced_learning_test

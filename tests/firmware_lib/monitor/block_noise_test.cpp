@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace {
+namespace block_noise_test {
 
 using namespace dfdyn;
 
@@ -29,8 +29,6 @@ struct Joint {
         return scale[c] * unit;
     }
 };
-
-} // namespace
 
 TEMPLATE_TEST_CASE("scale and autocorrelation are those of each class of speed, and whitening frees of both",
                    "[monitor]", float, double) {
@@ -94,3 +92,5 @@ TEST_CASE("bursts count for little, and a scale never vanishes", "[monitor]") {
     CHECK(noise.scale(2) > 0);
     CHECK(std::isfinite(noise.whitening(2, 2).of(1, 0)));
 }
+
+} // namespace block_noise_test

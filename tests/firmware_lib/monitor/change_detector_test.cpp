@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace {
+namespace change_detector_test {
 
 using namespace dfdyn;
 
@@ -92,8 +92,6 @@ int alarms(Detector<Scalar>& detector, Innovations<Scalar>& innovations, int blo
     }
     return count;
 }
-
-} // namespace
 
 TEMPLATE_TEST_CASE("white, coloured and heavy-tailed innovations raise no more false alarms than stated",
                    "[monitor]", float, double) {
@@ -197,3 +195,5 @@ TEST_CASE("after a gap the block before does not count", "[monitor]") {
     }
     CHECK(alarms <= 1);
 }
+
+} // namespace change_detector_test

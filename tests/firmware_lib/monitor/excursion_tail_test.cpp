@@ -4,7 +4,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 
-namespace {
+namespace excursion_tail_test {
 
 using namespace dfdyn;
 
@@ -39,8 +39,6 @@ class Walk {
     int kind_;
     double sum_ = 0, peak_ = 0, slow_ = 0;
 };
-
-} // namespace
 
 TEMPLATE_TEST_CASE("a limit is exceeded as often as stated, whatever is summed", "[monitor]", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
@@ -88,3 +86,5 @@ TEST_CASE("one height that is out of all proportion does not blind", "[monitor]"
     tail.add(1e9);
     CHECK(tail.limit(1e6) < 3 * before);
 }
+
+} // namespace excursion_tail_test

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace {
+namespace frozen_watch_test {
 
 using namespace dfdyn;
 
@@ -34,8 +34,6 @@ struct Readings {
         }
     }
 };
-
-} // namespace
 
 TEST_CASE("A reading that freezes while the arm moves is told from one that rests", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
@@ -79,3 +77,5 @@ TEST_CASE("An arm that stands as a whole repeats without evidence", "[monitor]")
     CHECK(watch.evidence(0) < 15);
     CHECK(watch.evidence(1) < 15);
 }
+
+} // namespace frozen_watch_test

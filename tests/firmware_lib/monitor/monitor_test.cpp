@@ -13,7 +13,7 @@
 #include <cmath>
 #include <optional>
 
-namespace {
+namespace monitor_test {
 
 using namespace dfdyn;
 using namespace dfdyn::tests;
@@ -191,8 +191,6 @@ int run(TestMonitor<Scalar>& monitor, Swinging<Scalar>& arm, double until_s, std
     return news;
 }
 
-} // namespace
-
 TEMPLATE_TEST_CASE("The monitor names what changed, where and by how much, without the heap", "[monitor]",
                    float, double) {
     DFDYN_SEEDED_ENGINE(engine);
@@ -331,3 +329,5 @@ TEST_CASE("Centred rows give a parabola's position, velocity and acceleration ex
     CHECK(motion[1] == Approx(-1.2));
     CHECK(motion[2] == Approx(5));
 }
+
+} // namespace monitor_test
