@@ -88,9 +88,9 @@ class Nonparametric final : public Ticking {
 
   private:
     using Learner = UdCovariance<float, columns, outputs>;
-    static constexpr typename Learner::Constants constants_{prior, 1, nullptr};
+    static constexpr typename Learner::Constants constants{prior, 1, nullptr};
     std::unique_ptr<Learner> learner_ =
-        std::make_unique<Learner>(constants_, Extent<columns>{}, Extent<outputs>{});
+        std::make_unique<Learner>(constants, Extent<columns>{}, Extent<outputs>{});
     const std::vector<Instant<columns, p>>& instants_;
     std::size_t next_ = 0;
 };
@@ -118,9 +118,9 @@ class Kernel final : public Ticking {
 
   private:
     using Learner = BlockArrow<float, columns, p, outputs>;
-    static constexpr typename Learner::Constants constants_{{prior, 1, nullptr}, {prior, 1, nullptr}};
+    static constexpr typename Learner::Constants constants{{prior, 1, nullptr}, {prior, 1, nullptr}};
     std::unique_ptr<Learner> learner_ =
-        std::make_unique<Learner>(constants_, Extent<columns>{}, Extent<p>{}, Extent<outputs>{});
+        std::make_unique<Learner>(constants, Extent<columns>{}, Extent<p>{}, Extent<outputs>{});
     const std::vector<Instant<columns, p>>& instants_;
     std::size_t next_ = 0;
 };

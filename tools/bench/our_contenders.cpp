@@ -15,7 +15,7 @@ class OurContender final : public TypedContender<Scalar> {
   public:
     explicit OurContender(const RegressionTask& task)
         : Base("dfdyn", Contender::Kind::ours, task),
-          learner_(std::make_unique<Learner>(constants_, Extent<p>{}, Extent<RegressionTask::outputs>{})) {}
+          learner_(std::make_unique<Learner>(constants, Extent<p>{}, Extent<RegressionTask::outputs>{})) {}
 
   private:
     using Learner = UdCovariance<Scalar, p, RegressionTask::outputs>;
@@ -33,7 +33,7 @@ class OurContender final : public TypedContender<Scalar> {
     void predict(const Scalar* row, Scalar* means) override { learner_->predict(row, means); }
 
     static constexpr
-        typename Learner::Constants constants_{Scalar(RegressionTask::prior_variance), 1, nullptr};
+        typename Learner::Constants constants{Scalar(RegressionTask::prior_variance), 1, nullptr};
     std::unique_ptr<Learner> learner_;
 };
 

@@ -5,13 +5,15 @@
 
 #ifdef DFDYN_HAS_QRUPDATE
 
-extern "C" {
+extern "C" { // Fortran's names
+// NOLINTBEGIN(readability-identifier-naming)
 void sch1up_(const int* n, float* r, const int* ldr, float* u, float* w);
 void dch1up_(const int* n, double* r, const int* ldr, double* u, double* w);
 void spotrs_(const char* uplo, const int* n, const int* nrhs, const float* a, const int* lda, float* b,
              const int* ldb, int* info);
 void dpotrs_(const char* uplo, const int* n, const int* nrhs, const double* a, const int* lda, double* b,
              const int* ldb, int* info);
+// NOLINTEND(readability-identifier-naming)
 }
 
 namespace dfdyn::tools {

@@ -30,7 +30,8 @@ RegressionTask::RegressionTask(int columns) : rows_(distinct_rows, columns) {
 }
 
 RegressionTask::Matrix RegressionTask::batch_predictions(int samples) const {
-    Eigen::VectorXd times = Eigen::VectorXd::Constant(distinct_rows, samples / distinct_rows);
+    const int rounds = samples / distinct_rows;
+    Eigen::VectorXd times = Eigen::VectorXd::Constant(distinct_rows, rounds);
     times.head(samples % distinct_rows).array() += 1;
     Eigen::MatrixXd normal = rows_.transpose() * times.asDiagonal() * rows_;
     normal.diagonal().array() += 1 / prior_variance;
