@@ -121,6 +121,7 @@ class ChangeDetector {
     }
 
     [[nodiscard]] const BlockNoise<Scalar>& noise(int output) const noexcept { return noise_[output]; }
+    [[nodiscard]] Scalar limit(Departure kind) const noexcept { return limits_[static_cast<int>(kind)]; }
 
   private:
     static constexpr int shared_columns = 1 + force_columns; ///< payload's mass, force
