@@ -5,6 +5,7 @@
 #include "tools/bench/whole_tick.hpp"
 
 #include <cmath>
+#include <memory>
 
 namespace dfdyn::tools {
 

@@ -8,7 +8,10 @@
 
 #include <Eigen/Cholesky>
 
+#include <cmath>
+#include <memory>
 #include <random>
+#include <vector>
 
 namespace dfdyn::tools {
 

@@ -3,6 +3,7 @@
 #include "tools/bench/typed_contender.hpp"
 #include "tools/bench/whole_tick.hpp"
 
+#include <memory>
 #include <stdexcept>
 
 namespace dfdyn::tools {
