@@ -34,8 +34,9 @@ function(dfdyn_compile_strictly target)
     endif()
 endfunction()
 
-# With DFDYN_COMPILE_BY_FOLDER, compiles the sources of a target that lie in one folder as one; call it when all have been added.
-# What is compiled together depends on the folder alone, so that two files whose names clash do so in every build.
+# dfdyn_compile_by_folder(TARGET [HEADER...]): with DFDYN_COMPILE_BY_FOLDER, compiles the sources of a target that lie in one
+# folder as one, and the headers, which most of them include, once for all; call it when all sources have been added. What is
+# compiled together depends on the folder alone, so that two files whose names clash do so in every build.
 function(dfdyn_compile_by_folder target)
     if(NOT DFDYN_COMPILE_BY_FOLDER)
         return()
@@ -49,6 +50,11 @@ function(dfdyn_compile_by_folder target)
         set_source_files_properties("${source}" TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${group})
     endforeach()
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+        # What GCC 12 says of bounds depends on what it inlines, and is mostly wrong where a folder is inlined into one file.
+        target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
+    endif()
 endfunction()
 
 # Every subfolder that has a CMakeLists.txt; the folders list their own sources.

@@ -27,14 +27,10 @@
 extern "C" {
 double exp(double) noexcept [[clang::nonblocking]];
 double log(double) noexcept [[clang::nonblocking]];
-double sin(double) noexcept [[clang::nonblocking]];
-double cos(double) noexcept [[clang::nonblocking]];
 double tanh(double) noexcept [[clang::nonblocking]];
 double hypot(double, double) noexcept [[clang::nonblocking]];
 float expf(float) noexcept [[clang::nonblocking]];
 float logf(float) noexcept [[clang::nonblocking]];
-float sinf(float) noexcept [[clang::nonblocking]];
-float cosf(float) noexcept [[clang::nonblocking]];
 float tanhf(float) noexcept [[clang::nonblocking]];
 float hypotf(float, float) noexcept [[clang::nonblocking]];
 }

@@ -18,6 +18,7 @@ namespace {
 using Catch::Matchers::ContainsSubstring;
 using dfdyn::tests::Background;
 using dfdyn::tests::file_content;
+using dfdyn::tests::number_after;
 using dfdyn::tests::run;
 using dfdyn::tests::TemporaryDirectory;
 
@@ -33,13 +34,6 @@ std::string call(const std::string& arguments, const std::string& scenario = "")
 
 /// Both programs print so many lines when they end.
 constexpr std::size_t loop_lines = 3, plant_lines = 2;
-
-/// The number that follows `words` in `text`, from where `begin` is.
-double number_after(const std::string& text, const std::string& words, const std::string& begin = "") {
-    const std::size_t place = text.find(words, text.find(begin));
-    REQUIRE(place != std::string::npos);
-    return std::stod(text.substr(place + words.size()));
-}
 
 void pause(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
 

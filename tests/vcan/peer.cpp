@@ -74,6 +74,14 @@ std::string run(const std::string& command) {
     return output;
 }
 
+double number_after(const std::string& text, const std::string& words, const std::string& begin) {
+    const std::size_t place = text.find(words, text.find(begin));
+    if (place == std::string::npos) {
+        throw std::runtime_error("'" + words + "' is not in: " + text);
+    }
+    return std::stod(text.substr(place + words.size()));
+}
+
 Background::Background(const std::string& command, Ready ready) {
     const long receivers_before = receivers();
     const std::string to_file = "exec " + command + " >" + (directory_.path() / "output").string() + " 2>&1";

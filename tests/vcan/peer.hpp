@@ -17,6 +17,10 @@ namespace dfdyn::tests {
 /// std::runtime_error with that when its status is not 0.
 std::string run(const std::string& command);
 
+/// The number that follows `words` in `text`, from where `begin` is. Throws std::runtime_error if they are
+/// not there.
+double number_after(const std::string& text, const std::string& words, const std::string& begin = "");
+
 /// Whether the clock stands still while programs run: then nothing is ever late, and every run is the same.
 bool virtual_time();
 

@@ -22,6 +22,10 @@ void append_size(std::vector<BenchTarget>& targets, const TickBench& bench, int 
                        fastest->times.median / ours->times.median, 2, false});
     targets.push_back({at_columns("times faster than Eigen's Cholesky route", columns),
                        cholesky->times.median / ours->times.median, 8, false});
+    if (const TickResult* gurls = fastest_of(bench, Contender::Kind::gurls, "double", columns)) {
+        targets.push_back({at_columns("times faster than " + gurls->contender + " (double)", columns),
+                           gurls->times.median / ours->times.median, 30, false});
+    }
 }
 
 void append_floor(std::vector<BenchTarget>& targets, const TickBench& bench) {
@@ -92,6 +96,10 @@ std::vector<BenchTarget> bench_targets(const BenchResults& results) {
                        100 * std::abs(endurance.change_moving()), 2, true});
     targets.push_back({"change after ten times as many ticks, standing, %",
                        100 * std::abs(endurance.change_standing()), 2, true});
+    if (results.loop) {
+        targets.push_back({"deadlines missed by the loop, of " + std::to_string(results.loop->pace.ticks),
+                           static_cast<double>(results.loop->pace.missed), 0, true});
+    }
     if (results.hour) {
         targets.push_back(
             {"times real time, replay of a recording", results.hour->times_real_time(), 100, false});

@@ -11,13 +11,17 @@ namespace dfdyn::tools {
 
 namespace {
 
-const std::vector<std::string> time_columns{"median",    "p99",   "p99.9",         "max",
-                                            "spread, %", "ticks", "undisturbed, %"};
+const std::vector<std::string> time_columns{"median", "p90",       "p99",   "p99.9",
+                                            "max",    "spread, %", "ticks", "undisturbed, %"};
 
 void append_times(std::vector<ReportCell>& row, const TickTimes& times) {
-    const std::vector<ReportCell> cells{times.median,        times.p99,
-                                        times.p999,          times.most,
-                                        100 * times.spread,  static_cast<double>(times.ticks),
+    const std::vector<ReportCell> cells{times.median,
+                                        times.p90,
+                                        times.p99,
+                                        times.p999,
+                                        times.most,
+                                        100 * times.spread,
+                                        static_cast<double>(times.ticks),
                                         100 * times.accepted};
     row.insert(row.end(), cells.begin(), cells.end());
 }
@@ -95,7 +99,7 @@ ReportTable tick_table(const BenchResults& results) {
         " ticks against the same regression solved at once in double, at most, over their rms; more than " +
         rounded_text(tolerated_error("float")) + " in float or " + rounded_text(tolerated_error("double")) +
         " in double is wrong, and no time is shown. spread: distance of the quartiles over the median. "
-        "undisturbed: share of the repetitions that count.";
+        "undisturbed: share of the repetitions that count; where it is below 10, all count.";
     return table;
 }
 
@@ -119,6 +123,23 @@ ReportTable model_table(const ModelBench& models, const EnduranceBench& enduranc
     return table;
 }
 
+/// From each size to the next.
+std::string growth_words(const TickBench& bench) {
+    std::string words;
+    const TickResult* before = nullptr;
+    for (const FloorResult& floor : bench.floors) {
+        const TickResult* ours = floor.scalar == "float" ? find_ours(bench, "float", floor.columns) : nullptr;
+        if (ours != nullptr && before != nullptr) {
+            const double sizes[] = {static_cast<double>(before->columns), static_cast<double>(ours->columns)};
+            const double times[] = {before->times.median, ours->times.median};
+            words += (words.empty() ? " (" : ", ") + std::to_string(before->columns) + " to " +
+                     std::to_string(ours->columns) + ": " + rounded_text(fitted_exponent(sizes, times));
+        }
+        before = ours != nullptr ? ours : before;
+    }
+    return words.empty() ? words : words + ")";
+}
+
 std::string model_words(const ModelBench& models) {
     return "Random features: " + rounded_text(100 * models.feature_share()) +
            " % of a tick of NP. SPK: " + rounded_text(models.kernel_over_nonparametric()) +
@@ -129,7 +150,9 @@ std::string model_words(const ModelBench& models) {
 std::string endurance_words(const EnduranceBench& endurance) {
     return "Long runs: ten stretches of " + std::to_string(endurance.ticks) +
            " ticks each under forgetting, nine tenths of each standing still; the states after the first and "
-           "after the tenth then tick in turn. Moving: " +
+           "after the tenth then tick in turn. Ticks that take back a variance take longer, and how many "
+           "they are is up to the "
+           "motion, so the ninetieth percentile is compared, which is one of these. Moving: " +
            formatted("%+.1f %%", 100 * endurance.change_moving()) +
            ", standing: " + formatted("%+.1f %%", 100 * endurance.change_standing()) +
            "; denormal numbers in the last state: " + std::to_string(endurance.denormals) + ".";
@@ -146,9 +169,10 @@ std::string hour_words(const HourBench& hour) {
 
 std::string loop_words(const LoopBench& loop) {
     return "The loop: " + std::to_string(loop.pace.ticks) +
-           " ticks at 1 kHz, six joints, six outputs, model NP with 200 columns, every sample learned in its "
-           "tick (" +
-           std::to_string(loop.learned) + "), beside a thread that works on 64 MiB" +
+           " ticks at 1 kHz, six joints, six outputs, model NP with 200 columns, " +
+           std::to_string(loop.learned) +
+           " samples learned, each in its tick (the first ones fill the window), beside a thread that works "
+           "on 64 MiB" +
            (loop.cores > 1 ? " on another core" : ", on the only core") +
            ". Deadlines missed: " + std::to_string(loop.pace.missed) + ". " +
            (loop.not_real_time.empty()
@@ -167,14 +191,14 @@ ReportTable loop_table(const LoopBench& loop) {
 }
 
 ReportTable memory_table() {
-    ReportTable table{"Bytes of the firmware's estimator, model NP, six joints and outputs",
-                      {"scalar", "2d", "state", "constants", "stack, at most"},
+    ReportTable table{"Bytes of the estimator on this machine, model NP, six joints and outputs",
+                      {"scalar", "2d", "state", "constants"},
                       {},
                       ""};
     for (const MemoryRow& row : memory_rows()) {
-        table.rows.push_back(
-            {row.scalar, static_cast<double>(row.columns), static_cast<double>(row.bytes.state_bytes),
-             static_cast<double>(row.bytes.constant_bytes), static_cast<double>(row.bytes.stack_bytes)});
+        table.rows.push_back({row.scalar, static_cast<double>(row.columns),
+                              static_cast<double>(row.bytes.state_bytes),
+                              static_cast<double>(row.bytes.constant_bytes)});
     }
     return table;
 }
@@ -212,7 +236,7 @@ FigurePage bench_page(const BenchResults& results) {
     FigurePage page;
     page.title = "On the host";
     page.summary = "One tick: predict six outputs for a row of 2d columns, fold the row in, have the next "
-                   "weights; one core. "
+                   "weights; one core, nothing forgotten (with forgetting: the long runs below). "
                    "All learners take turns within one run, so that what else the machine does hits them "
                    "alike; repetitions "
                    "during which the system took the core away, or next to which a probe of the processor's "
@@ -227,7 +251,8 @@ FigurePage bench_page(const BenchResults& results) {
     ticks.paragraphs.push_back(
         "The probe's best: " + rounded_text(results.vectors_per_ns) +
         " vector multiply-adds per ns. Our time in float grows with the columns to the power of " +
-        rounded_text(growth_exponent(results.ticks)) + " from 200 on.");
+        rounded_text(growth_exponent(results.ticks)) + " from 200 on" + growth_words(results.ticks) +
+        ". BLAS: " + prepare_blas() + ".");
     page.sections.push_back(std::move(ticks));
     PageSection rest{"The rest of a tick, long runs, memory",
                      {model_words(results.models), endurance_words(results.endurance)},

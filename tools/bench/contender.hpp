@@ -14,7 +14,7 @@ namespace dfdyn::tools {
 /// row in, and have the weights with which the one after it will be predicted.
 class Contender : public Ticking {
   public:
-    enum class Kind { ours, covariance, cholesky, other };
+    enum class Kind { ours, covariance, cholesky, gurls, other };
 
     Contender(std::string name, std::string scalar, Kind kind)
         : name_(std::move(name)), scalar_(std::move(scalar)), kind_(kind) {}
@@ -48,8 +48,12 @@ const std::vector<int>& contender_columns();
 
 // The parts of `peers`.
 Contenders eigen_peers(const RegressionTask& task);
+Contenders gurls_peers(const RegressionTask& task);
 Contenders qrupdate_peers(const RegressionTask& task);
 Contenders dlib_peers(const RegressionTask& task);
+bool has_blas();
+/// All contenders have one core: BLAS too. Which one it is.
+std::string prepare_blas();
 bool has_qrupdate();
 bool has_dlib();
 

@@ -9,72 +9,54 @@ namespace {
 
 /// The textbook's recursion over the covariance, one triangle of it.
 template <class Scalar>
-class EigenCovariance final : public TypedContender<Scalar> {
-    using Base = TypedContender<Scalar>;
-    using Row = Eigen::Map<const typename Base::Vector>;
+class EigenCovariance final : public EigenContender<Scalar> {
+    using Base = EigenContender<Scalar>;
 
   public:
     explicit EigenCovariance(const RegressionTask& task)
         : Base("Eigen covariance, symmetric", Contender::Kind::covariance, task),
           covariance_(Base::Matrix::Identity(this->columns(), this->columns()) *
                       Scalar(RegressionTask::prior_variance)),
-          weights_(Base::Matrix::Zero(this->columns(), RegressionTask::outputs)), gain_(this->columns()) {}
+          gain_(this->columns()) {}
 
   private:
-    void learn(const Scalar* row, const Scalar* targets) override {
-        const Row h(row, this->columns());
-        const Eigen::Map<const typename Base::Outputs> y(targets);
-        const typename Base::Outputs means = weights_.transpose() * h;
-        gain_.noalias() = covariance_.template selfadjointView<Eigen::Lower>() * h;
-        const Scalar ratio = 1 + h.dot(gain_);
-        keep(means);
+    void fold(const typename Base::Row& row, const typename Base::Outputs& targets,
+              const typename Base::Outputs& means) override {
+        gain_.noalias() = covariance_.template selfadjointView<Eigen::Lower>() * row;
+        const Scalar ratio = 1 + row.dot(gain_);
         keep(ratio);
         covariance_.template selfadjointView<Eigen::Lower>().rankUpdate(gain_, -1 / ratio);
-        weights_.noalias() += gain_ * ((y - means) / ratio).transpose();
-    }
-    void predict(const Scalar* row, Scalar* means) override {
-        for (int k = 0; k < RegressionTask::outputs; ++k) {
-            means[k] = weights_.col(k).dot(Row(row, this->columns()));
-        }
+        this->weights_.noalias() += gain_ * ((targets - means) / ratio).transpose();
     }
 
-    typename Base::Matrix covariance_, weights_;
+    typename Base::Matrix covariance_;
     typename Base::Vector gain_;
 };
 
 /// The paper's route with Eigen: rank-one update of the Cholesky factor of the information matrix, then two
 /// triangular solves for the weights. It gives no variance: that would be one more solve.
 template <class Scalar>
-class EigenCholesky final : public TypedContender<Scalar> {
-    using Base = TypedContender<Scalar>;
-    using Row = Eigen::Map<const typename Base::Vector>;
+class EigenCholesky final : public EigenContender<Scalar> {
+    using Base = EigenContender<Scalar>;
 
   public:
     explicit EigenCholesky(const RegressionTask& task)
         : Base("Eigen LLT::rankUpdate and solves", Contender::Kind::cholesky, task),
           factor_(typename Base::Matrix(Base::Matrix::Identity(this->columns(), this->columns()) /
                                         Scalar(RegressionTask::prior_variance))),
-          right_(Base::Matrix::Zero(this->columns(), RegressionTask::outputs)), weights_(right_) {}
+          right_(this->weights_) {}
 
   private:
-    void learn(const Scalar* row, const Scalar* targets) override {
-        const Row h(row, this->columns());
-        const Eigen::Map<const typename Base::Outputs> y(targets);
-        const typename Base::Outputs means = weights_.transpose() * h;
-        keep(means);
-        factor_.rankUpdate(h, 1);
-        right_.noalias() += h * y.transpose();
-        weights_ = right_;
-        factor_.solveInPlace(weights_);
-    }
-    void predict(const Scalar* row, Scalar* means) override {
-        for (int k = 0; k < RegressionTask::outputs; ++k) {
-            means[k] = weights_.col(k).dot(Row(row, this->columns()));
-        }
+    void fold(const typename Base::Row& row, const typename Base::Outputs& targets,
+              const typename Base::Outputs& /*means*/) override {
+        factor_.rankUpdate(row, 1);
+        right_.noalias() += row * targets.transpose();
+        this->weights_ = right_;
+        factor_.solveInPlace(this->weights_);
     }
 
     Eigen::LLT<typename Base::Matrix> factor_;
-    typename Base::Matrix right_, weights_;
+    typename Base::Matrix right_;
 };
 
 } // namespace

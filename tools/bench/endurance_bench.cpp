@@ -2,7 +2,7 @@
 #include "tools/bench/endurance_bench.hpp"
 
 #include "dfdyn/learner/ud_covariance.hpp"
-#include "tools/bench/typed_contender.hpp"
+#include "tools/bench/whole_tick.hpp"
 
 #include <cmath>
 
@@ -28,12 +28,7 @@ struct Motion {
 };
 
 void tick(Learner& learner, const Motion& motion, Eigen::Index row) {
-    float means[outputs];
-    learner.predict(motion.rows.row(row).data(), means);
-    keep(means);
-    Budget budget = Budget::unlimited();
-    learner.begin(motion.rows.row(row).data(), motion.targets.row(row).data());
-    learner.advance(budget);
+    whole_tick(learner, motion.targets.row(row).data(), motion.rows.row(row).data());
 }
 
 /// A tenth of the time in motion, then standing.

@@ -4,7 +4,7 @@
 #include "dfdyn/features/random_fourier.hpp"
 #include "dfdyn/learner/block_arrow.hpp"
 #include "dfdyn/learner/ud_covariance.hpp"
-#include "tools/bench/typed_contender.hpp"
+#include "tools/bench/whole_tick.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -78,12 +78,8 @@ class Nonparametric final : public Ticking {
     explicit Nonparametric(const std::vector<Instant<columns, p>>& instants) : instants_(instants) {}
     void tick() override {
         const auto& one = instants_[next_ = (next_ + 1) % rows];
-        float means[outputs];
-        learner_->predict(one.phi.data(), means);
-        keep(means);
-        Budget budget = Budget::unlimited();
-        learner_->begin(one.phi.data(), one.target.data());
-        learner_->advance(budget);
+        whole_tick(*learner_, one.target.data(), one.phi.data());
+        keep(learner_->last_ratio());
     }
 
   private:
@@ -101,12 +97,8 @@ class Kernel final : public Ticking {
     explicit Kernel(const std::vector<Instant<columns, p>>& instants) : instants_(instants) {}
     void tick() override {
         const auto& one = instants_[next_ = (next_ + 1) % rows];
+        whole_tick(*learner_, one.target.data(), one.phi.data(), one.psi.data());
         float values[outputs];
-        learner_->predict(one.phi.data(), one.psi.data(), values);
-        keep(values);
-        Budget budget = Budget::unlimited();
-        learner_->begin(one.phi.data(), one.psi.data(), one.target.data());
-        learner_->advance(budget);
         learner_->last_ratios(values);
         keep(values);
     }

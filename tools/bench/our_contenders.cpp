@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dfdyn/learner/ud_covariance.hpp"
 #include "tools/bench/typed_contender.hpp"
+#include "tools/bench/whole_tick.hpp"
 
 #include <stdexcept>
 
@@ -20,14 +21,8 @@ class OurContender final : public TypedContender<Scalar> {
   private:
     using Learner = UdCovariance<Scalar, p, RegressionTask::outputs>;
 
-    /// The variance comes with the sweep, as in the estimator.
     void learn(const Scalar* row, const Scalar* targets) override {
-        Scalar means[RegressionTask::outputs];
-        learner_->predict(row, means);
-        keep(means);
-        Budget budget = Budget::unlimited();
-        learner_->begin(row, targets);
-        learner_->advance(budget);
+        whole_tick(*learner_, targets, row);
         keep(learner_->last_ratio());
     }
     void predict(const Scalar* row, Scalar* means) override { learner_->predict(row, means); }

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Cholesky route with the Fortran libraries that GURLS' kind of tool is made of. Compiled in if qrupdate,
-// LAPACK and BLAS were there at build time.
+// The Cholesky route with Fortran libraries, compiled in if qrupdate, LAPACK and BLAS were there at build
+// time.
 #include "tools/bench/typed_contender.hpp"
 
 #ifdef DFDYN_HAS_QRUPDATE
+
+#include "tools/bench/blas.hpp"
 
 extern "C" { // Fortran's names
 // NOLINTBEGIN(readability-identifier-naming)
 void sch1up_(const int* n, float* r, const int* ldr, float* u, float* w);
 void dch1up_(const int* n, double* r, const int* ldr, double* u, double* w);
-void spotrs_(const char* uplo, const int* n, const int* nrhs, const float* a, const int* lda, float* b,
-             const int* ldb, int* info);
-void dpotrs_(const char* uplo, const int* n, const int* nrhs, const double* a, const int* lda, double* b,
-             const int* ldb, int* info);
 // NOLINTEND(readability-identifier-naming)
 }
 
@@ -33,36 +31,27 @@ void solve(const int& n, const int& count, const double* r, double* b) {
 }
 
 template <class Scalar>
-class Qrupdate final : public TypedContender<Scalar> {
-    using Base = TypedContender<Scalar>;
-    using Row = Eigen::Map<const typename Base::Vector>;
+class Qrupdate final : public EigenContender<Scalar> {
+    using Base = EigenContender<Scalar>;
 
   public:
     explicit Qrupdate(const RegressionTask& task)
         : Base("qrupdate ch1up and LAPACK potrs", Contender::Kind::other, task),
           factor_(Base::Matrix::Identity(this->columns(), this->columns()) /
                   std::sqrt(Scalar(RegressionTask::prior_variance))),
-          right_(Base::Matrix::Zero(this->columns(), RegressionTask::outputs)), weights_(right_),
-          row_(this->columns()), work_(this->columns()) {}
+          right_(this->weights_), row_(this->columns()), work_(this->columns()) {}
 
   private:
-    void learn(const Scalar* row, const Scalar* targets) override {
-        row_ = Row(row, this->columns());
-        const Eigen::Map<const typename Base::Outputs> y(targets);
-        const typename Base::Outputs means = weights_.transpose() * row_;
-        keep(means);
-        right_.noalias() += row_ * y.transpose();
+    void fold(const typename Base::Row& row, const typename Base::Outputs& targets,
+              const typename Base::Outputs& /*means*/) override {
+        row_ = row;
+        right_.noalias() += row * targets.transpose();
         update(this->columns(), factor_.data(), row_.data(), work_.data());
-        weights_ = right_;
-        solve(this->columns(), RegressionTask::outputs, factor_.data(), weights_.data());
-    }
-    void predict(const Scalar* row, Scalar* means) override {
-        for (int k = 0; k < RegressionTask::outputs; ++k) {
-            means[k] = weights_.col(k).dot(Row(row, this->columns()));
-        }
+        this->weights_ = right_;
+        solve(this->columns(), RegressionTask::outputs, factor_.data(), this->weights_.data());
     }
 
-    typename Base::Matrix factor_, right_, weights_;
+    typename Base::Matrix factor_, right_;
     typename Base::Vector row_, work_;
 };
 

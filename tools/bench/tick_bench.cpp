@@ -89,8 +89,8 @@ const FloorResult* find_floor(const TickBench& bench, const std::string& scalar,
 
 const TickResult* fastest_peer(const TickBench& bench, const std::string& scalar, int columns) {
     const TickResult* fastest = nullptr;
-    for (const Contender::Kind kind :
-         {Contender::Kind::covariance, Contender::Kind::cholesky, Contender::Kind::other}) {
+    for (const Contender::Kind kind : {Contender::Kind::covariance, Contender::Kind::cholesky,
+                                       Contender::Kind::gurls, Contender::Kind::other}) {
         const TickResult* one = fastest_of(bench, kind, scalar, columns);
         if (one != nullptr && (fastest == nullptr || one->times.median < fastest->times.median)) {
             fastest = one;

@@ -17,6 +17,7 @@ TickTimes summarise(std::vector<double> times_us, double accepted_share) {
     }
     std::ranges::sort(times_us);
     result.median = quantile_of_sorted(times_us, 0.5);
+    result.p90 = quantile_of_sorted(times_us, 0.9);
     result.p99 = quantile_of_sorted(times_us, 0.99);
     result.p999 = quantile_of_sorted(times_us, 0.999);
     result.most = times_us.back();

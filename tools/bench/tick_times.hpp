@@ -10,7 +10,7 @@ namespace dfdyn::tools {
 /// How long one kind of tick took, µs each.
 struct TickTimes {
     std::size_t ticks = 0; ///< that count
-    double median = 0, p99 = 0, p999 = 0, most = 0;
+    double median = 0, p90 = 0, p99 = 0, p999 = 0, most = 0;
     double spread = 0;   ///< distance of the quartiles, as a share of the median
     double accepted = 0; ///< share of the repetitions during which the machine was undisturbed
 };

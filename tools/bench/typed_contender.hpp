@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tools/bench/contender.hpp"
+#include "tools/bench/keep.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -49,10 +50,35 @@ class TypedContender : public Contender {
     Eigen::Index next_ = 0;
 };
 
-/// Where results go that nobody reads, so that they are computed.
-template <class Value>
-void keep(const Value& value) {
-    asm volatile("" : : "r"(&value) : "memory");
-}
+/// A contender that has its weights, zero at first, in a matrix of Eigen's, one column for each output.
+template <class Scalar>
+class EigenContender : public TypedContender<Scalar> {
+  public:
+    using typename TypedContender<Scalar>::Matrix;
+    using typename TypedContender<Scalar>::Vector;
+    using typename TypedContender<Scalar>::Outputs;
+    using Row = Eigen::Map<const Vector>;
+
+    EigenContender(std::string name, Contender::Kind kind, const RegressionTask& task)
+        : TypedContender<Scalar>(std::move(name), kind, task),
+          weights_(Matrix::Zero(task.columns(), RegressionTask::outputs)) {}
+
+  protected:
+    /// Folds in a row and the outputs at it, whose predictions were `means`.
+    virtual void fold(const Row& row, const Outputs& targets, const Outputs& means) = 0;
+
+    Matrix weights_;
+
+  private:
+    void learn(const Scalar* row, const Scalar* targets) final {
+        const Row h(row, this->columns());
+        const Outputs means = weights_.transpose() * h;
+        keep(means);
+        fold(h, Eigen::Map<const Outputs>(targets), means);
+    }
+    void predict(const Scalar* row, Scalar* means) final {
+        Eigen::Map<Outputs>{means} = weights_.transpose() * Row(row, this->columns());
+    }
+};
 
 } // namespace dfdyn::tools

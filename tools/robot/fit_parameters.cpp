@@ -53,7 +53,7 @@ Solution solve(const Eigen::MatrixXd& columns, const Eigen::VectorXd& error, con
     Eigen::VectorXd length = weighted.colwise().norm();
     length = (length.array() > 0).select(length, 1.0);
     weighted *= length.cwiseInverse().asDiagonal();
-    const Eigen::BDCSVD<Eigen::MatrixXd> svd(weighted, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(weighted, Eigen::ComputeThinU | Eigen::ComputeThinV);
     const Eigen::VectorXd& s = svd.singularValues();
     const Eigen::VectorXd inverse = (s.array() > not_excited * s[0]).select(s.cwiseInverse(), 0.0);
     const Eigen::MatrixXd spread = svd.matrixV() * inverse.asDiagonal();

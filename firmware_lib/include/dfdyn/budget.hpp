@@ -7,9 +7,9 @@
 namespace dfdyn {
 
 /// How much learning one tick may do, in multiply-adds: one per product or quotient, with the sum that takes
-/// it up, and `function_cost` per square root, exponential, logarithm, sine or cosine. The costs of the parts
-/// are constant expressions of the sizes (`Estimator::cost()`), so that a loop can be given a share of its
-/// period.
+/// it up, and `function_cost` per square root, exponential, logarithm or hyperbolic tangent. The costs of the
+/// parts are constant expressions of the sizes (`Estimator::cost()`), so that a loop can be given a share of
+/// its period.
 struct Budget {
     std::int64_t operations = 0;
 
@@ -45,11 +45,18 @@ struct Cost {
         largest_step; ///< the largest part that learning is sliced into: a smaller budget may not get on
 };
 
+/// Bytes of stack for the registers that a part's calls save, at most.
+///
+/// What grows with sizes in the bytes of stack is what the code keeps there; the numbers beside it are those
+/// of g++ 12 -O3 on the Cortex-M, measured, with some room (firmware_lib/examples/cortex_m/parts.cpp holds
+/// every part to them). What an interrupt pushes comes on top.
+inline constexpr std::int64_t frame_bytes = 128;
+
 /// The bytes that an estimator takes.
 struct Footprint {
     std::int64_t state_bytes;    ///< RAM: the estimator itself
     std::int64_t constant_bytes; ///< flash: the constants, and where learning starts
-    std::int64_t stack_bytes;    ///< of any of its calls, at most, compiled with optimisation
+    std::int64_t stack_bytes;    ///< of any of its calls, at most
 };
 
 } // namespace dfdyn

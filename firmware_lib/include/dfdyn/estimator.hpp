@@ -131,14 +131,12 @@ class Estimator {
         return cost;
     }
 
-    /// Bytes of a firmware model. The stack does not grow with features or lags: on it are the estimate, of a
-    /// rigid body the outputs' screws, and the frames of the calls.
+    /// Bytes of a firmware model. The stack does not grow with features or lags: on it are copies of the
+    /// estimate and what the parts need, one after the other.
     [[nodiscard]] static constexpr Footprint footprint() noexcept {
-        constexpr std::int64_t scalar = sizeof(Scalar);
-        constexpr std::int64_t physics = Model::parameters == 0 ? 0 : (128 + 6 * Model::outputs) * scalar;
         return {.state_bytes = sizeof(Estimator),
                 .constant_bytes = sizeof(Constants) + Model::StructureConstants::start_bytes,
-                .stack_bytes = 512 + 3 * sizeof(Estimate) + physics};
+                .stack_bytes = frame_bytes + 3 * sizeof(Estimate) + Regression::stack_bytes({})};
     }
 
   private:

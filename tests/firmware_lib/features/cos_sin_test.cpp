@@ -180,6 +180,23 @@ TEMPLATE_TEST_CASE("arguments that mean nothing are flagged, wherever they are",
     }
 }
 
+TEMPLATE_TEST_CASE("one argument gives what it gives among others, and no number beyond the range", "", float,
+                   double) {
+    DFDYN_SEEDED_ENGINE(engine);
+    const auto arguments = random_arguments<TestType>(engine, 100, 83);
+    std::vector<TestType> cosine(83);
+    std::vector<TestType> sine(83);
+    cos_sin(arguments.data(), 83, TestType(1), cosine.data(), sine.data());
+    TestType c = 9;
+    TestType s = 9;
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+        dfdyn::cos_sin_of(arguments[i], c, s);
+        CHECK((c == cosine[i] && s == sine[i]));
+    }
+    dfdyn::cos_sin_of(TestType(9000), c, s);
+    CHECK((std::isnan(c) && std::isnan(s)));
+}
+
 TEMPLATE_TEST_CASE("the cosines may be written over the arguments", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     auto arguments = random_arguments<TestType>(engine, 100, 83);

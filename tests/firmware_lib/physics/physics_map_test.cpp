@@ -297,7 +297,7 @@ TEST_CASE("nothing in a map's life calls the heap") {
 
 TEST_CASE("a map's cost is known when compiling, and grows with the square of the joints") {
     constexpr auto cost = [](auto arm) { return Measured::Map<float, decltype(arm)>::cost({}); };
-    static_assert(cost(Chain<3>{}) > rigid_body_cost<Chain<3>>({}));
+    static_assert(cost(Chain<3>{}) > rigid_body_cost<Chain<3>, float>({}));
     static_assert(cost(Chain<6>{}) < 5000);
     static_assert(cost(Chain<48>{}) < 5 * cost(Chain<24>{}));
     // constants in flash: no constructor runs

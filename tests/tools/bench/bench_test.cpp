@@ -23,8 +23,8 @@ bool has_all(const json& object, const std::vector<std::string>& keys) {
     return std::ranges::all_of(keys, [&](const std::string& key) { return object.contains(key); });
 }
 
-const std::vector<std::string> time_keys{"median_us", "p99_us", "p999_us",    "max_us",
-                                         "spread",    "ticks",  "undisturbed"};
+const std::vector<std::string> time_keys{"median_us", "p90_us", "p99_us", "p999_us",
+                                         "max_us",    "spread", "ticks",  "undisturbed"};
 
 BenchTarget only_target(double measured, bool at_most) { return {"x", measured, 2, at_most}; }
 
@@ -78,17 +78,21 @@ TEST_CASE("a wrong learner is shown without a time, and is no peer") {
     BenchResults results;
     results.ticks.ticks = {{"dfdyn", "float", Contender::Kind::ours, 100, 1e-6, true, {}},
                            {"quick and wrong", "float", Contender::Kind::covariance, 100, 0.5, false, {}},
-                           {"slow", "float", Contender::Kind::cholesky, 100, 1e-5, true, {}}};
+                           {"slow", "float", Contender::Kind::cholesky, 100, 1e-5, true, {}},
+                           {"the paper's", "double", Contender::Kind::gurls, 100, 1e-12, true, {}}};
     results.ticks.ticks[0].times.median = 1;
     results.ticks.ticks[1].times.median = 0.1;
     results.ticks.ticks[2].times.median = 9;
+    results.ticks.ticks[3].times.median = 40;
     results.ticks.floors = {{"float", 100, {0.5, 0.25}}, {"double", 100, {1, 0.5}}};
     const json all = bench_json(results);
     CHECK_FALSE(all["ticks"][1].contains("median_us"));
     const std::vector<BenchTarget> targets = bench_targets(results);
-    REQUIRE(targets.size() >= 2);
+    REQUIRE(targets.size() >= 3);
     CHECK(targets[0].measured == Approx(9)); // the fastest that is right
     CHECK(targets[1].measured == Approx(9));
+    CHECK(targets[2].measured == Approx(40));
+    CHECK(targets[2].limit == 30);
     CHECK_THAT(figure_page_markdown(bench_page(results)), Catch::Matchers::ContainsSubstring("0.5, wrong"));
 }
 

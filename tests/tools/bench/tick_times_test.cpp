@@ -18,6 +18,7 @@ TEST_CASE("the statistics of ticks are those of their ascending times") {
     const TickTimes result = summarise(times, 0.75);
     CHECK(result.ticks == 1001);
     CHECK(result.median == 501);
+    CHECK(result.p90 == Approx(901));
     CHECK(result.p99 == Approx(991));
     CHECK(result.p999 == Approx(1000));
     CHECK(result.most == 1001);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <limits>
 #include <numbers>
@@ -138,6 +139,31 @@ bool cos_sin(const Scalar* argument, int count, Scalar amplitude, Scalar* cosine
     }
     return inside;
 }
+
+/// A scalar that `cos_sin` computes with; one that carries derivatives brings functions of its own.
+template <class Scalar>
+concept CosSinScalar = requires {
+    detail::HalfPi<Scalar>::parts;
+};
+
+/// Cosine and sine of one argument; no numbers where `cos_sin` has none.
+template <class Scalar>
+void cos_sin_of(const Scalar& argument, Scalar& cosine, Scalar& sine) noexcept {
+    if constexpr (CosSinScalar<Scalar>) {
+        if (!cos_sin(&argument, 1, Scalar(1), &cosine, &sine)) {
+            cosine = sine = std::numeric_limits<Scalar>::quiet_NaN();
+        }
+    } else {
+        cosine = cos(argument);
+        sine = sin(argument);
+    }
+}
+
+/// On the stack of `cos_sin`: three vectors that are filled up, and those that find no register (measured, as
+/// all bytes of stack).
+template <class Scalar>
+inline constexpr std::int64_t cos_sin_bytes = std::int64_t{22} * detail::cos_sin_lane_count<Scalar> *
+                                              sizeof(Scalar);
 
 /// Multiply-adds of `cos_sin`: per argument, filled up to whole vectors of the machine, one for the quadrant,
 /// one for each part of π/2, the two polynomials with their square, and the amplitude.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/budget.hpp"
 #include "dfdyn/features/cos_sin.hpp"
 #include "dfdyn/storage.hpp"
 
@@ -44,6 +45,12 @@ struct RandomFourier {
     template <class Scalar>
     [[nodiscard]] static constexpr std::int64_t cost(int input_count, int feature_count) noexcept {
         return std::int64_t{feature_count} * input_count + cos_sin_cost<Scalar>(feature_count);
+    }
+
+    /// Of `evaluate`.
+    template <class Scalar>
+    [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
+        return frame_bytes + cos_sin_bytes<Scalar>;
     }
 
     /// Of the constants; a feature map keeps no state.

@@ -48,6 +48,10 @@ class AdaptiveWindow {
         Scalar slope = 0, curvature = 0; ///< at the newest sample
     };
 
+  public:
+    static constexpr std::int64_t fit_bytes = sizeof(Fit); ///< of a polynomial
+
+  private:
     [[nodiscard]] constexpr Fit longest(int degree) const noexcept {
         Fit best;
         for (int length = degree + 1; length <= count_; ++length) {

@@ -60,6 +60,9 @@ struct DerivativeFree {
             return LagWindow<Scalar, n, M>::state_bytes(joints, lag_count);
         }
 
+        /// Of `push` and `evaluate`.
+        [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept { return frame_bytes; }
+
       private:
         const Scalar* scale_;
         [[no_unique_address]] Extent<n> joints_;

@@ -82,6 +82,9 @@ struct DerivativeFreeReduced {
             return LagWindow<Scalar, n, M>::state_bytes(joints, lag_count);
         }
 
+        /// Of `push` and `evaluate`.
+        [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept { return frame_bytes; }
+
       private:
         const Constants* constants_;
         [[no_unique_address]] Extent<n> joints_;

@@ -107,6 +107,9 @@ struct DerivativeFreeStructuredRecursive {
             return 4 * storage_bytes<Scalar>(joints);
         }
 
+        /// Of `push` and `evaluate`.
+        [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept { return frame_bytes; }
+
       private:
         using Joints = Storage<Scalar, n>;
         static constexpr Joints zeros(Extent<n> joints) noexcept { return Joints::zeros(joints); }

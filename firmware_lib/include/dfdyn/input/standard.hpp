@@ -75,6 +75,11 @@ struct Standard {
                    storage_bytes<Scalar>(lag_count + 1);
         }
 
+        /// Of `push` and `evaluate`: two polynomials are compared.
+        [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
+            return frame_bytes + 2 * AdaptiveWindow<Scalar>::fit_bytes;
+        }
+
       private:
         using Ages = Storage<Scalar, sum(M, 1)>;
 
@@ -135,6 +140,9 @@ struct StandardMeasured {
                                                                 int /*rows*/) noexcept {
             return storage_bytes<Scalar>(std::int64_t{3} * joints);
         }
+
+        /// Of `push` and `evaluate`.
+        [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept { return frame_bytes; }
 
       private:
         using State = Storage<Scalar, product(n, 3)>;

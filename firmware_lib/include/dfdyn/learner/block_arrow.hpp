@@ -22,9 +22,8 @@ struct BlockArrowConstants {
 ///
 /// Its information matrix is an arrow: m equal blocks for the w_k, coupled through π alone. Eliminating the
 /// blocks leaves two small problems, and nothing is approximated:
-///  - y_k and every column of ψ_k are regressed on φ, by one factor for all m (1+p) of them, as m (1+p)
-///  outputs
-///    of model NP. What φ does not explain is ẽ_k = y_k - φ'a_k and ψ̃_k = ψ_k - G_k'φ, with the variance
+///  - y_k and every column of ψ_k are regressed on φ, by one factor for all of them, as m (1+p) outputs of
+///    model NP. What φ does not explain is ẽ_k = y_k - φ'a_k and ψ̃_k = ψ_k - G_k'φ, with the variance
 ///    α = 1 + φ'Pφ of one noise;
 ///  - ẽ_k = ψ̃_k'π + noise of variance α, the problem of `CommonParameters`.
 /// Then E[w_k] = a_k - G_k π. A row costs 1.5 (2d)² + 2·2d·m(1+p) + 1.5 m p² multiply-adds instead of
@@ -175,6 +174,11 @@ class BlockArrow {
                CommonParameters<Scalar, p, m>::state_bytes(parameters, outputs) +
                storage_bytes<Scalar>(std::int64_t{outputs} * (1 + parameters) * padded(column_count)) +
                2 * residual;
+    }
+
+    /// Of any call.
+    [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
+        return frame_bytes + 48 * std::int64_t{sizeof(Scalar)};
     }
 
     template <class Self, class Visitor>

@@ -126,6 +126,11 @@ class CholeskyInformation {
                2 * storage_bytes<Scalar>(columns) + storage_bytes<Scalar>(outputs);
     }
 
+    /// Of any call.
+    [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
+        return frame_bytes + 24 * std::int64_t{sizeof(Scalar)};
+    }
+
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         for (int i = 0; i < self.columns_; ++i) {

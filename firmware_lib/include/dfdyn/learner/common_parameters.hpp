@@ -108,6 +108,11 @@ class CommonParameters {
                storage_bytes<Scalar>(std::int64_t{outputs} * parameters) + 2 * storage_bytes<Scalar>(outputs);
     }
 
+    /// Of any call.
+    [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
+        return frame_bytes + UdCovariance<Scalar, p, 1>::stack_bytes();
+    }
+
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         UdCovariance<Scalar, p, 1>::visit_state(self.learner_, visitor);

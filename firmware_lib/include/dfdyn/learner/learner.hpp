@@ -43,8 +43,7 @@ struct LearnerConstants {
 ///  - `variance(row)`: φ'Pφ of the last whole state, also while a row is being folded in. O(p²).
 ///  - `begin(row, target)`: takes a row in when `idle()`.
 ///  - `advance(budget)`: works on it and says whether there is nothing left to do.
-///  - `sample_pending()`: the row is not learned yet; under forgetting a learner goes on with work of its own
-///  after that.
+///  - `sample_pending()`: the row is not learned yet; under forgetting there is more work after that.
 ///  - `last_ratio()`: 1 + φ'Pφ of the last row, before it was learned.
 ///  - `reset()`: back to the start, all of it.
 template <class L, class Scalar>

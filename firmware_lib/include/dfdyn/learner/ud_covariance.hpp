@@ -128,6 +128,11 @@ class UdCovariance {
                storage_bytes<Scalar>(outputs);
     }
 
+    /// Of any call.
+    [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
+        return frame_bytes + 24 * std::int64_t{sizeof(Scalar)};
+    }
+
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         Factor::visit_state(self.factor_, visitor);

@@ -71,17 +71,17 @@ class CauseFits {
     /// A block since the onset, and the one before it.
     void add(const Block* now, const Block* before, const Speed& speed) noexcept {
         for (int k = 0; k < outputs_; ++k) {
-            const Whitening<Scalar> whitening =
-                noise_[k].whitening(speed.of(now[k].speed), speed.of(before[k].speed));
+            const Whitening<Scalar> whitening = whitening_of(k, now, before, speed);
+            const Scalar scale = unit(k);
             whitening_[k] = whitening;
             targets_[k] = whitening.of(now[k].residual, before[k].residual);
             nothing.add(k, targets_[k], 1);
-            const Scalar constant = unit(k) * whitening.of(1, 1);
+            const Scalar constant = scale * whitening.of(1, 1);
             bias[k].add(&constant, &targets_[k]);
             push[k].add(&constant, &targets_[k]);
             const Scalar rubbing[friction_columns] = {
-                unit(k) * whitening.of(now[k].friction[0], before[k].friction[0]),
-                unit(k) * whitening.of(now[k].friction[1], before[k].friction[1])};
+                scale * whitening.of(now[k].friction[0], before[k].friction[0]),
+                scale * whitening.of(now[k].friction[1], before[k].friction[1])};
             friction[k].add(rubbing, &targets_[k]);
         }
         add_shared(payload, payload_scale, &Block::payload, now, before);
@@ -93,9 +93,8 @@ class CauseFits {
         Scalar most = 0;
         for (int k = 0; k < outputs_; ++k) {
             using std::abs;
-            const Whitening<Scalar> whitening =
-                noise_[k].whitening(speed.of(now[k].speed), speed.of(before[k].speed));
-            const Scalar one = abs(whitening.of(now[k].residual, before[k].residual));
+            const Scalar one =
+                abs(whitening_of(k, now, before, speed).of(now[k].residual, before[k].residual));
             most = std::max(most, one);
         }
         return most;
@@ -126,6 +125,11 @@ class CauseFits {
 
   private:
     using Rows = Storage<Scalar, product(m, payload_columns)>;
+
+    [[nodiscard]] Whitening<Scalar> whitening_of(int k, const Block* now, const Block* before,
+                                                 const Speed& speed) const noexcept {
+        return noise_[k].whitening(speed.of(now[k].speed), speed.of(before[k].speed));
+    }
 
     template <class BlockAt>
     void scale_columns(const BlockAt& block_at, int count) noexcept {

@@ -27,9 +27,8 @@ inline constexpr int departure_count = 6;
 /// - force, per axis of the base and sign: one at the tool, in all outputs;
 /// with each innovation cut off at three deviations; how large a shift, friction … is looked for, is said in
 /// deviations of a block (`shift_size`, `force_size`). For what is short and large there is one more sum:
-/// - burst: log(e²/2²) of each innovation of e > 2 deviations, all outputs together, at most `burst_limit`
-/// per
-///   block, less 2.
+/// - burst: log(e²/2²) of each innovation of e > 2 deviations, all outputs together, less 2 per block; a
+///   block counts `burst_limit` at most.
 /// So no single block raises an alarm.
 ///
 /// The alarm is at a limit that each kind's own excursions set (`ExcursionTail`), so that all kinds together
@@ -123,9 +122,6 @@ class ChangeDetector {
 
     [[nodiscard]] const BlockNoise<Scalar>& noise(int output) const noexcept { return noise_[output]; }
     [[nodiscard]] Scalar limit(Departure kind) const noexcept { return limits_[static_cast<int>(kind)]; }
-    [[nodiscard]] const ExcursionTail<Scalar>& tail(Departure kind) const noexcept {
-        return tails_[static_cast<int>(kind)];
-    }
 
   private:
     static constexpr int shared_columns = 1 + force_columns; ///< payload's mass, force

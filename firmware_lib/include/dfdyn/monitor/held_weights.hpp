@@ -3,8 +3,6 @@
 
 #include "dfdyn/storage.hpp"
 
-#include <algorithm>
-
 namespace dfdyn {
 
 /// What an estimator knew a while ago: two copies of its `count` weights, renewed in turn, so that the older
@@ -22,12 +20,6 @@ class HeldWeights {
     [[nodiscard]] Scalar* renew() noexcept {
         newer_is_first_ = !newer_is_first_;
         return (newer_is_first_ ? first_ : second_).data();
-    }
-
-    /// Both are the present `weights`.
-    void renew_both(const Scalar* weights) noexcept {
-        std::copy_n(weights, first_.size(), first_.data());
-        std::copy_n(weights, second_.size(), second_.data());
     }
 
   private:

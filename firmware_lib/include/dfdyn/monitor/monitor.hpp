@@ -31,10 +31,19 @@ struct Observation {
 /// after `longest_blocks`. A `FrozenWatch` raises an alarm of its own for a reading that repeats beyond
 /// chance.
 ///
-///     if (monitor.renewal_due()) { regression.copy_weights(held.renew()); monitor.renewed(); }  // learner
-///     idle Estimate e = estimator.tick(sample, budget); regression.predict_with(held.older(), …); // to the
-///     output's unit if (e.status.predicted() && measured) { news = monitor.tick({…}); } else {
-///     monitor.interrupt(); }
+/// Each tick, while the learner is idle:
+///
+///     if (monitor.renewal_due()) {
+///         regression.copy_weights(held.renew());
+///         monitor.renewed();
+///     }
+///     const auto estimate = estimator.tick(sample, budget);
+///     if (estimate.status.predicted() && measured) {
+///         regression.predict_with(held.older(), held_means); // then to the outputs' units
+///         news = monitor.tick(observation);
+///     } else {
+///         monitor.interrupt();
+///     }
 ///
 /// Cost per tick: `cost()`, at the end of a block while a change is on; otherwise a fraction of it. No heap.
 /// Memory about 13 m `history` + 250 m scalars, see `sizeof`.
@@ -140,8 +149,6 @@ class Monitor {
     [[nodiscard]] bool changing() const noexcept { return changing_; }
     /// The last one; its verdict counts once `tick` has told of it.
     [[nodiscard]] const Change& change() const noexcept { return change_; }
-    [[nodiscard]] const ChangeDetector<Scalar, m>& detector() const noexcept { return detector_; }
-    [[nodiscard]] const CauseBank<Scalar, m>& bank() const noexcept { return bank_; }
 
     /// Multiply-adds of a tick, at most: one that ends a block while a change is on.
     [[nodiscard]] static constexpr std::int64_t cost(const typename Arm::Sizes& sizes, int lags) noexcept {

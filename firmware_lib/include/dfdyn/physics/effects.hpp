@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dfdyn/budget.hpp"
+#include "dfdyn/features/cos_sin.hpp"
 #include "dfdyn/storage.hpp"
 
 #include <cmath>
@@ -12,7 +13,7 @@ namespace dfdyn {
 
 /// A named effect adds columns to the physics: each column acts on one output and is known but for its
 /// factor, which is learned. An effect says
-///  - `columns`: how many; `column_cost`: multiply-adds of one, at most;
+///  - `columns`: how many; `column_cost<Scalar>`: multiply-adds of one, at most;
 ///  - `at_joint`: its columns act on joints, so that the outputs must be the joints' torques;
 ///  - `Constants`: `row` gives the output (0: the first) that each column acts on, the rest is the effect's
 ///    own;
@@ -23,7 +24,7 @@ template <class E>
 concept PhysicsEffect = requires(const typename E::template Constants<float>& constants, int column,
                                  const float* xi) {
     { E::columns } -> std::convertible_to<int>;
-    { E::column_cost } -> std::convertible_to<int>;
+    { E::template column_cost<float> } -> std::convertible_to<std::int64_t>;
     { E::at_joint } -> std::convertible_to<bool>;
     { constants.row[column] } -> std::convertible_to<std::int32_t>;
     { constants.row.size() } -> std::convertible_to<int>;
@@ -38,7 +39,8 @@ namespace detail {
 template <template <int> class Effect, int count, int element>
 struct MotionColumns {
     static constexpr int columns = count;
-    static constexpr int column_cost = 0;
+    template <class>
+    static constexpr std::int64_t column_cost = 0;
     static constexpr bool at_joint = true;
 
     template <class Scalar>
@@ -62,7 +64,8 @@ struct ViscousFriction : detail::MotionColumns<ViscousFriction, count, 1> {};
 template <int count>
 struct CoulombFriction {
     static constexpr int columns = count;
-    static constexpr int column_cost = function_cost + 1;
+    template <class>
+    static constexpr std::int64_t column_cost = function_cost + 1;
     static constexpr bool at_joint = true;
 
     template <class Scalar>
@@ -83,7 +86,8 @@ struct CoulombFriction {
 template <int count>
 struct StribeckFriction {
     static constexpr int columns = count;
-    static constexpr int column_cost = 2 * function_cost + 4;
+    template <class>
+    static constexpr std::int64_t column_cost = 2 * function_cost + 4;
     static constexpr bool at_joint = true;
     static constexpr int faded = 40; ///< exp(-40) is nothing, and beyond 87 a float has denormals
 
@@ -123,21 +127,25 @@ struct JointSpring : detail::MotionColumns<JointSpring, count, 0> {};
 template <int count>
 struct TorqueRipple {
     static constexpr int columns = count;
-    static constexpr int column_cost = function_cost + 1;
+    template <class Scalar>
+    static constexpr std::int64_t column_cost = cos_sin_cost<Scalar>(1) + 1;
     static constexpr bool at_joint = true;
 
     template <class Scalar>
     struct Constants {
         Storage<std::int32_t, count> row;
-        Storage<Scalar, count> cycles_per_rev; ///< c > 0: a float's angle is good to 1e-4 rad up to c = 200
-        Storage<Scalar, count> phase;          ///< rad
+        Storage<Scalar, count>
+            cycles_per_rev; ///< c > 0, c |q| ≤ 8000; a float's angle is good to 1e-4 rad up to c = 200
+        Storage<Scalar, count> phase; ///< rad
     };
 
     template <class Real, class Scalar>
     static Scalar value(const Constants<Real>& constants, int column, const Scalar* xi) noexcept {
-        using std::sin;
         const Scalar angle = xi[3 * constants.row[column]] * constants.cycles_per_rev[column];
-        return sin(Scalar(angle + constants.phase[column]));
+        Scalar cosine(0);
+        Scalar sine(0);
+        cos_sin_of(Scalar(angle + constants.phase[column]), cosine, sine);
+        return sine;
     }
 };
 
@@ -145,7 +153,8 @@ struct TorqueRipple {
 template <int count>
 struct OutputOffset {
     static constexpr int columns = count;
-    static constexpr int column_cost = 0;
+    template <class>
+    static constexpr std::int64_t column_cost = 0;
     static constexpr bool at_joint = false;
 
     template <class Scalar>

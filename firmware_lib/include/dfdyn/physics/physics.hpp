@@ -59,8 +59,8 @@ struct Physics {
         constexpr bool torques = std::is_same_v<typename Arm::Output, JointTorques>;
         static_assert(torques || p == dynamic || !(false || ... || EffectTypes::at_joint),
                       "effects at joints need joint torques as outputs");
-        int column = write_bodies(constants, sizes, xi, psi);
-        int first = inertial_parameters * sizes.body_count;
+        [[maybe_unused]] int column = write_bodies(constants, sizes, xi, psi);
+        [[maybe_unused]] int first = inertial_parameters * sizes.body_count;
         (..., write_effect<EffectTypes>(constants, sizes, xi, first, column, psi));
     }
 
@@ -100,7 +100,7 @@ struct Physics {
         [[nodiscard]] static constexpr std::int64_t cost(const Sizes& sizes) noexcept {
             const std::int64_t written = std::int64_t{2} * sizes.output_count * sizes.column_count;
             return MotionMap::cost(sizes.joint_count, sizes.lag_count, 3) +
-                   rigid_body_cost<Arm>(sizes.chain()) + written + effects_cost(sizes.column_count);
+                   rigid_body_cost<Arm, Scalar>(sizes.chain()) + written + effects_cost(sizes.column_count);
         }
 
         [[nodiscard]] static constexpr std::int64_t state_bytes(const Sizes& sizes) noexcept {
@@ -108,15 +108,24 @@ struct Physics {
                    storage_bytes<Scalar>(std::int64_t{3} * sizes.joint_count);
         }
 
+        /// Of `push` and `evaluate`: the outputs' screws, motion and frame of a link, a body's row, and what
+        /// it takes to get from one to the next, its cosine and sine too.
+        [[nodiscard]] static constexpr std::int64_t stack_bytes(const Sizes& sizes) noexcept {
+            constexpr int of_a_link = 224;
+            const std::int64_t scalars = of_a_link + 6 * sizes.output_count;
+            return std::max(MotionMap::stack_bytes(), frame_bytes + scalars * std::int64_t{sizeof(Scalar)});
+        }
+
       private:
         template <class Effect>
         static constexpr std::int64_t effect_cost(int selected) noexcept {
             const int most = Effect::columns == dynamic ? selected : std::min(Effect::columns, selected);
-            return std::int64_t{Effect::column_cost} * most;
+            return Effect::template column_cost<Scalar> * most;
         }
         /// Of all that are there, and not more than of the most expensive ones alone.
         static constexpr std::int64_t effects_cost(int selected) noexcept {
-            const std::int64_t most = std::max({0, EffectTypes::column_cost...});
+            const std::int64_t most =
+                std::max({std::int64_t{0}, EffectTypes::template column_cost<Scalar>...});
             return std::min(most * selected, (std::int64_t{0} + ... + effect_cost<EffectTypes>(selected)));
         }
 

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "dfdyn/budget.hpp"
+#include "dfdyn/features/cos_sin.hpp"
 #include "dfdyn/physics/chain.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace dfdyn {
 
@@ -21,10 +21,11 @@ namespace detail {
 /// axis, row by row: only the last line depends on the position.
 template <class Scalar, class Real>
 LinkFrame<Scalar> link_frame(const ChainJoint<Real>& joint, const Scalar& position) noexcept {
-    using std::cos;
-    using std::sin;
-    const Scalar c = joint.prismatic ? Scalar(1) : Scalar(cos(position));
-    const Scalar s = joint.prismatic ? Scalar(0) : Scalar(sin(position));
+    Scalar c(1);
+    Scalar s(0);
+    if (!joint.prismatic) {
+        cos_sin_of(position, c, s);
+    }
     const Scalar slide = joint.prismatic ? position : Scalar(0);
     const auto axis = Vector3<Real>::from(joint.axis);
     LinkFrame<Scalar> frame{{}, Vector3<Scalar>::from(joint.placement.translation)};
@@ -113,14 +114,14 @@ void inertial_row(const Screw<Scalar>& screw, const LinkMotion<Scalar>& motion, 
     row[9] = u.z * alpha.z + uw.z * w.z;
 }
 
-/// Multiply-adds of the regressor of revolute joints; a prismatic one needs no sine and cosine. Per joint its
+/// Multiply-adds of the regressor of revolute joints; a prismatic one needs no cosine and sine. Per joint its
 /// frame and its motion, per screw and joint it passes the change of frames, per pair of an output and a body
 /// that acts on it the row.
-template <class Arm>
+template <class Arm, class Scalar>
 constexpr std::int64_t rigid_body_cost(const typename Arm::Sizes& sizes) noexcept {
-    constexpr int joint = 2 * function_cost + 57 + 57;
+    constexpr std::int64_t joint = cos_sin_cost<Scalar>(1) + 57 + 57;
     using Output = typename Arm::Output;
-    return std::int64_t{joint} * sizes.joint_count + Output::begin_cost +
+    return joint * sizes.joint_count + Output::begin_cost +
            24 * Output::carries(sizes.output_count, sizes.body_count, sizes.joint_count) +
            51 * Output::pairs(sizes.output_count, sizes.body_count);
 }

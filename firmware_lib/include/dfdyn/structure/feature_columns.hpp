@@ -3,6 +3,7 @@
 
 #include "dfdyn/storage.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace dfdyn {
@@ -39,6 +40,10 @@ class FeatureColumns {
     [[nodiscard]] static constexpr std::int64_t cost(const typename Model::Sizes& sizes) noexcept {
         return Map::cost(sizes.joint_count, sizes.lag_count, sizes.features_per_joint) +
                Model::Features::template cost<Scalar>(sizes.input_count(), sizes.feature_count);
+    }
+
+    [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
+        return std::max(Map::stack_bytes(), Model::Features::template stack_bytes<Scalar>());
     }
 
   private:

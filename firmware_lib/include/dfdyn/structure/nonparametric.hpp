@@ -5,6 +5,8 @@
 #include "dfdyn/structure/absent.hpp"
 #include "dfdyn/structure/feature_columns.hpp"
 
+#include <algorithm>
+
 namespace dfdyn {
 
 /// Model NP of the paper (eq. nonpar_model): the columns are the features alone, the same for every output,
@@ -75,6 +77,12 @@ struct Nonparametric {
             Cost cost = Learner::cost(sizes.column_count(), sizes.output_count);
             cost.predict += FeatureColumns<Model>::cost(sizes);
             return cost;
+        }
+
+        /// Of any call.
+        [[nodiscard]] static constexpr std::int64_t
+        stack_bytes(const typename Model::Sizes& /*sizes*/) noexcept {
+            return std::max(Learner::stack_bytes(), FeatureColumns<Model>::stack_bytes());
         }
 
         template <class Self, class Visitor>

@@ -5,6 +5,8 @@
 #include "dfdyn/structure/absent.hpp"
 #include "dfdyn/structure/physics_columns.hpp"
 
+#include <algorithm>
+
 namespace dfdyn {
 
 /// Model P of the paper (eq. par_regr_model): y_k = ψ_k'π + e, the parameters of the rigid body and of named
@@ -72,6 +74,11 @@ struct Parametric {
             Cost cost = Learner::cost(sizes.physics.column_count, sizes.output_count);
             cost.predict += PhysicsColumns<Model>::cost(sizes);
             return cost;
+        }
+
+        /// Of any call.
+        [[nodiscard]] static constexpr std::int64_t stack_bytes(const typename Model::Sizes& sizes) noexcept {
+            return std::max(Learner::stack_bytes(), PhysicsColumns<Model>::stack_bytes(sizes));
         }
 
         template <class Self, class Visitor>

@@ -48,6 +48,10 @@ class PhysicsColumns {
         return Map::cost(sizes.physics) + std::int64_t{sizes.output_count} * (1 + sizes.physics.column_count);
     }
 
+    [[nodiscard]] static constexpr std::int64_t stack_bytes(const typename Model::Sizes& sizes) noexcept {
+        return Map::stack_bytes(sizes.physics);
+    }
+
   private:
     using Map = typename Model::Physics::template Map<Scalar, typename Model::Arm>;
     using Rows = Storage<Scalar, product(Model::outputs, Model::parameters)>;

@@ -11,14 +11,12 @@ namespace dfdyn {
 /// in units of their noise and about their offset.
 ///  - `push`, `ready`, `restart`: the window of past positions.
 ///  - `evaluate`: computes the present columns; false if they mean nothing.
-///  - `predict(means)` at the present columns, m values; `variances(ratios)`: 1 + the variance of each mean
-///  there.
-///  - `begin(targets)`: takes the present columns in, after `predict`, when `idle()`; `advance(budget)` works
-///  on
-///    them and says whether nothing is left to do; `sample_pending()`: they are not learned yet;
-///    `last_ratios(ratios)`: as `variances` gave before the last sample learned.
+///  - `predict(means)` at the present columns, m values; `variances(ratios)`: 1 + the variance of each mean.
+///  - `begin(targets)`: takes the present columns in, after `predict`, when `idle()`.
+///  - `advance(budget)`: works on them, and says whether nothing is left to do.
+///  - `sample_pending()`: they are not learned yet; `last_ratios(ratios)`: `variances` before the last sample
+///    that was.
 ///  - `weight_count`, `copy_weights` (when idle), `predict_with(weights, means)`: what has been learned as
-///  plain
 ///    numbers, to predict with later.
 ///  - `reset()`: back to the start, all of it.
 template <class R, class Scalar, class Sample>

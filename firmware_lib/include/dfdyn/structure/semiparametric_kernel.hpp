@@ -5,6 +5,8 @@
 #include "dfdyn/structure/feature_columns.hpp"
 #include "dfdyn/structure/physics_columns.hpp"
 
+#include <algorithm>
+
 namespace dfdyn {
 
 /// Model SPK of the paper (eq. modelloSPK): y_k = ψ_k'π + φ'w_k + e, the physics' parameters learned together
@@ -81,6 +83,12 @@ struct SemiparametricKernel {
             Cost cost = Learner::cost(sizes.column_count(), sizes.physics.column_count, sizes.output_count);
             cost.predict += FeatureColumns<Model>::cost(sizes) + PhysicsColumns<Model>::cost(sizes);
             return cost;
+        }
+
+        /// Of any call.
+        [[nodiscard]] static constexpr std::int64_t stack_bytes(const typename Model::Sizes& sizes) noexcept {
+            return std::max({Learner::stack_bytes(), FeatureColumns<Model>::stack_bytes(),
+                             PhysicsColumns<Model>::stack_bytes(sizes)});
         }
 
         template <class Self, class Visitor>

@@ -4,6 +4,8 @@
 #include "dfdyn/structure/nonparametric.hpp"
 #include "dfdyn/structure/physics_columns.hpp"
 
+#include <algorithm>
+
 namespace dfdyn {
 
 /// Constants of a model whose physics is its mean.
@@ -82,6 +84,11 @@ struct SemiparametricMean {
             cost.predict += PhysicsColumns<Model>::cost(sizes) +
                             std::int64_t{sizes.output_count} * sizes.physics.column_count;
             return cost;
+        }
+
+        /// Of any call.
+        [[nodiscard]] static constexpr std::int64_t stack_bytes(const typename Model::Sizes& sizes) noexcept {
+            return std::max(Residual::stack_bytes(sizes), PhysicsColumns<Model>::stack_bytes(sizes));
         }
 
       private:
