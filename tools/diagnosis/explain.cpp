@@ -93,7 +93,11 @@ class Search {
             last = std::move(keys);
         }
         decide_masses();
-        keep_what_predicts();
+        SearchProblem promising = at_.problem; // without the shapes of what does not predict
+        while (keep_what_predicts(promising)) {
+            at_.chosen = search_effects(promising, at_.chosen);
+            at_.fit = fit_effects(at_.problem, at_.chosen);
+        }
         fit_named();
         return std::move(at_);
     }
@@ -109,7 +113,7 @@ class Search {
     void decide_masses();
     std::vector<WeighedSums> sums_of_blocks() const;
     Eigen::VectorXd of_events() const;
-    void keep_what_predicts();
+    bool keep_what_predicts(SearchProblem& promising);
     void fit_named();
     std::vector<std::string> chosen_keys() const;
     Eigen::VectorXd all_coefficients() const;
@@ -377,10 +381,11 @@ Eigen::VectorXd Search::of_events() const {
 }
 
 /// Drops, one after the other, lasting effects without which blocks of time are predicted no worse by what
-/// fits the other blocks; what the events explain is taken out of all.
-void Search::keep_what_predicts() {
+/// fits the other blocks, also from those that are `promising`; what the events explain is taken out of all.
+/// Whether there were any.
+bool Search::keep_what_predicts(SearchProblem& promising) {
     if (regression_.fitted_frames() < validation_blocks) {
-        return; // too short a recording to leave any of it out
+        return false; // too short a recording to leave any of it out
     }
     SearchProblem problem = at_.problem;
     std::vector<WeighedSums> blocks = sums_of_blocks();
@@ -396,6 +401,7 @@ void Search::keep_what_predicts() {
     std::vector<ChosenShape> kept(lasting, at_.chosen.end());
     at_.chosen.erase(lasting, at_.chosen.end());
     double best = held_out_score(problem, blocks, kept);
+    bool dropped = false;
     while (true) {
         std::size_t worst = kept.size();
         for (std::size_t i = 0; i < kept.size(); ++i) {
@@ -408,9 +414,12 @@ void Search::keep_what_predicts() {
         if (worst == kept.size()) {
             break;
         }
+        promising.candidates[kept[worst].candidate].shapes.clear();
+        dropped = true;
         kept = without(kept, worst);
     }
     at_.chosen.insert(at_.chosen.end(), kept.begin(), kept.end());
+    return dropped;
 }
 
 void Search::fit_named() {

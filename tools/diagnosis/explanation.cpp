@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/explanation.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace dfdyn::tools {
 
 namespace {
@@ -31,6 +34,13 @@ Eigen::MatrixXd Explanation::covariance(std::size_t chosen_index) const {
     const Eigen::Index first = first_column(chosen_index);
     const Eigen::Index count = first_column(chosen_index + 1) - first;
     return named.covariance.block(first, first, count, count);
+}
+
+std::vector<ChosenShape> Explanation::named_effects() const {
+    std::vector<ChosenShape> result;
+    std::ranges::copy_if(chosen, std::back_inserter(result),
+                         [this](const ChosenShape& one) { return candidates[one.candidate].named(); });
+    return result;
 }
 
 Eigen::MatrixXd Explanation::of_fit(const DiagnosisSignals& signals, const EffectFit& of,

@@ -39,6 +39,9 @@ struct Explanation {
     Eigen::VectorXd coefficients(std::size_t chosen_index) const;
     Eigen::MatrixXd covariance(std::size_t chosen_index) const;
 
+    /// Those of the chosen that have a name: `named` is their fit.
+    std::vector<ChosenShape> named_effects() const;
+
     /// Of both fits: where a chosen candidate's columns begin.
     Eigen::Index first_column(std::size_t chosen_index) const;
 

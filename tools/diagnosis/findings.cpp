@@ -22,30 +22,77 @@ constexpr double coloured =
 constexpr double model_error =
     0.04; ///< of a parameter: what no noise explains, where effects are large; measured, too
 
-/// Intervals by the gradient of each parameter with respect to the coefficients.
-std::vector<FoundParameter> found_parameters(const Candidate& candidate, const EffectShape& shape,
-                                             const Eigen::VectorXd& coefficients,
-                                             const Eigen::MatrixXd& covariance) {
-    const std::vector<EffectParameter> values = candidate.parameters(coefficients, shape);
-    Eigen::MatrixXd gradient(static_cast<Eigen::Index>(values.size()), coefficients.size());
-    for (Eigen::Index i = 0; i < coefficients.size(); ++i) {
-        const double step = 1e-3 * std::sqrt(covariance(i, i)) + 1e-12;
-        Eigen::VectorXd changed = coefficients;
-        changed[i] += step;
-        const std::vector<EffectParameter> moved = candidate.parameters(changed, shape);
-        for (std::size_t k = 0; k < values.size(); ++k) {
-            gradient(static_cast<Eigen::Index>(k), i) = (moved[k].value - values[k].value) / step;
+/// A shape's parameters and their variances, by the gradient of each with respect to the coefficients.
+struct ShapeParameters {
+    std::vector<EffectParameter> values;
+    Eigen::VectorXd variance;
+
+    ShapeParameters(const Candidate& candidate, const EffectShape& shape, const Eigen::VectorXd& coefficients,
+                    const Eigen::MatrixXd& covariance)
+        : values(candidate.parameters(coefficients, shape)) {
+        Eigen::MatrixXd gradient(static_cast<Eigen::Index>(values.size()), coefficients.size());
+        for (Eigen::Index i = 0; i < coefficients.size(); ++i) {
+            const double step = 1e-3 * std::sqrt(covariance(i, i)) + 1e-12;
+            Eigen::VectorXd changed = coefficients;
+            changed[i] += step;
+            const std::vector<EffectParameter> moved = candidate.parameters(changed, shape);
+            for (std::size_t k = 0; k < values.size(); ++k) {
+                gradient(static_cast<Eigen::Index>(k), i) = (moved[k].value - values[k].value) / step;
+            }
+        }
+        variance = (gradient * covariance * gradient.transpose()).diagonal().cwiseMax(0);
+    }
+
+    bool same_names(const ShapeParameters& other) const {
+        return std::ranges::equal(values, other.values, {}, &EffectParameter::name, &EffectParameter::name);
+    }
+};
+
+/// Of a chosen effect's parameters: their variance while the shape is the chosen one, and what it grows by
+/// because other shapes are nearly as likely.
+ShapeParameters parameters_over_shapes(const Explanation& explanation, std::size_t index) {
+    const std::size_t number = explanation.chosen[index].candidate;
+    const Candidate& candidate = explanation.candidates[number];
+    std::vector<ChosenShape> named = explanation.named_effects();
+    const EffectShape& own_shape = candidate.shapes[named[index].shape];
+    const ShapeParameters own(candidate, own_shape, explanation.coefficients(index),
+                              explanation.covariance(index));
+    ShapeParameters result = own;
+    double total = 1;
+    for (std::size_t shape = 0; shape < candidate.shapes.size(); ++shape) {
+        named[index].shape = shape;
+        const EffectShape& other_shape = candidate.shapes[shape];
+        if (shape == explanation.chosen[index].shape ||
+            other_shape.columns.size() != own_shape.columns.size()) {
+            continue;
+        }
+        const EffectFit fit = fit_effects(explanation.problem, named);
+        const auto first = explanation.first_column(index);
+        const auto count = std::ssize(other_shape.columns);
+        const ShapeParameters other(candidate, other_shape, fit.coefficients.segment(first, count),
+                                    fit.covariance.block(first, first, count, count));
+        const double odds = std::exp(std::min(0.0, fit.score - explanation.named.score));
+        if (fit.allowed && own.same_names(other)) {
+            total += odds;
+            for (Eigen::Index k = 0; k < own.variance.size(); ++k) {
+                const auto i = static_cast<std::size_t>(k);
+                const double apart = other.values[i].value - own.values[i].value;
+                result.variance[k] += odds * (other.variance[k] + apart * apart);
+            }
         }
     }
-    const Eigen::VectorXd deviation =
-        (gradient * covariance * gradient.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
+    result.variance /= total;
+    return result;
+}
+
+std::vector<FoundParameter> found_parameters(const Explanation& explanation, std::size_t index) {
+    const ShapeParameters all = parameters_over_shapes(explanation, index);
     std::vector<FoundParameter> result;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-        const double deviation_of_all =
-            std::hypot(coloured * deviation[static_cast<Eigen::Index>(k)], model_error * values[k].value);
-        const double reach = two_sided_95 * deviation_of_all;
-        result.push_back({values[k].name, values[k].unit, values[k].value, values[k].value - reach,
-                          values[k].value + reach});
+    for (std::size_t k = 0; k < all.values.size(); ++k) {
+        const auto& [name, unit, value] = all.values[k];
+        const double deviation = std::sqrt(all.variance[static_cast<Eigen::Index>(k)]);
+        const double reach = two_sided_95 * std::hypot(coloured * deviation, model_error * value);
+        result.push_back({name, unit, value, value - reach, value + reach});
     }
     return result;
 }
@@ -137,13 +184,11 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
         if (!candidate.named()) {
             continue;
         }
-        const EffectShape& shape = candidate.shapes[explanation.chosen[i].shape];
         Finding finding;
         finding.effect = candidate.effect;
         finding.where = candidate.where;
         finding.detail = candidate.detail;
-        finding.parameters =
-            found_parameters(candidate, shape, explanation.coefficients(i), explanation.covariance(i));
+        finding.parameters = found_parameters(explanation, i);
         weigh_alternatives(finding, explanation, near, i);
         const Eigen::MatrixXd contribution =
             explanation.effects(signals, [&](const Candidate& one) { return one.key() == candidate.key(); });

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/common/root_mean_square.hpp"
 #include "tools/diagnosis/candidate_parts.hpp"
 #include "tools/diagnosis/candidates.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dfdyn::tools {
@@ -35,21 +37,28 @@ Candidate viscous(const JointSignals& joint) {
                          "viscous", "N·m·s/rad");
 }
 
-/// Dahl's friction of level 1 that builds up over `distance` (rad): df/dq = (1 - f sgn q') / distance, exact
-/// for steps of constant direction (P. R. Dahl, "A solid friction model", 1968).
-Eigen::VectorXd dahl(const JointSignals& joint, double distance) {
+/// Dahl's friction that builds up to `level` (T) over `distance` (rad) where that is 1, by the same stiffness
+/// where it is not: df/dq = (1 - f sgn q' / level) / distance, exact for steps of constant direction (P. R.
+/// Dahl, "A solid friction model", 1968).
+Eigen::VectorXd dahl(const JointSignals& joint, double distance, const Eigen::VectorXd& level) {
+    constexpr double least = 1e-9; // no level at all would divide by it
     Eigen::VectorXd friction(joint.position.size());
     for (const Stretch& stretch : joint.all.measured.stretches) {
         double state = 0;
         friction[stretch.first] = 0;
         for (Eigen::Index row = stretch.first + 1; row < stretch.first + stretch.count; ++row) {
             const double step = joint.position[row] - joint.position[row - 1];
-            const double settled = std::copysign(1.0, step);
-            state = settled + (state - settled) * std::exp(-std::abs(step) / distance);
+            const double highest = std::max(level[row], least);
+            const double settled = std::copysign(highest, step);
+            state = settled + (state - settled) * std::exp(-std::abs(step) / (distance * highest));
             friction[row] = state;
         }
     }
     return friction;
+}
+
+Eigen::VectorXd dahl(const JointSignals& joint, double distance) {
+    return dahl(joint, distance, Eigen::VectorXd::Ones(joint.position.size()));
 }
 
 constexpr double shortest_presliding = 3e-3; // rad; what builds up over less is called Coulomb friction
@@ -127,6 +136,25 @@ Candidate presliding(const JointSignals& joint) {
     return result;
 }
 
+/// Its shapes: over which distance it builds up at the load's rms.
+Candidate load_dependent(const JointSignals& joint) {
+    const Eigen::VectorXd load = joint.all.joint_torque.col(joint.output).cwiseAbs();
+    const double usual = std::max(root_mean_square(load), 1e-9);
+    const auto column = [load, usual, joint](double distance) {
+        return joint.column(usual * dahl(joint, distance, load / usual));
+    };
+    Candidate result = joint.candidate("load_dependent_friction");
+    for (const double distance : {1.0 / 8, 1.0 / 3, 1.0, 3.0, 9.0}) {
+        result.shapes.push_back({{result.columns.size()}, positive_up_to(1), distance * shortest_presliding});
+        result.columns.push_back(column(distance * shortest_presliding));
+    }
+    result.at_value = [column](const EffectShape& /*shape*/, double distance) { return column(distance); };
+    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
+        return std::vector<EffectParameter>{{"mu", "1", coefficients[0]}};
+    };
+    return result;
+}
+
 Candidate spring(const JointSignals& joint) {
     Candidate result = joint.candidate("joint_spring");
     result.columns = {joint.column(joint.position),
@@ -148,15 +176,12 @@ std::vector<Candidate> joint_candidates(const DiagnosisSignals& signals) {
     }
     for (std::size_t number = 0; number < signals.joints(); ++number) {
         const JointSignals joint(signals, number);
-        const Eigen::VectorXd load = signals.joint_torque.col(joint.output).cwiseAbs();
         result.push_back(viscous(joint));
         result.push_back(coulomb(joint));
         result.push_back(stribeck(joint));
         result.push_back(presliding(joint));
         result.push_back(spring(joint));
-        result.push_back(single_column("load_dependent_friction", joint.where,
-                                       joint.column(load.cwiseProduct(dahl(joint, shortest_presliding / 8))),
-                                       positive_up_to(1), "mu", "1"));
+        result.push_back(load_dependent(joint));
         result.push_back(single_column("torque_offset", joint.where,
                                        joint.column(Eigen::VectorXd::Ones(signals.rows())), is_anything,
                                        "offset", "N·m"));

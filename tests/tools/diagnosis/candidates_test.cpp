@@ -7,6 +7,7 @@
 #include "tests/tools/robot/arms.hpp"
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/robot/regressor.hpp"
+#include "tools/simulation/lugre_friction.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -178,4 +179,38 @@ TEST_CASE("what a delay adds is the series of earlier less that of now, over the
         check_same(signals.per_delay(series, delay), expected, 1e-4);
     }
     check_same(signals.per_delay(series, 0), -7 * (7 * time).cos(), 1e-4);
+}
+
+TEST_CASE("friction that goes by the load is that of bristles whose level is a share of it") {
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
+    constexpr Index joint = 2;
+    constexpr double mu = 0.15;
+    const VectorXd load = signals.nominal.col(joint).cwiseAbs();
+    const double usual = std::sqrt(load.squaredNorm() / static_cast<double>(load.size()));
+    const std::vector<Candidate> candidates = joint_candidates(signals);
+    const Candidate& candidate = find(candidates, "load_dependent_friction", "joint3");
+    double last_bend = 0;
+    for (const EffectShape& shape : candidate.shapes) {
+        CHECK(shape.value > last_bend);
+        last_bend = shape.value;
+        LuGreParameters parameters;
+        parameters.load_coefficient = mu;
+        parameters.stiffness = mu * usual / shape.value;
+        LuGreFriction friction(parameters);
+        MatrixXd expected = MatrixXd::Zero(signals.rows(), 1);
+        const VectorXd velocity = signals.measured.motion.velocity.col(joint);
+        for (Index row = 1; row < signals.rows(); ++row) {
+            constexpr int substeps = 20;
+            for (int substep = 0; substep < substeps; ++substep) {
+                const double part = (substep + 0.5) / substeps;
+                friction.set_conditions(0, load[row - 1] + part * (load[row] - load[row - 1]));
+                friction.advance(velocity[row - 1] + part * (velocity[row] - velocity[row - 1]),
+                                 0.01 / substeps);
+            }
+            expected(row, 0) = parameters.stiffness * friction.deflection();
+        }
+        const VectorXd found = mu * contribution(signals, candidate, shape.columns.front()).col(joint);
+        // where the direction changes within a row, and the bend is short, that row is between the two
+        CHECK((found - expected.col(0)).norm() < 0.05 * expected.col(0).norm());
+    }
 }
