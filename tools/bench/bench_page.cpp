@@ -252,7 +252,7 @@ FigurePage bench_page(const BenchResults& results) {
         "The probe's best: " + rounded_text(results.vectors_per_ns) +
         " vector multiply-adds per ns. Our time in float grows with the columns to the power of " +
         rounded_text(growth_exponent(results.ticks)) + " from 200 on" + growth_words(results.ticks) +
-        ". BLAS: " + prepare_blas() + ".");
+        ". BLAS: " + blas_name() + ".");
     page.sections.push_back(std::move(ticks));
     PageSection rest{"The rest of a tick, long runs, memory",
                      {model_words(results.models), endurance_words(results.endurance)},

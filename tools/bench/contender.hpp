@@ -52,8 +52,8 @@ Contenders gurls_peers(const RegressionTask& task);
 Contenders qrupdate_peers(const RegressionTask& task);
 Contenders dlib_peers(const RegressionTask& task);
 bool has_blas();
-/// All contenders have one core: BLAS too. Which one it is.
-std::string prepare_blas();
+std::string blas_name();      ///< as far as it tells
+void keep_blas_on_one_core(); ///< as all contenders, where it can be told
 bool has_qrupdate();
 bool has_dlib();
 

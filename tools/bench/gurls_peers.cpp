@@ -70,12 +70,12 @@ class RecursiveCholesky final : public EigenContender<double> {
 
 bool has_blas() { return true; }
 
-std::string prepare_blas() {
-    if (openblas_set_num_threads == nullptr || openblas_get_config == nullptr) {
-        return "not OpenBLAS";
+std::string blas_name() { return openblas_get_config == nullptr ? "not OpenBLAS" : openblas_get_config(); }
+
+void keep_blas_on_one_core() {
+    if (openblas_set_num_threads != nullptr) {
+        openblas_set_num_threads(1);
     }
-    openblas_set_num_threads(1);
-    return openblas_get_config();
 }
 
 Contenders gurls_peers(const RegressionTask& task) {
@@ -92,7 +92,9 @@ namespace dfdyn::tools {
 
 bool has_blas() { return false; }
 
-std::string prepare_blas() { return "none"; }
+std::string blas_name() { return "none"; }
+
+void keep_blas_on_one_core() {}
 
 Contenders gurls_peers(const RegressionTask& /*task*/) { return {}; }
 

@@ -7,7 +7,7 @@
 namespace dfdyn::tools {
 
 Contenders peers(const RegressionTask& task) {
-    prepare_blas();
+    keep_blas_on_one_core();
     Contenders all = eigen_peers(task);
     for (const auto make : {gurls_peers, qrupdate_peers, dlib_peers}) {
         std::ranges::move(make(task), std::back_inserter(all));

@@ -423,10 +423,10 @@ bool Search::keep_what_predicts(SearchProblem& promising) {
 }
 
 void Search::fit_named() {
-    const auto has_name = [this](const ChosenShape& one) { return at_.candidates[one.candidate].named(); };
-    const auto unnamed = std::stable_partition(at_.chosen.begin(), at_.chosen.end(), has_name);
+    std::stable_partition(at_.chosen.begin(), at_.chosen.end(),
+                          [this](const ChosenShape& one) { return at_.candidates[one.candidate].named(); });
     at_.fit = fit_effects(at_.problem, at_.chosen);
-    at_.named = fit_effects(at_.problem, {at_.chosen.begin(), unnamed});
+    at_.named = fit_effects(at_.problem, at_.named_effects());
 }
 
 } // namespace

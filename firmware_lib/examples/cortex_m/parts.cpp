@@ -106,6 +106,17 @@ void move(AnySample& sample) {
     }
 }
 
+/// The most that a call takes, over so many motions of `sample`.
+template <class AnySample, class Call>
+std::uint32_t stack_in_motion(AnySample& sample, int ticks, const Call& call) {
+    std::uint32_t most = 0;
+    for (int t = 0; t < ticks; ++t) {
+        move(sample);
+        most = std::max(most, stack_of(call));
+    }
+    return most;
+}
+
 template <class Scalar, class Input>
 void check_input(const char* part) {
     constexpr int joints = 6;
@@ -114,14 +125,10 @@ void check_input(const char* part) {
     static Map map(constants, {}, {}, {});
     static typename Input::template Sample<Scalar, joints, 1> sample{};
     static Scalar xi[joints * Input::features_per_joint];
-    std::uint32_t used = 0;
-    for (int t = 0; t < 2 * Input::lags + 2; ++t) {
-        move(sample);
-        used = std::max(used, stack_of([] {
-                            map.push(sample);
-                            map.evaluate(xi);
-                        }));
-    }
+    const std::uint32_t used = stack_in_motion(sample, 2 * Input::lags + 2, [] {
+        map.push(sample);
+        map.evaluate(xi);
+    });
     check(part, used, Map::stack_bytes());
 }
 
@@ -134,14 +141,10 @@ void check_physics(const char* part) {
     static Sample<Scalar, Arm::joints, Arm::outputs> sample{};
     static Scalar psi[Arm::outputs * AllParts::columns];
     static bool evaluated = false;
-    std::uint32_t used = 0;
-    for (int t = 0; t < 20; ++t) {
-        move(sample);
-        used = std::max(used, stack_of([] {
-                            map.push(sample);
-                            evaluated = map.evaluate(psi);
-                        }));
-    }
+    const std::uint32_t used = stack_in_motion(sample, 20, [] {
+        map.push(sample);
+        evaluated = map.evaluate(psi);
+    });
     check(part, used, Map::stack_bytes({}));
     all_within = all_within && evaluated;
 }
