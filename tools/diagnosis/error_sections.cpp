@@ -73,7 +73,7 @@ double autocorrelation(const DiagnosisSignals& signals, const Eigen::VectorXd& s
 }
 
 ChartCurve spectrum(const SpectralRows& rows, std::string name, const Eigen::VectorXd& series) {
-    const Eigen::VectorXd variance = noise_spectrum(rows.analyse(series), 0);
+    const Eigen::VectorXd variance = noise_spectrum(rows.analyse(series), Eigen::VectorXd::Zero(rows.bins()));
     ChartCurve curve{std::move(name), {}, {}, {}, {}};
     for (Eigen::Index bin = 0; bin < variance.size(); ++bin) {
         curve.x.push_back(rows.frequency_hz(bin));

@@ -317,8 +317,8 @@ void Search::estimate_noise(bool white) {
     std::vector<Eigen::MatrixXd> unrest;
     for (Eigen::Index output = 0; output < noise.cols(); ++output) {
         const Eigen::MatrixXd left = regression_.residual(output, coefficients);
-        noise.col(output) = noise_spectrum(left, static_cast<double>(at_.fit.columns.size()) /
-                                                     static_cast<double>(noise.cols()));
+        noise.col(output) =
+            noise_spectrum(left, regression_.spent(output, at_.fit.columns, at_.fit.covariance));
         unrest.push_back(white ? Eigen::MatrixXd::Ones(left.rows(), left.cols()).eval()
                                : noise_unrest(left, noise.col(output)));
     }

@@ -64,12 +64,12 @@ Eigen::VectorXd SpectralRows::synthesise(const Eigen::MatrixXd& coefficients) co
     return series;
 }
 
-Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, double parameters) {
+Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen::VectorXd& spent) {
+    constexpr double least_left = 0.1; // of the frames: an exact fit tells nothing of the noise
     const Eigen::Index bins = coefficients.rows();
-    const auto total = static_cast<double>(coefficients.size());
-    const double spent = std::max(total / 2, total - parameters) / total;
-    const Eigen::VectorXd power =
-        coefficients.rowwise().squaredNorm() / (spent * static_cast<double>(coefficients.cols()));
+    const auto frames = static_cast<double>(coefficients.cols());
+    const Eigen::VectorXd left = (frames - spent.array()).max(least_left * frames);
+    const Eigen::VectorXd power = coefficients.rowwise().squaredNorm().cwiseQuotient(left);
     Eigen::VectorXd spectrum(bins);
     for (Eigen::Index bin = 0; bin < bins; ++bin) {
         const Eigen::Index reach = std::min<Eigen::Index>({1 + bin / 6, bin, bins - 1 - bin});

@@ -40,8 +40,8 @@ class SpectralRows {
 };
 
 /// Variance of the coefficients of a noise per bin, from its coefficients (bins x frames): the mean square
-/// over all frames and neighbouring bins. `parameters`: how many were fitted to them.
-Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, double parameters);
+/// over all frames and neighbouring bins. `spent`: per bin, how many of them a fit has used up.
+Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen::VectorXd& spent);
 
 /// How much larger than its spectrum a noise is in each frame and frequency band (bins x frames; 1 where it
 /// is as usual): the scale of Student's t with few degrees of freedom, so that no short disturbance weighs

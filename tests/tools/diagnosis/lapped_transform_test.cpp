@@ -58,7 +58,7 @@ TEST_CASE("the spectrum of a first-order autoregressive noise is the one of the 
         noise[i] += memory * noise[i - 1];
     }
     const LappedTransform transform(200, 200);
-    const VectorXd spectrum = noise_spectrum(transform.analyse(noise), 0);
+    const VectorXd spectrum = noise_spectrum(transform.analyse(noise), VectorXd::Zero(transform.bins()));
     for (Index bin = 4; bin < 190; bin += 5) {
         const double phase = std::numbers::pi * (static_cast<double>(bin) + 0.5) / 200;
         const double expected = 1 / (1 - 2 * memory * std::cos(phase) + memory * memory);
