@@ -2,6 +2,7 @@
 #include "tools/diagnosis/signals.hpp"
 
 #include "tools/diagnosis/low_pass_kernel.hpp"
+#include "tools/diagnosis/row_weight.hpp"
 #include "tools/robot/regressor.hpp"
 
 #include <algorithm>
@@ -60,6 +61,8 @@ DiagnosisSignals diagnosis_signals(const Robot& robot, OutputKind kind, Measured
     signals.robot = robot;
     signals.kind = kind;
     signals.measured = std::move(measured);
+    signals.measured.weight = signals.wrench() ? end_row_weight(signals.measured).replicate(1, 6).eval()
+                                               : joint_row_weight(signals.measured);
     const RobotMotion& motion = signals.measured.motion;
     signals.nominal = rigid_outputs(robot, kind, motion);
     signals.joint_torque =

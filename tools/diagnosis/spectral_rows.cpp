@@ -14,6 +14,11 @@ LappedTransform transform_at(double rate_hz) {
     return {hop, std::llround(2 * SpectralRows::hop_s * highest)};
 }
 
+/// Of a stretch with a hop of nothing before it and at least one behind.
+Eigen::Index padded_frames(const Stretch& stretch, Eigen::Index hop) {
+    return (stretch.count + hop - 1) / hop + 1;
+}
+
 constexpr Eigen::Index slow_bins = 4;
 
 /// How many neighbouring frames tell as much as one independent one, of a noise that outlasts a frame.
@@ -30,46 +35,86 @@ double persistence(const Eigen::RowVectorXd& series) {
 } // namespace
 
 SpectralRows::SpectralRows(const MeasuredMotion& measured)
-    : transform_(transform_at(measured.rate_hz)), stretches_(measured.stretches),
+    : transform_(transform_at(measured.rate_hz)), stretches_(measured.stretches), weight_(measured.weight),
       rows_(measured.time_s.size()) {
     for (const Stretch& stretch : stretches_) {
-        const Eigen::Index count = transform_.frames(stretch.count);
-        for (Eigen::Index frame = 0; frame < count; ++frame) {
-            starts_s_.push_back(measured.time_s[stretch.first + frame * transform_.hop()]);
-        }
-        frames_ += count;
+        frames_ += padded_frames(stretch, transform_.hop());
     }
 }
 
+Eigen::Index SpectralRows::frames_within(double share) const {
+    auto left = std::llround(share * static_cast<double>(rows_));
+    Eigen::Index within = 0;
+    for (const Stretch& stretch : stretches_) {
+        if (left < stretch.count) {
+            return std::max<Eigen::Index>(1, within + left / transform_.hop());
+        }
+        left -= stretch.count;
+        within += padded_frames(stretch, transform_.hop());
+    }
+    return within;
+}
+
+Eigen::VectorXd SpectralRows::weight(Eigen::Index output) const {
+    return weight_.size() == 0 ? Eigen::VectorXd::Ones(rows_) : Eigen::VectorXd(weight_.col(output));
+}
+
 Eigen::MatrixXd SpectralRows::analyse(const Eigen::VectorXd& series) const {
+    const Eigen::Index hop = transform_.hop();
     Eigen::MatrixXd result(bins(), frames_);
     Eigen::Index first = 0;
     for (const Stretch& stretch : stretches_) {
-        const Eigen::Index count = transform_.frames(stretch.count);
-        result.middleCols(first, count) = transform_.analyse(series.segment(stretch.first, stretch.count));
+        const Eigen::Index count = padded_frames(stretch, hop);
+        Eigen::VectorXd padded = Eigen::VectorXd::Zero((count + 1) * hop);
+        padded.segment(hop, stretch.count) = series.segment(stretch.first, stretch.count);
+        result.middleCols(first, count) = transform_.analyse(padded);
         first += count;
     }
     return result;
 }
 
-Eigen::VectorXd SpectralRows::synthesise(const Eigen::MatrixXd& coefficients) const {
-    Eigen::VectorXd series = Eigen::VectorXd::Zero(rows_);
-    Eigen::Index first = 0;
-    for (const Stretch& stretch : stretches_) {
-        const Eigen::Index count = transform_.frames(stretch.count);
-        series.segment(stretch.first, stretch.count) =
-            transform_.synthesise(coefficients.middleCols(first, count), stretch.count);
-        first += count;
-    }
-    return series;
+Eigen::MatrixXd SpectralRows::analyse(const Eigen::VectorXd& series, Eigen::Index output) const {
+    return analyse(series.cwiseProduct(weight(output)));
 }
 
-Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, double parameters) {
+Eigen::VectorXd SpectralRows::synthesise(const Eigen::MatrixXd& coefficients, Eigen::Index output) const {
+    const Eigen::Index hop = transform_.hop();
+    Eigen::VectorXd series(rows_);
+    Eigen::Index first = 0;
+    for (const Stretch& stretch : stretches_) {
+        const Eigen::Index count = padded_frames(stretch, hop);
+        series.segment(stretch.first, stretch.count) =
+            transform_.synthesise(coefficients.middleCols(first, count), (count + 1) * hop)
+                .segment(hop, stretch.count);
+        first += count;
+    }
+    return series.cwiseProduct(weight(output));
+}
+
+Eigen::RowVectorXd SpectralRows::filled(Eigen::Index output) const {
+    const Eigen::VectorXd squares = weight(output).cwiseAbs2();
+    const Eigen::Index hop = transform_.hop();
+    Eigen::RowVectorXd result(frames_);
+    Eigen::Index first = 0;
+    for (const Stretch& stretch : stretches_) {
+        const Eigen::Index count = padded_frames(stretch, hop);
+        Eigen::VectorXd padded = Eigen::VectorXd::Zero((count + 1) * hop);
+        padded.segment(hop, stretch.count) = squares.segment(stretch.first, stretch.count);
+        for (Eigen::Index frame = 0; frame < count; ++frame) {
+            result[first + frame] = padded.segment(frame * hop, 2 * hop).dot(transform_.window_squares());
+        }
+        first += count;
+    }
+    return result;
+}
+
+Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
+                               double parameters) {
     const Eigen::Index bins = coefficients.rows();
-    const auto total = static_cast<double>(coefficients.size());
+    const double frames = std::max(filled.sum(), 1e-9);
+    const double total = static_cast<double>(bins) * frames;
     const double spent = std::max(total / 2, total - parameters) / total;
-    const Eigen::VectorXd power =
-        coefficients.rowwise().squaredNorm() / (spent * static_cast<double>(coefficients.cols()));
+    const Eigen::VectorXd power = coefficients.rowwise().squaredNorm() / (spent * frames);
     Eigen::VectorXd spectrum(bins);
     for (Eigen::Index bin = 0; bin < bins; ++bin) {
         const Eigen::Index reach = std::min<Eigen::Index>({1 + bin / 6, bin, bins - 1 - bin});
@@ -81,7 +126,8 @@ Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, double param
     return spectrum.cwiseMax(1e-9 * spectrum.maxCoeff() + 1e-300);
 }
 
-Eigen::MatrixXd noise_unrest(const Eigen::MatrixXd& coefficients, const Eigen::VectorXd& spectrum) {
+Eigen::MatrixXd noise_unrest(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
+                             const Eigen::VectorXd& spectrum) {
     constexpr double degrees = 8; // of freedom: what counts as usual unless the frame says otherwise
     const Eigen::MatrixXd power = spectrum.cwiseInverse().asDiagonal() * coefficients.cwiseAbs2();
     Eigen::MatrixXd unrest(power.rows(), power.cols());
@@ -89,7 +135,8 @@ Eigen::MatrixXd noise_unrest(const Eigen::MatrixXd& coefficients, const Eigen::V
     for (const Eigen::Index last : {Eigen::Index{8}, Eigen::Index{32}, power.rows()}) {
         const Eigen::Index count = std::min(last, power.rows()) - first;
         if (count > 0) {
-            const Eigen::RowVectorXd total = power.middleRows(first, count).colwise().sum();
+            const Eigen::RowVectorXd total = power.middleRows(first, count).colwise().sum() +
+                                             static_cast<double>(count) * (1 - filled.array()).matrix();
             unrest.middleRows(first, count).rowwise() =
                 ((total.array() + degrees) / (static_cast<double>(count) + degrees)).matrix();
             first += count;
