@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/signals.hpp"
 
+#include "tools/diagnosis/answered_band.hpp"
 #include "tools/diagnosis/low_pass_kernel.hpp"
 #include "tools/diagnosis/row_weight.hpp"
 #include "tools/robot/regressor.hpp"
@@ -72,6 +73,7 @@ DiagnosisSignals diagnosis_signals(const Robot& robot, OutputKind kind, Measured
     signals.sensitivity = motion_sensitivity(robot, kind, motion);
     constexpr double slowest = 2e-3; // rad/s
     signals.sign_velocity = (2 * signals.measured.velocity_noise).cwiseMax(slowest);
+    signals.measured.answered_hz = answered_hz(signals);
     return signals;
 }
 

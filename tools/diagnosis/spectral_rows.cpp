@@ -19,6 +19,15 @@ Eigen::Index padded_frames(const Stretch& stretch, Eigen::Index hop) {
     return (stretch.count + hop - 1) / hop + 1;
 }
 
+/// How many of the upper ones hold nothing.
+Eigen::Index zero_bins(const Eigen::MatrixXd& coefficients) {
+    Eigen::Index zero = 0;
+    while (zero < coefficients.rows() && coefficients.row(coefficients.rows() - 1 - zero).isZero(0)) {
+        ++zero;
+    }
+    return zero;
+}
+
 constexpr Eigen::Index slow_bins = 4;
 
 /// How many neighbouring frames tell as much as one independent one, of a noise that outlasts a frame.
@@ -35,8 +44,8 @@ double persistence(const Eigen::RowVectorXd& series) {
 } // namespace
 
 SpectralRows::SpectralRows(const MeasuredMotion& measured)
-    : transform_(transform_at(measured.rate_hz)), stretches_(measured.stretches), weight_(measured.weight),
-      rows_(measured.time_s.size()) {
+    : transform_(transform_at(measured.rate_hz)), stretches_(measured.stretches),
+      answered_hz_(measured.answered_hz), weight_(measured.weight), rows_(measured.time_s.size()) {
     for (const Stretch& stretch : stretches_) {
         frames_ += padded_frames(stretch, transform_.hop());
     }
@@ -73,18 +82,31 @@ Eigen::MatrixXd SpectralRows::analyse(const Eigen::VectorXd& series) const {
     return result;
 }
 
+Eigen::Index SpectralRows::answered_bins(Eigen::Index output) const {
+    Eigen::Index answered = 0;
+    while (answered < bins() &&
+           (answered_hz_.size() == 0 || frequency_hz(answered) <= answered_hz_[output])) {
+        ++answered;
+    }
+    return answered;
+}
+
 Eigen::MatrixXd SpectralRows::analyse(const Eigen::VectorXd& series, Eigen::Index output) const {
-    return analyse(series.cwiseProduct(weight(output)));
+    Eigen::MatrixXd result = analyse(series.cwiseProduct(weight(output)));
+    result.bottomRows(bins() - answered_bins(output)).setZero();
+    return result;
 }
 
 Eigen::VectorXd SpectralRows::synthesise(const Eigen::MatrixXd& coefficients, Eigen::Index output) const {
     const Eigen::Index hop = transform_.hop();
+    Eigen::MatrixXd answered = coefficients;
+    answered.bottomRows(bins() - answered_bins(output)).setZero();
     Eigen::VectorXd series(rows_);
     Eigen::Index first = 0;
     for (const Stretch& stretch : stretches_) {
         const Eigen::Index count = padded_frames(stretch, hop);
         series.segment(stretch.first, stretch.count) =
-            transform_.synthesise(coefficients.middleCols(first, count), (count + 1) * hop)
+            transform_.synthesise(answered.middleCols(first, count), (count + 1) * hop)
                 .segment(hop, stretch.count);
         first += count;
     }
@@ -110,12 +132,12 @@ Eigen::RowVectorXd SpectralRows::filled(Eigen::Index output) const {
 
 Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
                                double parameters) {
-    const Eigen::Index bins = coefficients.rows();
+    const Eigen::Index bins = coefficients.rows() - zero_bins(coefficients);
     const double frames = std::max(filled.sum(), 1e-9);
-    const double total = static_cast<double>(bins) * frames;
+    const double total = std::max(static_cast<double>(bins) * frames, 1e-9);
     const double spent = std::max(total / 2, total - parameters) / total;
-    const Eigen::VectorXd power = coefficients.rowwise().squaredNorm() / (spent * frames);
-    Eigen::VectorXd spectrum(bins);
+    const Eigen::VectorXd power = coefficients.topRows(bins).rowwise().squaredNorm() / (spent * frames);
+    Eigen::VectorXd spectrum(coefficients.rows());
     for (Eigen::Index bin = 0; bin < bins; ++bin) {
         const Eigen::Index reach = std::min<Eigen::Index>({1 + bin / 6, bin, bins - 1 - bin});
         spectrum[bin] = power.segment(bin - reach, 2 * reach + 1).mean();
@@ -123,6 +145,7 @@ Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen:
     for (Eigen::Index bin = 0; bin < std::min<Eigen::Index>(slow_bins, bins); ++bin) {
         spectrum[bin] *= persistence(coefficients.row(bin));
     }
+    spectrum.tail(coefficients.rows() - bins).setConstant(bins > 0 ? spectrum.head(bins).mean() : 0);
     return spectrum.cwiseMax(1e-9 * spectrum.maxCoeff() + 1e-300);
 }
 
@@ -131,12 +154,14 @@ Eigen::MatrixXd noise_unrest(const Eigen::MatrixXd& coefficients, const Eigen::R
     constexpr double degrees = 8; // of freedom: what counts as usual unless the frame says otherwise
     const Eigen::MatrixXd power = spectrum.cwiseInverse().asDiagonal() * coefficients.cwiseAbs2();
     Eigen::MatrixXd unrest(power.rows(), power.cols());
+    const Eigen::Index holding = coefficients.rows() - zero_bins(coefficients);
     Eigen::Index first = 0;
     for (const Eigen::Index last : {Eigen::Index{8}, Eigen::Index{32}, power.rows()}) {
         const Eigen::Index count = std::min(last, power.rows()) - first;
         if (count > 0) {
+            const auto held = static_cast<double>(std::clamp<Eigen::Index>(holding - first, 0, count));
             const Eigen::RowVectorXd total = power.middleRows(first, count).colwise().sum() +
-                                             static_cast<double>(count) * (1 - filled.array()).matrix();
+                                             (static_cast<double>(count) - held * filled.array()).matrix();
             unrest.middleRows(first, count).rowwise() =
                 ((total.array() + degrees) / (static_cast<double>(count) + degrees)).matrix();
             first += count;

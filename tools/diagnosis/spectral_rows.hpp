@@ -30,7 +30,8 @@ class SpectralRows {
     Eigen::Index frames_within(double share) const;
 
     Eigen::MatrixXd analyse(const Eigen::VectorXd& series) const;
-    /// Of what acts on `output`: its rows count as much as `MeasuredMotion::weight` says.
+    /// Of what acts on `output`: its rows count as much as `MeasuredMotion::weight` says, and frequencies
+    /// above its `answered_hz` not at all: zeros.
     Eigen::MatrixXd analyse(const Eigen::VectorXd& series, Eigen::Index output) const;
     /// The transpose of `analyse` for `output`: T.
     Eigen::VectorXd synthesise(const Eigen::MatrixXd& coefficients, Eigen::Index output) const;
@@ -39,22 +40,24 @@ class SpectralRows {
 
   private:
     Eigen::VectorXd weight(Eigen::Index output) const;
+    Eigen::Index answered_bins(Eigen::Index output) const;
 
     LappedTransform transform_;
     std::vector<Stretch> stretches_;
-    Eigen::MatrixXd weight_; ///< T x m, or empty: ones
+    Eigen::VectorXd answered_hz_; ///< m, or empty: any
+    Eigen::MatrixXd weight_;      ///< T x m, or empty: ones
     Eigen::Index rows_ = 0, frames_ = 0;
 };
 
 /// Variance of the coefficients of a noise per bin, from its coefficients (bins x frames): the mean square
 /// over all frames, as far as they are `filled`, and neighbouring bins. `parameters`: how many were fitted to
-/// them.
+/// them. Of the upper bins that are zero: that of the others' mean.
 Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
                                double parameters);
 
 /// How much larger than its spectrum a noise is in each frame and frequency band (bins x frames; 1 where it
 /// is as usual): the scale of Student's t with few degrees of freedom, so that no short disturbance weighs
-/// much. What is not `filled` counts as usual.
+/// much. What is not `filled`, or zero, counts as usual.
 Eigen::MatrixXd noise_unrest(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
                              const Eigen::VectorXd& spectrum);
 
