@@ -57,5 +57,4 @@ TEST_CASE("where positions shake and the torques know nothing of it, they count 
     const VectorXd hz = answered(shaking(6, 0.003), quiet.motion, engine);
     CHECK(hz[1] < 9);
     CHECK(hz[1] > 0.5);
-    CHECK(hz[5] == any_hz); // it feels nothing of joint 2's shaking
 }
