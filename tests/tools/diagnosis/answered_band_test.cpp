@@ -51,6 +51,16 @@ TEST_CASE("outputs of any scale that answer to all of a motion count at all freq
     CHECK(answered(shaken, shaken.motion, engine).minCoeff() == any_hz);
 }
 
+TEST_CASE("outputs that lag the motion by 30 ms answer to it, too") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const MeasuredMotion shaken = shaking(6, 0.003);
+    RobotMotion earlier = shaken.motion;
+    for (auto part : {&RobotMotion::position, &RobotMotion::velocity, &RobotMotion::acceleration}) {
+        (earlier.*part).bottomRows(1997) = (shaken.motion.*part).topRows(1997);
+    }
+    CHECK(answered(shaken, earlier, engine).minCoeff() == any_hz);
+}
+
 TEST_CASE("where positions shake and the torques know nothing of it, they count below only") {
     DFDYN_SEEDED_ENGINE(engine);
     const MeasuredMotion quiet = swing(6);
