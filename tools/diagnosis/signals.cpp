@@ -62,12 +62,12 @@ DiagnosisSignals diagnosis_signals(const Robot& robot, OutputKind kind, Measured
     signals.robot = robot;
     signals.kind = kind;
     signals.measured = std::move(measured);
-    signals.measured.weight = signals.wrench() ? end_row_weight(signals.measured).replicate(1, 6).eval()
-                                               : joint_row_weight(signals.measured);
     const RobotMotion& motion = signals.measured.motion;
     signals.nominal = rigid_outputs(robot, kind, motion);
     signals.joint_torque =
         signals.wrench() ? rigid_outputs(robot, OutputKind::joint_torque, motion) : signals.nominal;
+    signals.measured.weight = signals.wrench() ? end_row_weight(signals.measured).replicate(1, 6).eval()
+                                               : joint_row_weight(signals.measured, signals.nominal);
     signals.regressor = stacked_regressor(robot, kind, motion);
     signals.joint_inertia = joint_inertias(robot, motion);
     signals.sensitivity = motion_sensitivity(robot, kind, motion);
