@@ -144,17 +144,6 @@ Recording record(const PanelSetup& setup, const PanelRun& run) {
     return recording;
 }
 
-/// Off by up to 10 %, each link on its own; the centres of mass stay.
-void mistake_masses(Robot& robot, Draw& draw, std::vector<double>& errors) {
-    for (std::size_t link = 0; link < robot.joints.size(); ++link) {
-        errors.push_back(draw.uniform(-0.1, 0.1));
-        robot.joints[link].inertia *= 1 + errors.back();
-        if (robot.sensor && robot.sensor->link == link + 1) {
-            robot.sensor->inertia_beyond *= 1 + errors.back();
-        }
-    }
-}
-
 } // namespace
 
 PanelCase make_panel_case(std::uint64_t seed, const PanelMix& mix) {
@@ -171,15 +160,9 @@ PanelCase make_panel_case(std::uint64_t seed, const PanelMix& mix) {
     if (setup.kind.outputs == OutputKind::motor_current) {
         result.torque_constants.assign(setup.torque_constants.begin(), setup.torque_constants.end());
     }
-    Draw masses(seed, 2);
-    const bool off = masses.chance(0.5);
-    result.masses_off = mix.masses_off.value_or(off);
-    result.nominal = setup.robot;
-    result.mass_errors.assign(setup.robot.joints.size(), 0);
-    if (result.masses_off) {
-        result.mass_errors.clear();
-        mistake_masses(result.nominal, masses, result.mass_errors);
-    }
+    result.masses_off = setup.masses_off;
+    result.nominal = setup.nominal;
+    result.mass_errors = setup.mass_errors;
     Draw effects(seed, 3);
     result.recording = record(setup, draw_run(setup, mix, effects, result));
     return result;

@@ -51,6 +51,10 @@ DrawnEffect link_mass(const EffectDraw& of, std::size_t link) {
     effect.parameters = [sign](double size) { return EffectParameters{{"delta_mass", sign * size}}; };
     effect.guess = guess_along_reference(of, effect.hide, 0.01 * mass);
     effect.largest = (sign < 0 ? 0.8 : 3) * mass;
+    if (of.setup.masses_off) { // closer than this to what is believed, it is as good as every other link's
+        const double believed = 1 + of.setup.mass_errors[link];
+        effect.smallest = std::max(0.0, mass * (sign * (believed * (1 + sign * largest_mass_error) - 1)));
+    }
     return effect;
 }
 

@@ -60,6 +60,7 @@ struct PanelMix {
     std::optional<double> strength;      ///< always this one
     std::optional<std::string> robot, noise;
     std::optional<bool> masses_off;
+    std::optional<double> duration_s; ///< of every recording; otherwise 40 to 60
 };
 
 /// Names that PanelMix::robot and PanelMix::noise may have.

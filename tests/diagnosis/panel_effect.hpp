@@ -18,6 +18,7 @@ struct DrawnEffect {
     std::function<void(tools::Robot&)> rebuild;              ///< of the arm that is simulated; may be none
     bool soft = false;                                       ///< encoders vibrate against links
     double guess = 0;                                        ///< size that may have the strength wanted
+    double smallest = 0;                                     ///< below it, it would be none
     double largest = 0;                                      ///< that physics, or good sense, allows
     double integration_rate_hz = 2000;                       ///< at least
     /// What belongs to the model it is compared with, in N·m on a joint, from the friction that was really

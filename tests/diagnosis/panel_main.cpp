@@ -142,6 +142,8 @@ void add_mix(CLI::App& command, PanelOptions& options) {
     command.add_option("--noise", options.mix.noise, "Always this noise")
         ->check(CLI::IsMember(panel_noise_names()));
     command.add_option("--masses-off", options.mix.masses_off, "Nominal masses wrong: 0 never, 1 always");
+    command.add_option("--duration", options.mix.duration_s, "Seconds of each recording, otherwise 40 to 60")
+        ->check(CLI::Range(20.0, 1000.0));
     command.add_option("--null-share", options.mix.null_share, "Share of cases without any effect");
     command.add_option("--two-share", options.mix.two_effects_share, "Share with two effects");
     command.add_option("--outside-share", options.mix.outside_share,

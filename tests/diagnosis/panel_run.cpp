@@ -140,6 +140,9 @@ std::optional<Fitted> fit_strength(const PanelSetup& setup, const DrawnEffect& e
             strengths(setup, contribution(setup, fitted.run, effect, fitted.size));
         fitted.strength = reached.maxCoeff(&fitted.main_output);
         if (std::abs(fitted.strength / strength - 1) < tolerance) {
+            if (fitted.size <= effect.smallest) {
+                return std::nullopt;
+            }
             fitted.companion_strength = strengths(setup, unexplained(setup, fitted.run, effect)).maxCoeff();
             return fitted;
         }

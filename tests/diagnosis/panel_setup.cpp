@@ -110,6 +110,21 @@ void add_noise(PanelSetup& setup, Draw& draw) {
     setup.noise_in_band = band_rms(setup.noise_rows, setup.scenario.recording.rate_hz);
 }
 
+/// Each link on its own; the centres of mass stay.
+void mistake_masses(PanelSetup& setup, const PanelMix& mix, Draw draw) {
+    const bool off = draw.chance(0.5);
+    setup.masses_off = mix.masses_off.value_or(off);
+    setup.nominal = setup.robot;
+    for (std::size_t link = 0; link < setup.robot.joints.size(); ++link) {
+        const double error = setup.masses_off ? draw.uniform(-largest_mass_error, largest_mass_error) : 0;
+        setup.mass_errors.push_back(error);
+        setup.nominal.joints[link].inertia *= 1 + error;
+        if (setup.nominal.sensor && setup.nominal.sensor->link == link + 1) {
+            setup.nominal.sensor->inertia_beyond *= 1 + error;
+        }
+    }
+}
+
 } // namespace
 
 std::vector<std::string> panel_noise_names() { return {"white", "ar1_0.9", "ar1_0.98", "resampled"}; }
@@ -127,7 +142,9 @@ PanelSetup make_panel_setup(std::uint64_t seed, const PanelMix& mix) {
     setup.kind = panel_robot(mix.robot.value_or(robot));
     setup.noise = mix.noise.value_or(noise);
     setup.robot = read_panel_robot(setup.kind);
-    setup.duration_s = draw.uniform(40, 60);
+    mistake_masses(setup, mix, Draw(seed, 2));
+    const double duration_s = draw.uniform(40, 60);
+    setup.duration_s = mix.duration_s.value_or(duration_s);
     setup.scenario = base_scenario(setup.kind, setup.robot, setup.duration_s, draw);
     setup.torque_constants = Eigen::VectorXd::Ones(setup.joints());
     if (setup.kind.outputs == OutputKind::motor_current) {

@@ -9,6 +9,9 @@
 
 namespace dfdyn::tests {
 
+/// Of a link's mass, where masses are off.
+inline constexpr double largest_mass_error = 0.1;
+
 /// One of the panel's arms with one kind of outputs.
 struct PanelRobot {
     std::string name, urdf, tip;
@@ -29,8 +32,11 @@ struct MotionRows {
 /// An arm in motion before anything is hidden, and the noise of its outputs.
 struct PanelSetup {
     PanelRobot kind;
-    tools::Robot robot;       ///< as it truly is
-    tools::Scenario scenario; ///< without noise
+    tools::Robot robot;   ///< as it truly is
+    tools::Robot nominal; ///< as it is believed to be
+    bool masses_off = false;
+    std::vector<double> mass_errors; ///< per link: nominal over true, minus 1
+    tools::Scenario scenario;        ///< without noise
     bool constants_known = true;
     Eigen::VectorXd torque_constants; ///< N·m/A; ones where the outputs are not currents
     MotionRows reference;             ///< the task's, 50 rows per second

@@ -73,6 +73,26 @@ WeighedSums EffectRegression::weighed_sums(Eigen::Index first, Eigen::Index fram
     return sums;
 }
 
+Eigen::VectorXd EffectRegression::spent(Eigen::Index output, const std::vector<Eigen::Index>& fitted,
+                                        const Eigen::MatrixXd& covariance) const {
+    std::vector<Eigen::Index> acting;
+    for (Eigen::Index i = 0; i < std::ssize(fitted); ++i) {
+        const Eigen::Index column = fitted[static_cast<std::size_t>(i)];
+        if (columns_[static_cast<std::size_t>(column)]->on(output) != nullptr) {
+            acting.push_back(i);
+        }
+    }
+    Eigen::MatrixXd matrix(rows_.bins() * fitted_frames_, std::ssize(acting));
+    for (Eigen::Index i = 0; i < matrix.cols(); ++i) {
+        const Eigen::Index column = fitted[static_cast<std::size_t>(acting[static_cast<std::size_t>(i)])];
+        matrix.col(i) =
+            weighed(*columns_[static_cast<std::size_t>(column)]->on(output), output, 0, fitted_frames_);
+    }
+    const Eigen::VectorXd leverage =
+        (matrix * covariance(acting, acting)).cwiseProduct(matrix).rowwise().sum();
+    return leverage.reshaped(rows_.bins(), fitted_frames_).rowwise().sum();
+}
+
 Eigen::MatrixXd EffectRegression::residual(Eigen::Index output, const Eigen::VectorXd& coefficients) const {
     Eigen::MatrixXd left = target_[static_cast<std::size_t>(output)].leftCols(fitted_frames_);
     for (Eigen::Index column = 0; column < columns(); ++column) {

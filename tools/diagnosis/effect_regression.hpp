@@ -65,6 +65,12 @@ class EffectRegression {
     /// What `coefficients` of all columns leave of an output: bins x fitted frames, not weighed.
     Eigen::MatrixXd residual(Eigen::Index output, const Eigen::VectorXd& coefficients) const;
 
+    /// Per bin, how many of an output's fitted rows a fit of the columns `fitted` spends: the trace of its
+    /// hat matrix there. `covariance`: of their coefficients, were the noise just as weighed. Cost: rows
+    /// times columns squared.
+    Eigen::VectorXd spent(Eigen::Index output, const std::vector<Eigen::Index>& fitted,
+                          const Eigen::MatrixXd& covariance) const;
+
   private:
     Eigen::VectorXd weighed(const Eigen::MatrixXd& rows, Eigen::Index output, Eigen::Index first,
                             Eigen::Index count) const;

@@ -13,8 +13,9 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double least_gain = 1e-6;        ///< of the evidence: below it nothing changes
-constexpr double least_independent = 1e-3; ///< share of a column that the others must leave
+constexpr double least_gain = 1e-6;           ///< of the evidence: below it nothing changes
+constexpr double least_independent = 1e-3;    ///< share of a column that the others must leave
+constexpr double least_beyond_nuisance = 0.1; ///< of it: to count as if the nuisance left no less
 constexpr std::size_t most_effects = 48;
 
 const SearchCandidate::Shape& shape_of(const SearchProblem& problem, const ChosenShape& chosen) {
@@ -73,6 +74,16 @@ double nuisance_price(const SearchProblem& problem, const Eigen::MatrixXd& syste
     double result = factor.matrixLLT().diagonal().array().log().sum();
     for (const NuisanceColumn& nuisance : problem.nuisance) {
         result += std::log(nuisance.deviation);
+    }
+    return result;
+}
+
+/// What the nuisance's coefficients cost: half the sum of their squares, in deviations.
+double price_of_nuisance(const SearchProblem& problem, const Eigen::VectorXd& coefficients) {
+    double result = 0;
+    for (std::size_t i = 0; i < problem.nuisance.size(); ++i) {
+        const double deviations = coefficients[static_cast<Eigen::Index>(i)] / problem.nuisance[i].deviation;
+        result += 0.5 * deviations * deviations;
     }
     return result;
 }
@@ -164,7 +175,7 @@ double held_out_score(const SearchProblem& problem, const std::vector<WeighedSum
     const std::vector<Eigen::Index> columns = columns_of(problem, chosen);
     const Eigen::MatrixXd system = system_of(problem, columns);
     const Eigen::VectorXd moment = problem.sums.moment(columns);
-    double score = 0;
+    double score = -price_of_nuisance(problem, system.ldlt().solve(moment));
     for (const WeighedSums& block : blocks) {
         const Eigen::MatrixXd own = block.gram(columns, columns);
         const Eigen::VectorXd own_moment = block.moment(columns);
@@ -197,8 +208,12 @@ Neighbours::Neighbours(const SearchProblem& problem, const std::vector<ChosenSha
         for (const SearchCandidate::Shape& shape : candidate.shapes) {
             const Eigen::MatrixXd own = problem.sums.gram(shape.columns, shape.columns);
             const Eigen::MatrixXd part = seen(Eigen::all, shape.columns);
-            beyond_.push_back({own.diagonal(), own - part.transpose() * part,
-                               problem.sums.moment(shape.columns) - part.transpose() * known});
+            const Eigen::VectorXd by_nuisance =
+                part.topRows(std::ssize(problem.nuisance)).colwise().squaredNorm();
+            beyond_.push_back(
+                {(own.diagonal() - by_nuisance).cwiseMax(least_beyond_nuisance * own.diagonal()),
+                 own - part.transpose() * part,
+                 problem.sums.moment(shape.columns) - part.transpose() * known});
         }
     }
 }

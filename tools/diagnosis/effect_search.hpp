@@ -58,7 +58,8 @@ struct EffectFit {
 EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShape>& chosen);
 
 /// How well what fits all other blocks of rows predicts each, summed over the blocks: half the fall of the
-/// sum of squares. `blocks`: those that the problem's sums are the sum of.
+/// sum of squares; less what the nuisance's coefficients cost, which could take a dropped effect's place.
+/// `blocks`: those that the problem's sums are the sum of.
 double held_out_score(const SearchProblem& problem, const std::vector<WeighedSums>& blocks,
                       const std::vector<ChosenShape>& chosen);
 
@@ -89,7 +90,7 @@ class Neighbours {
   private:
     /// What the model leaves of a shape's columns, and of their products with what is to be explained.
     struct Beyond {
-        Eigen::VectorXd own; ///< squares of the columns themselves
+        Eigen::VectorXd own; ///< squares of what the nuisance leaves of the columns
         Eigen::MatrixXd left;
         Eigen::VectorXd moment;
     };

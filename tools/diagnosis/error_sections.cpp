@@ -74,8 +74,8 @@ double autocorrelation(const DiagnosisSignals& signals, const Eigen::VectorXd& s
 
 ChartCurve spectrum(const SpectralRows& rows, std::string name, const Eigen::MatrixXd& error,
                     Eigen::Index output) {
-    const Eigen::VectorXd variance =
-        noise_spectrum(rows.analyse(error.col(output), output), rows.filled(output), 0);
+    const Eigen::VectorXd variance = noise_spectrum(rows.analyse(error.col(output), output),
+                                                    rows.filled(output), Eigen::VectorXd::Zero(rows.bins()));
     ChartCurve curve{std::move(name), {}, {}, {}, {}};
     for (Eigen::Index bin = 0; bin < variance.size(); ++bin) {
         curve.x.push_back(rows.frequency_hz(bin));

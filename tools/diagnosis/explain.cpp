@@ -316,8 +316,8 @@ void Search::estimate_noise(bool white) {
     for (Eigen::Index output = 0; output < noise.cols(); ++output) {
         const Eigen::MatrixXd left = regression_.residual(output, coefficients);
         const Eigen::RowVectorXd filled = rows_.filled(output).head(left.cols());
-        noise.col(output) = noise_spectrum(
-            left, filled, static_cast<double>(at_.fit.columns.size()) / static_cast<double>(noise.cols()));
+        noise.col(output) =
+            noise_spectrum(left, filled, regression_.spent(output, at_.fit.columns, at_.fit.covariance));
         unrest.push_back(white ? Eigen::MatrixXd::Ones(left.rows(), left.cols()).eval()
                                : noise_unrest(left, filled, noise.col(output)));
     }

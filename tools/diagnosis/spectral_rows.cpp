@@ -131,12 +131,12 @@ Eigen::RowVectorXd SpectralRows::filled(Eigen::Index output) const {
 }
 
 Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
-                               double parameters) {
+                               const Eigen::VectorXd& spent) {
+    constexpr double least_left = 0.1; // of the frames: an exact fit tells nothing of the noise
     const Eigen::Index bins = coefficients.rows() - zero_bins(coefficients);
     const double frames = std::max(filled.sum(), 1e-9);
-    const double total = std::max(static_cast<double>(bins) * frames, 1e-9);
-    const double spent = std::max(total / 2, total - parameters) / total;
-    const Eigen::VectorXd power = coefficients.topRows(bins).rowwise().squaredNorm() / (spent * frames);
+    const Eigen::VectorXd left = (frames - spent.head(bins).array()).max(least_left * frames);
+    const Eigen::VectorXd power = coefficients.topRows(bins).rowwise().squaredNorm().cwiseQuotient(left);
     Eigen::VectorXd spectrum(coefficients.rows());
     for (Eigen::Index bin = 0; bin < bins; ++bin) {
         const Eigen::Index reach = std::min<Eigen::Index>({1 + bin / 6, bin, bins - 1 - bin});

@@ -50,10 +50,10 @@ class SpectralRows {
 };
 
 /// Variance of the coefficients of a noise per bin, from its coefficients (bins x frames): the mean square
-/// over all frames, as far as they are `filled`, and neighbouring bins. `parameters`: how many were fitted to
-/// them. Of the upper bins that are zero: that of the others' mean.
+/// over all frames, as far as they are `filled`, and neighbouring bins. `spent`: per bin, how many of them a
+/// fit has used up. Of the upper bins that are zero: that of the others' mean.
 Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
-                               double parameters);
+                               const Eigen::VectorXd& spent);
 
 /// How much larger than its spectrum a noise is in each frame and frequency band (bins x frames; 1 where it
 /// is as usual): the scale of Student's t with few degrees of freedom, so that no short disturbance weighs

@@ -144,6 +144,25 @@ TEST_CASE("nuisance is paid for by what it was before anything was measured") {
     CHECK((fit.coefficients - exact).cwiseAbs().maxCoeff() < 1e-9);
 }
 
+TEST_CASE("an effect that the nuisance could stand in for is found, and kept, where it is too large for it") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const MatrixXd nuisance = 30 * random_columns(1, engine); // leaves but a thousandth of its copy
+    const VectorXd target = 0.4 * nuisance + random_columns(1, engine);
+    MatrixXd columns(rows, 2);
+    columns << nuisance, nuisance;
+    SearchProblem problem = problem_of(columns, target);
+    problem.nuisance = {{0, 0.058}};
+    problem.candidates.erase(problem.candidates.begin());
+    const std::vector<ChosenShape> chosen = search_effects(problem, {});
+    REQUIRE(chosen.size() == 1);
+    std::vector<WeighedSums> blocks;
+    for (const Index first : {Index{0}, rows / 2}) {
+        blocks.push_back(
+            problem_of(columns.middleRows(first, rows / 2), target.segment(first, rows / 2)).sums);
+    }
+    CHECK(held_out_score(problem, blocks, chosen) > held_out_score(problem, blocks, {}));
+}
+
 TEST_CASE("the held-out score is that of each block by the least squares of all others") {
     DFDYN_SEEDED_ENGINE(engine);
     const MatrixXd columns = random_columns(5, engine);

@@ -60,7 +60,8 @@ TEST_CASE("the spectrum of a first-order autoregressive noise is the one of the 
     }
     const LappedTransform transform(200, 200);
     const MatrixXd coefficients = transform.analyse(noise);
-    const VectorXd spectrum = noise_spectrum(coefficients, RowVectorXd::Ones(coefficients.cols()), 0);
+    const VectorXd spectrum = noise_spectrum(coefficients, RowVectorXd::Ones(coefficients.cols()),
+                                             VectorXd::Zero(transform.bins()));
     for (Index bin = 4; bin < 190; bin += 5) {
         const double phase = std::numbers::pi * (static_cast<double>(bin) + 0.5) / 200;
         const double expected = 1 / (1 - 2 * memory * std::cos(phase) + memory * memory);

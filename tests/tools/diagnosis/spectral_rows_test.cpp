@@ -66,7 +66,7 @@ TEST_CASE("rows that do not count make a noise no smaller") {
     MatrixXd unrest;
     for (int trial = 0; trial < 20; ++trial) {
         const VectorXd noise = VectorXd::NullaryExpr(2000, [&](Index) { return 0.3 * normal(engine); });
-        spectrum += noise_spectrum(rows.analyse(noise, 0), rows.filled(0), 0) / 20;
+        spectrum += noise_spectrum(rows.analyse(noise, 0), rows.filled(0), VectorXd::Zero(rows.bins())) / 20;
         unrest = noise_unrest(rows.analyse(noise, 0), rows.filled(0), VectorXd::Constant(rows.bins(), 0.09));
         CHECK(unrest.minCoeff() > 0.5);
     }
