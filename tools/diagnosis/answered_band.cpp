@@ -13,7 +13,7 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr Eigen::Index bins_of_band = 6;
-constexpr double sure = 3; ///< deviations
+constexpr double sure_deviations = 3;
 
 /// A joint's torque by the rigid body and its slope, as coefficients: bins x frames.
 struct RigidTorque {
@@ -51,10 +51,10 @@ Eigen::Index answered_bins(const SpectralRows& rows, const RigidTorque& torque,
     bool silent = false;
     for (Eigen::Index first = 0; half > 0 && first + bins_of_band <= rows.bins(); first += bins_of_band) {
         const Answer band(torque, output, first, rows.frequency_hz(first + bins_of_band / 2));
-        if (band.size - sure * band.deviation > half) {
+        if (band.size - sure_deviations * band.deviation > half) {
             answered = first + bins_of_band;
             silent = false;
-        } else if (band.deviation > 0 && band.size + sure * band.deviation < half) {
+        } else if (band.deviation > 0 && band.size + sure_deviations * band.deviation < half) {
             silent = true;
         }
     }

@@ -9,13 +9,13 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double least_travel = 3e-3;  ///< rad (m)
-constexpr double standing_s = 0.5;     ///< at least
-constexpr double fade_s = 0.1;         ///< from rows that tell nothing to such that tell all
-constexpr double longest_end_s = 2;    ///< over which rows at a stretch's end come to count in full
-constexpr double end_share = 1.0 / 6;  ///< of a stretch, at the most
-constexpr double least_straying = 0.1; ///< of the output's deviation
-constexpr double least_moving = 0.1;   ///< of the rows, of a joint that moves
+constexpr double presliding_travel = 3e-3; ///< rad (m)
+constexpr double standing_s = 0.5;         ///< at least
+constexpr double fade_s = 0.1;             ///< from rows that tell nothing to such that tell all
+constexpr double longest_end_s = 2;        ///< over which rows at a stretch's end come to count in full
+constexpr double end_share = 1.0 / 6;      ///< of a stretch, at the most
+constexpr double least_straying = 0.1;     ///< of the output's deviation
+constexpr double least_moving = 0.1;       ///< of the rows, of a joint that moves
 
 double faded(double share) {
     const double sine = std::sin(std::numbers::pi / 2 * std::clamp(share, 0.0, 1.0));
@@ -26,7 +26,7 @@ Eigen::Index rows_of(const MeasuredMotion& measured, double time_s) {
     return std::max<Eigen::Index>(1, std::llround(time_s * measured.rate_hz));
 }
 
-/// Rows where a joint travels less than `least_travel` in some `standing_s` around.
+/// Rows where a joint travels less than `presliding_travel` in some `standing_s` around.
 std::vector<bool> standing_rows(const MeasuredMotion& measured, Eigen::Index joint) {
     const Eigen::Index window = rows_of(measured, standing_s);
     std::vector<bool> standing(static_cast<std::size_t>(measured.time_s.size()), false);
@@ -34,7 +34,7 @@ std::vector<bool> standing_rows(const MeasuredMotion& measured, Eigen::Index joi
         const auto position = measured.motion.position.col(joint).segment(stretch.first, stretch.count);
         for (Eigen::Index first = 0; first + window <= stretch.count; ++first) {
             const auto part = position.segment(first, window);
-            if (part.maxCoeff() - part.minCoeff() < least_travel) {
+            if (part.maxCoeff() - part.minCoeff() < presliding_travel) {
                 std::fill_n(standing.begin() + stretch.first + first, window, true);
             }
         }
