@@ -8,7 +8,7 @@ namespace dfdyn::tools {
 SpectralColumn::SpectralColumn(const SpectralRows& rows, const EffectColumn& column) {
     for (const EffectColumn::Part& part : column.parts) {
         if (!part.series.isZero(0)) {
-            parts.push_back({part.output, rows.analyse(part.series)});
+            parts.push_back({part.output, rows.analyse(part.series, part.output)});
         }
     }
 }
@@ -23,7 +23,7 @@ EffectRegression::EffectRegression(const SpectralRows& rows, const Eigen::Matrix
     : rows_(rows), fitted_frames_(fitted_frames),
       noise_(Eigen::MatrixXd::Ones(rows.bins(), unexplained.cols())) {
     for (Eigen::Index output = 0; output < unexplained.cols(); ++output) {
-        target_.push_back(rows.analyse(unexplained.col(output)));
+        target_.push_back(rows.analyse(unexplained.col(output), output));
         weight_.emplace_back(Eigen::MatrixXd::Ones(rows.bins(), fitted_frames));
     }
 }

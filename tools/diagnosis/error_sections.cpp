@@ -72,8 +72,10 @@ double autocorrelation(const DiagnosisSignals& signals, const Eigen::VectorXd& s
     return square > 0 ? product / square : 0;
 }
 
-ChartCurve spectrum(const SpectralRows& rows, std::string name, const Eigen::VectorXd& series) {
-    const Eigen::VectorXd variance = noise_spectrum(rows.analyse(series), Eigen::VectorXd::Zero(rows.bins()));
+ChartCurve spectrum(const SpectralRows& rows, std::string name, const Eigen::MatrixXd& error,
+                    Eigen::Index output) {
+    const Eigen::VectorXd variance = noise_spectrum(rows.analyse(error.col(output), output),
+                                                    rows.filled(output), Eigen::VectorXd::Zero(rows.bins()));
     ChartCurve curve{std::move(name), {}, {}, {}, {}};
     for (Eigen::Index bin = 0; bin < variance.size(); ++bin) {
         curve.x.push_back(rows.frequency_hz(bin));
@@ -171,13 +173,12 @@ PageSection rest_section(const DiagnosisWork& work) {
     const SpectralRows rows(work.signals->measured);
     for (Eigen::Index output = 0; output < rest.cols(); ++output) {
         const std::string& name = work.diagnosis.output_names[static_cast<std::size_t>(output)];
-        const ChartCurve left = spectrum(rows, "left by the extended", rest.col(output));
+        const ChartCurve left = spectrum(rows, "left by the extended", rest, output);
         section.charts.push_back(
             {"spectrum_" + name, name,
-             curve_chart(
-                 std::string("spectrum of the error of ").append(name), "frequency (Hz)",
-                 std::string("per bin (").append(output_unit(name)).append(")"),
-                 {white_level(left), spectrum(rows, "of the simulated", nominal.col(output)), left})});
+             curve_chart(std::string("spectrum of the error of ").append(name), "frequency (Hz)",
+                         std::string("per bin (").append(output_unit(name)).append(")"),
+                         {white_level(left), spectrum(rows, "of the simulated", nominal, output), left})});
     }
     return section;
 }

@@ -56,9 +56,7 @@ class Search {
            const ExplanationOptions& options)
         : signals_(signals), options_(options), rows_(signals.measured), sites_(contact_sites(signals)),
           payload_(payload_columns(signals)), play_(signals, rows_),
-          regression_(rows_, measured - signals.nominal,
-                      std::max<Eigen::Index>(
-                          1, std::llround(options.fitted_share * static_cast<double>(rows_.frames())))) {
+          regression_(rows_, measured - signals.nominal, rows_.frames_within(options.fitted_share)) {
         add_nuisance();
         for (auto* make : {&joint_candidates, &body_candidates, &position_candidates}) {
             for (Candidate& candidate : (*make)(signals_)) {
@@ -317,10 +315,11 @@ void Search::estimate_noise(bool white) {
     std::vector<Eigen::MatrixXd> unrest;
     for (Eigen::Index output = 0; output < noise.cols(); ++output) {
         const Eigen::MatrixXd left = regression_.residual(output, coefficients);
+        const Eigen::RowVectorXd filled = rows_.filled(output).head(left.cols());
         noise.col(output) =
-            noise_spectrum(left, regression_.spent(output, at_.fit.columns, at_.fit.covariance));
+            noise_spectrum(left, filled, regression_.spent(output, at_.fit.columns, at_.fit.covariance));
         unrest.push_back(white ? Eigen::MatrixXd::Ones(left.rows(), left.cols()).eval()
-                               : noise_unrest(left, noise.col(output)));
+                               : noise_unrest(left, filled, noise.col(output)));
     }
     if (white) {
         noise = noise.colwise().mean().replicate(noise.rows(), 1).eval();

@@ -6,13 +6,15 @@
 
 namespace dfdyn::tools {
 
-LappedTransform::LappedTransform(Eigen::Index hop, Eigen::Index bins) : hop_(hop), basis_(bins, 2 * hop) {
+LappedTransform::LappedTransform(Eigen::Index hop, Eigen::Index bins)
+    : hop_(hop), basis_(bins, 2 * hop), window_squares_(2 * hop) {
     constexpr double pi = std::numbers::pi;
     const auto size = static_cast<double>(hop);
     for (Eigen::Index n = 0; n < 2 * hop; ++n) {
         const double time = static_cast<double>(n) + 0.5;
         const double sine = std::sin(pi * time / (2 * size));
         const double window = std::sqrt(2 / size) * std::sin(pi / 2 * sine * sine);
+        window_squares_[n] = window * window / 2;
         for (Eigen::Index k = 0; k < bins; ++k) {
             basis_(k, n) = window * std::cos(pi / size * (time + size / 2) * (static_cast<double>(k) + 0.5));
         }

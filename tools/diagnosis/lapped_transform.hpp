@@ -23,6 +23,9 @@ class LappedTransform {
         return samples < 2 * hop_ ? 0 : samples / hop_ - 1;
     }
 
+    /// 2 hop: how much of a white noise's energy in a frame each sample of it has; they add to one.
+    const Eigen::VectorXd& window_squares() const noexcept { return window_squares_; }
+
     /// bins x frames coefficients of `signal`, a stretch without gaps; samples behind the last whole frame do
     /// not count.
     Eigen::MatrixXd analyse(const Eigen::Ref<const Eigen::VectorXd>& signal) const;
@@ -34,6 +37,7 @@ class LappedTransform {
   private:
     Eigen::Index hop_;
     Eigen::MatrixXd basis_; ///< bins x 2 hop
+    Eigen::VectorXd window_squares_;
 };
 
 } // namespace dfdyn::tools

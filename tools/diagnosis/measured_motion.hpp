@@ -20,6 +20,8 @@ struct MeasuredMotion {
     Eigen::MatrixXd outputs;      ///< T x m, low-passed only against aliasing
     Eigen::VectorXd
         velocity_noise; ///< n, rad/s: standard deviation that the positions' noise leaves in the velocities
+    Eigen::VectorXd answered_hz;    ///< m: outputs count up to this frequency; empty: up to any
+    Eigen::MatrixXd weight;         ///< T x m, 0 to 1: how much each row of an output counts; empty: all do
     std::vector<Stretch> stretches; ///< in order; none shorter than `shortest_stretch_s`
 
     static constexpr double shortest_stretch_s = 4;

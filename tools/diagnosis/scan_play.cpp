@@ -17,7 +17,8 @@ PlayScan::PlayScan(const DiagnosisSignals& signals, const SpectralRows& rows) : 
             Course course{gap, play_course(signals, joint, gap),
                           Eigen::MatrixXd(rows.bins(), signals.outputs())};
             for (Eigen::Index output = 0; output < signals.outputs(); ++output) {
-                course.power.col(output) = rows.analyse(course.series.col(output)).rowwise().squaredNorm();
+                course.power.col(output) =
+                    rows.analyse(course.series.col(output), output).rowwise().squaredNorm();
             }
             courses_[joint].push_back(std::move(course));
         }

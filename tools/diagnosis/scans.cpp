@@ -75,7 +75,7 @@ Eigen::MatrixXd weighed_residual(const EffectRegression& regression, const Eigen
         Eigen::MatrixXd left = Eigen::MatrixXd::Zero(rows.bins(), rows.frames());
         left.leftCols(regression.fitted_frames()) =
             regression.weight(output).cwiseProduct(regression.residual(output, coefficients));
-        series.push_back(rows.synthesise(left));
+        series.push_back(rows.synthesise(left, output));
     }
     Eigen::MatrixXd result(series.front().size(), regression.outputs());
     for (Eigen::Index output = 0; output < regression.outputs(); ++output) {

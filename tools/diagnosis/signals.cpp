@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/signals.hpp"
 
+#include "tools/diagnosis/answered_band.hpp"
 #include "tools/diagnosis/low_pass_kernel.hpp"
+#include "tools/diagnosis/row_weight.hpp"
 #include "tools/robot/regressor.hpp"
 
 #include <algorithm>
@@ -64,11 +66,14 @@ DiagnosisSignals diagnosis_signals(const Robot& robot, OutputKind kind, Measured
     signals.nominal = rigid_outputs(robot, kind, motion);
     signals.joint_torque =
         signals.wrench() ? rigid_outputs(robot, OutputKind::joint_torque, motion) : signals.nominal;
+    signals.measured.weight = signals.wrench() ? end_row_weight(signals.measured).replicate(1, 6).eval()
+                                               : joint_row_weight(signals.measured, signals.nominal);
     signals.regressor = stacked_regressor(robot, kind, motion);
     signals.joint_inertia = joint_inertias(robot, motion);
     signals.sensitivity = motion_sensitivity(robot, kind, motion);
     constexpr double slowest = 2e-3; // rad/s
     signals.sign_velocity = (2 * signals.measured.velocity_noise).cwiseMax(slowest);
+    signals.measured.answered_hz = answered_hz(signals);
     return signals;
 }
 

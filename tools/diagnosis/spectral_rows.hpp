@@ -11,8 +11,8 @@
 namespace dfdyn::tools {
 
 /// A series of a recording as lapped-transform coefficients: bins x frames, all stretches one after the
-/// other. Rows of output and columns go through the same filter, and their noise is independent with a
-/// variance per bin.
+/// other, each with nothing before and behind it, so that all its rows count. Rows of output and columns go
+/// through the same filter, and their noise is independent with a variance per bin.
 class SpectralRows {
   public:
     static constexpr double hop_s = 2; ///< blocks of time; frequencies are 1 / (2 hop_s) apart
@@ -26,26 +26,39 @@ class SpectralRows {
     double frequency_hz(Eigen::Index bin) const noexcept {
         return (static_cast<double>(bin) + 0.5) / (2 * hop_s);
     }
-    double frame_start_s(Eigen::Index frame) const { return starts_s_[static_cast<std::size_t>(frame)]; }
+    /// How many frames see nothing of what comes behind this share of the rows; at least one.
+    Eigen::Index frames_within(double share) const;
 
     Eigen::MatrixXd analyse(const Eigen::VectorXd& series) const;
-    /// The part of a series that the coefficients hold.
-    Eigen::VectorXd synthesise(const Eigen::MatrixXd& coefficients) const;
+    /// Of what acts on `output`: its rows count as much as `MeasuredMotion::weight` says, and frequencies
+    /// above its `answered_hz` not at all: zeros.
+    Eigen::MatrixXd analyse(const Eigen::VectorXd& series, Eigen::Index output) const;
+    /// The transpose of `analyse` for `output`: T.
+    Eigen::VectorXd synthesise(const Eigen::MatrixXd& coefficients, Eigen::Index output) const;
+    /// Per frame, the share of it that rows of `output` fill, by the squares of their weights.
+    Eigen::RowVectorXd filled(Eigen::Index output) const;
 
   private:
+    Eigen::VectorXd weight(Eigen::Index output) const;
+    Eigen::Index answered_bins(Eigen::Index output) const;
+
     LappedTransform transform_;
     std::vector<Stretch> stretches_;
-    std::vector<double> starts_s_;
+    Eigen::VectorXd answered_hz_; ///< m, or empty: any
+    Eigen::MatrixXd weight_;      ///< T x m, or empty: ones
     Eigen::Index rows_ = 0, frames_ = 0;
 };
 
 /// Variance of the coefficients of a noise per bin, from its coefficients (bins x frames): the mean square
-/// over all frames and neighbouring bins. `spent`: per bin, how many of them a fit has used up.
-Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen::VectorXd& spent);
+/// over all frames, as far as they are `filled`, and neighbouring bins. `spent`: per bin, how many of them a
+/// fit has used up. Of the upper bins that are zero: that of the others' mean.
+Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
+                               const Eigen::VectorXd& spent);
 
 /// How much larger than its spectrum a noise is in each frame and frequency band (bins x frames; 1 where it
 /// is as usual): the scale of Student's t with few degrees of freedom, so that no short disturbance weighs
-/// much.
-Eigen::MatrixXd noise_unrest(const Eigen::MatrixXd& coefficients, const Eigen::VectorXd& spectrum);
+/// much. What is not `filled`, or zero, counts as usual.
+Eigen::MatrixXd noise_unrest(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
+                             const Eigen::VectorXd& spectrum);
 
 } // namespace dfdyn::tools

@@ -169,7 +169,7 @@ std::vector<Unexplained> unexplained_rest(const DiagnosisSignals& signals, const
     }
     const std::vector<InputFunctions> candidates = all_functions(signals, rows);
     for (Eigen::Index output = 0; output < rest.cols(); ++output) {
-        const Eigen::MatrixXd target = rows.analyse(rest.col(output));
+        const Eigen::MatrixXd target = rows.analyse(rest.col(output), output);
         std::vector<const Eigen::MatrixXd*> chosen;
         Eigen::VectorXd gains = Eigen::VectorXd::Zero(blocks);
         Unexplained entry{output, 0, {}, {}};

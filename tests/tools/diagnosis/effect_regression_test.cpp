@@ -83,8 +83,8 @@ TEST_CASE("the noise where many columns were fitted is not taken for less than i
         const MatrixXd left = regression.residual(0, sums.gram.ldlt().solve(sums.moment));
         const VectorXd spent = regression.spent(0, fitted, sums.gram.inverse());
         // bin 5: the first that no persistence is looked for in
-        estimated += noise_spectrum(left, spent)[5] / trials;
-        naive += noise_spectrum(left, VectorXd::Zero(rows.bins()))[5] / trials;
+        estimated += noise_spectrum(left, rows.filled(0), spent)[5] / trials;
+        naive += noise_spectrum(left, rows.filled(0), VectorXd::Zero(rows.bins()))[5] / trials;
     }
     CHECK(estimated == Approx(1).epsilon(0.06));
     CHECK(naive < estimated);

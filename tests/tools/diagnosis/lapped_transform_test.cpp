@@ -14,6 +14,7 @@ namespace {
 using namespace dfdyn::tools;
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 VectorXd white_noise(Index count, std::mt19937_64& engine) {
@@ -58,7 +59,9 @@ TEST_CASE("the spectrum of a first-order autoregressive noise is the one of the 
         noise[i] += memory * noise[i - 1];
     }
     const LappedTransform transform(200, 200);
-    const VectorXd spectrum = noise_spectrum(transform.analyse(noise), VectorXd::Zero(transform.bins()));
+    const MatrixXd coefficients = transform.analyse(noise);
+    const VectorXd spectrum = noise_spectrum(coefficients, RowVectorXd::Ones(coefficients.cols()),
+                                             VectorXd::Zero(transform.bins()));
     for (Index bin = 4; bin < 190; bin += 5) {
         const double phase = std::numbers::pi * (static_cast<double>(bin) + 0.5) / 200;
         const double expected = 1 / (1 - 2 * memory * std::cos(phase) + memory * memory);
@@ -73,7 +76,8 @@ TEST_CASE("a burst makes its frames uncertain, and no others") {
     noise.segment(2000, 100) *= 8;
     const LappedTransform transform(100, 60);
     const MatrixXd coefficients = transform.analyse(noise);
-    const MatrixXd unrest = noise_unrest(coefficients, VectorXd::Ones(60));
+    const MatrixXd unrest =
+        noise_unrest(coefficients, RowVectorXd::Ones(coefficients.cols()), VectorXd::Ones(60));
     CHECK(unrest.col(20).minCoeff() > 5);
     CHECK(unrest.leftCols(18).maxCoeff() < 3);
     CHECK(unrest.rightCols(16).maxCoeff() < 3);

@@ -21,6 +21,7 @@ inline tools::MeasuredMotion swing(Eigen::Index joints) {
                        Eigen::MatrixXd(rows, joints)};
     measured.smoothing_hz = Eigen::VectorXd::Constant(joints, 20);
     measured.velocity_noise = Eigen::VectorXd::Zero(joints);
+    measured.outputs = Eigen::MatrixXd::Zero(rows, joints);
     measured.stretches = {{0, rows}};
     for (Eigen::Index joint = 0; joint < joints; ++joint) {
         const double omega = 1.1 + 0.37 * static_cast<double>(joint);

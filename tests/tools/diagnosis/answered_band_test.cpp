@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/answered_band.hpp"
+
+#include "tests/support/seed.hpp"
+#include "tests/tools/diagnosis/swinging_arm.hpp"
+#include "tests/tools/robot/arms.hpp"
+#include "tools/diagnosis/spectral_rows.hpp"
+
+#include <numbers>
+#include <random>
+
+namespace {
+
+using namespace dfdyn::tools;
+using namespace dfdyn::tests;
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double any_hz = 2 * SpectralRows::highest_hz;
+
+/// Joint 2 of a swinging arm shakes by `amplitude` (rad) at 10 Hz.
+MeasuredMotion shaking(Index joints, double amplitude) {
+    MeasuredMotion measured = swing(joints);
+    const double omega = 2 * std::numbers::pi * 10;
+    const Eigen::ArrayXd angle = omega * measured.time_s.array();
+    measured.motion.position.col(1).array() += amplitude * angle.sin();
+    measured.motion.velocity.col(1).array() += omega * amplitude * angle.cos();
+    measured.motion.acceleration.col(1).array() -= omega * omega * amplitude * angle.sin();
+    return measured;
+}
+
+/// The torques of `motion`, and their noise.
+VectorXd answered(const MeasuredMotion& shown, const RobotMotion& motion, std::mt19937_64& engine) {
+    const Robot robot = ur5();
+    MeasuredMotion measured = shown;
+    measured.outputs = 0.4 * rigid_outputs(robot, OutputKind::joint_torque, motion);
+    std::normal_distribution<double> normal;
+    for (double& value : measured.outputs.reshaped()) {
+        value += 0.05 * normal(engine);
+    }
+    return diagnosis_signals(robot, OutputKind::joint_torque, measured).measured.answered_hz;
+}
+
+} // namespace
+
+TEST_CASE("outputs of any scale that answer to all of a motion count at all frequencies") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const MeasuredMotion quiet = swing(6);
+    CHECK(answered(quiet, quiet.motion, engine).minCoeff() == any_hz);
+    const MeasuredMotion shaken = shaking(6, 0.003);
+    CHECK(answered(shaken, shaken.motion, engine).minCoeff() == any_hz);
+}
+
+TEST_CASE("outputs that lag the motion by 30 ms answer to it, too") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const MeasuredMotion shaken = shaking(6, 0.003);
+    RobotMotion earlier = shaken.motion;
+    for (auto part : {&RobotMotion::position, &RobotMotion::velocity, &RobotMotion::acceleration}) {
+        (earlier.*part).bottomRows(1997) = (shaken.motion.*part).topRows(1997);
+    }
+    CHECK(answered(shaken, earlier, engine).minCoeff() == any_hz);
+}
+
+TEST_CASE("where positions shake and the torques know nothing of it, they count below only") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const MeasuredMotion quiet = swing(6);
+    const VectorXd hz = answered(shaking(6, 0.003), quiet.motion, engine);
+    CHECK(hz[1] < 9);
+    CHECK(hz[1] > 0.5);
+}

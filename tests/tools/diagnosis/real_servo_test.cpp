@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// A real servo that swings a pendulum, against the friction that others published for it: what they publish,
+// and why the comparison cannot be closer, is told in tests/data/xl330_bam/PROVENANCE.md.
+#include "tests/support/catch.hpp"
+#include "tools/common/read_file.hpp"
+#include "tools/diagnosis/diagnosis.hpp"
+#include "tools/diagnosis/joined_recording.hpp"
+#include "tools/model/json_reader.hpp"
+#include "tools/robot/read_robot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace dfdyn::tools;
+
+const std::filesystem::path folder = DFDYN_TEST_DATA_DIR "/xl330_bam";
+constexpr double likely = 0.5;
+
+/// Parameters of the servo as published.
+struct Published {
+    nlohmann::json json;
+
+    explicit Published(const char* name) : json(parse_json(read_file(folder / name), name)) {}
+
+    double operator[](const char* name) const { return json.at(name).get<double>(); }
+    double torque_per_volt() const { return (*this)["kt"] / (*this)["R"]; }
+    double viscous_with_back_emf() const {
+        return (*this)["kt"] * torque_per_volt() + (*this)["friction_viscous"];
+    }
+};
+
+Recording all_runs() {
+    std::vector<std::filesystem::path> paths;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (entry.path().extension() == ".csv") {
+            paths.push_back(entry.path());
+        }
+    }
+    std::ranges::sort(paths);
+    REQUIRE(paths.size() == 12);
+    return joined_recording(read_recordings(paths, {.joint_count = 1, .outputs = OutputKind::motor_current}));
+}
+
+Diagnosis diagnosis_with(double torque_per_volt) {
+    DiagnosisOptions how;
+    how.outputs = OutputKind::motor_current;
+    how.torque_constants = {torque_per_volt};
+    ReadRobotOptions chain;
+    chain.tip = "arm";
+    return diagnose(read_robot(folder / "pendulum.urdf", chain), all_runs(), how).diagnosis;
+}
+
+const Finding& found(const Diagnosis& diagnosis, const std::string& effect) {
+    const auto at = std::ranges::find(diagnosis.findings, effect, &Finding::effect);
+    INFO(effect);
+    REQUIRE(at != diagnosis.findings.end());
+    return *at;
+}
+
+bool may_be(const FoundParameter& parameter, double value) {
+    return parameter.low <= value && value <= parameter.high;
+}
+
+} // namespace
+
+TEST_CASE(
+    "a real servo's viscous and load-dependent friction are named, and are those that others published") {
+    const Published m1("m1.json");
+    const Published m6("m6.json");
+    const Diagnosis diagnosis = diagnosis_with(m1.torque_per_volt());
+    CHECK(std::ranges::all_of(diagnosis.findings, [](const Finding& one) {
+        return one.confidence < likely || one.effect == "viscous_friction" ||
+               one.effect == "load_dependent_friction" || one.effect == "rotor_inertia";
+    }));
+
+    const Finding& viscous = found(diagnosis, "viscous_friction");
+    CHECK(viscous.confidence >= likely);
+    CHECK(may_be(viscous.parameters[0], m1.viscous_with_back_emf()));
+    CHECK(std::abs(viscous.parameters[0].value - m1.viscous_with_back_emf()) <
+          m6.viscous_with_back_emf() - m1.viscous_with_back_emf());
+
+    const Finding& load = found(diagnosis, "load_dependent_friction");
+    CHECK(load.confidence >= likely);
+    CHECK(may_be(load.parameters[0], m6["load_friction_motor"]));
+    const double of_motor = m6["load_friction_motor"];
+    const double slowly = of_motor + m6["load_friction_external_stribeck"];
+    CHECK(load.parameters[0].value > of_motor / (1 + of_motor)); // lowering, fast
+    CHECK(load.parameters[0].value < slowly / (1 - of_motor));   // lifting, slowly
+
+    CHECK(diagnosis.extended.nrmse[0] < 0.7 * diagnosis.nominal.nrmse[0]);
+}
+
+TEST_CASE("a real servo's rotor inertia is the published one, whichever published torque per volt is taken") {
+    for (const char* const name : {"m1.json", "m6.json"}) {
+        INFO(name);
+        const Published published(name);
+        const Diagnosis diagnosis = diagnosis_with(published.torque_per_volt());
+        CHECK(may_be(found(diagnosis, "rotor_inertia").parameters[0], published["armature"]));
+    }
+}

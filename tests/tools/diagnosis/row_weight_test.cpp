@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/row_weight.hpp"
+
+#include "tests/tools/diagnosis/swinging_arm.hpp"
+
+namespace {
+
+using namespace dfdyn::tools;
+using namespace dfdyn::tests;
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// Of what nobody knows the torques: as large as the positions.
+MatrixXd weight_of(MeasuredMotion measured, double straying) {
+    const MatrixXd torques = measured.motion.position;
+    const Eigen::ArrayXd slowly = (3 * measured.time_s.array()).sin();
+    measured.outputs = 0.3 * (torques.colwise() + straying * slowly.matrix());
+    return joint_row_weight(measured, torques);
+}
+
+/// The first of two joints stands from 5 s to 8 s, as far as a quantiser of 1.5 mrad lets anybody see.
+MeasuredMotion stopping() {
+    MeasuredMotion measured = swing(2);
+    for (Index row = 500; row < 800; ++row) {
+        measured.motion.position(row, 0) = measured.motion.position(500, 0) + (row % 7 < 3 ? 1.5e-3 : 0);
+    }
+    return measured;
+}
+
+} // namespace
+
+TEST_CASE("what a joint's torque is while it stands does not count, what the others' are does") {
+    const MatrixXd weight = weight_of(stopping(), 0.2);
+    CHECK(weight.col(0).segment(500, 300).maxCoeff() == 0);
+    CHECK(weight.col(0).segment(200, 260).minCoeff() == 1);
+    CHECK(weight.col(0).segment(840, 900).minCoeff() == 1);
+    CHECK(weight.col(1).segment(200, 1600).minCoeff() == 1);
+}
+
+TEST_CASE("an output that keeps to the torques while its joint stands counts all the time") {
+    CHECK(weight_of(stopping(), 0.01).middleRows(200, 1600).minCoeff() == 1);
+}
+
+TEST_CASE("a joint that turns round slowly does not stand, and stops of a third of a second are none") {
+    MeasuredMotion measured = swing(1);
+    measured.motion.position.col(0) = 0.5 * (0.8 * measured.time_s.array()).cos();
+    CHECK(weight_of(measured, 0.2).middleRows(200, 1600).minCoeff() == 1);
+    measured = swing(1);
+    measured.motion.position.col(0).segment(700, 33).setConstant(measured.motion.position(700, 0));
+    CHECK(weight_of(measured, 0.2).middleRows(200, 1600).minCoeff() == 1);
+}
+
+TEST_CASE("a joint that never moves still tells what the arm weighs") {
+    MeasuredMotion measured = swing(2);
+    measured.motion.position.col(0).setConstant(0.3);
+    CHECK(weight_of(measured, 0.2).middleRows(200, 1600).minCoeff() == 1);
+}
+
+TEST_CASE("the ends of a stretch count little, the longest part of it in full") {
+    MeasuredMotion measured = swing(1);
+    measured.stretches = {{0, 480}, {480, 1520}};
+    const Eigen::VectorXd weight = end_row_weight(measured);
+    for (const Index end : {Index{0}, Index{479}, Index{480}, Index{1999}}) {
+        CHECK(weight[end] < 0.01);
+    }
+    CHECK(weight.segment(80, 320).minCoeff() == 1);
+    CHECK(weight.segment(680, 1120).minCoeff() == 1);
+    CHECK(weight[40] == Approx(0.5).margin(0.02));
+    CHECK(weight[580] == Approx(0.5).margin(0.02));
+}
