@@ -28,7 +28,7 @@ class Draw {
     double sign() { return chance(0.5) ? 1 : -1; }
     std::size_t below(std::size_t count) { return static_cast<std::size_t>(engine_() % count); }
     int whole(int from, int to) {
-        return from + static_cast<int>(below(static_cast<std::size_t>(to - from + 1)));
+        return from + static_cast<int>(below(static_cast<std::size_t>(to - from) + 1));
     }
 
     template <class T>

@@ -34,7 +34,7 @@ void EffectRegression::set_noise(Eigen::MatrixXd spectra, const std::vector<Eige
     for (Eigen::Index output = 0; output < outputs(); ++output) {
         const Eigen::MatrixXd variance =
             noise_.col(output).asDiagonal() * unrest[static_cast<std::size_t>(output)];
-        weight_.push_back(variance.cwiseSqrt().cwiseInverse());
+        weight_.emplace_back(variance.cwiseSqrt().cwiseInverse());
     }
 }
 
@@ -46,7 +46,7 @@ Eigen::VectorXd EffectRegression::weighed(const Eigen::MatrixXd& rows, Eigen::In
     return result.reshaped();
 }
 
-WeighedSums EffectRegression::weighed_sums(Eigen::Index first, Eigen::Index frames) const {
+WeighedSums EffectRegression::weighed_sums(Eigen::Index first, Eigen::Index count) const {
     WeighedSums sums{Eigen::MatrixXd::Zero(columns(), columns()), Eigen::VectorXd::Zero(columns()), 0};
     for (Eigen::Index output = 0; output < outputs(); ++output) {
         std::vector<Eigen::Index> acting;
@@ -55,15 +55,15 @@ WeighedSums EffectRegression::weighed_sums(Eigen::Index first, Eigen::Index fram
                 acting.push_back(column);
             }
         }
-        const auto count = static_cast<Eigen::Index>(acting.size());
-        Eigen::MatrixXd matrix(rows_.bins() * frames, count);
-        for (Eigen::Index i = 0; i < count; ++i) {
+        const auto size = static_cast<Eigen::Index>(acting.size());
+        Eigen::MatrixXd matrix(rows_.bins() * count, size);
+        for (Eigen::Index i = 0; i < size; ++i) {
             const auto column = static_cast<std::size_t>(acting[static_cast<std::size_t>(i)]);
-            matrix.col(i) = weighed(*columns_[column]->on(output), output, first, frames);
+            matrix.col(i) = weighed(*columns_[column]->on(output), output, first, count);
         }
         const Eigen::VectorXd wanted =
-            weighed(target_[static_cast<std::size_t>(output)], output, first, frames);
-        Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(count, count);
+            weighed(target_[static_cast<std::size_t>(output)], output, first, count);
+        Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(size, size);
         gram.selfadjointView<Eigen::Lower>().rankUpdate(matrix.transpose());
         gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
         sums.gram(acting, acting) += gram;
