@@ -54,6 +54,9 @@ function(dfdyn_compile_by_folder target)
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
         # What GCC 12 says of bounds depends on what it inlines, and is mostly wrong where a folder is inlined into one file.
         target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
+    elseif(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+        # A name that another file of the folder has to itself is none that could be mistaken.
+        target_compile_options(${target} PRIVATE -Wno-shadow)
     endif()
 endfunction()
 

@@ -151,7 +151,7 @@ Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen:
 
 Eigen::MatrixXd noise_unrest(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
                              const Eigen::VectorXd& spectrum) {
-    constexpr double degrees = 8; // of freedom: what counts as usual unless the frame says otherwise
+    constexpr double usual = 8; // degrees of freedom: what counts as usual unless the frame says otherwise
     const Eigen::MatrixXd power = spectrum.cwiseInverse().asDiagonal() * coefficients.cwiseAbs2();
     Eigen::MatrixXd unrest(power.rows(), power.cols());
     const Eigen::Index holding = coefficients.rows() - zero_bins(coefficients);
@@ -163,7 +163,7 @@ Eigen::MatrixXd noise_unrest(const Eigen::MatrixXd& coefficients, const Eigen::R
             const Eigen::RowVectorXd total = power.middleRows(first, count).colwise().sum() +
                                              (static_cast<double>(count) - held * filled.array()).matrix();
             unrest.middleRows(first, count).rowwise() =
-                ((total.array() + degrees) / (static_cast<double>(count) + degrees)).matrix();
+                ((total.array() + usual) / (static_cast<double>(count) + usual)).matrix();
             first += count;
         }
     }
