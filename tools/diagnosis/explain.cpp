@@ -238,8 +238,10 @@ void Search::gather(std::vector<CandidateEntry> passing) {
     std::vector<Kept> chosen;
     for (const ChosenShape& one : at_.chosen) {
         const Candidate& candidate = at_.candidates[one.candidate];
-        chosen.push_back({candidate.key(), one.shape, candidate.shapes[one.shape].columns.size(),
-                          static_cast<bool>(candidate.about)});
+        const auto made_anew = static_cast<bool>(candidate.about);
+        // a refined shape is not among this copy's yet
+        const std::size_t columns_of_shape = made_anew ? candidate.shapes[one.shape].columns.size() : 0;
+        chosen.push_back({candidate.key(), one.shape, columns_of_shape, made_anew});
     }
     std::vector<SpectralColumnPointer> columns = nuisance_;
     std::map<std::string, std::size_t> families{{"", 0}};
