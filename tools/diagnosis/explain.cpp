@@ -11,6 +11,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -232,16 +233,16 @@ void Search::refine() {
 void Search::gather(std::vector<CandidateEntry> passing) {
     struct Kept {
         std::string key;
-        std::size_t shape, columns;
-        bool made_anew;
+        std::size_t shape;
+        std::optional<std::size_t> columns; ///< of the shape, where shapes are made anew for each model
     };
     std::vector<Kept> chosen;
     for (const ChosenShape& one : at_.chosen) {
         const Candidate& candidate = at_.candidates[one.candidate];
-        const auto made_anew = static_cast<bool>(candidate.about);
-        // a refined shape is not among this copy's yet
-        const std::size_t columns_of_shape = made_anew ? candidate.shapes[one.shape].columns.size() : 0;
-        chosen.push_back({candidate.key(), one.shape, columns_of_shape, made_anew});
+        chosen.push_back({candidate.key(), one.shape, {}});
+        if (candidate.about) {
+            chosen.back().columns = candidate.shapes[one.shape].columns.size();
+        }
     }
     std::vector<SpectralColumnPointer> columns = nuisance_;
     std::map<std::string, std::size_t> families{{"", 0}};
@@ -288,11 +289,11 @@ void Search::gather(std::vector<CandidateEntry> passing) {
         if (found == at_.candidates.end()) {
             continue;
         }
-        const auto same = std::ranges::find_if(
-            found->shapes, [&](const EffectShape& shape) { return shape.columns.size() == one.columns; });
+        const auto as_many = [&](const EffectShape& shape) { return shape.columns.size() == one.columns; };
+        const auto same = std::ranges::find_if(found->shapes, as_many);
         at_.chosen.push_back(
             {static_cast<std::size_t>(found - at_.candidates.begin()),
-             one.made_anew ? static_cast<std::size_t>(same - found->shapes.begin()) : one.shape});
+             one.columns ? static_cast<std::size_t>(same - found->shapes.begin()) : one.shape});
     }
 }
 

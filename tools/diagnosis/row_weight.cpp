@@ -65,21 +65,21 @@ double straying(const std::vector<bool>& standing, const Eigen::VectorXd& output
     return rows > 0 && variance > 0 ? std::sqrt(squares / rows / variance) : 0;
 }
 
+/// How many rows before each one the last that is `off` was; `most` where it was longer ago.
+Eigen::VectorXd rows_since(const std::vector<bool>& off, Eigen::Index most) {
+    Eigen::VectorXd result(std::ssize(off));
+    Eigen::Index since = most;
+    for (Eigen::Index row = 0; row < result.size(); ++row) {
+        since = off[static_cast<std::size_t>(row)] ? 0 : std::min(since + 1, most);
+        result[row] = static_cast<double>(since);
+    }
+    return result;
+}
+
 /// Rising from 0 where `off`, over `fade` rows.
 Eigen::VectorXd weight_beside(const std::vector<bool>& off, Eigen::Index fade) {
-    const auto rows = std::ssize(off);
-    Eigen::VectorXd weight(rows);
-    Eigen::Index since = fade;
-    for (Eigen::Index row = 0; row < rows; ++row) {
-        since = off[static_cast<std::size_t>(row)] ? 0 : since + 1;
-        weight[row] = faded(static_cast<double>(since) / static_cast<double>(fade));
-    }
-    Eigen::Index until = fade;
-    for (Eigen::Index row = rows - 1; row >= 0; --row) {
-        until = off[static_cast<std::size_t>(row)] ? 0 : until + 1;
-        weight[row] = std::min(weight[row], faded(static_cast<double>(until) / static_cast<double>(fade)));
-    }
-    return weight;
+    const Eigen::VectorXd until = rows_since({off.rbegin(), off.rend()}, fade).reverse();
+    return (rows_since(off, fade).cwiseMin(until) / static_cast<double>(fade)).unaryExpr(&faded);
 }
 
 Eigen::VectorXd moving_weight(const MeasuredMotion& measured, const Eigen::MatrixXd& torques,

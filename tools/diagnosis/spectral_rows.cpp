@@ -14,11 +14,6 @@ LappedTransform transform_at(double rate_hz) {
     return {hop, std::llround(2 * SpectralRows::hop_s * highest)};
 }
 
-/// Of a stretch with a hop of nothing before it and at least one behind.
-Eigen::Index padded_frames(const Stretch& stretch, Eigen::Index hop) {
-    return (stretch.count + hop - 1) / hop + 1;
-}
-
 /// How many of the upper ones hold nothing.
 Eigen::Index zero_bins(const Eigen::MatrixXd& coefficients) {
     Eigen::Index zero = 0;
@@ -44,88 +39,82 @@ double persistence(const Eigen::RowVectorXd& series) {
 } // namespace
 
 SpectralRows::SpectralRows(const MeasuredMotion& measured)
-    : transform_(transform_at(measured.rate_hz)), stretches_(measured.stretches),
-      answered_hz_(measured.answered_hz), weight_(measured.weight), rows_(measured.time_s.size()) {
-    for (const Stretch& stretch : stretches_) {
-        frames_ += padded_frames(stretch, transform_.hop());
+    : transform_(transform_at(measured.rate_hz)), weight_(measured.weight) {
+    const Eigen::Index hop = transform_.hop();
+    const Eigen::Index outputs = measured.outputs.cols();
+    for (const Stretch& stretch : measured.stretches) {
+        stretches_.push_back({stretch, frames_, (stretch.count + hop - 1) / hop + 1});
+        frames_ += stretches_.back().frames;
+    }
+    if (weight_.size() == 0) {
+        weight_.setOnes(measured.time_s.size(), outputs);
+    }
+    filled_.resize(outputs, frames_);
+    unanswered_bins_.setZero(outputs);
+    for (Eigen::Index output = 0; output < outputs; ++output) {
+        filled_.row(output) = filled_by(weight_.col(output));
+        for (Eigen::Index bin = 0; bin < bins() && measured.answered_hz.size() > 0; ++bin) {
+            unanswered_bins_[output] += frequency_hz(bin) > measured.answered_hz[output] ? 1 : 0;
+        }
     }
 }
 
 Eigen::Index SpectralRows::frames_within(double share) const {
-    auto left = std::llround(share * static_cast<double>(rows_));
-    Eigen::Index within = 0;
-    for (const Stretch& stretch : stretches_) {
-        if (left < stretch.count) {
-            return std::max<Eigen::Index>(1, within + left / transform_.hop());
+    auto left = std::llround(share * static_cast<double>(weight_.rows()));
+    for (const PaddedStretch& stretch : stretches_) {
+        if (left < stretch.rows.count) {
+            return std::max<Eigen::Index>(1, stretch.first_frame + left / transform_.hop());
         }
-        left -= stretch.count;
-        within += padded_frames(stretch, transform_.hop());
+        left -= stretch.rows.count;
     }
-    return within;
+    return frames_;
 }
 
-Eigen::VectorXd SpectralRows::weight(Eigen::Index output) const {
-    return weight_.size() == 0 ? Eigen::VectorXd::Ones(rows_) : Eigen::VectorXd(weight_.col(output));
+Eigen::VectorXd SpectralRows::padded(const Eigen::VectorXd& series, const PaddedStretch& stretch) const {
+    const Eigen::Index hop = transform_.hop();
+    Eigen::VectorXd result = Eigen::VectorXd::Zero((stretch.frames + 1) * hop);
+    result.segment(hop, stretch.rows.count) = series.segment(stretch.rows.first, stretch.rows.count);
+    return result;
 }
 
 Eigen::MatrixXd SpectralRows::analyse(const Eigen::VectorXd& series) const {
-    const Eigen::Index hop = transform_.hop();
     Eigen::MatrixXd result(bins(), frames_);
-    Eigen::Index first = 0;
-    for (const Stretch& stretch : stretches_) {
-        const Eigen::Index count = padded_frames(stretch, hop);
-        Eigen::VectorXd padded = Eigen::VectorXd::Zero((count + 1) * hop);
-        padded.segment(hop, stretch.count) = series.segment(stretch.first, stretch.count);
-        result.middleCols(first, count) = transform_.analyse(padded);
-        first += count;
+    for (const PaddedStretch& stretch : stretches_) {
+        result.middleCols(stretch.first_frame, stretch.frames) = transform_.analyse(padded(series, stretch));
     }
     return result;
 }
 
-Eigen::Index SpectralRows::answered_bins(Eigen::Index output) const {
-    Eigen::Index answered = 0;
-    while (answered < bins() &&
-           (answered_hz_.size() == 0 || frequency_hz(answered) <= answered_hz_[output])) {
-        ++answered;
-    }
-    return answered;
-}
-
 Eigen::MatrixXd SpectralRows::analyse(const Eigen::VectorXd& series, Eigen::Index output) const {
-    Eigen::MatrixXd result = analyse(series.cwiseProduct(weight(output)));
-    result.bottomRows(bins() - answered_bins(output)).setZero();
+    Eigen::MatrixXd result = analyse(series.cwiseProduct(weight_.col(output)));
+    result.bottomRows(unanswered_bins_[output]).setZero();
     return result;
 }
 
 Eigen::VectorXd SpectralRows::synthesise(const Eigen::MatrixXd& coefficients, Eigen::Index output) const {
     const Eigen::Index hop = transform_.hop();
     Eigen::MatrixXd answered = coefficients;
-    answered.bottomRows(bins() - answered_bins(output)).setZero();
-    Eigen::VectorXd series(rows_);
-    Eigen::Index first = 0;
-    for (const Stretch& stretch : stretches_) {
-        const Eigen::Index count = padded_frames(stretch, hop);
-        series.segment(stretch.first, stretch.count) =
-            transform_.synthesise(answered.middleCols(first, count), (count + 1) * hop)
-                .segment(hop, stretch.count);
-        first += count;
+    answered.bottomRows(unanswered_bins_[output]).setZero();
+    Eigen::VectorXd series(weight_.rows());
+    for (const PaddedStretch& stretch : stretches_) {
+        series.segment(stretch.rows.first, stretch.rows.count) =
+            transform_
+                .synthesise(answered.middleCols(stretch.first_frame, stretch.frames),
+                            (stretch.frames + 1) * hop)
+                .segment(hop, stretch.rows.count);
     }
-    return series.cwiseProduct(weight(output));
+    return series.cwiseProduct(weight_.col(output));
 }
 
-Eigen::RowVectorXd SpectralRows::filled(Eigen::Index output) const {
-    const Eigen::VectorXd squares = weight(output).cwiseAbs2();
+Eigen::RowVectorXd SpectralRows::filled_by(const Eigen::VectorXd& weight) const {
     const Eigen::Index hop = transform_.hop();
     Eigen::RowVectorXd result(frames_);
-    Eigen::Index first = 0;
-    for (const Stretch& stretch : stretches_) {
-        const Eigen::Index count = padded_frames(stretch, hop);
-        Eigen::VectorXd padded = Eigen::VectorXd::Zero((count + 1) * hop);
-        padded.segment(hop, stretch.count) = squares.segment(stretch.first, stretch.count);
-        for (Eigen::Index frame = 0; frame < count; ++frame) {
-            result[first + frame] = padded.segment(frame * hop, 2 * hop).dot(transform_.window_squares());
+    for (const PaddedStretch& stretch : stretches_) {
+        const Eigen::VectorXd squares = padded(weight, stretch).cwiseAbs2();
+        for (Eigen::Index frame = 0; frame < stretch.frames; ++frame) {
+            result[stretch.first_frame + frame] =
+                squares.segment(frame * hop, 2 * hop).dot(transform_.window_squares());
         }
-        first += count;
     }
     return result;
 }

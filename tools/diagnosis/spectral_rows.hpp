@@ -36,17 +36,23 @@ class SpectralRows {
     /// The transpose of `analyse` for `output`: T.
     Eigen::VectorXd synthesise(const Eigen::MatrixXd& coefficients, Eigen::Index output) const;
     /// Per frame, the share of it that rows of `output` fill, by the squares of their weights.
-    Eigen::RowVectorXd filled(Eigen::Index output) const;
+    auto filled(Eigen::Index output) const { return filled_.row(output); }
 
   private:
-    Eigen::VectorXd weight(Eigen::Index output) const;
-    Eigen::Index answered_bins(Eigen::Index output) const;
+    /// A stretch with a hop of nothing before it and at least one behind; where its frames are.
+    struct PaddedStretch {
+        Stretch rows;
+        Eigen::Index first_frame, frames;
+    };
+    Eigen::VectorXd padded(const Eigen::VectorXd& series, const PaddedStretch& stretch) const;
+    Eigen::RowVectorXd filled_by(const Eigen::VectorXd& weight) const;
 
     LappedTransform transform_;
-    std::vector<Stretch> stretches_;
-    Eigen::VectorXd answered_hz_; ///< m, or empty: any
-    Eigen::MatrixXd weight_;      ///< T x m, or empty: ones
-    Eigen::Index rows_ = 0, frames_ = 0;
+    std::vector<PaddedStretch> stretches_;
+    Eigen::Index frames_ = 0;
+    Eigen::MatrixXd weight_;                                      ///< T x m
+    Eigen::MatrixXd filled_;                                      ///< m x frames
+    Eigen::Vector<Eigen::Index, Eigen::Dynamic> unanswered_bins_; ///< m: of the uppermost
 };
 
 /// Variance of the coefficients of a noise per bin, from its coefficients (bins x frames): the mean square
