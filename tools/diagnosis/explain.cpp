@@ -85,6 +85,9 @@ class Search {
             at_.fit = fit_effects(at_.problem, at_.chosen);
             // weighed by the spectrum of what is not explained yet, an effect would be taken for noise
             estimate_noise(round + 1 < white_rounds);
+            if (round + 1 == white_rounds) {
+                forget_prices();
+            }
             std::vector<std::string> keys = chosen_keys();
             if (keys == last && round > white_rounds) {
                 break;
@@ -103,12 +106,12 @@ class Search {
 
   private:
     void add_nuisance();
-    std::vector<Candidate> demanding_as_chosen(std::vector<Candidate> contacts) const;
     Eigen::VectorXd delays() const;
     std::vector<CandidateEntry> passing() const;
     void refine();
     void gather(std::vector<CandidateEntry> passing);
     void estimate_noise(bool white);
+    void forget_prices();
     void decide_masses();
     std::vector<WeighedSums> sums_of_blocks() const;
     Eigen::VectorXd of_events() const;
@@ -148,18 +151,16 @@ void Search::add_nuisance() {
     at_.masses_uncertain = true;
 }
 
-/// Once the largest events are chosen, those left stand out less against each other: they are judged as the
-/// first were.
-std::vector<Candidate> Search::demanding_as_chosen(std::vector<Candidate> contacts) const {
-    for (Candidate& contact : contacts) {
-        for (const ChosenShape& one : at_.chosen) {
-            const Candidate& chosen = at_.candidates[one.candidate];
-            if (chosen.effect == contact.effect && chosen.where == contact.where) {
-                contact.extra_price = std::max(contact.extra_price, chosen.extra_price);
+/// Pushes at a site are all judged alike: once the largest are chosen, those left stand out less against each
+/// other.
+void demand_alike(std::vector<Candidate>& candidates) {
+    for (const Candidate& one : candidates) {
+        for (Candidate& other : candidates) {
+            if (one.effect == "external_contact" && one.effect == other.effect && one.where == other.where) {
+                other.extra_price = std::max(other.extra_price, one.extra_price);
             }
         }
     }
-    return contacts;
 }
 
 /// Per output, the delay that the model at hand has there.
@@ -205,7 +206,9 @@ std::vector<CandidateEntry> Search::passing() const {
     // a free function of the position can hide a ripple
     add(scan_ripples(signals_, regression_, weighed_residual(regression_, of_named(coefficients))));
     const Eigen::MatrixXd weighed = weighed_residual(regression_, coefficients);
-    add(demanding_as_chosen(scan_contacts(signals_, regression_, weighed, sites_)));
+    add(scan_contacts(signals_, regression_,
+                      weighed_residual_away_from_reversals(signals_, regression_, coefficients), sites_));
+    demand_alike(found);
     add(scan_taken_payload(signals_, regression_, weighed, payload_));
     add(play_.candidates(signals_, regression_, weighed));
     std::vector<CandidateEntry> result;
@@ -329,6 +332,13 @@ void Search::estimate_noise(bool white) {
     }
     regression_.set_noise(noise, unrest);
     at_.noise = std::move(noise);
+}
+
+/// How far a push must stand out was learned while the noise was taken for white: now it is learned anew.
+void Search::forget_prices() {
+    for (const ChosenShape& one : at_.chosen) {
+        at_.candidates[one.candidate].extra_price = 0;
+    }
 }
 
 std::vector<std::string> Search::chosen_keys() const {

@@ -115,36 +115,16 @@ void scan_windows(const DiagnosisSignals& signals, const EffectRegression& regre
     }
 }
 
-/// Without what happens around a joint's reversals: there a friction that is not quite right leaves pulses of
-/// its own.
-Eigen::MatrixXd away_from_reversals(const DiagnosisSignals& signals, Eigen::MatrixXd series) {
-    if (signals.wrench()) {
-        return series;
-    }
-    const auto reach = static_cast<Eigen::Index>(0.12 * signals.measured.rate_hz);
-    for (Eigen::Index joint = 0; joint < series.cols(); ++joint) {
-        const Eigen::VectorXd velocity = signals.measured.motion.velocity.col(joint);
-        for (Eigen::Index row = 1; row < velocity.size(); ++row) {
-            if ((velocity[row] > 0) != (velocity[row - 1] > 0)) {
-                const Eigen::Index first = std::max<Eigen::Index>(0, row - reach);
-                series.col(joint).segment(first, std::min(2 * reach, series.rows() - first)).setZero();
-            }
-        }
-    }
-    return series;
-}
-
 } // namespace
 
 std::vector<Candidate> scan_contacts(const DiagnosisSignals& signals, const EffectRegression& regression,
                                      const Eigen::MatrixXd& weighed, const std::vector<ContactSite>& sites) {
     constexpr std::size_t usual = 3; // an event must explain three times what this one of its kind does
-    const Eigen::MatrixXd calm = away_from_reversals(signals, weighed);
     std::vector<Candidate> result;
     for (const ContactSite& site : sites) {
         std::vector<Window> windows;
         for (const double length_s : {0.5, 0.75, 1.1, 1.7, 2.5, 3.75, 5.5}) {
-            scan_windows(signals, regression, calm, site, length_s, windows);
+            scan_windows(signals, regression, weighed, site, length_s, windows);
         }
         const std::vector<Window> events = events_of(windows);
         if (events.size() > usual) {

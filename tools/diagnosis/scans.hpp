@@ -11,13 +11,19 @@ namespace dfdyn::tools {
 /// it is the column's share of the normal equations' right-hand side.
 Eigen::MatrixXd weighed_residual(const EffectRegression& regression, const Eigen::VectorXd& coefficients);
 
+/// The same where the residual of a joint's torque is bridged around the joint's reversals: there a friction
+/// that is not quite right leaves pulses of its own.
+Eigen::MatrixXd weighed_residual_away_from_reversals(const DiagnosisSignals& signals,
+                                                     const EffectRegression& regression,
+                                                     const Eigen::VectorXd& coefficients);
+
 /// Of each joint the numbers of cycles per turn that go best with the residual; candidates have these and
 /// their neighbours as shapes. Whole numbers from 2 to 200 whose frequency stays within the analysed band.
 std::vector<Candidate> scan_ripples(const DiagnosisSignals& signals, const EffectRegression& regression,
                                     const Eigen::MatrixXd& weighed);
 
-/// Of each site the stretch of time in which a push there explains most of the residual. `sites` must outlive
-/// the candidates.
+/// Of each site the stretch of time in which a push there explains most of the residual, which is best taken
+/// away from reversals. `sites` must outlive the candidates.
 std::vector<Candidate> scan_contacts(const DiagnosisSignals& signals, const EffectRegression& regression,
                                      const Eigen::MatrixXd& weighed, const std::vector<ContactSite>& sites);
 

@@ -22,6 +22,7 @@ class SpectralRows {
 
     Eigen::Index bins() const noexcept { return transform_.bins(); }
     Eigen::Index frames() const noexcept { return frames_; }
+    Eigen::Index rows() const noexcept { return weight_.rows(); }
     Eigen::Index count() const noexcept { return bins() * frames_; }
     double frequency_hz(Eigen::Index bin) const noexcept {
         return (static_cast<double>(bin) + 0.5) / (2 * hop_s);

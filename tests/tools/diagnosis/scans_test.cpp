@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is looked for in a residual, against what was put there.
+#include "tools/diagnosis/scans.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/diagnosis/swinging_arm.hpp"
+#include "tests/tools/robot/arms.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace {
+
+using namespace dfdyn::tools;
+using namespace dfdyn::tests;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double persistent = 0.98; ///< from row to row
+
+/// Of variance 1, as slow as what is left of real torques.
+VectorXd slow_noise(Index rows, std::mt19937_64& engine) {
+    std::normal_distribution<double> normal;
+    VectorXd noise(rows);
+    double state = normal(engine);
+    for (Index row = 0; row < rows; ++row) {
+        noise[row] = state;
+        state = persistent * state + std::sqrt(1 - persistent * persistent) * normal(engine);
+    }
+    return noise;
+}
+
+/// Its variance per bin, in closed form.
+VectorXd slow_spectrum(const SpectralRows& rows, double rate_hz) {
+    VectorXd spectrum(rows.bins());
+    for (Index bin = 0; bin < rows.bins(); ++bin) {
+        const double angle = 2 * std::numbers::pi * rows.frequency_hz(bin) / rate_hz;
+        spectrum[bin] =
+            (1 - persistent * persistent) / (1 - 2 * persistent * std::cos(angle) + persistent * persistent);
+    }
+    return spectrum;
+}
+
+/// The UR5, its residuals, and how much they are weighed.
+struct Residual {
+    DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
+    SpectralRows rows{signals.measured};
+    MatrixXd left;
+
+    explicit Residual(std::mt19937_64& engine) : left(signals.rows(), signals.outputs()) {
+        for (Index joint = 0; joint < left.cols(); ++joint) {
+            left.col(joint) = slow_noise(left.rows(), engine);
+        }
+    }
+
+    EffectRegression regression() const {
+        EffectRegression result(rows, left, rows.frames());
+        const VectorXd spectrum = slow_spectrum(rows, signals.measured.rate_hz);
+        result.set_noise(spectrum.replicate(1, left.cols()),
+                         std::vector<MatrixXd>(static_cast<std::size_t>(left.cols()),
+                                               MatrixXd::Ones(rows.bins(), rows.frames())));
+        return result;
+    }
+
+    MatrixXd weighed() const {
+        return weighed_residual_away_from_reversals(signals, regression(), VectorXd(0));
+    }
+};
+
+} // namespace
+
+TEST_CASE("where there is slow noise and nothing else, no push stands out") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Residual residual(engine);
+    const std::vector<ContactSite> sites = contact_sites(residual.signals);
+    for (const Candidate& push :
+         scan_contacts(residual.signals, residual.regression(), residual.weighed(), sites)) {
+        INFO(push.where);
+        // half as much again as the fourth largest of hundreds of squares of a standard normal's
+        CHECK(push.extra_price < 1.5 * 16);
+    }
+}
+
+TEST_CASE("a push is found among slow noise, at its time, and the next ones to it are of the noise") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Residual residual(engine);
+    const double start_s = std::uniform_real_distribution<double>(3, 15)(engine);
+    residual.left.col(3) -= 8 * pulse_series(residual.signals, {start_s, start_s + 1.5, 0.4});
+    const std::vector<ContactSite> sites = contact_sites(residual.signals);
+    const Candidate push =
+        find(scan_contacts(residual.signals, residual.regression(), residual.weighed(), sites),
+             "external_contact", "joint4");
+    const std::vector<EffectParameter> found = push.parameters(VectorXd::Ones(1), push.shapes.front());
+    CHECK(std::abs(found[0].value - start_s) < 0.5);
+    CHECK(std::abs(found[1].value - start_s - 1.5) < 0.5);
+    CHECK(push.extra_price < 1.5 * 16);
+}
+
+TEST_CASE("what is left at reversals only is bridged") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Residual residual(engine);
+    const VectorXd velocity = residual.signals.measured.motion.velocity.col(0);
+    const MatrixXd bridged = residual.weighed();
+    const MatrixXd all = weighed_residual(residual.regression(), VectorXd(0));
+    const VectorXd bump = 5 * (std::numbers::pi * VectorXd::LinSpaced(17, -1, 1).array() / 2).cos().square();
+    for (Index row = 8; row + 9 < velocity.size(); ++row) {
+        if ((velocity[row] > 0) != (velocity[row - 1] > 0)) {
+            residual.left.col(0).segment(row - 8, 17) += bump;
+        }
+    }
+    const MatrixXd more = weighed_residual(residual.regression(), VectorXd(0)) - all;
+    CHECK((residual.weighed() - bridged).norm() < 0.1 * more.norm());
+}
