@@ -35,7 +35,8 @@ void score_parameter(EffectScore& score, const HiddenEffect& hidden, const tools
     if (found == finding.parameters.end()) {
         return;
     }
-    score.relative_error = std::abs(found->value - value) / std::abs(value);
+    const bool is_factor = hidden.effect == "actuator_gain" || hidden.effect == "ft_gain"; // 1: none
+    score.relative_error = std::abs(found->value - value) / std::abs(is_factor ? value - 1 : value);
     score.in_interval = found->low <= value && value <= found->high;
 }
 
@@ -85,6 +86,18 @@ FindingScore score_finding(const PanelCase& panel_case, const tools::Finding& fi
     return score;
 }
 
+std::vector<ConstantScore> score_constants(const PanelCase& panel_case, const tools::Diagnosis& diagnosis) {
+    std::vector<ConstantScore> result;
+    for (const tools::GrantedQuantity& granted : diagnosis.granted) {
+        const tools::FoundParameter& found = granted.parameter;
+        if (found.name == "torque_constant") {
+            const double truth = panel_case.torque_constants[result.size()];
+            result.push_back({std::abs(found.value / truth - 1), found.low <= truth && truth <= found.high});
+        }
+    }
+    return result;
+}
+
 } // namespace
 
 CaseScore score_case(const PanelCase& panel_case, const tools::Diagnosis& diagnosis) {
@@ -100,6 +113,7 @@ CaseScore score_case(const PanelCase& panel_case, const tools::Diagnosis& diagno
     for (const tools::Finding& finding : diagnosis.findings) {
         score.findings.push_back(score_finding(panel_case, finding));
     }
+    score.constants = score_constants(panel_case, diagnosis);
     if (score.outside && !panel_case.hidden.empty()) {
         const HiddenEffect& hidden = panel_case.hidden.front();
         score.unexplained_right =

@@ -34,12 +34,19 @@ struct FindingScore {
     bool own_name = false;
 };
 
+/// What was said of a torque constant that was not given.
+struct ConstantScore {
+    double relative_error = 0;
+    bool in_interval = false;
+};
+
 struct CaseScore {
     std::uint64_t seed = 0;
     std::string robot, noise;
     bool masses_off = false, outside = false;
     std::vector<EffectScore> effects;
     std::vector<FindingScore> findings;
+    std::vector<ConstantScore> constants;
     bool unexplained_right = false; ///< outside the catalogue: the right output, by the right input
     double seconds = 0;
 };

@@ -85,6 +85,9 @@ std::vector<Line> lines_of(const PanelSummary& summary) {
             {"exact name where nothing ties, strength 1 and more", summary.exact_name, 0.95, 0.85},
             {"main parameter within 20 %, strength 1 and more", summary.parameter_within_20, 0.90, 0.8},
             {"main parameter inside its 95 % interval", summary.parameter_in_interval, 0.90, 0.8},
+            {"torque constants that nobody gave, within 20 %", summary.constant_within_20, 0.90, 0.5},
+            {"torque constants that nobody gave, inside their 95 % interval", summary.constant_in_interval,
+             0.90, 0.8},
             {"recordings without any effect that have a finding at 0.5 or more", summary.null_with_finding,
              0.05, 0.05, false},
             {"findings at 0.9 or more that are wrong", summary.confident_and_wrong, 0.05, 0.05, false},
@@ -210,6 +213,10 @@ PanelSummary summarise(const std::vector<CaseScore>& scores) {
             rate.add(!wrong_name(score) && score.unexplained_right);
         } else {
             add_named(summary, score);
+        }
+        for (const ConstantScore& constant : score.constants) {
+            summary.constant_within_20.add(constant.relative_error <= 0.2);
+            summary.constant_in_interval.add(constant.in_interval);
         }
         for (const FindingScore& finding : score.findings) {
             if (finding.confidence >= confident) {

@@ -24,6 +24,7 @@ struct PanelSummary {
     Rate found_at_3, found_at_1, found_at_03; ///< name and place, or a class of at most three that has it
     Rate exact_name;                          ///< strength 1 and more, where the finding has no ties
     Rate parameter_within_20, parameter_in_interval; ///< strength 1 and more
+    Rate constant_within_20, constant_in_interval;   ///< per joint, where nobody gave its torque constant
     Rate null_with_finding;                          ///< with a confidence of 0.5 and more
     Rate confident_and_wrong;                        ///< of all findings with a confidence of 0.9 and more
     Rate both_named, both_named_with_weak;           ///< both of strength 1 and more; one or both weaker

@@ -2,10 +2,10 @@
 // An arm that stands still for a long time under forgetting, and then moves on.
 #include "dfdyn/estimator.hpp"
 
-#include "tests/firmware_lib/support/slow_build.hpp"
 #include "tests/firmware_lib/support/test_model.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/support/slow_build.hpp"
 
 #include <Eigen/Core>
 

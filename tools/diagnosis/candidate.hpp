@@ -21,6 +21,7 @@ struct EffectColumn {
 struct EffectParameter {
     std::string name, unit;
     double value = 0;
+    double of_nothing = 0; ///< what it is where there is no such effect
 };
 
 /// Whether a machine can have these coefficients.

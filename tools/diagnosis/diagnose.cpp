@@ -3,6 +3,7 @@
 
 #include "tools/common/root_mean_square.hpp"
 #include "tools/diagnosis/findings.hpp"
+#include "tools/diagnosis/granted.hpp"
 #include "tools/diagnosis/plausibility.hpp"
 #include "tools/diagnosis/unexplained.hpp"
 #include "tools/physics/torque_constants.hpp"
@@ -117,6 +118,7 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     work.explanation = explain(*signals, work.measured, how);
     work.diagnosis.findings =
         findings_of(*signals, work.explanation, work.measured, work.diagnosis.output_names);
+    work.diagnosis.granted = granted_quantities(*signals, work.explanation, work.torque_gains);
     const Eigen::MatrixXd rest = nominal_error - work.explanation.all(*signals);
     work.diagnosis.unexplained = unnamed_dependences(*signals, work.measured, work.explanation);
     add_rest(work.diagnosis.unexplained,

@@ -10,6 +10,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,13 @@ struct Finding {
     double margin_to_nothing = 0, margin_to_others = 0; ///< logarithms of the odds behind the confidence
 };
 
+/// What the model has as it fits best, and is no finding.
+struct GrantedQuantity {
+    std::string where;
+    FoundParameter parameter;    ///< `mass`, or `torque_constant`
+    std::optional<double> given; ///< by the robot's file
+};
+
 /// What no name of the catalogue explains.
 struct Unexplained {
     Eigen::Index output = 0;
@@ -57,6 +65,7 @@ struct Diagnosis {
     ErrorMeasure nominal, extended;      ///< on the held-out time
     double heldout_from_s = 0, heldout_to_s = 0;
     std::vector<Finding> findings; ///< by gain
+    std::vector<GrantedQuantity> granted;
     std::vector<Unexplained> unexplained;
 };
 

@@ -36,15 +36,28 @@ ordered_json value_of(const FoundParameter& parameter) {
     return axis ? ordered_json(*axis) : ordered_json(parameter.value);
 }
 
+ordered_json to_json(const FoundParameter& parameter) {
+    ordered_json entry{{"name", parameter.name}, {"value", value_of(parameter)}};
+    if (!entry["value"].is_string()) {
+        entry["unit"] = parameter.unit;
+        entry["ci95"] = {parameter.low, parameter.high};
+    }
+    return entry;
+}
+
+ordered_json to_json(const GrantedQuantity& granted) {
+    ordered_json entry = to_json(granted.parameter);
+    entry["where"] = granted.where;
+    if (granted.given) {
+        entry["given"] = *granted.given;
+    }
+    return entry;
+}
+
 ordered_json to_json(const Finding& finding, const std::string& output) {
     ordered_json parameters = ordered_json::array();
     for (const FoundParameter& parameter : finding.parameters) {
-        ordered_json entry{{"name", parameter.name}, {"value", value_of(parameter)}};
-        if (!entry["value"].is_string()) {
-            entry["unit"] = parameter.unit;
-            entry["ci95"] = {parameter.low, parameter.high};
-        }
-        parameters.push_back(std::move(entry));
+        parameters.push_back(to_json(parameter));
     }
     return {
         {"effect", finding.effect},
@@ -76,6 +89,11 @@ std::string diagnosis_to_json(const Diagnosis& diagnosis) {
             to_json(finding, diagnosis.output_names[static_cast<std::size_t>(finding.output)]));
     }
     json["findings"] = std::move(findings);
+    ordered_json granted = ordered_json::array();
+    for (const GrantedQuantity& one : diagnosis.granted) {
+        granted.push_back(to_json(one));
+    }
+    json["granted"] = std::move(granted);
     ordered_json unexplained = ordered_json::array();
     for (const Unexplained& entry : diagnosis.unexplained) {
         unexplained.push_back({{"output", diagnosis.output_names[static_cast<std::size_t>(entry.output)]},

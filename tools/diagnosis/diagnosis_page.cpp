@@ -174,16 +174,31 @@ ReportTable findings_table(const DiagnosisCase& one) {
     return table;
 }
 
+ReportTable granted_table(const Diagnosis& diagnosis) {
+    ReportTable table{"Taken as it fits best, without being a finding",
+                      {"where", "quantity", "value", "95 % interval", "in the robot's file", "unit"},
+                      {},
+                      {}};
+    table.note =
+        "Torque constants: nobody gave them. Masses: the recording fits better when each may be a few "
+        "percent off, but no single link stands out. The extended model starts at these.";
+    for (const GrantedQuantity& one : diagnosis.granted) {
+        const FoundParameter& parameter = one.parameter;
+        table.rows.push_back({one.where, parameter.name == "mass" ? "mass" : "torque constant",
+                              parameter.value, interval_words(parameter),
+                              one.given ? ReportCell(*one.given) : ReportCell("–"), parameter.unit});
+    }
+    return table;
+}
+
 PageSection overview_section(const DiagnosisCase& one) {
     PageSection section{"What is wrong, and what it brings to know it", {}, {}, {}};
     section.tables.push_back(error_table(one.work.diagnosis));
     if (!one.work.diagnosis.findings.empty()) {
         section.tables.push_back(findings_table(one));
     }
-    if (one.work.explanation.masses_uncertain) {
-        section.paragraphs.emplace_back("The links' masses fit better when each may be a few percent off; "
-                                        "the extended model starts at the "
-                                        "fitted ones. That is no finding: no single link stands out.");
+    if (!one.work.diagnosis.granted.empty()) {
+        section.tables.push_back(granted_table(one.work.diagnosis));
     }
     return section;
 }

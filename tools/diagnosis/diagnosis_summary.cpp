@@ -91,6 +91,19 @@ void print_findings(std::ostream& out, const Diagnosis& diagnosis) {
     }
 }
 
+/// All of one name on one line.
+void print_granted(std::ostream& out, const Diagnosis& diagnosis, const std::string& name, const char* lead) {
+    std::string list;
+    for (const GrantedQuantity& one : diagnosis.granted) {
+        if (one.parameter.name == name) {
+            list.append(list.empty() ? "" : "; ").append(granted_words(one));
+        }
+    }
+    if (!list.empty()) {
+        out << lead << list << '\n';
+    }
+}
+
 /// Of those that are least sure.
 void print_experiments(std::ostream& out, const Diagnosis& diagnosis) {
     std::vector<const Finding*> unsure;
@@ -147,6 +160,8 @@ void print_diagnosis(std::ostream& out, const Diagnosis& diagnosis,
     }
     print_errors(out, diagnosis);
     print_findings(out, diagnosis);
+    print_granted(out, diagnosis, "torque_constant", "torque constants, N·m/A: ");
+    print_granted(out, diagnosis, "mass", "masses that fit better, none of which stands out, kg: ");
     print_experiments(out, diagnosis);
     print_unexplained(out, diagnosis);
     print_carried(out, carried);

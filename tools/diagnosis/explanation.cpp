@@ -16,6 +16,12 @@ void accumulate(Eigen::MatrixXd& sum, double coefficient, const EffectColumn& co
 
 } // namespace
 
+double Explanation::nuisance_factor(Eigen::Index number) const {
+    constexpr double least = 0.1;
+    const double factor = 1 + fit.coefficients[number];
+    return factor > least ? factor : 1;
+}
+
 Eigen::Index Explanation::first_column(std::size_t chosen_index) const {
     auto first = static_cast<Eigen::Index>(problem.nuisance.size());
     for (std::size_t i = 0; i < chosen_index; ++i) {

@@ -42,6 +42,9 @@ struct Explanation {
     /// Those of the chosen that have a name: `named` is their fit.
     std::vector<ChosenShape> named_effects() const;
 
+    /// By `fit`, what one of the nuisance's bodies or gains is multiplied by; 1 where that would be none.
+    double nuisance_factor(Eigen::Index number) const;
+
     /// Of both fits: where a chosen candidate's columns begin.
     Eigen::Index first_column(std::size_t chosen_index) const;
 

@@ -41,11 +41,11 @@ void add_nuisance(Extension& extension, const DiagnosisWork& work) {
     const Eigen::Index bodies = explanation.masses_uncertain ? extension.bodies.size() / 10 : 0;
     const auto count = static_cast<Eigen::Index>(explanation.nuisance.size());
     for (Eigen::Index i = 0; i < count; ++i) {
-        const double coefficient = explanation.fit.coefficients[i];
+        const double factor = explanation.nuisance_factor(i);
         if (i < bodies) {
-            extension.bodies.segment<10>(10 * i) *= 1 + coefficient;
-        } else if (coefficient > -0.9) {
-            scale_output(extension, i - bodies, 1 + coefficient, false);
+            extension.bodies.segment<10>(10 * i) *= factor;
+        } else {
+            scale_output(extension, i - bodies, factor, false);
         }
     }
 }

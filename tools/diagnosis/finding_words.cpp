@@ -2,6 +2,7 @@
 #include "tools/diagnosis/finding_words.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace dfdyn::tools {
 
@@ -37,11 +38,7 @@ std::string parameter_words(const FoundParameter& parameter) {
     if (parameter.low == parameter.high) {
         return text; // a shape that is picked, not measured
     }
-    return text.append(" (")
-        .append(rounded_text(parameter.low))
-        .append(" … ")
-        .append(rounded_text(parameter.high))
-        .append(")");
+    return text.append(" (").append(interval_words(parameter)).append(")");
 }
 
 std::string main_parameter_words(const Finding& finding) {
@@ -53,6 +50,17 @@ std::string main_parameter_words(const Finding& finding) {
 std::string cause_words(const Finding& finding) {
     std::string text = words(finding.effect, finding.where);
     return finding.detail.empty() ? text : text.append(", ").append(finding.detail);
+}
+
+std::string interval_words(const FoundParameter& parameter) {
+    const std::string high = std::isinf(parameter.high) ? "∞" : rounded_text(parameter.high);
+    return rounded_text(parameter.low) + " … " + high;
+}
+
+std::string granted_words(const GrantedQuantity& granted) {
+    std::string text = granted.where + " " + rounded_text(granted.parameter.value);
+    text.append(" (").append(interval_words(granted.parameter)).append(")");
+    return granted.given ? text.append(" instead of ").append(rounded_text(*granted.given)) : text;
 }
 
 std::string cause_words(const OtherCause& cause) { return words(cause.effect, cause.where); }

@@ -21,12 +21,18 @@ std::optional<std::string> axis_of(const FoundParameter& parameter);
 /// `coulomb 8.02 N·m (7.95 … 8.09)`, with the 95 % interval; `axis fz` of a sensor's axis.
 std::string parameter_words(const FoundParameter& parameter);
 
+/// `7.95 … 8.09`: of 95 %.
+std::string interval_words(const FoundParameter& parameter);
+
 /// The first parameter that was measured, with its interval; empty where there is none.
 std::string main_parameter_words(const Finding& finding);
 
 /// `coulomb friction at joint2`; with its detail where there is one.
 std::string cause_words(const Finding& finding);
 std::string cause_words(const OtherCause& cause);
+
+/// `link2 3.1 (2.9 … 3.3) instead of 3`: without the unit.
+std::string granted_words(const GrantedQuantity& granted);
 
 /// The unit of an output by its column's name: `N·m`, `N` or `A`.
 std::string output_unit(const std::string& output_name);

@@ -16,11 +16,6 @@ namespace {
 constexpr double tie = 3; ///< odds of 20 to 1: closer than this the data cannot tell two causes apart
 constexpr double price_of_shapes = 6; ///< what the three coefficients of a centre of mass cost
 constexpr std::size_t listed = 3;     ///< alternatives that a finding tells of
-constexpr double two_sided_95 = 1.96;
-constexpr double coloured =
-    1.7; ///< how much wider intervals must be than their formula says: measured, docs/diagnosis-panel.md
-constexpr double model_error =
-    0.04; ///< of a parameter: what no noise explains, where effects are large; measured, too
 
 /// A shape's parameters and their variances, by the gradient of each with respect to the coefficients.
 struct ShapeParameters {
@@ -89,9 +84,9 @@ std::vector<FoundParameter> found_parameters(const Explanation& explanation, std
     const ShapeParameters all = parameters_over_shapes(explanation, index);
     std::vector<FoundParameter> result;
     for (std::size_t k = 0; k < all.values.size(); ++k) {
-        const auto& [name, unit, value] = all.values[k];
-        const double deviation = std::sqrt(all.variance[static_cast<Eigen::Index>(k)]);
-        const double reach = two_sided_95 * std::hypot(coloured * deviation, model_error * value);
+        const auto& [name, unit, value, of_nothing] = all.values[k];
+        const double reach =
+            reach_of_95(std::sqrt(all.variance[static_cast<Eigen::Index>(k)]), value - of_nothing);
         result.push_back({name, unit, value, value - reach, value + reach});
     }
     return result;
@@ -162,6 +157,14 @@ std::vector<Finding> without_repeated_contacts(std::vector<Finding> findings) {
 }
 
 } // namespace
+
+double reach_of_95(double deviation, double effect) {
+    constexpr double two_sided = 1.96;
+    constexpr double coloured =
+        1.7; // how much wider than their formula says: measured, docs/diagnosis-panel.md
+    constexpr double model_error = 0.04; // what no noise explains, where effects are large; measured, too
+    return two_sided * std::hypot(coloured * deviation, model_error * effect);
+}
 
 double calibrated_confidence(const Finding& finding) {
     // Logistic regression on what was right and wrong in 500 simulated recordings: docs/diagnosis-panel.md.

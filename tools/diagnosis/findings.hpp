@@ -11,6 +11,10 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
                                  const Eigen::MatrixXd& measured,
                                  const std::vector<std::string>& output_names);
 
+/// Half the width of a parameter's 95 % interval: its standard deviation by the regression, were the noise
+/// just as weighed, and how far it is from the value that means nothing.
+double reach_of_95(double deviation, double effect);
+
 /// Calibrated probability from the finding's margins, ties and effect.
 double calibrated_confidence(const Finding& finding);
 

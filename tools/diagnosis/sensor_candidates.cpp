@@ -52,7 +52,7 @@ Candidate axis_gain(const Eigen::MatrixXd& wrench, Eigen::Index from, Eigen::Ind
         const auto axis_from = static_cast<double>(from);
         const auto axis_to = static_cast<double>(to);
         if (own) {
-            return std::vector<EffectParameter>{{"gain", "1", 1 + coefficients[0]}, {"axis", "", axis_to}};
+            return std::vector<EffectParameter>{{"gain", "1", 1 + coefficients[0], 1}, {"axis", "", axis_to}};
         }
         return std::vector<EffectParameter>{
             {"gain", unit, coefficients[0]}, {"from_axis", "", axis_from}, {"to_axis", "", axis_to}};
@@ -125,7 +125,7 @@ std::vector<Candidate> sensor_candidates(const DiagnosisSignals& signals, const 
         if (gains_known) {
             Candidate gain = single_column("actuator_gain", where, on_output(output, own), up_to(0.8));
             gain.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
-                return std::vector<EffectParameter>{{"gain", "1", 1 / (1 + coefficients[0])}};
+                return std::vector<EffectParameter>{{"gain", "1", 1 / (1 + coefficients[0]), 1}};
             };
             result.push_back(std::move(gain));
         }

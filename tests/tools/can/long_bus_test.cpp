@@ -2,6 +2,7 @@
 #include "dfdyn/hal/replay_bus.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/slow_build.hpp"
 #include "tests/tools/can/bus_support.hpp"
 #include "tools/can/bus_sampler.hpp"
 #include "tools/can/bus_traffic.hpp"
@@ -193,7 +194,9 @@ void check(const Outcome& outcome, std::int64_t rows) {
     CHECK(outcome.out_of_order == 0);
     CHECK(outcome.untrue == 0);
     CHECK(outcome.unlearned == 0);
-    CHECK(outcome.pages_grown < 256); // 1 MiB
+    if (!dfdyn::tests::slow_build) {      // which keeps a book of its own on every block
+        CHECK(outcome.pages_grown < 256); // 1 MiB
+    }
 }
 
 } // namespace

@@ -9,6 +9,7 @@
 #include "tests/tools/commands/run_program.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -198,6 +199,16 @@ TEST_CASE("currents of unknown torque constants and several recordings are diagn
     CHECK_THAT(outcome.out, ContainsSubstring("over the whole recording"));
     const json diagnosis = json::parse(file_content(folder + "/diagnosis.json"));
     CHECK(found(diagnosis, "viscous_friction", "joint1"));
+    CHECK_THAT(outcome.out, ContainsSubstring("torque constants, N·m/A: actuator1 "));
+    REQUIRE(diagnosis["granted"].size() >= 2);
+    const std::array constants{5.0, 3.0}; // of the scenario
+    std::size_t joint = 0;
+    for (const json& granted : diagnosis["granted"]) {
+        if (granted["name"] == "torque_constant") {
+            CHECK(double(granted["value"]) == Approx(constants.at(joint++)).epsilon(0.1));
+        }
+    }
+    CHECK(joint == 2);
     CHECK(run_program(directory, "replay --model " + folder + "/extended_model.json --log " + logs).status ==
           0);
 }

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/granted.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/tools/diagnosis/swinging_arm.hpp"
+#include "tests/tools/robot/arms.hpp"
+#include "tools/robot/firmware_chain.hpp"
+
+#include <cmath>
+
+namespace granted_test {
+
+using namespace dfdyn::tools;
+using namespace dfdyn::tests;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Only a nuisance, with these coefficients, each with a standard deviation of 0.02.
+Explanation of_nuisance(const VectorXd& coefficients, bool masses_uncertain) {
+    Explanation explanation;
+    explanation.fit.coefficients = coefficients;
+    explanation.fit.covariance = 4e-4 * MatrixXd::Identity(coefficients.size(), coefficients.size());
+    explanation.nuisance.resize(static_cast<std::size_t>(coefficients.size()));
+    explanation.masses_uncertain = masses_uncertain;
+    return explanation;
+}
+
+TEST_CASE("masses that are granted are told beside those of the robot's file") {
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
+    const VectorXd errors{{0.05, -0.02, 0, 0.1, -0.1, 0.01}};
+    const VectorXd nominal = nominal_parameters(signals.robot, signals.kind);
+    const std::vector<GrantedQuantity> granted =
+        granted_quantities(signals, of_nuisance(errors, true), VectorXd::Ones(6));
+    REQUIRE(granted.size() == 6);
+    for (Index link = 0; link < 6; ++link) {
+        const GrantedQuantity& one = granted[static_cast<std::size_t>(link)];
+        const double mass = nominal[10 * link];
+        CHECK(one.where == "link" + std::to_string(link + 1));
+        CHECK(one.parameter.name == "mass");
+        CHECK(one.given.value() == mass);
+        CHECK(one.parameter.value == Approx(mass * (1 + errors[link])));
+        CHECK(one.parameter.high - one.parameter.value ==
+              Approx(mass * 1.96 * std::hypot(1.7 * 0.02, 0.04 * errors[link])));
+        CHECK(one.parameter.value - one.parameter.low == Approx(one.parameter.high - one.parameter.value));
+    }
+}
+
+TEST_CASE("the masses beyond an F/T sensor are those of the links there") {
+    const DiagnosisSignals signals = signals_of(icub_right_arm(), OutputKind::wrench);
+    const Index bodies = nominal_parameters(signals.robot, signals.kind).size() / 10;
+    const std::vector<GrantedQuantity> granted =
+        granted_quantities(signals, of_nuisance(VectorXd::Zero(bodies), true), VectorXd::Ones(6));
+    REQUIRE(std::ssize(granted) == bodies);
+    CHECK(granted.back().where == "link" + std::to_string(signals.joints()));
+}
+
+TEST_CASE("torque constants that nobody gave are told, without an upper end where none is known") {
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::motor_current);
+    const VectorXd gains = VectorXd::LinSpaced(6, 0.1, 0.2); // A/(N·m)
+    VectorXd errors{{0.25, 0, 0, -0.5, 0.1, -1.2}};
+    Explanation explanation = of_nuisance(errors, false);
+    explanation.fit.covariance(3, 3) = 1;
+    const std::vector<GrantedQuantity> granted = granted_quantities(signals, explanation, gains);
+    REQUIRE(granted.size() == 6);
+    const auto& parameter = [&](std::size_t joint) -> const FoundParameter& {
+        return granted[joint].parameter;
+    };
+    CHECK(granted.front().where == "actuator1");
+    CHECK_FALSE(granted.front().given);
+    CHECK(parameter(0).name == "torque_constant");
+    CHECK(parameter(0).value == Approx(1 / (0.1 * 1.25)));
+    const double reach = 1.96 * std::hypot(1.7 * 0.02, 0.04 * 0.25);
+    CHECK(parameter(0).low == Approx(1 / (0.1 * (1.25 + reach))));
+    CHECK(parameter(0).high == Approx(1 / (0.1 * (1.25 - reach))));
+    CHECK(parameter(1).value == Approx(1 / 0.12));
+    CHECK(std::isinf(parameter(3).high));
+    CHECK(parameter(3).low > 0);
+    CHECK(parameter(5).value == Approx(1 / 0.2)); // no motor turns the wrong way round
+}
+
+} // namespace granted_test
