@@ -5,6 +5,7 @@
 #include "tools/diagnosis/finding_words.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 
 namespace dfdyn::tools {
@@ -91,11 +92,17 @@ void print_findings(std::ostream& out, const Diagnosis& diagnosis) {
     }
 }
 
+/// Masses as the file says tell nothing.
+bool is_new(const GrantedQuantity& granted) {
+    constexpr double noticeable = 0.01;
+    return !granted.given || std::abs(granted.parameter.value / *granted.given - 1) > noticeable;
+}
+
 /// All of one name on one line.
 void print_granted(std::ostream& out, const Diagnosis& diagnosis, const std::string& name, const char* lead) {
     std::string list;
     for (const GrantedQuantity& one : diagnosis.granted) {
-        if (one.parameter.name == name) {
+        if (one.parameter.name == name && is_new(one)) {
             list.append(list.empty() ? "" : "; ").append(granted_words(one));
         }
     }

@@ -96,11 +96,10 @@ class Search {
         }
         decide_masses();
         SearchProblem promising = at_.problem; // without the shapes of what does not predict
-        while (keep_what_predicts(promising)) {
+        while (keep_what_predicts(promising) || keep_what_is_allowed(promising)) {
             at_.chosen = search_effects(promising, at_.chosen);
             at_.fit = fit_effects(at_.problem, at_.chosen);
         }
-        fit_named();
         return std::move(at_);
     }
 
@@ -116,6 +115,7 @@ class Search {
     std::vector<WeighedSums> sums_of_blocks() const;
     Eigen::VectorXd of_events() const;
     bool keep_what_predicts(SearchProblem& promising);
+    bool keep_what_is_allowed(SearchProblem& promising);
     void fit_named();
     std::vector<std::string> chosen_keys() const;
     Eigen::VectorXd all_coefficients() const;
@@ -431,6 +431,23 @@ bool Search::keep_what_predicts(SearchProblem& promising) {
         kept = without(kept, worst);
     }
     at_.chosen.insert(at_.chosen.end(), kept.begin(), kept.end());
+    return dropped;
+}
+
+/// Drops, one after the other, named effects whose coefficients are such as no machine has once nothing
+/// unnamed is beside them; they are `promising` no longer, nor rivals of others. Whether there were any.
+bool Search::keep_what_is_allowed(SearchProblem& promising) {
+    bool dropped = false;
+    for (fit_named(); !at_.named.allowed; fit_named()) {
+        const auto forbidden = std::ranges::find_if(at_.chosen, [&, i = std::size_t{0}](
+                                                                    const auto& one) mutable {
+            return !at_.problem.candidates[one.candidate].shapes[one.shape].allowed(at_.coefficients(i++));
+        });
+        promising.candidates[forbidden->candidate].shapes.clear();
+        at_.problem.candidates[forbidden->candidate].shapes.clear();
+        at_.chosen.erase(forbidden);
+        dropped = true;
+    }
     return dropped;
 }
 

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// A real UR5 by its motor currents, two runs as one: tests/data/ur5_kufieta/PROVENANCE.md. What is known of
+// it without a doubt: its gears rub, and neither friction nor a rotor is ever less than nothing.
+#include "tests/support/catch.hpp"
+#include "tests/tools/robot/arms.hpp"
+#include "tools/diagnosis/diagnosis.hpp"
+#include "tools/diagnosis/joined_recording.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <set>
+#include <string>
+
+namespace {
+
+using namespace dfdyn::tools;
+
+Diagnosis two_runs() {
+    const std::filesystem::path folder = DFDYN_TEST_DATA_DIR "/ur5_kufieta";
+    const std::array runs{folder / "Movement_No6_Acc_slow_Verify_Model.csv",
+                          folder / "Movement_No7_Acc_slow_Verify_Model_short.csv"};
+    ReadOptions columns;
+    columns.joint_count = 6;
+    columns.outputs = OutputKind::motor_current;
+    columns.skip_bad_rows = true;
+    DiagnosisOptions how;
+    how.outputs = OutputKind::motor_current;
+    how.measure = false;
+    return diagnose(dfdyn::tests::ur5(), joined_recording(read_recordings(runs, columns)), how).diagnosis;
+}
+
+bool is_friction(const Finding& finding) {
+    return finding.effect == "viscous_friction" || finding.effect == "coulomb_friction" ||
+           finding.effect == "stribeck_friction" || finding.effect == "presliding_hysteresis" ||
+           finding.effect == "load_dependent_friction";
+}
+
+} // namespace
+
+TEST_CASE("a real arm's joints rub, and nothing is named that no machine has") {
+    const Diagnosis diagnosis = two_runs();
+    std::set<std::string> rubbing;
+    for (const Finding& finding : diagnosis.findings) {
+        INFO(finding.effect << " at " << finding.where);
+        CHECK(finding.effect != "external_contact"); // nobody was near
+        if (is_friction(finding)) {
+            rubbing.insert(finding.where);
+        }
+        if (is_friction(finding) || finding.effect == "rotor_inertia") {
+            CHECK(finding.parameters.front().value > 0);
+        }
+    }
+    CHECK(rubbing.size() >= 5);
+    REQUIRE(diagnosis.granted.size() >= 6);
+    for (const GrantedQuantity& one : diagnosis.granted) {
+        INFO(one.where);
+        CHECK(one.parameter.low > 0);
+    }
+}
