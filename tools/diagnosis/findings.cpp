@@ -14,8 +14,9 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr double tie = 3; ///< odds of 20 to 1: closer than this the data cannot tell two causes apart
-constexpr double price_of_shapes = 6; ///< what the three coefficients of a centre of mass cost
-constexpr std::size_t listed = 3;     ///< alternatives that a finding tells of
+constexpr double price_of_shapes = 6;    ///< what the three coefficients of a centre of mass cost
+constexpr double same_body_share = 0.02; ///< of what both explain: two ways to say what one body adds
+constexpr std::size_t listed = 3;        ///< alternatives that a finding tells of
 
 /// A shape's parameters and their variances, by the gradient of each with respect to the coefficients.
 struct ShapeParameters {
@@ -108,7 +109,8 @@ void weigh_alternatives(Finding& finding, const Explanation& explanation, const 
         }
         OtherCause cause{candidate.effect, candidate.where, {}};
         const bool same_span = !candidate.span.empty() && candidate.span == own_candidate.span;
-        if (margin < (same_span ? tie + price_of_shapes : tie)) {
+        const double same_body = std::max(tie + price_of_shapes, same_body_share * finding.margin_to_nothing);
+        if (margin < (same_span ? same_body : tie)) {
             finding.indistinguishable.push_back(std::move(cause));
             continue;
         }
@@ -180,6 +182,7 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
                                  const std::vector<std::string>& output_names) {
     const Eigen::MatrixXd left = measured - signals.nominal - explanation.all(signals);
     const Neighbours near(explanation.problem, explanation.chosen);
+    const Neighbours near_named(explanation.problem, explanation.named_effects());
     std::vector<Finding> findings;
     for (std::size_t i = 0; i < explanation.chosen.size(); ++i) {
         const std::size_t number = explanation.chosen[i].candidate;
@@ -193,6 +196,9 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
         finding.detail = candidate.detail;
         finding.parameters = found_parameters(explanation, i);
         weigh_alternatives(finding, explanation, near, i);
+        // what stands only against something unnamed that takes most of it away again is hardly there
+        finding.margin_to_nothing =
+            std::min(finding.margin_to_nothing, explanation.named.score - near_named.score_without(i));
         const Eigen::MatrixXd contribution =
             explanation.effects(signals, [&](const Candidate& one) { return one.key() == candidate.key(); });
         measure_gain(finding, contribution, left);
