@@ -5,7 +5,9 @@
 #include "tests/support/seed.hpp"
 #include "tests/tools/diagnosis/swinging_arm.hpp"
 #include "tests/tools/robot/arms.hpp"
+#include "tools/diagnosis/candidate_parts.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -17,14 +19,38 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+Candidate of_one_column(const std::string& effect, const std::string& where, const VectorXd& series) {
+    return single_column(effect.c_str(), where, on_output(0, series), is_anything, "level", "N·m");
+}
+
+/// Candidates of one column each, of which the first `chosen` explain; no noise but of 1.
+Explanation explanation_of(const std::vector<Candidate>& candidates, std::size_t chosen,
+                           const VectorXd& unexplained) {
+    MatrixXd columns(unexplained.size(), std::ssize(candidates));
+    Explanation explanation;
+    explanation.candidates = candidates;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        const auto column = static_cast<Index>(i);
+        columns.col(column) = candidates[i].columns.front().parts.front().series;
+        explanation.problem.candidates.push_back({{{{column}, is_anything}}});
+        if (i < chosen) {
+            explanation.chosen.push_back({i, 0});
+        }
+    }
+    explanation.problem.sums = {columns.transpose() * columns, columns.transpose() * unexplained,
+                                unexplained.squaredNorm()};
+    explanation.fit = fit_effects(explanation.problem, explanation.chosen);
+    explanation.named = fit_effects(explanation.problem, explanation.named_effects());
+    return explanation;
+}
+
 /// One cause on the first joint, of one coefficient, that acts as either of two series; the first is chosen.
 Explanation of_two_shapes(const VectorXd& first, const VectorXd& second, const VectorXd& unexplained) {
     Candidate cause;
     cause.effect = "presliding_hysteresis";
     cause.where = "joint1";
-    const auto anything = [](const VectorXd&) { return true; };
     cause.columns = {{{{0, first}}}, {{{0, second}}}};
-    cause.shapes = {{{0}, anything, 1}, {{1}, anything, 2}};
+    cause.shapes = {{{0}, is_anything, 1}, {{1}, is_anything, 2}};
     cause.parameters = [](const VectorXd& coefficients, const EffectShape&) {
         return std::vector<EffectParameter>{{"level", "N·m", coefficients[0]}};
     };
@@ -34,7 +60,7 @@ Explanation of_two_shapes(const VectorXd& first, const VectorXd& second, const V
     explanation.candidates = {cause};
     explanation.problem.sums = {columns.transpose() * columns, columns.transpose() * unexplained,
                                 unexplained.squaredNorm()};
-    explanation.problem.candidates.push_back({{{{0}, anything}, {{1}, anything}}});
+    explanation.problem.candidates.push_back({{{{0}, is_anything}, {{1}, is_anything}}});
     explanation.chosen = {{0, 0}};
     explanation.fit = explanation.named = fit_effects(explanation.problem, explanation.chosen);
     return explanation;
@@ -65,6 +91,61 @@ TEST_CASE("a parameter is as uncertain as the shape that it belongs to") {
     CHECK(reach(other) == Approx(expected(variance)));
     // one as likely, of twice the coefficient: the variance within each, and that between them
     CHECK(reach(series / 2) == Approx(expected((variance + 4 * variance + level * level) / 2)));
+}
+
+TEST_CASE("a cause that something unnamed takes away again is not likely") {
+    DFDYN_SEEDED_ENGINE(engine);
+    std::normal_distribution<double> normal;
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
+    const auto random = [&] {
+        return VectorXd::NullaryExpr(signals.rows(), [&] { return normal(engine); }).eval();
+    };
+    const VectorXd cause = random();
+    const VectorXd beside = random();
+    // all but the same course: only their difference is in the data
+    const VectorXd nearly = cause + 0.05 * beside;
+    const VectorXd unexplained = 2 * beside + random();
+    MatrixXd measured = signals.nominal;
+    measured.col(0) += unexplained;
+    const Candidate friction = of_one_column("coulomb_friction", "joint1", cause);
+    const auto confidence = [&](const std::vector<std::string>& inputs) {
+        Candidate against = of_one_column("viscous_friction", "joint1", nearly);
+        against.inputs = inputs;
+        const Explanation explanation = explanation_of({friction, against}, 2, unexplained);
+        REQUIRE(explanation.fit.score > 100);
+        const auto findings = findings_of(signals, explanation, measured, std::vector<std::string>(6, "tau"));
+        const auto found = std::ranges::find(findings, friction.effect, &Finding::effect);
+        REQUIRE(found != findings.end());
+        return found->confidence;
+    };
+    CHECK(confidence({}) > 0.9);
+    CHECK(confidence({"qd1"}) < 0.2);
+}
+
+TEST_CASE("payload and last link are one cause unless more than a small share of it tells them apart") {
+    DFDYN_SEEDED_ENGINE(engine);
+    std::normal_distribution<double> normal;
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
+    const auto random = [&] {
+        return VectorXd::NullaryExpr(signals.rows(), [&] { return normal(engine); }).eval();
+    };
+    const VectorXd body = random();
+    const VectorXd shape = random();
+    const auto ties = [&](double share, const std::string& span) {
+        const VectorXd unexplained = 10 * body + random();
+        MatrixXd measured = signals.nominal;
+        measured.col(0) += unexplained;
+        Candidate payload = of_one_column("payload", "tool", body);
+        Candidate link = of_one_column("link_inertia_error", "link6", body + std::sqrt(share) * shape);
+        payload.span = link.span = span;
+        const auto findings = findings_of(signals, explanation_of({payload, link}, 1, unexplained), measured,
+                                          std::vector<std::string>(6, "tau"));
+        REQUIRE(findings.size() == 1);
+        return findings.front().indistinguishable.size();
+    };
+    CHECK(ties(0.01, "the last body") == 1);
+    CHECK(ties(0.04, "the last body") == 0);
+    CHECK(ties(0.01, "") == 0);
 }
 
 } // namespace findings_test
