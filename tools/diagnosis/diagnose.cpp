@@ -67,21 +67,26 @@ void suspect_poor_extension(Diagnosis& diagnosis) {
     }
 }
 
-/// Errors on the last third, of a model that was chosen and fitted without it.
-void measure_on_held_out(DiagnosisWork& work, ExplanationOptions options) {
-    options.fitted_share = fitted_share;
+/// Errors from `first` on, without the causes of an explanation and with them.
+void measure_from(DiagnosisWork& work, Eigen::Index first, const Explanation& explanation) {
     const DiagnosisSignals& signals = *work.signals;
-    const Explanation earlier = explain(signals, work.measured, options);
-    const Eigen::Index first = std::llround(fitted_share * static_cast<double>(signals.rows()));
     const Eigen::Index count = signals.rows() - first;
     const Eigen::MatrixXd nominal_error = work.measured - signals.nominal;
     const Eigen::MatrixXd scaled = work.measured.bottomRows(count) * work.torque_gains.asDiagonal();
     const auto measure = [&](const Eigen::MatrixXd& error) {
         return error_measure(error.bottomRows(count) * work.torque_gains.asDiagonal(), scaled);
     };
+    work.diagnosis.nominal = measure(nominal_error);
+    work.diagnosis.extended = measure(nominal_error - explanation.model(signals));
+}
+
+/// Errors on the last third, of a model that was chosen and fitted without it.
+void measure_on_held_out(DiagnosisWork& work, ExplanationOptions options) {
+    options.fitted_share = fitted_share;
+    const DiagnosisSignals& signals = *work.signals;
+    const Eigen::Index first = std::llround(fitted_share * static_cast<double>(signals.rows()));
+    measure_from(work, first, explain(signals, work.measured, options));
     Diagnosis& diagnosis = work.diagnosis;
-    diagnosis.nominal = measure(nominal_error);
-    diagnosis.extended = measure(nominal_error - earlier.model(signals));
     suspect_poor_extension(diagnosis);
     diagnosis.heldout_from_s = signals.measured.time_s[first];
     diagnosis.heldout_to_s = signals.measured.time_s[signals.rows() - 1];
@@ -125,6 +130,8 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
              unexplained_rest(*signals, work.measured, rest, work.explanation.noise));
     if (options.measure) {
         measure_on_held_out(work, how);
+    } else {
+        measure_from(work, 0, work.explanation);
     }
     return work;
 }

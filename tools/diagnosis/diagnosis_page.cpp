@@ -126,7 +126,7 @@ ReportTable error_table(const Diagnosis& diagnosis) {
                            rounded_text(diagnosis.heldout_to_s) +
                            " s, which neither chose nor fitted anything: the effects behind these figures "
                            "were found in the time before."
-                     : std::string("Over the whole recording; the extended model was not measured.");
+                     : std::string("Over the whole recording, which the extended model was fitted to.");
     for (std::size_t k = 0; k < diagnosis.output_names.size(); ++k) {
         const auto row = static_cast<Eigen::Index>(k);
         table.rows.push_back({diagnosis.output_names[k], output_unit(diagnosis.output_names[k]),

@@ -46,8 +46,9 @@ Recording all_runs() {
     return joined_recording(read_recordings(paths, {.joint_count = 1, .outputs = OutputKind::motor_current}));
 }
 
-Diagnosis diagnosis_with(double torque_per_volt) {
+Diagnosis diagnosis_with(double torque_per_volt, bool held_out = true) {
     DiagnosisOptions how;
+    how.measure = held_out;
     how.outputs = OutputKind::motor_current;
     how.torque_constants = {torque_per_volt};
     ReadRobotOptions chain;
@@ -103,3 +104,10 @@ TEST_CASE("a real servo's rotor inertia is the published one, whichever publishe
         CHECK(may_be(found(diagnosis, "rotor_inertia").parameters[0], published["armature"]));
     }
 }
+
+TEST_CASE("without held-out time the errors with and without the causes are those of the whole recording") {
+    const Diagnosis diagnosis = diagnosis_with(Published("m1.json").torque_per_volt(), false);
+    CHECK(diagnosis.heldout_from_s == diagnosis.heldout_to_s);
+    CHECK(diagnosis.extended.nrmse[0] < 0.7 * diagnosis.nominal.nrmse[0]);
+}
+
