@@ -4,6 +4,7 @@
 #include "tools/common/number.hpp"
 #include "tools/common/root_mean_square.hpp"
 #include "tools/diagnosis/effect_words.hpp"
+#include "tools/diagnosis/low_pass_kernel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -124,6 +125,25 @@ void weigh_alternatives(Finding& finding, const Explanation& explanation, const 
     }
 }
 
+/// What of some series is slower than 5 Hz: above it arms hardly move, and what no cause explains may hide
+/// that one explains what is below.
+Eigen::MatrixXd slow(const DiagnosisSignals& signals, Eigen::MatrixXd series) {
+    const double cutoff = 5 / signals.measured.rate_hz;
+    if (cutoff >= 0.5) {
+        return series;
+    }
+    const Eigen::VectorXd kernel = low_pass_kernel(cutoff, std::llround(std::ceil(2 / cutoff)));
+    for (auto output : series.colwise()) {
+        for (const Stretch& stretch : signals.measured.stretches) {
+            auto part = output.segment(stretch.first, stretch.count);
+            if (!part.isZero(0)) {
+                part = filtered(part, kernel);
+            }
+        }
+    }
+    return series;
+}
+
 /// The output on which the effect is largest against the noise there, and the errors with and without it.
 void measure_gain(Finding& finding, const Eigen::MatrixXd& contribution, const Eigen::MatrixXd& left) {
     double largest = -1;
@@ -180,7 +200,7 @@ double calibrated_confidence(const Finding& finding) {
 std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanation& explanation,
                                  const Eigen::MatrixXd& measured,
                                  const std::vector<std::string>& output_names) {
-    const Eigen::MatrixXd left = measured - signals.nominal - explanation.all(signals);
+    const Eigen::MatrixXd left = slow(signals, measured - signals.nominal - explanation.all(signals));
     const Neighbours near(explanation.problem, explanation.chosen);
     const Neighbours near_named(explanation.problem, explanation.named_effects());
     std::vector<Finding> findings;
@@ -201,10 +221,10 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
             std::min(finding.margin_to_nothing, explanation.named.score - near_named.score_without(i));
         const Eigen::MatrixXd contribution =
             explanation.effects(signals, [&](const Candidate& one) { return one.key() == candidate.key(); });
-        measure_gain(finding, contribution, left);
+        measure_gain(finding, slow(signals, contribution), left);
         finding.confidence = calibrated_confidence(finding);
         finding.evidence = "the error of " + output_names[static_cast<std::size_t>(finding.output)] + " " +
-                           effect_signature(finding.effect) + ": with it the error falls from " +
+                           effect_signature(finding.effect) + ": with it the error below 5 Hz falls from " +
                            rounded_text(finding.rms_before) + " to " + rounded_text(finding.rms_after);
         finding.confirm = confirming_experiment(finding.effect, finding.where);
         if (finding.rms_after < finding.rms_before) {
