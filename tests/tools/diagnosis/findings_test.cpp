@@ -5,10 +5,12 @@
 #include "tests/support/seed.hpp"
 #include "tests/tools/diagnosis/swinging_arm.hpp"
 #include "tests/tools/robot/arms.hpp"
+#include "tools/common/root_mean_square.hpp"
 #include "tools/diagnosis/candidate_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace findings_test {
@@ -146,6 +148,21 @@ TEST_CASE("payload and last link are one cause unless more than a small share of
     CHECK(ties(0.01, "the last body") == 1);
     CHECK(ties(0.04, "the last body") == 0);
     CHECK(ties(0.01, "") == 0);
+}
+
+TEST_CASE("what no cause explains above 5 Hz hides no finding's gain below") {
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
+    const VectorXd slow = (0.5 * 2 * std::numbers::pi * signals.measured.time_s.array()).sin();
+    const VectorXd fast = (30 * 2 * std::numbers::pi * signals.measured.time_s.array()).sin();
+    // the weighed fit sees the slow part only
+    Explanation explanation = explanation_of({of_one_column("backlash", "joint1", slow)}, 1, 2 * slow);
+    explanation.candidates.front().columns.front() = on_output(0, slow + fast);
+    MatrixXd measured = signals.nominal;
+    measured.col(0) += 2 * slow - 3 * fast;
+    const auto findings = findings_of(signals, explanation, measured, std::vector<std::string>(6, "tau"));
+    REQUIRE(findings.size() == 1);
+    CHECK(findings.front().rms_before == Approx(2 * root_mean_square(slow)).epsilon(0.02));
+    CHECK(findings.front().rms_after < 0.2 * findings.front().rms_before);
 }
 
 } // namespace findings_test
