@@ -22,6 +22,7 @@ struct EffectParameter {
     std::string name, unit;
     double value = 0;
     double of_nothing = 0; ///< what it is where there is no such effect
+    double unsettled = 0;  ///< share of the value, as a deviation, that no amount of data settles
 };
 
 /// Whether a machine can have these coefficients.

@@ -14,6 +14,7 @@ namespace dfdyn::tools {
 
 namespace {
 
+constexpr double two_sided = 1.96; ///< deviations that 95 % are within
 constexpr double tie = 3; ///< odds of 20 to 1: closer than this the data cannot tell two causes apart
 constexpr double price_of_shapes = 6;    ///< what the three coefficients of a centre of mass cost
 constexpr double same_body_share = 0.02; ///< of what both explain: two ways to say what one body adds
@@ -86,9 +87,10 @@ std::vector<FoundParameter> found_parameters(const Explanation& explanation, std
     const ShapeParameters all = parameters_over_shapes(explanation, index);
     std::vector<FoundParameter> result;
     for (std::size_t k = 0; k < all.values.size(); ++k) {
-        const auto& [name, unit, value, of_nothing] = all.values[k];
-        const double reach =
+        const auto& [name, unit, value, of_nothing, unsettled] = all.values[k];
+        const double of_data =
             reach_of_95(std::sqrt(all.variance[static_cast<Eigen::Index>(k)]), value - of_nothing);
+        const double reach = std::hypot(of_data, two_sided * unsettled * value);
         result.push_back({name, unit, value, value - reach, value + reach});
     }
     return result;
@@ -181,20 +183,20 @@ std::vector<Finding> without_repeated_contacts(std::vector<Finding> findings) {
 } // namespace
 
 double reach_of_95(double deviation, double effect) {
-    constexpr double two_sided = 1.96;
     constexpr double coloured =
         1.7; // how much wider than their formula says: measured, docs/diagnosis-panel.md
     constexpr double model_error = 0.04; // what no noise explains, where effects are large; measured, too
     return two_sided * std::hypot(coloured * deviation, model_error * effect);
 }
 
-double calibrated_confidence(const Finding& finding) {
-    // Logistic regression on what was right and wrong in 500 simulated recordings: docs/diagnosis-panel.md.
-    // How far the next cause is behind did not tell more.
+double calibrated_confidence(const Finding& finding, double duration_s) {
+    // Logistic regression on what was right and wrong in simulated recordings of 50 and of 200 s:
+    // docs/diagnosis-panel.md. How far the next cause is behind did not tell more. What the model has wrong
+    // grows with the time as a true cause does.
     const double to_nothing = std::log(std::max(finding.margin_to_nothing, 0.1));
-    const double burst =
-        finding.effect == "external_contact" ? 2.3 : 0; // real noise has bursts that look like pushes
-    return 1 / (1 + std::exp(2.45 + burst - 0.62 * to_nothing));
+    const double time = std::log(std::clamp(duration_s, 50.0, 200.0) / 50);
+    const double burst = finding.effect == "external_contact" ? 3 : 0; // real noise has bursts like pushes
+    return 1 / (1 + std::exp(2 + burst + 0.8 * time - 0.74 * to_nothing));
 }
 
 std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanation& explanation,
@@ -203,6 +205,7 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
     const Eigen::MatrixXd left = slow(signals, measured - signals.nominal - explanation.all(signals));
     const Neighbours near(explanation.problem, explanation.chosen);
     const Neighbours near_named(explanation.problem, explanation.named_effects());
+    const double duration_s = static_cast<double>(signals.rows()) / signals.measured.rate_hz;
     std::vector<Finding> findings;
     for (std::size_t i = 0; i < explanation.chosen.size(); ++i) {
         const std::size_t number = explanation.chosen[i].candidate;
@@ -222,7 +225,7 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
         const Eigen::MatrixXd contribution =
             explanation.effects(signals, [&](const Candidate& one) { return one.key() == candidate.key(); });
         measure_gain(finding, slow(signals, contribution), left);
-        finding.confidence = calibrated_confidence(finding);
+        finding.confidence = calibrated_confidence(finding, duration_s);
         finding.evidence = "the error of " + output_names[static_cast<std::size_t>(finding.output)] + " " +
                            effect_signature(finding.effect) + ": with it the error below 5 Hz falls from " +
                            rounded_text(finding.rms_before) + " to " + rounded_text(finding.rms_after);

@@ -15,7 +15,7 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
 /// just as weighed, and how far it is from the value that means nothing.
 double reach_of_95(double deviation, double effect);
 
-/// Calibrated probability from the finding's margins, ties and effect.
-double calibrated_confidence(const Finding& finding);
+/// Calibrated probability from the finding's margin and effect, and how long the recording is.
+double calibrated_confidence(const Finding& finding, double duration_s);
 
 } // namespace dfdyn::tools

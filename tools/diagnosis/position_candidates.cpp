@@ -121,18 +121,23 @@ Candidate backlash_candidate(const DiagnosisSignals& signals, std::size_t joint,
     result.where = numbered("joint", joint);
     for (const double gap : gaps) {
         const auto near = [gap](const Eigen::VectorXd& coefficients) {
-            constexpr double widest = 1.8;
-            return coefficients[0] > gap / widest && coefficients[0] < gap * widest;
+            constexpr double least = 0.25; // the rotor, whose share nobody knows, has no part in the blow
+            constexpr double most = 1.8;
+            return coefficients[0] > least * gap && coefficients[0] < most * gap;
         };
         result.shapes.push_back({{result.columns.size()}, near, gap});
         result.columns.push_back(on_outputs(play_course(signals, joint, gap)));
     }
-    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape&) {
-        return std::vector<EffectParameter>{{"gap", "rad", coefficients[0]}};
+    // how long the link falls tells the gap, as far as the rotor's share does not matter; how hard it is
+    // caught does not
+    result.parameters = [](const Eigen::VectorXd&, const EffectShape& shape) {
+        constexpr double unsettled = 0.08; // measured on simulated gears
+        return std::vector<EffectParameter>{{"gap", "rad", shape.value, 0, unsettled}};
     };
-    result.about = [&signals, joint](const EffectShape&, const Eigen::VectorXd& coefficients) {
-        const double found = coefficients[0];
-        return backlash_candidate(signals, joint, {found, found / 1.2, found * 1.2});
+    result.about = [&signals, joint](const EffectShape& shape, const Eigen::VectorXd&) {
+        const double found = shape.value;
+        return backlash_candidate(signals, joint,
+                                  {found, found / 1.12, found / 1.04, found * 1.04, found * 1.12});
     };
     return result;
 }
