@@ -100,6 +100,21 @@ TEST_CASE("a link that falls through the play of its gear spares its drive the l
     CHECK(std::abs(inner.sum()) < 0.1 * inner.cwiseAbs().sum());
 }
 
+TEST_CASE("the play of a gear is how far its link falls, however hard it is caught") {
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
+    const Candidate backlash = backlash_candidate(signals, 4, {0.03, 0.075});
+    const EffectShape& shape = backlash.shapes.back();
+    const VectorXd soft = VectorXd::Constant(1, 0.4 * shape.value);
+    CHECK(shape.allowed(soft));
+    CHECK_FALSE(shape.allowed(soft / 2));
+    CHECK(backlash.parameters(soft, shape).front().value == shape.value);
+    const Candidate nearer = backlash.about(shape, soft);
+    CHECK(nearer.shapes.front().value == shape.value);
+    for (const EffectShape& other : nearer.shapes) {
+        CHECK(std::abs(other.value / shape.value - 1) < 0.15);
+    }
+}
+
 TEST_CASE("a payload that would have to be too far off is the best one that is not") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
