@@ -32,7 +32,7 @@ struct Finding {
     std::vector<FoundParameter> parameters; ///< the main one first
     double confidence = 0;                  ///< calibrated probability that this cause at this place is there
     Eigen::Index output = 0;                ///< where it shows most
-    double rms_before = 0, rms_after = 0;   ///< of the error there, without and with it
+    double rms_before = 0, rms_after = 0;   ///< of the error there below 5 Hz, without and with it
     std::string evidence;
     std::vector<OtherCause> indistinguishable, alternatives;
     std::string confirm;

@@ -44,7 +44,17 @@ std::string parameter_words(const FoundParameter& parameter) {
 std::string main_parameter_words(const Finding& finding) {
     const auto measured = std::ranges::find_if(
         finding.parameters, [](const FoundParameter& parameter) { return parameter.low < parameter.high; });
-    return measured == finding.parameters.end() ? "" : parameter_words(*measured);
+    if (measured == finding.parameters.end()) {
+        return "";
+    }
+    // of three coordinates, or two directions, the one that is known best; of two times the first
+    const auto known = [&](const FoundParameter& parameter) {
+        const bool alike = parameter.unit == measured->unit && parameter.unit != "s";
+        const double reach = parameter.high - parameter.low;
+        return alike && reach > 0 ? std::abs(parameter.value) / reach : 0;
+    };
+    const auto best = std::ranges::max_element(measured, finding.parameters.end(), {}, known);
+    return parameter_words(*best);
 }
 
 std::string cause_words(const Finding& finding) {
