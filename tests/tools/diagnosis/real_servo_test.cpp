@@ -110,4 +110,3 @@ TEST_CASE("without held-out time the errors with and without the causes are thos
     CHECK(diagnosis.heldout_from_s == diagnosis.heldout_to_s);
     CHECK(diagnosis.extended.nrmse[0] < 0.7 * diagnosis.nominal.nrmse[0]);
 }
-
