@@ -6,7 +6,7 @@
 
 using namespace dfdyn::tests;
 
-TEST_CASE("a gear with so much play that its link is loose for much of the time is named, with its gap") {
+TEST_CASE("play in a gear whose blow is not that of the whole joint is named, with its gap") {
     for (const auto& [robot, seed] :
          {std::pair{"three_joint_torque", 101600}, std::pair{"ur5_torque", 101604}}) {
         PanelMix mix;

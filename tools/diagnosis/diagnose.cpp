@@ -112,10 +112,7 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     suspicions = suspicions_of_motion(*signals, work.measured, gains_known);
     work.diagnosis.suspicions.insert(work.diagnosis.suspicions.end(), suspicions.sentences.begin(),
                                      suspicions.sentences.end());
-    const Eigen::MatrixXd nominal_error = work.measured - signals->nominal;
-    work.diagnosis.nominal =
-        error_measure(nominal_error * work.torque_gains.asDiagonal(), signals->measured.outputs);
-    work.diagnosis.extended = work.diagnosis.nominal;
+    measure_from(work, 0, work.explanation);
     if (suspicions.fatal) {
         return work;
     }
@@ -124,7 +121,7 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     work.diagnosis.findings =
         findings_of(*signals, work.explanation, work.measured, work.diagnosis.output_names);
     work.diagnosis.granted = granted_quantities(*signals, work.explanation, work.torque_gains);
-    const Eigen::MatrixXd rest = nominal_error - work.explanation.all(*signals);
+    const Eigen::MatrixXd rest = work.measured - signals->nominal - work.explanation.all(*signals);
     work.diagnosis.unexplained = unnamed_dependences(*signals, work.measured, work.explanation);
     add_rest(work.diagnosis.unexplained,
              unexplained_rest(*signals, work.measured, rest, work.explanation.noise));

@@ -26,13 +26,15 @@ struct OtherCause {
     std::string effect, where, why_not;
 };
 
+constexpr double gains_below_hz = 5; ///< what a cause brings is measured below it
+
 /// A cause that is named.
 struct Finding {
     std::string effect, where, detail;
     std::vector<FoundParameter> parameters; ///< the main one first
     double confidence = 0;                  ///< calibrated probability that this cause at this place is there
     Eigen::Index output = 0;                ///< where it shows most
-    double rms_before = 0, rms_after = 0;   ///< of the error there below 5 Hz, without and with it
+    double rms_before = 0, rms_after = 0;   ///< of the slow error there, without and with it
     std::string evidence;
     std::vector<OtherCause> indistinguishable, alternatives;
     std::string confirm;
@@ -62,7 +64,7 @@ struct ErrorMeasure {
 struct Diagnosis {
     std::vector<std::string> output_names;
     std::vector<std::string> suspicions; ///< why the recording may not answer at all; a sentence each
-    ErrorMeasure nominal, extended;      ///< on the held-out time
+    ErrorMeasure nominal, extended;      ///< on the held-out time; without one, over the whole recording
     double heldout_from_s = 0, heldout_to_s = 0;
     std::vector<Finding> findings; ///< by gain
     std::vector<GrantedQuantity> granted;

@@ -160,7 +160,10 @@ ReportTable findings_table(const DiagnosisCase& one) {
                       {}};
     table.note =
         "Confidence: of all causes that are given 0.9, about nine in ten are right. Errors: rms over "
-        "the whole recording, below 5 Hz, without and with this one effect, in N·m or N. Extended model: "
+        "the whole recording, below " +
+        rounded_text(gains_below_hz) +
+        " Hz (all of it, for what shows above only), without and with this one effect, in N·m or N. Extended "
+        "model: "
         "adapting, as coefficients that start here and go on being learned; constant, in its geometry, "
         "gravity or gains; as Coulomb friction of the same level, for the model's columns have no memory; "
         "left out, where the effect is no function of the motion of one instant that the firmware has a "

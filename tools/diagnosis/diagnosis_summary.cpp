@@ -57,7 +57,7 @@ void print_finding(std::ostream& out, const Diagnosis& diagnosis, const Finding&
     out << output << " error " << rounded_text(finding.rms_before) << " -> "
         << rounded_text(finding.rms_after) << '\n';
     if (!finding.indistinguishable.empty()) {
-        out << "        this motion cannot tell it from: ";
+        out << "        this motion hardly tells it from: ";
         for (std::size_t i = 0; i < finding.indistinguishable.size(); ++i) {
             out << (i == 0 ? "" : "; ") << cause_words(finding.indistinguishable[i]);
         }

@@ -13,6 +13,13 @@ std::string words(std::string effect, const std::string& where) {
     return effect.append(" at ").append(where);
 }
 
+/// Whether they are those of one vector: `com_x`, `com_z`.
+bool are_coordinates(const std::string& one, const std::string& other) {
+    const std::size_t stem = one.size() - 1;
+    return one.size() > 2 && one[stem - 1] == '_' && one.size() == other.size() &&
+           one.compare(0, stem, other, 0, stem) == 0;
+}
+
 } // namespace
 
 std::string confidence_text(double confidence) {
@@ -47,11 +54,12 @@ std::string main_parameter_words(const Finding& finding) {
     if (measured == finding.parameters.end()) {
         return "";
     }
-    // of three coordinates, or two directions, the one that is known best; of two times the first
+    // of a vector's coordinates the one that is known best
     const auto known = [&](const FoundParameter& parameter) {
-        const bool alike = parameter.unit == measured->unit && parameter.unit != "s";
         const double reach = parameter.high - parameter.low;
-        return alike && reach > 0 ? std::abs(parameter.value) / reach : 0;
+        return are_coordinates(parameter.name, measured->name) && reach > 0
+                   ? std::abs(parameter.value) / reach
+                   : 0;
     };
     const auto best = std::ranges::max_element(measured, finding.parameters.end(), {}, known);
     return parameter_words(*best);

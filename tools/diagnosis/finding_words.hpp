@@ -24,8 +24,8 @@ std::string parameter_words(const FoundParameter& parameter);
 /// `7.95 … 8.09`: of 95 %.
 std::string interval_words(const FoundParameter& parameter);
 
-/// The first parameter that was measured, or one of its kind that is known better (of three coordinates, of
-/// two directions), with its interval; empty where there is none.
+/// The first parameter that was measured, or another coordinate of the same vector that is known better, with
+/// its interval; empty where there is none.
 std::string main_parameter_words(const Finding& finding);
 
 /// `coulomb friction at joint2`; with its detail where there is one.

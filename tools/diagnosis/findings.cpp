@@ -4,7 +4,6 @@
 #include "tools/common/number.hpp"
 #include "tools/common/root_mean_square.hpp"
 #include "tools/diagnosis/effect_words.hpp"
-#include "tools/diagnosis/low_pass_kernel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,9 +15,10 @@ namespace {
 
 constexpr double two_sided = 1.96; ///< deviations that 95 % are within
 constexpr double tie = 3; ///< odds of 20 to 1: closer than this the data cannot tell two causes apart
-constexpr double price_of_shapes = 6;    ///< what the three coefficients of a centre of mass cost
-constexpr double same_body_share = 0.02; ///< of what both explain: two ways to say what one body adds
-constexpr std::size_t listed = 3;        ///< alternatives that a finding tells of
+constexpr double price_of_shapes = 6; ///< what the three coefficients of a centre of mass cost
+constexpr double same_body_share =
+    0.02; ///< of the evidence: closer, payload and last link differ by less than models are wrong
+constexpr std::size_t listed = 3; ///< alternatives that a finding tells of
 
 /// A shape's parameters and their variances, by the gradient of each with respect to the coefficients.
 struct ShapeParameters {
@@ -127,23 +127,14 @@ void weigh_alternatives(Finding& finding, const Explanation& explanation, const 
     }
 }
 
-/// What of some series is slower than 5 Hz: above it arms hardly move, and what no cause explains may hide
-/// that one explains what is below.
-Eigen::MatrixXd slow(const DiagnosisSignals& signals, Eigen::MatrixXd series) {
-    const double cutoff = 5 / signals.measured.rate_hz;
-    if (cutoff >= 0.5) {
-        return series;
+/// Each column low-passed: above it arms hardly move, and what no cause explains may hide that one explains
+/// what is below.
+Eigen::MatrixXd slow(const DiagnosisSignals& signals, const Eigen::MatrixXd& series) {
+    Eigen::MatrixXd result(series.rows(), series.cols());
+    for (Eigen::Index output = 0; output < series.cols(); ++output) {
+        result.col(output) = signals.below(gains_below_hz, series.col(output));
     }
-    const Eigen::VectorXd kernel = low_pass_kernel(cutoff, std::llround(std::ceil(2 / cutoff)));
-    for (auto output : series.colwise()) {
-        for (const Stretch& stretch : signals.measured.stretches) {
-            auto part = output.segment(stretch.first, stretch.count);
-            if (!part.isZero(0)) {
-                part = filtered(part, kernel);
-            }
-        }
-    }
-    return series;
+    return result;
 }
 
 /// The output on which the effect is largest against the noise there, and the errors with and without it.
@@ -158,6 +149,27 @@ void measure_gain(Finding& finding, const Eigen::MatrixXd& contribution, const E
     }
     finding.rms_after = root_mean_square(left.col(finding.output));
     finding.rms_before = root_mean_square(left.col(finding.output) + contribution.col(finding.output));
+}
+
+/// What no cause explains, T x m.
+struct Rest {
+    Eigen::MatrixXd all, slow;
+};
+
+/// What the finding's contribution brings among slow errors, or where it shows above only, among all. Whether
+/// it brings anything.
+bool tell_gain(Finding& finding, const DiagnosisSignals& signals, const Eigen::MatrixXd& contribution,
+               const Rest& left, const std::vector<std::string>& output_names) {
+    measure_gain(finding, slow(signals, contribution), left.slow);
+    std::string band = " below " + rounded_text(gains_below_hz) + " Hz";
+    if (!(finding.rms_after < finding.rms_before)) {
+        measure_gain(finding, contribution, left.all);
+        band.clear();
+    }
+    finding.evidence = "the error of " + output_names[static_cast<std::size_t>(finding.output)] + " " +
+                       effect_signature(finding.effect) + ": with it the error" + band + " falls from " +
+                       rounded_text(finding.rms_before) + " to " + rounded_text(finding.rms_after);
+    return finding.rms_after < finding.rms_before;
 }
 
 bool same_contact(const Finding& one, const Finding& other) {
@@ -202,17 +214,15 @@ double calibrated_confidence(const Finding& finding, double duration_s) {
 std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanation& explanation,
                                  const Eigen::MatrixXd& measured,
                                  const std::vector<std::string>& output_names) {
-    const Eigen::MatrixXd left = slow(signals, measured - signals.nominal - explanation.all(signals));
-    const Neighbours near(explanation.problem, explanation.chosen);
-    const Neighbours near_named(explanation.problem, explanation.named_effects());
+    Rest left{measured - signals.nominal - explanation.all(signals), {}};
+    left.slow = slow(signals, left.all);
     const double duration_s = static_cast<double>(signals.rows()) / signals.measured.rate_hz;
+    const Neighbours near(explanation.problem, explanation.chosen);
+    const std::vector<ChosenShape> named = explanation.named_effects(); // the first of those chosen
+    const Neighbours near_named(explanation.problem, named);
     std::vector<Finding> findings;
-    for (std::size_t i = 0; i < explanation.chosen.size(); ++i) {
-        const std::size_t number = explanation.chosen[i].candidate;
-        const Candidate& candidate = explanation.candidates[number];
-        if (!candidate.named()) {
-            continue;
-        }
+    for (std::size_t i = 0; i < named.size(); ++i) {
+        const Candidate& candidate = explanation.candidates[named[i].candidate];
         Finding finding;
         finding.effect = candidate.effect;
         finding.where = candidate.where;
@@ -222,15 +232,11 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
         // what stands only against something unnamed that takes most of it away again is hardly there
         finding.margin_to_nothing =
             std::min(finding.margin_to_nothing, explanation.named.score - near_named.score_without(i));
+        finding.confidence = calibrated_confidence(finding, duration_s);
+        finding.confirm = confirming_experiment(finding.effect, finding.where);
         const Eigen::MatrixXd contribution =
             explanation.effects(signals, [&](const Candidate& one) { return one.key() == candidate.key(); });
-        measure_gain(finding, slow(signals, contribution), left);
-        finding.confidence = calibrated_confidence(finding, duration_s);
-        finding.evidence = "the error of " + output_names[static_cast<std::size_t>(finding.output)] + " " +
-                           effect_signature(finding.effect) + ": with it the error below 5 Hz falls from " +
-                           rounded_text(finding.rms_before) + " to " + rounded_text(finding.rms_after);
-        finding.confirm = confirming_experiment(finding.effect, finding.where);
-        if (finding.rms_after < finding.rms_before) {
+        if (tell_gain(finding, signals, contribution, left, output_names)) {
             findings.push_back(std::move(finding));
         }
     }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/candidate_parts.hpp"
 #include "tools/diagnosis/candidates.hpp"
-#include "tools/diagnosis/low_pass_kernel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -67,15 +66,7 @@ Candidate eccentricity(const DiagnosisSignals& signals, std::size_t joint, doubl
 /// Low-passed at `share` of where the joint's position was: accelerations of it are to be taken.
 Eigen::VectorXd smooth(const DiagnosisSignals& signals, std::size_t joint, const Eigen::VectorXd& series,
                        double share) {
-    const double cutoff =
-        share * signals.measured.smoothing_hz[static_cast<Eigen::Index>(joint)] / signals.measured.rate_hz;
-    const Eigen::VectorXd kernel = low_pass_kernel(cutoff, std::llround(std::ceil(2 / cutoff)));
-    Eigen::VectorXd result(series.size());
-    for (const Stretch& stretch : signals.measured.stretches) {
-        result.segment(stretch.first, stretch.count) =
-            filtered(series.segment(stretch.first, stretch.count), kernel);
-    }
-    return result;
+    return signals.below(share * signals.measured.smoothing_hz[static_cast<Eigen::Index>(joint)], series);
 }
 
 /// How far a link is off its motor while it is carried on one flank of its gear's teeth, falls through the
@@ -120,18 +111,19 @@ Candidate backlash_candidate(const DiagnosisSignals& signals, std::size_t joint,
     result.effect = "backlash";
     result.where = numbered("joint", joint);
     for (const double gap : gaps) {
-        const auto near = [gap](const Eigen::VectorXd& coefficients) {
-            constexpr double least = 0.25; // the rotor, whose share nobody knows, has no part in the blow
+        const auto allowed = [gap](const Eigen::VectorXd& coefficients) {
+            constexpr double least = 0.25; // only the link's share of the joint's inertia is caught
             constexpr double most = 1.8;
             return coefficients[0] > least * gap && coefficients[0] < most * gap;
         };
-        result.shapes.push_back({{result.columns.size()}, near, gap});
+        result.shapes.push_back({{result.columns.size()}, allowed, gap});
         result.columns.push_back(on_outputs(play_course(signals, joint, gap)));
     }
-    // how long the link falls tells the gap, as far as the rotor's share does not matter; how hard it is
-    // caught does not
+    // the course tells the gap: how long the link falls; not the coefficient, which is how hard it is caught
     result.parameters = [](const Eigen::VectorXd&, const EffectShape& shape) {
-        constexpr double unsettled = 0.08; // measured on simulated gears
+        // a rotor falls otherwise than the whole joint, by a share that nobody knows: simulated gears come
+        // out up to 13 % too wide
+        constexpr double unsettled = 0.08;
         return std::vector<EffectParameter>{{"gap", "rad", shape.value, 0, unsettled}};
     };
     result.about = [&signals, joint](const EffectShape& shape, const Eigen::VectorXd&) {

@@ -14,7 +14,7 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr int fewest_cycles = 2;
-constexpr int most_cycles = 330; // twice the ratio of the largest harmonic drives
+constexpr int most_cycles = 330; // harmonic drives up to 1:160 make twice their ratio
 
 struct Scored {
     double gain = 0;

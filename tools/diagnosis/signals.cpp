@@ -7,12 +7,27 @@
 #include "tools/robot/regressor.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace dfdyn::tools {
 
 Eigen::VectorXd DiagnosisSignals::direction(Eigen::Index joint) const {
     return (measured.motion.velocity.col(joint).array() / sign_velocity[joint]).tanh();
+}
+
+Eigen::VectorXd DiagnosisSignals::below(double cutoff_hz, const Eigen::VectorXd& series) const {
+    const double cutoff = cutoff_hz / measured.rate_hz;
+    if (cutoff >= 0.5 || series.isZero(0)) {
+        return series;
+    }
+    const Eigen::VectorXd kernel = low_pass_kernel(cutoff, std::llround(std::ceil(2 / cutoff)));
+    Eigen::VectorXd result(series.size());
+    for (const Stretch& stretch : measured.stretches) {
+        result.segment(stretch.first, stretch.count) =
+            filtered(series.segment(stretch.first, stretch.count), kernel);
+    }
+    return result;
 }
 
 Eigen::VectorXd DiagnosisSignals::rate(const Eigen::VectorXd& series) const {

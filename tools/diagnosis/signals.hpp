@@ -26,6 +26,8 @@ struct DiagnosisSignals {
     /// Which way a joint moves, from -1 to 1; nearly 0 where that is not certain. T.
     Eigen::VectorXd direction(Eigen::Index joint) const;
 
+    /// Low-passed at `cutoff_hz`, stretch by stretch; as it is where the rate shows no higher frequencies.
+    Eigen::VectorXd below(double cutoff_hz, const Eigen::VectorXd& series) const;
     /// Derivative per second, stretch by stretch.
     Eigen::VectorXd rate(const Eigen::VectorXd& series) const;
     /// (series(t - delay) - series(t)) / delay, stretch by stretch; without a delay, minus the derivative.

@@ -17,7 +17,7 @@ std::string main_parameter(std::vector<FoundParameter> parameters) {
     return main_parameter_words(finding);
 }
 
-TEST_CASE("a finding is told by what was measured, of several of a kind by what is known best") {
+TEST_CASE("a finding is told by its main parameter, of a vector by the coordinate that is known best") {
     CHECK(main_parameter({}).empty());
     CHECK(main_parameter({{"axis", "1", 2, 2, 2}}).empty());
     const FoundParameter no_mass{"delta_mass", "kg", 0, 0, 0};
@@ -27,7 +27,10 @@ TEST_CASE("a finding is told by what was measured, of several of a kind by what 
     CHECK(main_parameter({no_mass, along_z, along_x}) == "delta_com_z 0.125 m (0.115 … 0.135)");
     // an uncertain mass is not hidden behind a certain place
     CHECK(main_parameter({{"mass", "kg", 0.15, -0.1, 0.4}, along_z}) == "mass 0.15 kg (-0.1 … 0.4)");
-    CHECK(main_parameter({{"start", "s", 8, 7, 9}, {"end", "s", 9, 8, 10}}) == "start 8 s (7 … 9)");
+    CHECK(main_parameter({{"amplitude", "rad", 0.2, 0.1, 0.3}, {"phase", "rad", 1.8, 1.7, 1.9}}) ==
+          "amplitude 0.2 rad (0.1 … 0.3)");
+    CHECK(main_parameter({{"coulomb", "N·m", 2, 1, 3}, {"static", "N·m", 4, 3.9, 4.1}}) ==
+          "coulomb 2 N·m (1 … 3)");
 }
 
 } // namespace finding_words_test

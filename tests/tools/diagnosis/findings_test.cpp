@@ -165,4 +165,19 @@ TEST_CASE("what no cause explains above 5 Hz hides no finding's gain below") {
     CHECK(findings.front().rms_after < 0.2 * findings.front().rms_before);
 }
 
+TEST_CASE("a cause that shows above 5 Hz only is found by what it brings there") {
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
+    const VectorXd slow = (0.5 * 2 * std::numbers::pi * signals.measured.time_s.array()).sin();
+    const VectorXd fast = (20 * 2 * std::numbers::pi * signals.measured.time_s.array()).sin();
+    for (const double rest : {1.0, -1.0}) {
+        MatrixXd measured = signals.nominal;
+        measured.col(0) += 2 * fast + rest * slow;
+        const auto findings = findings_of(
+            signals, explanation_of({of_one_column("torque_ripple", "joint1", fast)}, 1, 2 * fast), measured,
+            std::vector<std::string>(6, "tau"));
+        REQUIRE(findings.size() == 1);
+        CHECK(findings.front().rms_before > findings.front().rms_after);
+    }
+}
+
 } // namespace findings_test

@@ -100,7 +100,7 @@ TEST_CASE("a link that falls through the play of its gear spares its drive the l
     CHECK(std::abs(inner.sum()) < 0.1 * inner.cwiseAbs().sum());
 }
 
-TEST_CASE("the play of a gear is how far its link falls, however hard it is caught") {
+TEST_CASE("the play of a gear is told by how long its link falls, however hard it is caught") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const Candidate backlash = backlash_candidate(signals, 4, {0.03, 0.075});
     const EffectShape& shape = backlash.shapes.back();

@@ -69,12 +69,13 @@ TEST_CASE(
 
     // The robot's file has the wrist's centres of mass on its axes. By the controller's own rigid torques
     // (taur of the same recording, `dfdyn identify`), links 4 and 5 together have 0.134 kg·m more along link
-    // 5's axis than the file says, and 0.033 kg·m across it.
+    // 5's axis than the file says, with a tenth of a metre of link 6's mass, and 0.033 kg·m across it.
     const auto wrist = std::ranges::find_if(diagnosis.findings, [](const Finding& finding) {
         return finding.effect == "link_inertia_error" && finding.where == "link5";
     });
     REQUIRE(wrist != diagnosis.findings.end());
     CHECK(wrist->confidence >= 0.5);
+    CHECK(parameter(*wrist, "delta_mass") == 0);
     const double mass = dfdyn::tests::ur5().joints[4].inertia[0];
     CHECK(mass * parameter(*wrist, "delta_com_z") == Approx(0.134).epsilon(0.25));
     CHECK(mass * parameter(*wrist, "delta_com_y") == Approx(0.033).epsilon(0.25));
