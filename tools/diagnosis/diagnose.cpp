@@ -112,8 +112,8 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     suspicions = suspicions_of_motion(*signals, work.measured, gains_known);
     work.diagnosis.suspicions.insert(work.diagnosis.suspicions.end(), suspicions.sentences.begin(),
                                      suspicions.sentences.end());
-    measure_from(work, 0, work.explanation);
     if (suspicions.fatal) {
+        measure_from(work, 0, work.explanation); // without causes
         return work;
     }
     ExplanationOptions how{gains_known, 1, options.progress};

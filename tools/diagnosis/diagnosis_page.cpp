@@ -163,11 +163,10 @@ ReportTable findings_table(const DiagnosisCase& one) {
         "the whole recording, below " +
         rounded_text(gains_below_hz) +
         " Hz (all of it, for what shows above only), without and with this one effect, in N·m or N. Extended "
-        "model: "
-        "adapting, as coefficients that start here and go on being learned; constant, in its geometry, "
-        "gravity or gains; as Coulomb friction of the same level, for the model's columns have no memory; "
-        "left out, where the effect is no function of the motion of one instant that the firmware has a "
-        "column for.";
+        "model: adapting, as coefficients that start here and go on being learned; constant, in its "
+        "geometry, gravity or gains; as Coulomb friction of the same level, for the model's columns have no "
+        "memory; left out, where the effect is no function of the motion of one instant that the firmware "
+        "has a column for.";
     for (const Finding& finding : diagnosis.findings) {
         table.rows.push_back({cause_words(finding), main_parameter_words(finding),
                               confidence_text(finding.confidence),

@@ -6,8 +6,9 @@
 
 namespace dfdyn::tools {
 
-Eigen::VectorXd low_pass_kernel(double cutoff, Eigen::Index half) {
+Eigen::VectorXd low_pass_kernel(double cutoff) {
     constexpr double pi = std::numbers::pi;
+    const Eigen::Index half = std::llround(std::ceil(2 / cutoff));
     Eigen::VectorXd kernel(2 * half + 1);
     for (Eigen::Index i = -half; i <= half; ++i) {
         const auto n = static_cast<double>(i);

@@ -5,9 +5,9 @@
 
 namespace dfdyn::tools {
 
-/// A symmetric low pass, 2 half + 1 weights that add to one: sinc under a Blackman window, -6 dB at `cutoff`
-/// (cycles per sample, below 1/2), flat below and -70 dB above it by 1.4 `cutoff` when half >= 2 / cutoff.
-Eigen::VectorXd low_pass_kernel(double cutoff, Eigen::Index half);
+/// A symmetric low pass, weights that add to one: sinc under a Blackman window over four periods of `cutoff`
+/// (cycles per sample, above 0 and below 1/2), -6 dB there, flat below and -70 dB above it by 1.4 `cutoff`.
+Eigen::VectorXd low_pass_kernel(double cutoff);
 
 /// Every `step`-th sample of `signal` convolved with `kernel`. Beyond its ends the signal goes on mirrored in
 /// the end point, so that offset and slope are kept.

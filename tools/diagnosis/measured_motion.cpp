@@ -117,10 +117,7 @@ PositionNoise position_noise(const std::vector<Resampled>& stretches, double rat
 }
 
 void append(MeasuredMotion& result, const Resampled& stretch, double rate_hz, Eigen::Index step) {
-    const auto kernel_for = [&](double cutoff_hz) {
-        const double cutoff = cutoff_hz / rate_hz;
-        return low_pass_kernel(cutoff, std::llround(std::ceil(2 / cutoff)));
-    };
+    const auto kernel_for = [&](double cutoff_hz) { return low_pass_kernel(cutoff_hz / rate_hz); };
     const Eigen::Index first = result.time_s.size();
     const Eigen::Index rows = (stretch.time_s.size() + step - 1) / step;
     const auto grow = [&](Eigen::MatrixXd& matrix, Eigen::Index columns) {

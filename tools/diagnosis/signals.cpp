@@ -7,7 +7,6 @@
 #include "tools/robot/regressor.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -21,7 +20,7 @@ Eigen::VectorXd DiagnosisSignals::below(double cutoff_hz, const Eigen::VectorXd&
     if (cutoff >= 0.5 || series.isZero(0)) {
         return series;
     }
-    const Eigen::VectorXd kernel = low_pass_kernel(cutoff, std::llround(std::ceil(2 / cutoff)));
+    const Eigen::VectorXd kernel = low_pass_kernel(cutoff);
     Eigen::VectorXd result(series.size());
     for (const Stretch& stretch : measured.stretches) {
         result.segment(stretch.first, stretch.count) =

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
 namespace findings_test {
 
@@ -21,20 +22,32 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Candidate of_one_column(const std::string& effect, const std::string& where, const VectorXd& series) {
-    return single_column(effect.c_str(), where, on_output(0, series), is_anything, "level", "N·m");
+VectorXd random_series(const DiagnosisSignals& signals, std::mt19937_64& engine) {
+    std::normal_distribution<double> normal;
+    return VectorXd::NullaryExpr(signals.rows(), [&] { return normal(engine); });
 }
 
-/// Candidates of one column each, of which the first `chosen` explain; no noise but of 1.
+Candidate of_one_column(const std::string& effect, const std::string& where, const VectorXd& series) {
+    return single_column(effect, where, on_output(0, series), is_anything, "level", "N·m");
+}
+
+/// Candidates on the first output, of which the first `chosen` explain, in their first shapes; noise of 1.
 Explanation explanation_of(const std::vector<Candidate>& candidates, std::size_t chosen,
                            const VectorXd& unexplained) {
-    MatrixXd columns(unexplained.size(), std::ssize(candidates));
+    MatrixXd columns(unexplained.size(), 0);
     Explanation explanation;
     explanation.candidates = candidates;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-        const auto column = static_cast<Index>(i);
-        columns.col(column) = candidates[i].columns.front().parts.front().series;
-        explanation.problem.candidates.push_back({{{{column}, is_anything}}});
+        const Index first = columns.cols();
+        columns.conservativeResize(Eigen::NoChange, first + std::ssize(candidates[i].columns));
+        for (std::size_t k = 0; k < candidates[i].columns.size(); ++k) {
+            columns.col(first + static_cast<Index>(k)) = candidates[i].columns[k].parts.front().series;
+        }
+        SearchCandidate candidate;
+        for (const EffectShape& shape : candidates[i].shapes) {
+            candidate.shapes.push_back({{first + static_cast<Index>(shape.columns.front())}, shape.allowed});
+        }
+        explanation.problem.candidates.push_back(std::move(candidate));
         if (i < chosen) {
             explanation.chosen.push_back({i, 0});
         }
@@ -46,41 +59,30 @@ Explanation explanation_of(const std::vector<Candidate>& candidates, std::size_t
     return explanation;
 }
 
+/// What is found where the first joint's torque is `unexplained` more than the rigid body's.
+std::vector<Finding> found(const DiagnosisSignals& signals, const Explanation& explanation,
+                           const VectorXd& unexplained) {
+    MatrixXd measured = signals.nominal;
+    measured.col(0) += unexplained;
+    return findings_of(signals, explanation, measured, std::vector<std::string>(6, "tau"));
+}
+
 /// One cause on the first joint, of one coefficient, that acts as either of two series; the first is chosen.
 Explanation of_two_shapes(const VectorXd& first, const VectorXd& second, const VectorXd& unexplained) {
-    Candidate cause;
-    cause.effect = "presliding_hysteresis";
-    cause.where = "joint1";
-    cause.columns = {{{{0, first}}}, {{{0, second}}}};
+    Candidate cause = of_one_column("presliding_hysteresis", "joint1", first);
+    cause.columns.push_back(on_output(0, second));
     cause.shapes = {{{0}, is_anything, 1}, {{1}, is_anything, 2}};
-    cause.parameters = [](const VectorXd& coefficients, const EffectShape&) {
-        return std::vector<EffectParameter>{{"level", "N·m", coefficients[0]}};
-    };
-    MatrixXd columns(first.size(), 2);
-    columns << first, second;
-    Explanation explanation;
-    explanation.candidates = {cause};
-    explanation.problem.sums = {columns.transpose() * columns, columns.transpose() * unexplained,
-                                unexplained.squaredNorm()};
-    explanation.problem.candidates.push_back({{{{0}, is_anything}, {{1}, is_anything}}});
-    explanation.chosen = {{0, 0}};
-    explanation.fit = explanation.named = fit_effects(explanation.problem, explanation.chosen);
-    return explanation;
+    return explanation_of({cause}, 1, unexplained);
 }
 
 TEST_CASE("a parameter is as uncertain as the shape that it belongs to") {
     DFDYN_SEEDED_ENGINE(engine);
-    std::normal_distribution<double> normal;
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    const VectorXd series = VectorXd::NullaryExpr(signals.rows(), [&] { return normal(engine); });
-    const VectorXd other = VectorXd::NullaryExpr(signals.rows(), [&] { return normal(engine); });
-    const VectorXd unexplained =
-        2 * series + VectorXd::NullaryExpr(signals.rows(), [&] { return normal(engine); });
-    MatrixXd measured = signals.nominal;
-    measured.col(0) += unexplained;
+    const VectorXd series = random_series(signals, engine);
+    const VectorXd other = random_series(signals, engine);
+    const VectorXd unexplained = 2 * series + random_series(signals, engine);
     const auto reach = [&](const VectorXd& second) {
-        const auto findings = findings_of(signals, of_two_shapes(series, second, unexplained), measured,
-                                          std::vector<std::string>(6, "tau"));
+        const auto findings = found(signals, of_two_shapes(series, second, unexplained), unexplained);
         REQUIRE(findings.size() == 1);
         const FoundParameter& level = findings.front().parameters.front();
         CHECK(level.high - level.value == Approx(level.value - level.low));
@@ -97,28 +99,22 @@ TEST_CASE("a parameter is as uncertain as the shape that it belongs to") {
 
 TEST_CASE("a cause that something unnamed takes away again is not likely") {
     DFDYN_SEEDED_ENGINE(engine);
-    std::normal_distribution<double> normal;
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    const auto random = [&] {
-        return VectorXd::NullaryExpr(signals.rows(), [&] { return normal(engine); }).eval();
-    };
-    const VectorXd cause = random();
-    const VectorXd beside = random();
+    const VectorXd cause = random_series(signals, engine);
+    const VectorXd beside = random_series(signals, engine);
     // all but the same course: only their difference is in the data
     const VectorXd nearly = cause + 0.05 * beside;
-    const VectorXd unexplained = 2 * beside + random();
-    MatrixXd measured = signals.nominal;
-    measured.col(0) += unexplained;
+    const VectorXd unexplained = 2 * beside + random_series(signals, engine);
     const Candidate friction = of_one_column("coulomb_friction", "joint1", cause);
     const auto confidence = [&](const std::vector<std::string>& inputs) {
         Candidate against = of_one_column("viscous_friction", "joint1", nearly);
         against.inputs = inputs;
         const Explanation explanation = explanation_of({friction, against}, 2, unexplained);
         REQUIRE(explanation.fit.score > 100);
-        const auto findings = findings_of(signals, explanation, measured, std::vector<std::string>(6, "tau"));
-        const auto found = std::ranges::find(findings, friction.effect, &Finding::effect);
-        REQUIRE(found != findings.end());
-        return found->confidence;
+        const auto findings = found(signals, explanation, unexplained);
+        const auto cause_found = std::ranges::find(findings, friction.effect, &Finding::effect);
+        REQUIRE(cause_found != findings.end());
+        return cause_found->confidence;
     };
     CHECK(confidence({}) > 0.9);
     CHECK(confidence({"qd1"}) < 0.2);
@@ -126,22 +122,15 @@ TEST_CASE("a cause that something unnamed takes away again is not likely") {
 
 TEST_CASE("payload and last link are one cause unless more than a small share of it tells them apart") {
     DFDYN_SEEDED_ENGINE(engine);
-    std::normal_distribution<double> normal;
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    const auto random = [&] {
-        return VectorXd::NullaryExpr(signals.rows(), [&] { return normal(engine); }).eval();
-    };
-    const VectorXd body = random();
-    const VectorXd shape = random();
+    const VectorXd body = random_series(signals, engine);
+    const VectorXd shape = random_series(signals, engine);
     const auto ties = [&](double share, const std::string& span) {
-        const VectorXd unexplained = 10 * body + random();
-        MatrixXd measured = signals.nominal;
-        measured.col(0) += unexplained;
+        const VectorXd unexplained = 10 * body + random_series(signals, engine);
         Candidate payload = of_one_column("payload", "tool", body);
         Candidate link = of_one_column("link_inertia_error", "link6", body + std::sqrt(share) * shape);
         payload.span = link.span = span;
-        const auto findings = findings_of(signals, explanation_of({payload, link}, 1, unexplained), measured,
-                                          std::vector<std::string>(6, "tau"));
+        const auto findings = found(signals, explanation_of({payload, link}, 1, unexplained), unexplained);
         REQUIRE(findings.size() == 1);
         return findings.front().indistinguishable.size();
     };
@@ -157,9 +146,7 @@ TEST_CASE("what no cause explains above 5 Hz hides no finding's gain below") {
     // the weighed fit sees the slow part only
     Explanation explanation = explanation_of({of_one_column("backlash", "joint1", slow)}, 1, 2 * slow);
     explanation.candidates.front().columns.front() = on_output(0, slow + fast);
-    MatrixXd measured = signals.nominal;
-    measured.col(0) += 2 * slow - 3 * fast;
-    const auto findings = findings_of(signals, explanation, measured, std::vector<std::string>(6, "tau"));
+    const auto findings = found(signals, explanation, 2 * slow - 3 * fast);
     REQUIRE(findings.size() == 1);
     CHECK(findings.front().rms_before == Approx(2 * root_mean_square(slow)).epsilon(0.02));
     CHECK(findings.front().rms_after < 0.2 * findings.front().rms_before);
@@ -172,11 +159,9 @@ TEST_CASE("a cause that shows above 5 Hz only is found by what it brings there")
     REQUIRE(leak.norm() > 0);
     REQUIRE(leak.norm() < 0.1 * fast.norm());
     // what is left below 5 Hz is by chance the opposite of the little that the cause has there
-    MatrixXd measured = signals.nominal;
-    measured.col(0) += 2 * fast - leak;
     const auto findings =
-        findings_of(signals, explanation_of({of_one_column("torque_ripple", "joint1", fast)}, 1, 2 * fast),
-                    measured, std::vector<std::string>(6, "tau"));
+        found(signals, explanation_of({of_one_column("torque_ripple", "joint1", fast)}, 1, 2 * fast),
+              2 * fast - leak);
     REQUIRE(findings.size() == 1);
     CHECK(findings.front().rms_before == Approx(2 * root_mean_square(fast)).epsilon(0.1));
 }

@@ -77,7 +77,7 @@ TEST_CASE("a gap parts the recording, short parts are left out, and none at all 
 }
 
 TEST_CASE("the low pass keeps what is below and takes away what is above its cutoff") {
-    const VectorXd kernel = low_pass_kernel(0.1, 20);
+    const VectorXd kernel = low_pass_kernel(0.1);
     const auto gain = [&](double cycles_per_sample) {
         std::complex<double> sum = 0;
         for (Index i = 0; i < kernel.size(); ++i) {

@@ -68,8 +68,8 @@ TEST_CASE(
     }
 
     // The robot's file has the wrist's centres of mass on its axes. By the controller's own rigid torques
-    // (taur of the same recording, `dfdyn identify`), links 4 and 5 together have 0.134 kg·m more along link
-    // 5's axis than the file says, with a tenth of a metre of link 6's mass, and 0.033 kg·m across it.
+    // (taur of the same recording, `dfdyn identify`), links 4 and 5 and 0.095 m times link 6's mass together
+    // are 0.134 kg·m more along link 5's axis than the file says, and links 5 and 6 0.033 kg·m across it.
     const auto wrist = std::ranges::find_if(diagnosis.findings, [](const Finding& finding) {
         return finding.effect == "link_inertia_error" && finding.where == "link5";
     });
