@@ -147,6 +147,12 @@ std::vector<ChosenShape> without(std::vector<ChosenShape> chosen, std::size_t in
     return chosen;
 }
 
+Eigen::VectorXd EffectFit::of_all(Eigen::Index all) const {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(all);
+    result(columns) = coefficients;
+    return result;
+}
+
 EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShape>& chosen) {
     EffectFit fit;
     fit.columns = columns_of(problem, chosen);

@@ -51,6 +51,9 @@ struct EffectFit {
     double explained = 0;              ///< sum of squares that it explains, weighed
     double score = 0;                  ///< logarithm of the evidence, up to a constant
     bool allowed = true;               ///< every coefficient has the sign it must have
+
+    /// Of `all` columns of the normal equations, zero for those that are not in the model.
+    Eigen::VectorXd of_all(Eigen::Index all) const;
 };
 
 /// Evidence of priors by which every order of magnitude of an effect is as likely, of the given deviations

@@ -5,6 +5,7 @@
 #include "tools/diagnosis/candidate_parts.hpp"
 #include "tools/diagnosis/candidates.hpp"
 #include "tools/diagnosis/scans.hpp"
+#include "tools/diagnosis/settle_explanation.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
 #include <algorithm>
@@ -20,7 +21,6 @@ namespace {
 
 constexpr int most_rounds = 10;
 constexpr int white_rounds = 3;
-constexpr Eigen::Index validation_blocks = 6;
 constexpr double mass_deviation = 0.058; ///< of a link's relative mass error that is uniform within ±10 %
 
 bool is_friction(const Candidate& candidate) {
@@ -32,12 +32,6 @@ bool is_friction(const Candidate& candidate) {
 bool is_of_the_arm(const Candidate& candidate) {
     return candidate.where != "ft_sensor" && candidate.where.rfind("actuator", 0) != 0 &&
            candidate.effect != "external_contact";
-}
-
-/// A push, or a payload that is taken up.
-bool is_event(const Candidate& candidate) {
-    return candidate.effect == "external_contact" ||
-           (candidate.effect == "payload" && !candidate.detail.empty());
 }
 
 /// A chosen candidate, made anew about what was found of it. That it has other shapes now makes it no
@@ -94,12 +88,7 @@ class Search {
             }
             last = std::move(keys);
         }
-        decide_masses();
-        SearchProblem promising = at_.problem; // without the shapes of what does not predict
-        while (keep_what_predicts(promising) || keep_what_is_allowed(promising)) {
-            at_.chosen = search_effects(promising, at_.chosen);
-            at_.fit = fit_effects(at_.problem, at_.chosen);
-        }
+        settle(at_, regression_);
         return std::move(at_);
     }
 
@@ -111,14 +100,7 @@ class Search {
     void gather(std::vector<CandidateEntry> passing);
     void estimate_noise(bool white);
     void forget_prices();
-    void decide_masses();
-    std::vector<WeighedSums> sums_of_blocks() const;
-    Eigen::VectorXd of_events() const;
-    bool keep_what_predicts(SearchProblem& promising);
-    bool keep_what_is_allowed(SearchProblem& promising);
-    void fit_named();
     std::vector<std::string> chosen_keys() const;
-    Eigen::VectorXd all_coefficients() const;
     Eigen::VectorXd of_named(Eigen::VectorXd coefficients) const;
 
     const DiagnosisSignals& signals_;
@@ -148,7 +130,7 @@ void Search::add_nuisance() {
     for (Eigen::Index joint = 0; !options_.gains_known && joint < signals_.outputs(); ++joint) {
         add(on_output(joint, signals_.nominal.col(joint)), 10);
     }
-    at_.masses_uncertain = true;
+    at_.uncertain_masses = parameters.size() / 10;
 }
 
 /// Pushes at a site are all judged alike: once the largest are chosen, those left stand out less against each
@@ -202,7 +184,7 @@ std::vector<CandidateEntry> Search::passing() const {
             add({chosen});
         }
     }
-    const Eigen::VectorXd coefficients = all_coefficients();
+    const Eigen::VectorXd coefficients = at_.fit.of_all(regression_.columns());
     // a free function of the position can hide a ripple
     add(scan_ripples(signals_, regression_, weighed_residual(regression_, of_named(coefficients))));
     const Eigen::MatrixXd weighed = weighed_residual(regression_, coefficients);
@@ -300,12 +282,6 @@ void Search::gather(std::vector<CandidateEntry> passing) {
     }
 }
 
-Eigen::VectorXd Search::all_coefficients() const {
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(regression_.columns());
-    all(at_.fit.columns) = at_.fit.coefficients;
-    return all;
-}
-
 Eigen::VectorXd Search::of_named(Eigen::VectorXd coefficients) const {
     for (const ChosenShape& one : at_.chosen) {
         if (!at_.candidates[one.candidate].named()) {
@@ -316,7 +292,7 @@ Eigen::VectorXd Search::of_named(Eigen::VectorXd coefficients) const {
 }
 
 void Search::estimate_noise(bool white) {
-    const Eigen::VectorXd coefficients = all_coefficients();
+    const Eigen::VectorXd coefficients = at_.fit.of_all(regression_.columns());
     Eigen::MatrixXd noise(rows_.bins(), regression_.outputs());
     std::vector<Eigen::MatrixXd> unrest;
     for (Eigen::Index output = 0; output < noise.cols(); ++output) {
@@ -348,114 +324,6 @@ std::vector<std::string> Search::chosen_keys() const {
     }
     std::ranges::sort(keys);
     return keys;
-}
-
-/// Are the links' masses as the robot's file says? The search went on as if they need not be.
-void Search::decide_masses() {
-    at_.problem.sums = regression_.weighed_sums();
-    at_.chosen = search_effects(at_.problem, at_.chosen);
-    at_.fit = fit_effects(at_.problem, at_.chosen);
-    SearchProblem exact = at_.problem;
-    const auto bodies = static_cast<std::ptrdiff_t>(signals_.regressor.cols() / 10);
-    exact.nuisance.erase(exact.nuisance.begin(), exact.nuisance.begin() + bodies);
-    const std::vector<ChosenShape> chosen = search_effects(exact, at_.chosen);
-    const EffectFit fit = fit_effects(exact, chosen);
-    if (fit.score >= at_.fit.score) {
-        at_.problem = std::move(exact);
-        at_.chosen = chosen;
-        at_.fit = fit;
-        at_.masses_uncertain = false;
-        at_.nuisance.erase(at_.nuisance.begin(), at_.nuisance.begin() + bodies);
-    }
-}
-
-std::vector<WeighedSums> Search::sums_of_blocks() const {
-    std::vector<WeighedSums> blocks;
-    const Eigen::Index frames = regression_.fitted_frames();
-    for (Eigen::Index block = 0; block < validation_blocks; ++block) {
-        const Eigen::Index first = block * frames / validation_blocks;
-        blocks.push_back(regression_.weighed_sums(first, (block + 1) * frames / validation_blocks - first));
-    }
-    return blocks;
-}
-
-/// Of all columns: coefficients of the chosen events, whose time no other time tells of; zero of all others.
-Eigen::VectorXd Search::of_events() const {
-    Eigen::VectorXd result = Eigen::VectorXd::Zero(regression_.columns());
-    const Eigen::VectorXd all = all_coefficients();
-    for (const ChosenShape& one : at_.chosen) {
-        if (is_event(at_.candidates[one.candidate])) {
-            const auto& columns = at_.problem.candidates[one.candidate].shapes[one.shape].columns;
-            result(columns) = all(columns);
-        }
-    }
-    return result;
-}
-
-/// Drops, one after the other, lasting effects without which blocks of time are predicted no worse by what
-/// fits the other blocks, also from those that are `promising`; what the events explain is taken out of all.
-/// Whether there were any.
-bool Search::keep_what_predicts(SearchProblem& promising) {
-    if (regression_.fitted_frames() < validation_blocks) {
-        return false; // too short a recording to leave any of it out
-    }
-    SearchProblem problem = at_.problem;
-    std::vector<WeighedSums> blocks = sums_of_blocks();
-    const Eigen::VectorXd events = of_events();
-    problem.sums.moment -= problem.sums.gram * events;
-    for (WeighedSums& block : blocks) {
-        block.moment -= block.gram * events;
-    }
-    const auto lasting =
-        std::stable_partition(at_.chosen.begin(), at_.chosen.end(), [this](const ChosenShape& one) {
-            return is_event(at_.candidates[one.candidate]);
-        });
-    std::vector<ChosenShape> kept(lasting, at_.chosen.end());
-    at_.chosen.erase(lasting, at_.chosen.end());
-    double best = held_out_score(problem, blocks, kept);
-    bool dropped = false;
-    while (true) {
-        std::size_t worst = kept.size();
-        for (std::size_t i = 0; i < kept.size(); ++i) {
-            const double others = held_out_score(problem, blocks, without(kept, i));
-            if (others >= best) {
-                best = others;
-                worst = i;
-            }
-        }
-        if (worst == kept.size()) {
-            break;
-        }
-        promising.candidates[kept[worst].candidate].shapes.clear();
-        dropped = true;
-        kept = without(kept, worst);
-    }
-    at_.chosen.insert(at_.chosen.end(), kept.begin(), kept.end());
-    return dropped;
-}
-
-/// Drops, one after the other, named effects whose coefficients are such as no machine has once nothing
-/// unnamed is beside them; they are `promising` no longer, nor rivals of others. Whether there were any.
-bool Search::keep_what_is_allowed(SearchProblem& promising) {
-    bool dropped = false;
-    for (fit_named(); !at_.named.allowed; fit_named()) {
-        const auto forbidden = std::ranges::find_if(at_.chosen, [&, i = std::size_t{0}](
-                                                                    const auto& one) mutable {
-            return !at_.problem.candidates[one.candidate].shapes[one.shape].allowed(at_.coefficients(i++));
-        });
-        promising.candidates[forbidden->candidate].shapes.clear();
-        at_.problem.candidates[forbidden->candidate].shapes.clear();
-        at_.chosen.erase(forbidden);
-        dropped = true;
-    }
-    return dropped;
-}
-
-void Search::fit_named() {
-    std::stable_partition(at_.chosen.begin(), at_.chosen.end(),
-                          [this](const ChosenShape& one) { return at_.candidates[one.candidate].named(); });
-    at_.fit = fit_effects(at_.problem, at_.chosen);
-    at_.named = fit_effects(at_.problem, at_.named_effects());
 }
 
 } // namespace

@@ -24,8 +24,9 @@ struct Explanation {
     SearchProblem problem;
     EffectFit fit;   ///< of all of them
     EffectFit named; ///< of those with a name alone: nothing unnamed may bend their coefficients
-    bool masses_uncertain = false; ///< every link's mass is a little off: the first columns of the nuisance
-    Eigen::MatrixXd noise;         ///< bins x m: spectra of what is left
+    Eigen::Index uncertain_masses =
+        0;                 ///< links that are a little off, the first of the nuisance: all or none
+    Eigen::MatrixXd noise; ///< bins x m: spectra of what is left
     std::vector<EffectColumn> nuisance;
 
     /// T x m: what those of the chosen effects that are `wanted` add to the rigid body's outputs, by `fit`.

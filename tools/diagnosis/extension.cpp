@@ -38,7 +38,7 @@ const std::map<std::string, Add>& additions_of() {
 /// What the diagnosis granted without calling it a finding: masses a little off, torque constants.
 void add_nuisance(Extension& extension, const DiagnosisWork& work) {
     const Explanation& explanation = work.explanation;
-    const Eigen::Index bodies = explanation.masses_uncertain ? extension.bodies.size() / 10 : 0;
+    const Eigen::Index bodies = explanation.uncertain_masses;
     const auto count = static_cast<Eigen::Index>(explanation.nuisance.size());
     for (Eigen::Index i = 0; i < count; ++i) {
         const double factor = explanation.nuisance_factor(i);

@@ -35,7 +35,7 @@ std::vector<GrantedQuantity> granted_quantities(const DiagnosisSignals& signals,
                                                 const Explanation& explanation,
                                                 const Eigen::VectorXd& torque_gains) {
     const Eigen::VectorXd nominal = nominal_parameters(signals.robot, signals.kind);
-    const Eigen::Index bodies = explanation.masses_uncertain ? nominal.size() / 10 : 0;
+    const Eigen::Index bodies = explanation.uncertain_masses;
     const auto unseen = signals.joints() - static_cast<std::size_t>(nominal.size() / 10);
     std::vector<GrantedQuantity> result;
     for (Eigen::Index i = 0; i < std::ssize(explanation.nuisance); ++i) {

@@ -16,13 +16,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Only a nuisance, with these coefficients, each with a standard deviation of 0.02.
-Explanation of_nuisance(const VectorXd& coefficients, bool masses_uncertain) {
+/// Only a nuisance, with these coefficients, each with a standard deviation of 0.02; so many masses first.
+Explanation of_nuisance(const VectorXd& coefficients, Index masses) {
     Explanation explanation;
     explanation.fit.coefficients = coefficients;
     explanation.fit.covariance = 4e-4 * MatrixXd::Identity(coefficients.size(), coefficients.size());
     explanation.nuisance.resize(static_cast<std::size_t>(coefficients.size()));
-    explanation.masses_uncertain = masses_uncertain;
+    explanation.uncertain_masses = masses;
     return explanation;
 }
 
@@ -31,7 +31,7 @@ TEST_CASE("masses that are granted are told beside those of the robot's file") {
     const VectorXd errors{{0.05, -0.02, 0, 0.1, -0.1, 0.01}};
     const VectorXd nominal = nominal_parameters(signals.robot, signals.kind);
     const std::vector<GrantedQuantity> granted =
-        granted_quantities(signals, of_nuisance(errors, true), VectorXd::Ones(6));
+        granted_quantities(signals, of_nuisance(errors, 6), VectorXd::Ones(6));
     REQUIRE(granted.size() == 6);
     for (Index link = 0; link < 6; ++link) {
         const GrantedQuantity& one = granted[static_cast<std::size_t>(link)];
@@ -50,7 +50,7 @@ TEST_CASE("the masses beyond an F/T sensor are those of the links there") {
     const DiagnosisSignals signals = signals_of(icub_right_arm(), OutputKind::wrench);
     const Index bodies = nominal_parameters(signals.robot, signals.kind).size() / 10;
     const std::vector<GrantedQuantity> granted =
-        granted_quantities(signals, of_nuisance(VectorXd::Zero(bodies), true), VectorXd::Ones(6));
+        granted_quantities(signals, of_nuisance(VectorXd::Zero(bodies), bodies), VectorXd::Ones(6));
     REQUIRE(std::ssize(granted) == bodies);
     CHECK(granted.back().where == "link" + std::to_string(signals.joints()));
 }
@@ -59,7 +59,7 @@ TEST_CASE("torque constants that nobody gave are told, without an upper end wher
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::motor_current);
     const VectorXd gains = VectorXd::LinSpaced(6, 0.1, 0.2); // A/(N·m)
     VectorXd errors{{0.25, 0, 0, -0.5, 0.1, -1.2}};
-    Explanation explanation = of_nuisance(errors, false);
+    Explanation explanation = of_nuisance(errors, 0);
     explanation.fit.covariance(3, 3) = 1;
     const std::vector<GrantedQuantity> granted = granted_quantities(signals, explanation, gains);
     REQUIRE(granted.size() == 6);
