@@ -4,6 +4,8 @@
 #include "tools/diagnosis/candidate.hpp"
 #include "tools/diagnosis/signals.hpp"
 
+#include <array>
+
 namespace dfdyn::tools {
 
 /// Friction, spring, ripple, rotor inertia and offset of every joint; none for a wrench, which does not see
@@ -73,10 +75,22 @@ std::vector<ContactSite> contact_sites(const DiagnosisSignals& signals);
 Candidate contact_candidate(const DiagnosisSignals& signals, const ContactSite& site,
                             const ContactPulse& first, const std::vector<ContactPulse>& pulses);
 
+/// Tells pushes at one site apart: `16.20 s`.
+std::string start_words(const ContactPulse& pulse);
+
+/// The catalogue's, from how much of each of a site's components there is.
+std::vector<EffectParameter> contact_parameters(const ContactPulse& pulse, const std::string& unit,
+                                                const Eigen::VectorXd& components);
+
 /// Pulses about one: its ends moved by `reach` (of its length), its flanks steeper and softer; itself first.
 std::vector<ContactPulse> pulses_about(const ContactPulse& pulse, double reach);
 
-/// The pulse over the recording, T; its height is one.
+/// Lengths of the pushes that are looked for, and the share of one in which it rises, and falls.
+inline constexpr std::array push_lengths_s{0.5, 0.75, 1.1, 1.7, 2.5, 3.75, 5.5};
+inline constexpr double push_flanks = 0.3;
+
+/// Of a pulse whose height is one; and over the recording, T.
+double pulse_at(const ContactPulse& pulse, double time_s);
 Eigen::VectorXd pulse_series(const DiagnosisSignals& signals, const ContactPulse& pulse);
 
 } // namespace dfdyn::tools

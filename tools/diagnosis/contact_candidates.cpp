@@ -44,19 +44,6 @@ EffectColumn during(const EffectColumn& column, const Eigen::VectorXd& pulse) {
     return result;
 }
 
-std::vector<EffectParameter> contact_parameters(const ContactPulse& pulse, const std::string& unit,
-                                                const Eigen::VectorXd& components) {
-    std::vector<EffectParameter> values{
-        {"start", "s", pulse.start_s},
-        {"end", "s", pulse.end_s},
-        {"peak", unit, components.size() == 1 ? components[0] : components.norm()}};
-    constexpr std::array names{"base_x", "base_y", "base_z"};
-    for (std::size_t axis = 0; components.size() > 1 && axis < names.size(); ++axis) {
-        values.push_back({names[axis], "1", components[static_cast<Eigen::Index>(axis)] / components.norm()});
-    }
-    return values;
-}
-
 Candidate contact_with_shapes(const DiagnosisSignals& signals, const ContactSite& site, std::string detail,
                               double reach, const std::vector<ContactPulse>& pulses) {
     Candidate result;
@@ -87,14 +74,28 @@ Candidate contact_with_shapes(const DiagnosisSignals& signals, const ContactSite
 
 } // namespace
 
-Eigen::VectorXd pulse_series(const DiagnosisSignals& signals, const ContactPulse& pulse) {
-    Eigen::VectorXd series(signals.rows());
-    for (Eigen::Index row = 0; row < series.size(); ++row) {
-        const double time_s = signals.measured.time_s[row];
-        const double inside = std::min(time_s - pulse.start_s, pulse.end_s - time_s);
-        series[row] = (1 - std::cos(std::numbers::pi * std::clamp(inside / pulse.rise_s, 0.0, 1.0))) / 2;
+std::vector<EffectParameter> contact_parameters(const ContactPulse& pulse, const std::string& unit,
+                                                const Eigen::VectorXd& components) {
+    std::vector<EffectParameter> values{
+        {"start", "s", pulse.start_s},
+        {"end", "s", pulse.end_s},
+        {"peak", unit, components.size() == 1 ? components[0] : components.norm()}};
+    constexpr std::array names{"base_x", "base_y", "base_z"};
+    for (std::size_t axis = 0; components.size() > 1 && axis < names.size(); ++axis) {
+        values.push_back({names[axis], "1", components[static_cast<Eigen::Index>(axis)] / components.norm()});
     }
-    return series;
+    return values;
+}
+
+std::string start_words(const ContactPulse& pulse) { return formatted("%.2f s", pulse.start_s); }
+
+double pulse_at(const ContactPulse& pulse, double time_s) {
+    const double inside = std::min(time_s - pulse.start_s, pulse.end_s - time_s);
+    return (1 - std::cos(std::numbers::pi * std::clamp(inside / pulse.rise_s, 0.0, 1.0))) / 2;
+}
+
+Eigen::VectorXd pulse_series(const DiagnosisSignals& signals, const ContactPulse& pulse) {
+    return signals.measured.time_s.unaryExpr([&](double time_s) { return pulse_at(pulse, time_s); });
 }
 
 std::vector<ContactPulse> pulses_about(const ContactPulse& pulse, double reach) {
@@ -134,7 +135,7 @@ std::vector<ContactSite> contact_sites(const DiagnosisSignals& signals) {
 Candidate contact_candidate(const DiagnosisSignals& signals, const ContactSite& site,
                             const ContactPulse& first, const std::vector<ContactPulse>& pulses) {
     constexpr double reach = 0.15;
-    return contact_with_shapes(signals, site, number_text(first.start_s) + " s", reach, pulses);
+    return contact_with_shapes(signals, site, start_words(first), reach, pulses);
 }
 
 } // namespace dfdyn::tools

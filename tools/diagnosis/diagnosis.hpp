@@ -35,6 +35,7 @@ struct Finding {
     double confidence = 0;                  ///< calibrated probability that this cause at this place is there
     Eigen::Index output = 0;                ///< where it shows most
     double rms_before = 0, rms_after = 0;   ///< of the slow error there, without and with it
+    Eigen::VectorXd share;                  ///< T: what it adds there
     std::string evidence;
     std::vector<OtherCause> indistinguishable, alternatives;
     std::string confirm;
@@ -85,6 +86,7 @@ struct DiagnosisWork {
     Eigen::MatrixXd measured;                        ///< T x m, as torques where currents were measured
     Eigen::VectorXd torque_gains; ///< per output: measured unit per N·m (N); 1 but for currents
     Explanation explanation;
+    Eigen::MatrixXd rest; ///< T x m: what neither that nor a push explains, as `measured`
     Diagnosis diagnosis;
 };
 

@@ -43,17 +43,10 @@ XyLine fitted_curve(const ExplainingVariable& over, const Eigen::VectorXd& x, co
 }
 
 PageChart evidence_chart(const DiagnosisWork& work, const Finding& finding, std::size_t number) {
-    const auto own = [&](const Candidate& candidate) {
-        return candidate.effect == finding.effect && candidate.where == finding.where &&
-               candidate.detail == finding.detail;
-    };
-    const Eigen::VectorXd all_share = work.explanation.effects(*work.signals, own).col(finding.output);
-    const Eigen::VectorXd rest =
-        (work.measured - work.signals->nominal - work.explanation.all(*work.signals)).col(finding.output);
-    const ExplainingVariable over = explaining_variable(*work.signals, finding, all_share);
+    const ExplainingVariable over = explaining_variable(*work.signals, finding, finding.share);
     const Eigen::VectorXd x = over.value.segment(over.first, over.count);
-    const Eigen::VectorXd share = all_share.segment(over.first, over.count);
-    const Eigen::VectorXd error = share + rest.segment(over.first, over.count);
+    const Eigen::VectorXd share = finding.share.segment(over.first, over.count);
+    const Eigen::VectorXd error = share + work.rest.col(finding.output).segment(over.first, over.count);
     XyChart chart;
     const std::string& output = work.diagnosis.output_names[static_cast<std::size_t>(finding.output)];
     chart.title =

@@ -2,99 +2,27 @@
 #include "tools/diagnosis/findings.hpp"
 
 #include "tools/common/number.hpp"
-#include "tools/common/root_mean_square.hpp"
+#include "tools/diagnosis/candidate_parts.hpp"
+#include "tools/diagnosis/candidates.hpp"
 #include "tools/diagnosis/effect_words.hpp"
+#include "tools/diagnosis/finding_gain.hpp"
+#include "tools/diagnosis/found_parameters.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 namespace dfdyn::tools {
 
 namespace {
 
-constexpr double two_sided = 1.96; ///< deviations that 95 % are within
 constexpr double tie = 3; ///< odds of 20 to 1: closer than this the data cannot tell two causes apart
 constexpr double price_of_shapes = 6; ///< what the three coefficients of a centre of mass cost
 constexpr double same_body_share =
     0.02; ///< of the evidence: closer, payload and last link differ by less than models are wrong
 constexpr std::size_t listed = 3; ///< alternatives that a finding tells of
-
-/// A shape's parameters and their variances, by the gradient of each with respect to the coefficients.
-struct ShapeParameters {
-    std::vector<EffectParameter> values;
-    Eigen::VectorXd variance;
-
-    ShapeParameters(const Candidate& candidate, const EffectShape& shape, const Eigen::VectorXd& coefficients,
-                    const Eigen::MatrixXd& covariance)
-        : values(candidate.parameters(coefficients, shape)) {
-        Eigen::MatrixXd gradient(static_cast<Eigen::Index>(values.size()), coefficients.size());
-        for (Eigen::Index i = 0; i < coefficients.size(); ++i) {
-            const double step = 1e-3 * std::sqrt(covariance(i, i)) + 1e-12;
-            Eigen::VectorXd changed = coefficients;
-            changed[i] += step;
-            const std::vector<EffectParameter> moved = candidate.parameters(changed, shape);
-            for (std::size_t k = 0; k < values.size(); ++k) {
-                gradient(static_cast<Eigen::Index>(k), i) = (moved[k].value - values[k].value) / step;
-            }
-        }
-        variance = (gradient * covariance * gradient.transpose()).diagonal().cwiseMax(0);
-    }
-
-    bool same_names(const ShapeParameters& other) const {
-        return std::ranges::equal(values, other.values, {}, &EffectParameter::name, &EffectParameter::name);
-    }
-};
-
-/// Of a chosen effect's parameters: their variance while the shape is the chosen one, and what it grows by
-/// because other shapes are nearly as likely.
-ShapeParameters parameters_over_shapes(const Explanation& explanation, std::size_t index) {
-    const std::size_t number = explanation.chosen[index].candidate;
-    const Candidate& candidate = explanation.candidates[number];
-    std::vector<ChosenShape> named = explanation.named_effects();
-    const EffectShape& own_shape = candidate.shapes[named[index].shape];
-    const ShapeParameters own(candidate, own_shape, explanation.coefficients(index),
-                              explanation.covariance(index));
-    ShapeParameters result = own;
-    double total = 1;
-    for (std::size_t shape = 0; shape < candidate.shapes.size(); ++shape) {
-        named[index].shape = shape;
-        const EffectShape& other_shape = candidate.shapes[shape];
-        if (shape == explanation.chosen[index].shape ||
-            other_shape.columns.size() != own_shape.columns.size()) {
-            continue;
-        }
-        const EffectFit fit = fit_effects(explanation.problem, named);
-        const auto first = explanation.first_column(index);
-        const auto count = std::ssize(other_shape.columns);
-        const ShapeParameters other(candidate, other_shape, fit.coefficients.segment(first, count),
-                                    fit.covariance.block(first, first, count, count));
-        const double odds = std::exp(std::min(0.0, fit.score - explanation.named.score));
-        if (fit.allowed && own.same_names(other)) {
-            total += odds;
-            for (Eigen::Index k = 0; k < own.variance.size(); ++k) {
-                const auto i = static_cast<std::size_t>(k);
-                const double apart = other.values[i].value - own.values[i].value;
-                result.variance[k] += odds * (other.variance[k] + apart * apart);
-            }
-        }
-    }
-    result.variance /= total;
-    return result;
-}
-
-std::vector<FoundParameter> found_parameters(const Explanation& explanation, std::size_t index) {
-    const ShapeParameters all = parameters_over_shapes(explanation, index);
-    std::vector<FoundParameter> result;
-    for (std::size_t k = 0; k < all.values.size(); ++k) {
-        const auto& [name, unit, value, of_nothing, unsettled] = all.values[k];
-        const double of_data =
-            reach_of_95(std::sqrt(all.variance[static_cast<Eigen::Index>(k)]), value - of_nothing);
-        const double reach = std::hypot(of_data, two_sided * unsettled * value);
-        result.push_back({name, unit, value, value - reach, value + reach});
-    }
-    return result;
-}
 
 /// What else could stand in the place of a chosen effect, and how much less likely that is.
 void weigh_alternatives(Finding& finding, const Explanation& explanation, const Neighbours& near,
@@ -127,49 +55,80 @@ void weigh_alternatives(Finding& finding, const Explanation& explanation, const 
     }
 }
 
-/// Each column low-passed: above it arms hardly move, and what no cause explains may hide that one explains
-/// what is below.
-Eigen::MatrixXd slow(const DiagnosisSignals& signals, const Eigen::MatrixXd& series) {
-    Eigen::MatrixXd result(series.rows(), series.cols());
-    for (Eigen::Index output = 0; output < series.cols(); ++output) {
-        result.col(output) = signals.below(gains_below_hz, series.col(output));
-    }
-    return result;
+/// A chosen effect with a name, without its gain.
+Finding of_cause(const Explanation& explanation, const Neighbours& near, const Neighbours& near_named,
+                 std::size_t index, double duration_s) {
+    const Candidate& candidate = explanation.candidates[explanation.chosen[index].candidate];
+    Finding finding;
+    finding.effect = candidate.effect;
+    finding.where = candidate.where;
+    finding.detail = candidate.detail;
+    finding.parameters = found_parameters(explanation, index);
+    weigh_alternatives(finding, explanation, near, index);
+    // what stands only against something unnamed that takes most of it away again is hardly there
+    finding.margin_to_nothing =
+        std::min(finding.margin_to_nothing, explanation.named.score - near_named.score_without(index));
+    finding.confidence = calibrated_confidence(finding, duration_s);
+    finding.confirm = confirming_experiment(finding.effect, finding.where);
+    return finding;
 }
 
-/// The output on which the effect is largest against the noise there, and the errors with and without it.
-void measure_gain(Finding& finding, const Eigen::MatrixXd& contribution, const Eigen::MatrixXd& left) {
-    double largest = -1;
-    for (Eigen::Index output = 0; output < left.cols(); ++output) {
-        const double ratio = root_mean_square(contribution.col(output)) / root_mean_square(left.col(output));
-        if (ratio > largest) {
-            largest = ratio;
-            finding.output = output;
+Finding of_push(const StandingContact& push) {
+    constexpr double surest = 0.95; // how often such pushes are right was not counted
+    Finding finding;
+    finding.effect = "external_contact";
+    finding.where = numbered("joint", push.joint);
+    finding.detail = start_words(push.pulse);
+    for (const EffectParameter& one :
+         contact_parameters(push.pulse, "N·m", Eigen::VectorXd::Constant(1, -push.change))) {
+        const double reach = one.name == "peak" ? deviations_of_95 * push.change_deviation : 0;
+        finding.parameters.push_back({one.name, one.unit, one.value, one.value - reach, one.value + reach});
+    }
+    finding.confidence = surest * push.probability();
+    finding.margin_to_nothing = std::log(finding.confidence / (1 - finding.confidence));
+    finding.margin_to_others = std::numeric_limits<double>::infinity();
+    finding.confirm = confirming_experiment(finding.effect, finding.where);
+    return finding;
+}
+
+std::string held_words(const StandingContact& push) {
+    return numbered("joint", push.joint) + " stands, where its friction can change by " +
+           rounded_text(push.held) + " N·m, and its torque changes by " +
+           rounded_text(std::abs(push.change)) + " N·m; ";
+}
+
+/// Those of the chosen effects with a name that bring something.
+std::vector<Finding> of_causes(const DiagnosisSignals& signals, const Explanation& explanation,
+                               const Gains& gains) {
+    const double duration_s = static_cast<double>(signals.rows()) / signals.measured.rate_hz;
+    const Neighbours near(explanation.problem, explanation.chosen);
+    const std::vector<ChosenShape> named = explanation.named_effects(); // the first of those chosen
+    const Neighbours near_named(explanation.problem, named);
+    std::vector<Finding> findings;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+        const std::string key = explanation.candidates[named[i].candidate].key();
+        Finding finding = of_cause(explanation, near, near_named, i, duration_s);
+        if (gains.tell(finding, explanation.effects(
+                                    signals, [&](const Candidate& one) { return one.key() == key; }))) {
+            findings.push_back(std::move(finding));
         }
     }
-    finding.rms_after = root_mean_square(left.col(finding.output));
-    finding.rms_before = root_mean_square(left.col(finding.output) + contribution.col(finding.output));
+    return findings;
 }
 
-/// What no cause explains, T x m.
-struct Rest {
-    Eigen::MatrixXd all, slow;
-};
-
-/// What the finding's contribution brings among slow errors, or where it shows above only, among all. Whether
-/// it brings anything.
-bool tell_gain(Finding& finding, const DiagnosisSignals& signals, const Eigen::MatrixXd& contribution,
-               const Rest& left, const std::vector<std::string>& output_names) {
-    measure_gain(finding, slow(signals, contribution), left.slow);
-    std::string band = " below " + rounded_text(gains_below_hz) + " Hz";
-    if (!(finding.rms_after < finding.rms_before)) {
-        measure_gain(finding, contribution, left.all);
-        band.clear();
+std::vector<Finding> of_pushes(const DiagnosisSignals& signals, const std::vector<StandingContact>& pushes,
+                               const Gains& gains) {
+    std::vector<Finding> findings;
+    for (const StandingContact& push : pushes) {
+        Finding finding = of_push(push);
+        Eigen::MatrixXd contribution = Eigen::MatrixXd::Zero(signals.rows(), signals.outputs());
+        contribution.col(static_cast<Eigen::Index>(push.joint)) = push.share;
+        if (gains.tell(finding, contribution)) {
+            finding.evidence = held_words(push) + finding.evidence;
+            findings.push_back(std::move(finding));
+        }
     }
-    finding.evidence = "the error of " + output_names[static_cast<std::size_t>(finding.output)] + " " +
-                       effect_signature(finding.effect) + ": with it the error" + band + " falls from " +
-                       rounded_text(finding.rms_before) + " to " + rounded_text(finding.rms_after);
-    return finding.rms_after < finding.rms_before;
+    return findings;
 }
 
 bool same_contact(const Finding& one, const Finding& other) {
@@ -194,13 +153,6 @@ std::vector<Finding> without_repeated_contacts(std::vector<Finding> findings) {
 
 } // namespace
 
-double reach_of_95(double deviation, double effect) {
-    constexpr double coloured =
-        1.7; // how much wider than their formula says: measured, docs/diagnosis-panel.md
-    constexpr double model_error = 0.04; // what no noise explains, where effects are large; measured, too
-    return two_sided * std::hypot(coloured * deviation, model_error * effect);
-}
-
 double calibrated_confidence(const Finding& finding, double duration_s) {
     // Logistic regression on what was right and wrong in simulated recordings of 50 and of 200 s:
     // docs/diagnosis-panel.md. How far the next cause is behind did not tell more. What the model has wrong
@@ -212,34 +164,11 @@ double calibrated_confidence(const Finding& finding, double duration_s) {
 }
 
 std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanation& explanation,
-                                 const Eigen::MatrixXd& measured,
+                                 const std::vector<StandingContact>& pushes, const Eigen::MatrixXd& rest,
                                  const std::vector<std::string>& output_names) {
-    Rest left{measured - signals.nominal - explanation.all(signals), {}};
-    left.slow = slow(signals, left.all);
-    const double duration_s = static_cast<double>(signals.rows()) / signals.measured.rate_hz;
-    const Neighbours near(explanation.problem, explanation.chosen);
-    const std::vector<ChosenShape> named = explanation.named_effects(); // the first of those chosen
-    const Neighbours near_named(explanation.problem, named);
-    std::vector<Finding> findings;
-    for (std::size_t i = 0; i < named.size(); ++i) {
-        const Candidate& candidate = explanation.candidates[named[i].candidate];
-        Finding finding;
-        finding.effect = candidate.effect;
-        finding.where = candidate.where;
-        finding.detail = candidate.detail;
-        finding.parameters = found_parameters(explanation, i);
-        weigh_alternatives(finding, explanation, near, i);
-        // what stands only against something unnamed that takes most of it away again is hardly there
-        finding.margin_to_nothing =
-            std::min(finding.margin_to_nothing, explanation.named.score - near_named.score_without(i));
-        finding.confidence = calibrated_confidence(finding, duration_s);
-        finding.confirm = confirming_experiment(finding.effect, finding.where);
-        const Eigen::MatrixXd contribution =
-            explanation.effects(signals, [&](const Candidate& one) { return one.key() == candidate.key(); });
-        if (tell_gain(finding, signals, contribution, left, output_names)) {
-            findings.push_back(std::move(finding));
-        }
-    }
+    const Gains gains(signals, rest, output_names);
+    std::vector<Finding> findings = of_causes(signals, explanation, gains);
+    std::ranges::move(of_pushes(signals, pushes, gains), std::back_inserter(findings));
     std::ranges::sort(findings, std::greater<>{},
                       [](const Finding& finding) { return finding.rms_before / finding.rms_after; });
     return without_repeated_contacts(std::move(findings));

@@ -2,7 +2,7 @@
 #include "tools/diagnosis/granted.hpp"
 
 #include "tools/diagnosis/candidate_parts.hpp"
-#include "tools/diagnosis/findings.hpp"
+#include "tools/diagnosis/found_parameters.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
 #include <cmath>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What begins, or happens, at a time that nobody knows.
 #include "tools/diagnosis/candidates.hpp"
+#include "tools/diagnosis/event_windows.hpp"
 #include "tools/diagnosis/scans.hpp"
 
 #include <Eigen/Cholesky>
@@ -70,31 +71,12 @@ struct Products {
     }
 };
 
-struct Window {
-    double gain = 0, start_s = 0, end_s = 0;
-};
-
-constexpr double apart_s = 2;  ///< windows closer than this tell of the same event
-constexpr double flanks = 0.3; ///< of a window: where the push rises, and falls
-
-/// The best window of each event, the best event first.
-std::vector<Window> events_of(std::vector<Window> windows) {
-    std::ranges::sort(windows, std::greater<>{}, &Window::gain);
-    std::vector<Window> events;
-    for (const Window& window : windows) {
-        if (std::none_of(events.begin(), events.end(), [&](const Window& one) {
-                return one.start_s < window.end_s + apart_s && window.start_s < one.end_s + apart_s;
-            })) {
-            events.push_back(window);
-        }
-    }
-    return events;
-}
+constexpr double apart_s = 2; ///< windows closer than this tell of the same event
 
 /// All windows of one length.
 void scan_windows(const DiagnosisSignals& signals, const EffectRegression& regression,
                   const Eigen::MatrixXd& weighed, const ContactSite& site, double length_s,
-                  std::vector<Window>& found) {
+                  std::vector<EventWindow>& found) {
     const Eigen::VectorXd& time = signals.measured.time_s;
     const auto length = static_cast<Eigen::Index>(length_s * signals.measured.rate_hz);
     const Eigen::Index middle = time.size() / 2;
@@ -102,7 +84,7 @@ void scan_windows(const DiagnosisSignals& signals, const EffectRegression& regre
         return;
     }
     const Eigen::VectorXd series =
-        pulse_series(signals, {time[middle], time[middle + length], flanks * length_s});
+        pulse_series(signals, {time[middle], time[middle + length], push_flanks * length_s});
     const Products products(site.components, weighed, weighed_share(regression, series));
     const Eigen::VectorXd shape = series.segment(middle, length);
     const Eigen::VectorXd shape_square = shape.cwiseAbs2();
@@ -122,17 +104,17 @@ std::vector<Candidate> scan_contacts(const DiagnosisSignals& signals, const Effe
     constexpr std::size_t usual = 3; // an event must explain three times what this one of its kind does
     std::vector<Candidate> result;
     for (const ContactSite& site : sites) {
-        std::vector<Window> windows;
-        for (const double length_s : {0.5, 0.75, 1.1, 1.7, 2.5, 3.75, 5.5}) {
+        std::vector<EventWindow> windows;
+        for (const double length_s : push_lengths_s) {
             scan_windows(signals, regression, weighed, site, length_s, windows);
         }
-        const std::vector<Window> events = events_of(windows);
+        const std::vector<EventWindow> events = events_of(windows, apart_s);
         if (events.size() > usual) {
-            const Window& best = events.front();
-            const ContactPulse pulse{best.start_s, best.end_s, flanks * (best.end_s - best.start_s)};
+            const EventWindow& best = events.front();
+            const ContactPulse pulse{best.start_s, best.end_s, push_flanks * (best.end_s - best.start_s)};
             result.push_back(contact_candidate(signals, site, pulse, pulses_about(pulse, 0.15)));
             result.back().tried = static_cast<double>(windows.size());
-            result.back().extra_price = 1.5 * events[usual].gain;
+            result.back().extra_price = 1.5 * events[usual].score;
         }
     }
     return result;

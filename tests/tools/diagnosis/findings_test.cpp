@@ -3,7 +3,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/tools/diagnosis/swinging_arm.hpp"
+#include "tests/tools/diagnosis/small_explanation.hpp"
 #include "tests/tools/robot/arms.hpp"
 #include "tools/common/root_mean_square.hpp"
 #include "tools/diagnosis/candidate_parts.hpp"
@@ -22,49 +22,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-VectorXd random_series(const DiagnosisSignals& signals, std::mt19937_64& engine) {
-    std::normal_distribution<double> normal;
-    return VectorXd::NullaryExpr(signals.rows(), [&] { return normal(engine); });
-}
-
-Candidate of_one_column(const std::string& effect, const std::string& where, const VectorXd& series) {
-    return single_column(effect, where, on_output(0, series), is_anything, "level", "N·m");
-}
-
-/// Candidates on the first output, of which the first `chosen` explain, in their first shapes; noise of 1.
-Explanation explanation_of(const std::vector<Candidate>& candidates, std::size_t chosen,
-                           const VectorXd& unexplained) {
-    MatrixXd columns(unexplained.size(), 0);
-    Explanation explanation;
-    explanation.candidates = candidates;
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-        const Index first = columns.cols();
-        columns.conservativeResize(Eigen::NoChange, first + std::ssize(candidates[i].columns));
-        for (std::size_t k = 0; k < candidates[i].columns.size(); ++k) {
-            columns.col(first + static_cast<Index>(k)) = candidates[i].columns[k].parts.front().series;
-        }
-        SearchCandidate candidate;
-        for (const EffectShape& shape : candidates[i].shapes) {
-            candidate.shapes.push_back({{first + static_cast<Index>(shape.columns.front())}, shape.allowed});
-        }
-        explanation.problem.candidates.push_back(std::move(candidate));
-        if (i < chosen) {
-            explanation.chosen.push_back({i, 0});
-        }
-    }
-    explanation.problem.sums = {columns.transpose() * columns, columns.transpose() * unexplained,
-                                unexplained.squaredNorm()};
-    explanation.fit = fit_effects(explanation.problem, explanation.chosen);
-    explanation.named = fit_effects(explanation.problem, explanation.named_effects());
-    return explanation;
-}
-
 /// What is found where the first joint's torque is `unexplained` more than the rigid body's.
 std::vector<Finding> found(const DiagnosisSignals& signals, const Explanation& explanation,
                            const VectorXd& unexplained) {
-    MatrixXd measured = signals.nominal;
-    measured.col(0) += unexplained;
-    return findings_of(signals, explanation, measured, std::vector<std::string>(6, "tau"));
+    MatrixXd rest = -explanation.all(signals);
+    rest.col(0) += unexplained;
+    return findings_of(signals, explanation, {}, rest, std::vector<std::string>(6, "tau"));
 }
 
 /// One cause on the first joint, of one coefficient, that acts as either of two series; the first is chosen.

@@ -8,27 +8,35 @@
 #include "tools/diagnosis/joined_recording.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <filesystem>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace {
 
 using namespace dfdyn::tools;
 
-Diagnosis two_runs() {
-    const std::filesystem::path folder = DFDYN_TEST_DATA_DIR "/ur5_kufieta";
-    const std::array runs{folder / "Movement_No6_Acc_slow_Verify_Model.csv",
-                          folder / "Movement_No7_Acc_slow_Verify_Model_short.csv"};
+/// Motor currents of the robot; of several runs as one.
+Recording currents(const std::vector<std::string>& runs) {
+    std::vector<std::filesystem::path> files;
+    for (const std::string& run : runs) {
+        files.push_back(std::filesystem::path(DFDYN_TEST_DATA_DIR "/ur5_kufieta") /
+                        ("Movement_" + run + ".csv"));
+    }
     ReadOptions columns;
     columns.joint_count = 6;
     columns.outputs = OutputKind::motor_current;
     columns.skip_bad_rows = true;
+    return joined_recording(read_recordings(files, columns));
+}
+
+Diagnosis diagnosis_of(const Recording& recording) {
     DiagnosisOptions how;
     how.outputs = OutputKind::motor_current;
     how.measure = false;
-    return diagnose(dfdyn::tests::ur5(), joined_recording(read_recordings(runs, columns)), how).diagnosis;
+    return diagnose(dfdyn::tests::ur5(), recording, how).diagnosis;
 }
 
 bool is_friction(const Finding& finding) {
@@ -43,16 +51,59 @@ double parameter(const Finding& finding, const std::string& name) {
     return found->value;
 }
 
+bool is_contact(const Finding& finding) { return finding.effect == "external_contact"; }
+
+/// Times at which somebody pushed: where the current of joint 2 differs, for a fifth of a second, by more
+/// than 1 A from that of the same motion when nobody did. Neither a model nor a diagnosis is asked.
+class Pushes {
+  public:
+    Pushes(const Recording& pushed, const Recording& undisturbed) {
+        constexpr std::size_t joint = 1, average = 25;
+        const std::size_t rows = std::min(pushed.row_count(), undisturbed.row_count());
+        for (std::size_t row = average; row < rows; ++row) {
+            double difference = 0;
+            for (std::size_t back = 0; back < average; ++back) {
+                difference +=
+                    pushed.output.row(row - back)[joint] - undisturbed.output.row(row - back)[joint];
+            }
+            if (std::abs(difference) > 1.0 * average) {
+                add(pushed.time_s[row - average / 2]);
+            }
+        }
+    }
+
+    struct Push {
+        double start_s, end_s;
+    };
+    const std::vector<Push>& all() const { return pushes_; }
+
+    static bool during(const Finding& contact, const Push& push) {
+        return parameter(contact, "start") < push.end_s && push.start_s < parameter(contact, "end");
+    }
+
+  private:
+    void add(double time_s) {
+        constexpr double apart_s = 0.5;
+        if (pushes_.empty() || time_s > pushes_.back().end_s + apart_s) {
+            pushes_.push_back({time_s, time_s});
+        }
+        pushes_.back().end_s = time_s;
+    }
+
+    std::vector<Push> pushes_;
+};
+
 } // namespace
 
 TEST_CASE(
     "of a real arm the friction of its joints and its wrist's centre of mass are named, and nothing that "
     "no machine has") {
-    const Diagnosis diagnosis = two_runs();
+    const Diagnosis diagnosis =
+        diagnosis_of(currents({"No6_Acc_slow_Verify_Model", "No7_Acc_slow_Verify_Model_short"}));
     std::set<std::string> rubbing;
     for (const Finding& finding : diagnosis.findings) {
         INFO(finding.effect << " at " << finding.where);
-        CHECK(finding.effect != "external_contact"); // nobody was near
+        CHECK_FALSE(is_contact(finding)); // nobody was near
         if (is_friction(finding)) {
             rubbing.insert(finding.where);
         }
@@ -79,4 +130,35 @@ TEST_CASE(
     const double mass = dfdyn::tests::ur5().joints[4].inertia[0];
     CHECK(mass * parameter(*wrist, "delta_com_z") == Approx(0.134).epsilon(0.25));
     CHECK(mass * parameter(*wrist, "delta_com_y") == Approx(0.033).epsilon(0.25));
+}
+
+TEST_CASE("pushes at a real arm are found at their times, and none where nobody pushed") {
+    const Recording undisturbed = currents({"No7_Acc_slow_Verify_Model_short"});
+    const Recording pushed = currents({"No7_Acc_slow_Verify_Model_short_with_disturbance"});
+    const std::vector<Pushes::Push> pushes = Pushes(pushed, undisturbed).all();
+    REQUIRE(pushes.size() == 5);
+    const Diagnosis diagnosis = diagnosis_of(pushed);
+    std::set<std::size_t> found, likely;
+    for (const Finding& contact : diagnosis.findings) {
+        if (!is_contact(contact)) {
+            continue;
+        }
+        const auto push = std::ranges::find_if(
+            pushes, [&](const Pushes::Push& one) { return Pushes::during(contact, one); });
+        INFO(contact.where << ", " << contact.detail);
+        REQUIRE(push != pushes.end());
+        const auto number = static_cast<std::size_t>(push - pushes.begin());
+        found.insert(number);
+        if (contact.confidence >= 0.5) {
+            likely.insert(number);
+            CHECK((contact.where == "joint2" || contact.where == "joint3"));
+        }
+    }
+    CHECK(likely == std::set<std::size_t>{0, 1, 2}); // at joints that stood
+    CHECK(found.size() >= 4);
+    for (const char* const run : {"No7_Acc_slow_Verify_Model_short", "No5_Acc_slow_no_disturbance",
+                                  "No9_Singularity_Free_NoDist", "No3_Acc"}) {
+        INFO(run);
+        CHECK(std::ranges::none_of(diagnosis_of(currents({run})).findings, is_contact));
+    }
 }

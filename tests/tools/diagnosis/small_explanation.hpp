@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Explanations of a few candidates on an arm's first output.
+#pragma once
+
+#include "tests/tools/diagnosis/swinging_arm.hpp"
+#include "tools/diagnosis/candidate_parts.hpp"
+#include "tools/diagnosis/explanation.hpp"
+
+#include <random>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tests {
+
+inline Eigen::VectorXd random_series(const tools::DiagnosisSignals& signals, std::mt19937_64& engine) {
+    std::normal_distribution<double> normal;
+    return Eigen::VectorXd::NullaryExpr(signals.rows(), [&] { return normal(engine); });
+}
+
+inline tools::Candidate of_one_column(const std::string& effect, const std::string& where,
+                                      const Eigen::VectorXd& series) {
+    return tools::single_column(effect, where, tools::on_output(0, series), tools::is_anything, "level",
+                                "N·m");
+}
+
+/// Candidates on the first output, of which the first `chosen` explain, in their first shapes; noise of 1.
+inline tools::Explanation explanation_of(const std::vector<tools::Candidate>& candidates, std::size_t chosen,
+                                         const Eigen::VectorXd& unexplained) {
+    Eigen::MatrixXd columns(unexplained.size(), 0);
+    tools::Explanation explanation;
+    explanation.candidates = candidates;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        const Eigen::Index first = columns.cols();
+        columns.conservativeResize(Eigen::NoChange, first + std::ssize(candidates[i].columns));
+        for (std::size_t k = 0; k < candidates[i].columns.size(); ++k) {
+            columns.col(first + static_cast<Eigen::Index>(k)) = candidates[i].columns[k].parts.front().series;
+        }
+        tools::SearchCandidate candidate;
+        for (const tools::EffectShape& shape : candidates[i].shapes) {
+            candidate.shapes.push_back(
+                {{first + static_cast<Eigen::Index>(shape.columns.front())}, shape.allowed});
+        }
+        explanation.problem.candidates.push_back(std::move(candidate));
+        if (i < chosen) {
+            explanation.chosen.push_back({i, 0});
+        }
+    }
+    explanation.problem.sums = {columns.transpose() * columns, columns.transpose() * unexplained,
+                                unexplained.squaredNorm()};
+    explanation.fit = tools::fit_effects(explanation.problem, explanation.chosen);
+    explanation.named = tools::fit_effects(explanation.problem, explanation.named_effects());
+    return explanation;
+}
+
+} // namespace dfdyn::tests

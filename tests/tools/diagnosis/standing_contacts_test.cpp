@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pushes at a joint that stands, among what its friction does there.
+#include "tools/diagnosis/standing_contacts.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/diagnosis/small_explanation.hpp"
+#include "tests/tools/robot/arms.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace dfdyn::tools;
+using namespace dfdyn::tests;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double friction = 5; ///< N·m
+constexpr Index stand_first = 200, stand_rows = 1500;
+
+/// The first joint stands from 2 to 17 s.
+DiagnosisSignals standing_arm() {
+    DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
+    signals.measured.weight.setOnes(signals.rows(), signals.outputs());
+    signals.measured.weight.col(0).segment(stand_first, stand_rows).setZero();
+    return signals;
+}
+
+/// Dry friction of the first joint, known to a few percent.
+Explanation with_friction(const DiagnosisSignals& signals, const std::string& parameter) {
+    const VectorXd direction = signals.direction(0);
+    Candidate candidate = of_one_column("coulomb_friction", "joint1", direction);
+    candidate.parameters = [parameter](const VectorXd& coefficients, const EffectShape&) {
+        return std::vector<EffectParameter>{{parameter, "N·m", coefficients[0]}};
+    };
+    return explanation_of({candidate}, 1, friction * direction);
+}
+
+/// What a joint that stands may do by itself: it creeps, and its friction gives way to one side or the other.
+MatrixXd resting(const DiagnosisSignals& signals, std::mt19937_64& engine) {
+    std::uniform_real_distribution<double> held(-friction, friction);
+    std::normal_distribution<double> noise(0, 0.05);
+    MatrixXd rest = MatrixXd::Zero(signals.rows(), signals.outputs());
+    double level = held(engine);
+    for (Index row = stand_first; row < stand_first + stand_rows; ++row) {
+        if (std::bernoulli_distribution(0.01)(engine)) {
+            level = held(engine);
+        }
+        rest(row, 0) =
+            (row == stand_first ? level : 0.9 * rest(row - 1, 0) + 0.1 * level) + 0.1 * noise(engine);
+    }
+    return rest;
+}
+
+} // namespace
+
+TEST_CASE("what friction can take up while a joint stands is no push") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const DiagnosisSignals signals = standing_arm();
+    for (const StandingContact& push :
+         standing_contacts(signals, with_friction(signals, "coulomb"), resting(signals, engine))) {
+        CHECK(std::abs(push.change) > 1.8 * friction);
+        CHECK(push.probability() < 0.5);
+    }
+}
+
+TEST_CASE("a push that friction cannot take up is found while the joint stands, at its time and as large") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const DiagnosisSignals signals = standing_arm();
+    const double start_s = std::uniform_real_distribution<double>(3, 15)(engine);
+    const double change = std::bernoulli_distribution(0.5)(engine) ? 30.0 : -30.0;
+    const ContactPulse pulse{start_s, start_s + 0.75, 0.2};
+    MatrixXd rest = resting(signals, engine);
+    rest.col(0) += change * pulse_series(signals, pulse);
+    const std::vector<StandingContact> pushes =
+        standing_contacts(signals, with_friction(signals, "coulomb"), rest);
+    const auto found = std::ranges::max_element(pushes, {}, &StandingContact::probability);
+    REQUIRE(found != pushes.end());
+    CHECK(found->joint == 0);
+    CHECK(found->probability() > 0.99);
+    CHECK(found->pulse.start_s == Approx(start_s).margin(0.3));
+    CHECK(found->pulse.end_s == Approx(start_s + 0.75).margin(0.3));
+    CHECK(found->change == Approx(change).margin(2 * friction));
+    CHECK(found->held == Approx(2 * friction).epsilon(0.1));
+    CHECK((found->share - change * pulse_series(signals, pulse)).norm() < 0.6 * found->share.norm());
+}
+
+TEST_CASE("nothing is said of a joint that moves, or whose dry friction nobody knows") {
+    DFDYN_SEEDED_ENGINE(engine);
+    DiagnosisSignals signals = standing_arm();
+    MatrixXd rest = resting(signals, engine);
+    rest.col(0) += 30 * pulse_series(signals, {8, 8.75, 0.2});
+    rest.col(1) += 30 * pulse_series(signals, {8, 8.75, 0.2});
+    CHECK(standing_contacts(signals, with_friction(signals, "viscous"), rest).empty());
+    const auto pushes = standing_contacts(signals, with_friction(signals, "coulomb"), rest);
+    CHECK(std::ranges::all_of(pushes, [](const StandingContact& push) { return push.joint == 0; }));
+    signals.measured.weight.setOnes();
+    CHECK(standing_contacts(signals, with_friction(signals, "coulomb"), rest).empty());
+}
+
+TEST_CASE("a change by what friction can take up and no more is as likely a push as not") {
+    StandingContact push;
+    push.change = -10;
+    push.held = 10;
+    push.change_deviation = 3;
+    push.held_deviation = 4;
+    CHECK(push.probability() == Approx(0.5));
+    push.change = -20; // two deviations of 5 more: the normal distribution's table
+    CHECK(push.probability() == Approx(0.97725).epsilon(1e-4));
+}
