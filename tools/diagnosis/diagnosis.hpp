@@ -59,6 +59,9 @@ struct Unexplained {
 
 struct ErrorMeasure {
     Eigen::VectorXd rms, nrmse; ///< per output
+    /// The same as `nrmse` without the rows where the output's joint stands and its torque is whatever
+    /// friction was left with (`joint_row_weight`); not a number where no others are left.
+    Eigen::VectorXd moving_nrmse;
 };
 
 /// What a recording says of a robot's model. Interfaces: diagnosis.json.
@@ -66,6 +69,7 @@ struct Diagnosis {
     std::vector<std::string> output_names;
     std::vector<std::string> suspicions; ///< why the recording may not answer at all; a sentence each
     ErrorMeasure nominal, extended;      ///< on the held-out time; without one, over the whole recording
+    Eigen::VectorXd standing_share; ///< m: of the rows behind these errors, those that `moving_nrmse` has not
     double heldout_from_s = 0, heldout_to_s = 0;
     std::vector<Finding> findings; ///< by gain
     std::vector<GrantedQuantity> granted;

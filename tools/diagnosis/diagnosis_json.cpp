@@ -15,7 +15,9 @@ namespace {
 using nlohmann::ordered_json;
 
 ordered_json to_json(const ErrorMeasure& error) {
-    return {{"rms", to_vector(error.rms)}, {"nrmse", to_vector(error.nrmse)}};
+    return {{"rms", to_vector(error.rms)},
+            {"nrmse", to_vector(error.nrmse)},
+            {"nrmse_moving", to_vector(error.moving_nrmse)}};
 }
 
 ordered_json causes(const std::vector<OtherCause>& list, bool reasons) {

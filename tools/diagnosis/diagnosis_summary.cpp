@@ -25,6 +25,18 @@ void print_suspicions(std::ostream& out, const Diagnosis& diagnosis) {
     }
 }
 
+/// The errors without the rows where the joint stands; nothing, where there are hardly any.
+std::string while_moving(const Diagnosis& diagnosis, Eigen::Index output) {
+    constexpr double noticeable = 0.02;
+    if (!(diagnosis.standing_share[output] > noticeable)) {
+        return "";
+    }
+    const double nominal = diagnosis.nominal.moving_nrmse[output];
+    return std::isnan(nominal) ? ", all of it while the joint stands"
+                               : "; while it moves " + percent(nominal) + " -> " +
+                                     percent(diagnosis.extended.moving_nrmse[output]);
+}
+
 void print_errors(std::ostream& out, const Diagnosis& diagnosis) {
     const bool held_out = diagnosis.heldout_to_s > diagnosis.heldout_from_s;
     out << "error, rms and share of the output's deviation, ";
@@ -44,7 +56,7 @@ void print_errors(std::ostream& out, const Diagnosis& diagnosis) {
         show(diagnosis.nominal);
         out << "  ->";
         show(diagnosis.extended);
-        out << ' ' << output_unit(diagnosis.output_names[k]) << '\n';
+        out << ' ' << output_unit(diagnosis.output_names[k]) << while_moving(diagnosis, row) << '\n';
     }
 }
 

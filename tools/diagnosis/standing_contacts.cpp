@@ -121,8 +121,10 @@ double usual_height(const std::vector<StandPulse>& pulses, std::size_t length) {
 /// Looks for pushes at one joint.
 class JointStands {
   public:
-    JointStands(const DiagnosisSignals& signals, Eigen::Index joint, const Eigen::VectorXd& rest)
-        : signals_(signals), joint_(joint), rest_(rest) {
+    /// `missed`: by the rigid body; `rest`: by the explanation.
+    JointStands(const DiagnosisSignals& signals, Eigen::Index joint, const Eigen::VectorXd& missed,
+                const Eigen::VectorXd& rest)
+        : signals_(signals), joint_(joint), missed_(missed), rest_(rest) {
         for (const double length_s : push_lengths_s) {
             fits_.emplace_back(length_s, signals.measured.rate_hz);
         }
@@ -150,11 +152,18 @@ class JointStands {
     }
 
   private:
+    static PulseFit::Result smaller(const PulseFit::Result& one, const PulseFit::Result& other) {
+        if (one.height * other.height <= 0) {
+            return {};
+        }
+        return std::abs(one.height) < std::abs(other.height) ? one : other;
+    }
+
     void add_pulses(Eigen::Index first, Eigen::Index last) {
         for (std::size_t length = 0; length < fits_.size(); ++length) {
             const PulseFit& fit = fits_[length];
             for (Eigen::Index row = first; row + fit.rows() <= last; row += fit.step()) {
-                const PulseFit::Result found = fit.of(rest_, row);
+                const PulseFit::Result found = smaller(fit.of(missed_, row), fit.of(rest_, row));
                 const double start_s = signals_.measured.time_s[row + fit.beside()];
                 pulses_.push_back({{std::abs(found.height) * std::sqrt(found.share), start_s,
                                     start_s + push_lengths_s[length]},
@@ -179,7 +188,7 @@ class JointStands {
 
     const DiagnosisSignals& signals_;
     Eigen::Index joint_;
-    Eigen::VectorXd rest_;
+    Eigen::VectorXd missed_, rest_;
     std::vector<PulseFit> fits_;
     std::vector<StandPulse> pulses_;
 };
@@ -192,12 +201,15 @@ double StandingContact::probability() const {
 }
 
 std::vector<StandingContact> standing_contacts(const DiagnosisSignals& signals,
-                                               const Explanation& explanation, const Eigen::MatrixXd& rest) {
+                                               const Explanation& explanation,
+                                               const Eigen::MatrixXd& measured) {
+    const Eigen::MatrixXd missed = measured - signals.nominal;
+    const Eigen::MatrixXd rest = missed - explanation.all(signals);
     std::vector<StandingContact> result;
     for (Eigen::Index joint = 0; !signals.wrench() && joint < signals.outputs(); ++joint) {
         const Holding holding = holding_at(explanation, static_cast<std::size_t>(joint));
         if (holding.most > 0) {
-            const JointStands stands(signals, joint, rest.col(joint));
+            const JointStands stands(signals, joint, missed.col(joint), rest.col(joint));
             std::ranges::move(stands.contacts(holding), std::back_inserter(result));
         }
     }

@@ -24,10 +24,12 @@ struct StandingContact {
 
 /// Rows of joints that stand and whose output strays are in no regression (`joint_row_weight`): friction is
 /// anything there. But not everything: a joint that stands without being touched changes its torque by at
-/// most twice its dry friction, beside what the rigid body does. These are the pulses in `rest` (T x m, what
-/// the explanation leaves) that are more. Where no dry friction of the joint is known nothing is said. None
-/// for a wrench. Cost: T times the rows of all pushes' lengths.
+/// most twice its dry friction, beside what moves the rest of the arm. These are the pulses that are more,
+/// both in what the rigid body misses of `measured` (T x m) and in what the explanation leaves of that: a
+/// cause that was found while the joint moved may say anything of it while it stands. Where no dry friction
+/// of the joint is known nothing is said. None for a wrench. Cost: T times the rows of all pushes' lengths.
 std::vector<StandingContact> standing_contacts(const DiagnosisSignals& signals,
-                                               const Explanation& explanation, const Eigen::MatrixXd& rest);
+                                               const Explanation& explanation,
+                                               const Eigen::MatrixXd& measured);
 
 } // namespace dfdyn::tools

@@ -29,20 +29,24 @@ DiagnosisSignals standing_arm() {
     DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     signals.measured.weight.setOnes(signals.rows(), signals.outputs());
     signals.measured.weight.col(0).segment(stand_first, stand_rows).setZero();
+    signals.measured.motion.velocity.col(0).segment(stand_first, stand_rows).setZero();
     return signals;
 }
 
-/// Dry friction of the first joint, known to a few percent.
-Explanation with_friction(const DiagnosisSignals& signals, const std::string& parameter) {
-    const VectorXd direction = signals.direction(0);
-    Candidate candidate = of_one_column("coulomb_friction", "joint1", direction);
+/// Friction of the first joint, known to a few percent.
+Candidate friction_cause(const DiagnosisSignals& signals, const std::string& parameter) {
+    Candidate candidate = of_one_column("coulomb_friction", "joint1", signals.direction(0));
     candidate.parameters = [parameter](const VectorXd& coefficients, const EffectShape&) {
         return std::vector<EffectParameter>{{parameter, "N·m", coefficients[0]}};
     };
-    return explanation_of({candidate}, 1, friction * direction);
+    return candidate;
 }
 
-/// What a joint that stands may do by itself: it creeps, and its friction gives way to one side or the other.
+Explanation with_friction(const DiagnosisSignals& signals, const std::string& parameter) {
+    return explanation_of({friction_cause(signals, parameter)}, 1, friction * signals.direction(0));
+}
+
+/// What is measured of a joint that stands by itself: it creeps, and its friction gives way to either side.
 MatrixXd resting(const DiagnosisSignals& signals, std::mt19937_64& engine) {
     std::uniform_real_distribution<double> held(-friction, friction);
     std::normal_distribution<double> noise(0, 0.05);
@@ -55,7 +59,7 @@ MatrixXd resting(const DiagnosisSignals& signals, std::mt19937_64& engine) {
         rest(row, 0) =
             (row == stand_first ? level : 0.9 * rest(row - 1, 0) + 0.1 * level) + 0.1 * noise(engine);
     }
-    return rest;
+    return signals.nominal + rest;
 }
 
 } // namespace
@@ -76,10 +80,10 @@ TEST_CASE("a push that friction cannot take up is found while the joint stands, 
     const double start_s = std::uniform_real_distribution<double>(3, 15)(engine);
     const double change = std::bernoulli_distribution(0.5)(engine) ? 30.0 : -30.0;
     const ContactPulse pulse{start_s, start_s + 0.75, 0.2};
-    MatrixXd rest = resting(signals, engine);
-    rest.col(0) += change * pulse_series(signals, pulse);
+    MatrixXd measured = resting(signals, engine);
+    measured.col(0) += change * pulse_series(signals, pulse);
     const std::vector<StandingContact> pushes =
-        standing_contacts(signals, with_friction(signals, "coulomb"), rest);
+        standing_contacts(signals, with_friction(signals, "coulomb"), measured);
     const auto found = std::ranges::max_element(pushes, {}, &StandingContact::probability);
     REQUIRE(found != pushes.end());
     CHECK(found->joint == 0);
@@ -94,14 +98,14 @@ TEST_CASE("a push that friction cannot take up is found while the joint stands, 
 TEST_CASE("nothing is said of a joint that moves, or whose dry friction nobody knows") {
     DFDYN_SEEDED_ENGINE(engine);
     DiagnosisSignals signals = standing_arm();
-    MatrixXd rest = resting(signals, engine);
-    rest.col(0) += 30 * pulse_series(signals, {8, 8.75, 0.2});
-    rest.col(1) += 30 * pulse_series(signals, {8, 8.75, 0.2});
-    CHECK(standing_contacts(signals, with_friction(signals, "viscous"), rest).empty());
-    const auto pushes = standing_contacts(signals, with_friction(signals, "coulomb"), rest);
+    MatrixXd measured = resting(signals, engine);
+    measured.col(0) += 30 * pulse_series(signals, {8, 8.75, 0.2});
+    measured.col(1) += 30 * pulse_series(signals, {8, 8.75, 0.2});
+    CHECK(standing_contacts(signals, with_friction(signals, "viscous"), measured).empty());
+    const auto pushes = standing_contacts(signals, with_friction(signals, "coulomb"), measured);
     CHECK(std::ranges::all_of(pushes, [](const StandingContact& push) { return push.joint == 0; }));
     signals.measured.weight.setOnes();
-    CHECK(standing_contacts(signals, with_friction(signals, "coulomb"), rest).empty());
+    CHECK(standing_contacts(signals, with_friction(signals, "coulomb"), measured).empty());
 }
 
 TEST_CASE("a change by what friction can take up and no more is as likely a push as not") {
@@ -113,4 +117,16 @@ TEST_CASE("a change by what friction can take up and no more is as likely a push
     CHECK(push.probability() == Approx(0.5));
     push.change = -20; // two deviations of 5 more: the normal distribution's table
     CHECK(push.probability() == Approx(0.97725).epsilon(1e-4));
+}
+
+TEST_CASE("what a cause says of a joint that stands, and nobody measured, is no push") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const DiagnosisSignals signals = standing_arm();
+    const VectorXd said = pulse_series(signals, {8, 8.75, 0.2});
+    const Explanation explanation =
+        explanation_of({friction_cause(signals, "coulomb"), of_one_column("payload", "tool", said)}, 2,
+                       friction * signals.direction(0) + 30 * said);
+    for (const StandingContact& push : standing_contacts(signals, explanation, resting(signals, engine))) {
+        CHECK(push.probability() < 0.5);
+    }
 }
