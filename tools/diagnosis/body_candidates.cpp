@@ -187,7 +187,7 @@ Candidate taken_payload(const DiagnosisSignals& signals, const std::vector<Effec
     };
     result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
         std::vector<EffectParameter> values = payload_parameters(coefficients, shape);
-        values.push_back({"attached", "s", shape.value});
+        values.push_back({"attached", "s", shape.value, shape.value});
         return values;
     };
     return result;

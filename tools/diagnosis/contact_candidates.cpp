@@ -77,8 +77,8 @@ Candidate contact_with_shapes(const DiagnosisSignals& signals, const ContactSite
 std::vector<EffectParameter> contact_parameters(const ContactPulse& pulse, const std::string& unit,
                                                 const Eigen::VectorXd& components) {
     std::vector<EffectParameter> values{
-        {"start", "s", pulse.start_s},
-        {"end", "s", pulse.end_s},
+        {"start", "s", pulse.start_s, pulse.start_s}, // no time means nothing
+        {"end", "s", pulse.end_s, pulse.end_s},
         {"peak", unit, components.size() == 1 ? components[0] : components.norm()}};
     constexpr std::array names{"base_x", "base_y", "base_z"};
     for (std::size_t axis = 0; components.size() > 1 && axis < names.size(); ++axis) {

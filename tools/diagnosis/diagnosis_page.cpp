@@ -115,17 +115,23 @@ PageSection suspicion_section(const Diagnosis& diagnosis) {
     return section;
 }
 
-/// Shares of the deviation, simulated and extended, without the rows where the joint stands.
-std::string moving_words(const Diagnosis& diagnosis, Eigen::Index output) {
-    const double nominal = diagnosis.nominal.moving_nrmse[output];
-    return std::isnan(nominal) ? "it never does"
-                               : percent(nominal) + " → " + percent(diagnosis.extended.moving_nrmse[output]);
+/// The errors without the rows where joints stand, as one more column.
+void add_moving_errors(ReportTable& table, const Diagnosis& diagnosis) {
+    table.columns.push_back("while it moves");
+    table.note += " While it moves: without the rows where the output's joint stands and friction holds "
+                  "whatever it was left with, which no function of the motion tells.";
+    for (std::size_t k = 0; k < table.rows.size(); ++k) {
+        const auto output = static_cast<Eigen::Index>(k);
+        const double nominal = diagnosis.nominal.moving_nrmse[output];
+        table.rows[k].push_back(std::isnan(nominal) ? std::string("it never does")
+                                                    : percent(nominal) + " → " +
+                                                          percent(diagnosis.extended.moving_nrmse[output]));
+    }
 }
 
 ReportTable error_table(const Diagnosis& diagnosis) {
     ReportTable table{"Error per output",
-                      {"output", "unit", "simulated, rms", "of deviation", "extended, rms", "of deviation ",
-                       "while it moves"},
+                      {"output", "unit", "simulated, rms", "of deviation", "extended, rms", "of deviation "},
                       {},
                       {}};
     const bool held_out = diagnosis.heldout_to_s > diagnosis.heldout_from_s;
@@ -135,15 +141,14 @@ ReportTable error_table(const Diagnosis& diagnosis) {
                            " s, which neither chose nor fitted anything: the effects behind these figures "
                            "were found in the time before."
                      : std::string("Over the whole recording, which the extended model was fitted to.");
-    table.note +=
-        " While it moves: without the rows where the output's joint stands and friction holds whatever "
-        "it was left with, which no function of the motion tells.";
     for (std::size_t k = 0; k < diagnosis.output_names.size(); ++k) {
         const auto row = static_cast<Eigen::Index>(k);
         table.rows.push_back({diagnosis.output_names[k], output_unit(diagnosis.output_names[k]),
                               diagnosis.nominal.rms[row], percent(diagnosis.nominal.nrmse[row]),
-                              diagnosis.extended.rms[row], percent(diagnosis.extended.nrmse[row]),
-                              moving_words(diagnosis, row)});
+                              diagnosis.extended.rms[row], percent(diagnosis.extended.nrmse[row])});
+    }
+    if (diagnosis.standing_share.maxCoeff() > 0) {
+        add_moving_errors(table, diagnosis);
     }
     return table;
 }

@@ -13,11 +13,10 @@ std::string words(std::string effect, const std::string& where) {
     return effect.append(" at ").append(where);
 }
 
-/// Whether they are those of one vector: `com_x`, `com_z`.
-bool are_coordinates(const std::string& one, const std::string& other) {
-    const std::size_t stem = one.size() - 1;
-    return one.size() > 2 && one[stem - 1] == '_' && one.size() == other.size() &&
-           one.compare(0, stem, other, 0, stem) == 0;
+/// Whether they are parts of one quantity: `com_x`, `com_z`; `coulomb_pos`, `coulomb_neg`.
+bool are_parts_of_one(const std::string& one, const std::string& other) {
+    const std::size_t stem = one.rfind('_');
+    return stem != std::string::npos && stem == other.rfind('_') && one.compare(0, stem, other, 0, stem) == 0;
 }
 
 } // namespace
@@ -54,10 +53,10 @@ std::string main_parameter_words(const Finding& finding) {
     if (measured == finding.parameters.end()) {
         return "";
     }
-    // of a vector's coordinates the one that is known best
+    // of a vector's coordinates, and of both directions, the one that is known best
     const auto known = [&](const FoundParameter& parameter) {
         const double reach = parameter.high - parameter.low;
-        return are_coordinates(parameter.name, measured->name) && reach > 0
+        return are_parts_of_one(parameter.name, measured->name) && reach > 0
                    ? std::abs(parameter.value) / reach
                    : 0;
     };
