@@ -122,9 +122,9 @@ double usual_height(const std::vector<StandPulse>& pulses, std::size_t length) {
 class JointStands {
   public:
     /// `missed`: by the rigid body; `rest`: by the explanation.
-    JointStands(const DiagnosisSignals& signals, Eigen::Index joint, const Eigen::VectorXd& missed,
-                const Eigen::VectorXd& rest)
-        : signals_(signals), joint_(joint), missed_(missed), rest_(rest) {
+    JointStands(const DiagnosisSignals& signals, Eigen::Index joint, Eigen::VectorXd missed,
+                Eigen::VectorXd rest)
+        : signals_(signals), joint_(joint), missed_(std::move(missed)), rest_(std::move(rest)) {
         for (const double length_s : push_lengths_s) {
             fits_.emplace_back(length_s, signals.measured.rate_hz);
         }
