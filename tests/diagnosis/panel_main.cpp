@@ -3,6 +3,7 @@
 #include "tests/diagnosis/change_panel.hpp"
 #include "tests/diagnosis/panel_files.hpp"
 #include "tests/diagnosis/panel_table.hpp"
+#include "tests/diagnosis/push_panel.hpp"
 #include "tests/diagnosis/run_panel.hpp"
 #include "tools/common/atomic_file.hpp"
 #include "tools/common/error.hpp"
@@ -102,6 +103,30 @@ int watch(const PanelOptions& options) {
     return 0;
 }
 
+int push(const PanelOptions& options) {
+    const std::vector<PushScore> scores =
+        run_push_panel(*options.seed, options.cases, [](const PushScore& one) {
+            std::printf("%s\n", describe(one).c_str());
+            std::fflush(stdout);
+        });
+    const std::string tables = push_tables(scores);
+    std::printf("%d recordings, seeds from %llu\n\n%s", options.cases,
+                static_cast<unsigned long long>(*options.seed), tables.c_str());
+    if (!options.tables.empty()) {
+        dfdyn::tools::write_file(options.tables, tables);
+    }
+    return 0;
+}
+
+CLI::App* add_pushes(CLI::App& app, PanelOptions& options) {
+    CLI::App* command = app.add_subcommand("pushes", "Diagnoses arms that are pushed while they stand");
+    command->add_option("--seed", options.seed,
+                        "Of the first case; each further one has the next. Without it a new one is drawn");
+    command->add_option("--cases", options.cases, "How many")->required()->check(CLI::PositiveNumber);
+    command->add_option("-o,--output", options.tables, "The tables, as Markdown");
+    return command;
+}
+
 CLI::App* add_changes(CLI::App& app, PanelOptions& options) {
     CLI::App* command = app.add_subcommand(
         "changes", "Watches arms that change while they are learned, and tells what the monitor found");
@@ -168,6 +193,7 @@ int main(int argc, char** argv) {
     scoring->add_flag("--hold", options.hold,
                       "Status 1 where less is right than has been on the tests' panel");
     const CLI::App* const changes = add_changes(app, options);
+    const CLI::App* const pushes = add_pushes(app, options);
     CLI11_PARSE(app, argc, argv);
     try {
         if (!options.seed) {
@@ -175,6 +201,9 @@ int main(int argc, char** argv) {
         }
         if (changes->parsed()) {
             return watch(options);
+        }
+        if (pushes->parsed()) {
+            return push(options);
         }
         return generating->parsed() ? generate(options) : score(options);
     } catch (const dfdyn::tools::InputError& error) {

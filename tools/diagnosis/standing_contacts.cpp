@@ -128,14 +128,8 @@ class JointStands {
         for (const double length_s : push_lengths_s) {
             fits_.emplace_back(length_s, signals.measured.rate_hz);
         }
-        const auto weight = signals.measured.weight.col(joint);
-        for (Eigen::Index first = 0; first < weight.size(); ++first) {
-            Eigen::Index last = first;
-            while (last < weight.size() && weight[last] == 0) {
-                ++last;
-            }
-            add_pulses(first, last);
-            first = last;
+        for (const Stretch& stretch : signals.measured.stretches) {
+            add_stands(stretch);
         }
     }
 
@@ -157,6 +151,19 @@ class JointStands {
             return {};
         }
         return std::abs(one.height) < std::abs(other.height) ? one : other;
+    }
+
+    void add_stands(const Stretch& stretch) {
+        const auto weight = signals_.measured.weight.col(joint_);
+        const Eigen::Index end = stretch.first + stretch.count;
+        for (Eigen::Index first = stretch.first; first < end; ++first) {
+            Eigen::Index last = first;
+            while (last < end && weight[last] == 0) {
+                ++last;
+            }
+            add_pulses(first, last);
+            first = last;
+        }
     }
 
     void add_pulses(Eigen::Index first, Eigen::Index last) {

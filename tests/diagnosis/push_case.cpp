@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/diagnosis/panel_run.hpp"
+#include "tests/diagnosis/push_panel.hpp"
+#include "tools/simulation/arm_dynamics.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dfdyn::tests {
+
+using namespace tools;
+
+namespace {
+
+constexpr double push_case_s = 80;
+constexpr double edge_s = 0.4; ///< of a wait, before a push and behind it
+
+/// Postures near the middle of what the setup's own task reaches, long waits between them.
+PointToPointTask waits_between(const PanelSetup& setup, Draw& draw) {
+    PointToPointTask task;
+    task.move_s = draw.uniform(1.5, 2.5);
+    task.dwell_s = draw.uniform(1.7, 3);
+    const Eigen::MatrixXd& reached = setup.reference.position;
+    for (int posture = 0; posture < 8; ++posture) {
+        JointVector& position = task.postures.emplace_back(setup.joints());
+        for (Eigen::Index joint = 0; joint < position.size(); ++joint) {
+            const double centre = reached.col(joint).mean();
+            const double half = std::min(0.8, (reached.col(joint).array() - centre).abs().maxCoeff());
+            position[joint] = draw.uniform(centre - half, centre + half);
+        }
+    }
+    return task;
+}
+
+/// Each joint's inertia in the first posture, rotors left out.
+Eigen::VectorXd inertia_of_joints(const PanelSetup& setup, const PointToPointTask& task) {
+    const ArmDynamics dynamics(setup.robot, JointVector::Zero(setup.joints()));
+    ArmDynamics::Configuration configuration;
+    dynamics.configure(task.postures.front(), configuration);
+    return dynamics.mass_matrix(configuration).diagonal();
+}
+
+/// Dry and viscous friction of a size that the joint's own torques set; its gear's rotor, that bristles can
+/// be stiff against.
+void add_friction(PanelSetup& setup, const Eigen::VectorXd& inertia, Draw& draw) {
+    constexpr double bend = 5e-4;       // rad
+    constexpr double fastest = 2400;    // rad/s, of a rotor on its bristles
+    constexpr double least_share = 0.1; // of the largest joint's torque
+    const Eigen::VectorXd torque =
+        setup.reference_output.colwise().norm().transpose().cwiseProduct(setup.torque_constants) /
+        std::sqrt(static_cast<double>(setup.reference_output.rows()));
+    for (Eigen::Index joint = 0; joint < setup.joints(); ++joint) {
+        const double rotor = inertia[joint] * draw.uniform(0.3, 1);
+        const double size = std::max(torque[joint], least_share * torque.maxCoeff());
+        setup.scenario.actuators.rotor_inertia[joint] = rotor;
+        LuGreParameters& friction = setup.scenario.actuators.friction[static_cast<std::size_t>(joint)];
+        friction.coulomb = size * draw.uniform(0.15, 0.5);
+        friction.breakaway = friction.coulomb * draw.uniform(1, 1.5);
+        friction.stribeck_velocity = draw.uniform(0.03, 0.1);
+        friction.viscous = friction.coulomb * draw.uniform(0.3, 1);
+        friction.stiffness = std::min(friction.coulomb / bend, rotor * fastest * fastest);
+        friction.damping = 0.6 * std::sqrt(friction.stiffness * rotor);
+    }
+}
+
+/// A controller that holds its posture as industrial ones do.
+void stiffen(PanelSetup& setup, Draw& draw) {
+    Scenario& scenario = setup.scenario;
+    scenario.integration_rate_hz = 8000;
+    scenario.controller.rate_hz = 1000;
+    scenario.controller.position_gain.setConstant(draw.log_uniform(4000, 10000));
+    scenario.controller.velocity_gain.setConstant(160);
+    scenario.actuators.bandwidth_hz = 0;
+    scenario.encoders.bits_per_turn = 19;
+    scenario.derivatives.noise_bound = 6.3 / std::exp2(scenario.encoders.bits_per_turn);
+}
+
+/// In every other wait one, at any joint.
+std::vector<HiddenPush> draw_pushes(const PanelSetup& setup, const PointToPointTask& task, Draw& draw) {
+    std::vector<HiddenPush> pushes;
+    const double period = task.move_s + task.dwell_s;
+    for (double wait = task.move_s; wait + period < push_case_s; wait += period) {
+        if (!draw.chance(0.5)) {
+            continue;
+        }
+        HiddenPush push;
+        push.joint = static_cast<Eigen::Index>(draw.below(setup.robot.joints.size()));
+        const double length = draw.uniform(0.5, std::min(1.2, task.dwell_s - 2 * edge_s));
+        push.start_s = wait + draw.uniform(edge_s, task.dwell_s - edge_s - length);
+        push.end_s = push.start_s + length;
+        push.held = 2 * setup.scenario.actuators.friction[static_cast<std::size_t>(push.joint)].breakaway;
+        push.peak = draw.sign() * push.held * draw.uniform(0.2, 3.5);
+        pushes.push_back(push);
+    }
+    return pushes;
+}
+
+Recording recording_of(const PanelSetup& setup, const PanelRun& run) {
+    Recording recording;
+    recording.source = "pushes";
+    recording.time_s = run.time_s;
+    recording.position.names = joint_names("q", setup.robot.joints.size());
+    recording.output.names = output_names(setup.kind.outputs, setup.robot.joints.size());
+    for (Eigen::Index row = 0; row < run.position.rows(); ++row) {
+        recording.time_ns.push_back(std::llround(run.time_s[static_cast<std::size_t>(row)] * 1e9));
+        for (Eigen::Index joint = 0; joint < setup.joints(); ++joint) {
+            recording.position.values.push_back(run.position(row, joint));
+            recording.output.values.push_back(run.output(row, joint) + setup.noise_rows(row, joint));
+        }
+    }
+    recording.gap_before.assign(recording.time_s.size(), 0);
+    recording.gap_before.front() = 1;
+    return recording;
+}
+
+} // namespace
+
+PushCase make_push_case(std::uint64_t seed) {
+    Draw draw(seed, 91);
+    PanelMix mix;
+    mix.robot = draw.of(std::vector<std::string>{"ur5_torque", "ur5_current", "three_joint_torque"});
+    mix.duration_s = push_case_s;
+    PushCase result{make_panel_setup(seed, mix), {}, {}};
+    PanelSetup& setup = result.setup;
+    const PointToPointTask task = waits_between(setup, draw);
+    setup.scenario.task = task;
+    add_friction(setup, inertia_of_joints(setup, task), draw);
+    stiffen(setup, draw);
+    if (draw.chance(2.0 / 3)) {
+        result.pushes = draw_pushes(setup, task, draw);
+    }
+    for (const HiddenPush& push : result.pushes) {
+        setup.scenario.loads.contacts.push_back({push.start_s, push.end_s, push.joint, push.peak});
+    }
+    result.recording = recording_of(setup, run_panel(setup, setup.robot, setup.scenario));
+    return result;
+}
+
+} // namespace dfdyn::tests

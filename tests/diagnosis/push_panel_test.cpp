@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arms that are pushed while they stand: physics makes the recordings, and nothing but they are diagnosed.
+#include "tests/diagnosis/push_panel.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+
+namespace {
+
+using namespace dfdyn::tests;
+
+constexpr std::uint64_t seed = 501;
+constexpr int cases = 4;
+
+} // namespace
+
+TEST_CASE("pushes at simulated arms that stand are found where friction cannot take them up") {
+    int strong = 0;
+    int found = 0;
+    for (const PushScore& score : run_push_panel(seed, cases, [](const PushScore&) {})) {
+        INFO(describe(score));
+        for (std::size_t i = 0; i < score.pushes.size(); ++i) {
+            const double size = std::abs(score.pushes[i].peak) / score.pushes[i].held;
+            strong += size > 2 ? 1 : 0;
+            found += size > 2 && score.found[i] >= 0.5 ? 1 : 0;
+            if (size < 0.7) {
+                CHECK(score.found[i] < 0.5);
+            }
+        }
+        for (const PushScore::Named& named : score.named) {
+            CHECK((named.right || named.confidence < 0.5));
+        }
+    }
+    REQUIRE(strong >= 5);
+    CHECK(3 * found >= 2 * strong);
+}
