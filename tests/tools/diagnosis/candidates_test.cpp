@@ -214,3 +214,15 @@ TEST_CASE("friction that goes by the load is that of bristles whose level is a s
         CHECK((found - expected.col(0)).norm() < 0.05 * expected.col(0).norm());
     }
 }
+
+TEST_CASE("static friction that hardly exceeds Coulomb's is no effect of its own") {
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
+    const Candidate stribeck = find(joint_candidates(signals), "stribeck_friction", "joint2");
+    REQUIRE_FALSE(stribeck.shapes.empty());
+    for (const EffectShape& shape : stribeck.shapes) {
+        CHECK(shape.allowed(VectorXd{{2, 0.3}}));
+        CHECK_FALSE(shape.allowed(VectorXd{{2, 0.1}}));
+        CHECK_FALSE(shape.allowed(VectorXd{{2, -0.3}}));
+        CHECK_FALSE(shape.allowed(VectorXd{{-2, 0.3}}));
+    }
+}
