@@ -98,7 +98,17 @@ std::vector<ConstantScore> score_constants(const PanelCase& panel_case, const to
     return result;
 }
 
+/// Of errors on held-out time, in the mean of the outputs' squares.
+double harm_of(const tools::Diagnosis& diagnosis) {
+    const Eigen::ArrayXd ratio = diagnosis.extended.rms.array() / diagnosis.nominal.rms.array();
+    return std::sqrt(ratio.square().mean()) - 1;
+}
+
 } // namespace
+
+bool is_exact(const PanelCase& panel_case) {
+    return panel_case.hidden.empty() && !panel_case.masses_off && panel_case.torque_constants_known;
+}
 
 CaseScore score_case(const PanelCase& panel_case, const tools::Diagnosis& diagnosis) {
     CaseScore score;
@@ -114,6 +124,9 @@ CaseScore score_case(const PanelCase& panel_case, const tools::Diagnosis& diagno
         score.findings.push_back(score_finding(panel_case, finding));
     }
     score.constants = score_constants(panel_case, diagnosis);
+    if (is_exact(panel_case)) {
+        score.harm = harm_of(diagnosis);
+    }
     if (score.outside && !panel_case.hidden.empty()) {
         const HiddenEffect& hidden = panel_case.hidden.front();
         score.unexplained_right =
@@ -143,6 +156,10 @@ std::string describe(const CaseScore& score) {
     }
     if (score.outside) {
         text += score.unexplained_right ? " told" : " not told";
+    }
+    if (score.harm) {
+        std::snprintf(part.data(), part.size(), " harm %+.2f%%", 100 * *score.harm);
+        text += part.data();
     }
     text += " ||";
     for (const FindingScore& finding : score.findings) {

@@ -47,9 +47,16 @@ struct CaseScore {
     std::vector<EffectScore> effects;
     std::vector<FindingScore> findings;
     std::vector<ConstantScore> constants;
+    /// Without any effect, masses exact and constants known: by what share the model with the causes, if
+    /// there are any, errs more on held-out time than the one without, over all outputs.
+    std::optional<double> harm;
     bool unexplained_right = false; ///< outside the catalogue: the right output, by the right input
     double seconds = 0;
 };
+
+/// Nothing is hidden, and nothing unknown: there is nothing to explain but noise. The held-out error is to be
+/// measured then.
+bool is_exact(const PanelCase& panel_case);
 
 CaseScore score_case(const PanelCase& panel_case, const tools::Diagnosis& diagnosis);
 

@@ -15,7 +15,7 @@ CaseScore run_case(std::uint64_t seed, const PanelMix& mix) {
     const PanelCase panel_case = make_panel_case(seed, mix);
     tools::DiagnosisOptions options;
     options.outputs = panel_case.outputs;
-    options.measure = false;
+    options.measure = is_exact(panel_case);
     if (panel_case.torque_constants_known) {
         options.torque_constants = panel_case.torque_constants;
     }
