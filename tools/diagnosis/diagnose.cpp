@@ -64,12 +64,12 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     ExplanationOptions how{gains_known, 1, options.progress};
     work.explanation = explain(*signals, work.measured, how);
     work.rest = work.measured - signals->nominal - work.explanation.all(*signals);
-    const std::vector<StandingContact> pushes = standing_contacts(*signals, work.explanation, work.measured);
-    for (const StandingContact& push : pushes) {
+    work.pushes = standing_contacts(*signals, work.explanation, work.measured);
+    for (const StandingContact& push : work.pushes) {
         work.rest.col(static_cast<Eigen::Index>(push.joint)) -= push.share;
     }
     work.diagnosis.findings =
-        findings_of(*signals, work.explanation, pushes, work.rest, work.diagnosis.output_names);
+        findings_of(*signals, work.explanation, work.pushes, work.rest, work.diagnosis.output_names);
     work.diagnosis.granted = granted_quantities(*signals, work.explanation, work.torque_gains);
     work.diagnosis.unexplained = unnamed_dependences(*signals, work.measured, work.explanation);
     add_rest(work.diagnosis.unexplained,

@@ -3,6 +3,7 @@
 
 #include "tools/diagnosis/explanation.hpp"
 #include "tools/diagnosis/signals.hpp"
+#include "tools/diagnosis/standing_contacts.hpp"
 #include "tools/recording/recording.hpp"
 #include "tools/robot/robot.hpp"
 
@@ -26,6 +27,8 @@ struct OtherCause {
     std::string effect, where, why_not;
 };
 
+inline constexpr double noticeable_standing =
+    0.02;                            ///< share of the rows from which on errors are told without
 constexpr double gains_below_hz = 5; ///< what a cause brings is measured below it
 
 /// A cause that is named.
@@ -90,6 +93,7 @@ struct DiagnosisWork {
     Eigen::MatrixXd measured;                        ///< T x m, as torques where currents were measured
     Eigen::VectorXd torque_gains; ///< per output: measured unit per N·m (N); 1 but for currents
     Explanation explanation;
+    std::vector<StandingContact> pushes;
     Eigen::MatrixXd rest; ///< T x m: what neither that nor a push explains, as `measured`
     Diagnosis diagnosis;
 };

@@ -123,7 +123,7 @@ void add_moving_errors(ReportTable& table, const Diagnosis& diagnosis) {
     for (std::size_t k = 0; k < table.rows.size(); ++k) {
         const auto output = static_cast<Eigen::Index>(k);
         const double nominal = diagnosis.nominal.moving_nrmse[output];
-        table.rows[k].push_back(std::isnan(nominal) ? std::string("it never does")
+        table.rows[k].push_back(std::isnan(nominal) ? std::string("not in this time")
                                                     : percent(nominal) + " → " +
                                                           percent(diagnosis.extended.moving_nrmse[output]));
     }
@@ -147,7 +147,7 @@ ReportTable error_table(const Diagnosis& diagnosis) {
                               diagnosis.nominal.rms[row], percent(diagnosis.nominal.nrmse[row]),
                               diagnosis.extended.rms[row], percent(diagnosis.extended.nrmse[row])});
     }
-    if (diagnosis.standing_share.maxCoeff() > 0) {
+    if (diagnosis.standing_share.maxCoeff() > noticeable_standing) {
         add_moving_errors(table, diagnosis);
     }
     return table;

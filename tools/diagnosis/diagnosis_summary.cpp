@@ -27,8 +27,7 @@ void print_suspicions(std::ostream& out, const Diagnosis& diagnosis) {
 
 /// The errors without the rows where the joint stands; nothing, where there are hardly any.
 std::string while_moving(const Diagnosis& diagnosis, Eigen::Index output) {
-    constexpr double noticeable = 0.02;
-    if (!(diagnosis.standing_share[output] > noticeable)) {
+    if (!(diagnosis.standing_share[output] > noticeable_standing)) {
         return "";
     }
     const double nominal = diagnosis.nominal.moving_nrmse[output];

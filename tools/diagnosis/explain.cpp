@@ -9,7 +9,6 @@
 #include "tools/robot/firmware_chain.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <map>
 #include <optional>

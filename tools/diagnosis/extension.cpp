@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/extension.hpp"
 
+#include "tools/diagnosis/candidate_parts.hpp"
 #include "tools/diagnosis/extension_parts.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
@@ -78,6 +79,10 @@ Extension extension_of(const DiagnosisWork& work) {
         const CarriedFinding::How how =
             add == additions_of().end() ? CarriedFinding::How::left_out : add->second(extension, chosen);
         extension.carried.push_back({candidate.effect, candidate.where, how});
+    }
+    for (const StandingContact& push : work.pushes) {
+        extension.carried.push_back(
+            {"external_contact", numbered("joint", push.joint), CarriedFinding::How::left_out});
     }
     add_nuisance(extension, work);
     sort_columns(extension);

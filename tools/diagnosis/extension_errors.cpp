@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -15,7 +16,9 @@ namespace {
 
 constexpr double fitted_share = 2.0 / 3; ///< of the time, for the figures on held-out time
 
-double deviation(const Eigen::VectorXd& values) {
+constexpr Eigen::Index fewest_moving = 50; ///< rows: of fewer no error is told
+
+double standard_deviation(const Eigen::VectorXd& values) {
     return root_mean_square((values.array() - values.mean()).matrix());
 }
 
@@ -26,11 +29,12 @@ ErrorMeasure error_measure(const Eigen::MatrixXd& error, const Eigen::MatrixXd& 
                         Eigen::VectorXd(error.cols())};
     for (Eigen::Index output = 0; output < error.cols(); ++output) {
         result.rms[output] = root_mean_square(error.col(output));
-        result.nrmse[output] = result.rms[output] / deviation(measured.col(output));
+        result.nrmse[output] = result.rms[output] / standard_deviation(measured.col(output));
         const std::vector<Eigen::Index>& rows = moving[static_cast<std::size_t>(output)];
         result.moving_nrmse[output] =
-            rows.empty() ? std::numeric_limits<double>::quiet_NaN()
-                         : root_mean_square(error(rows, output)) / deviation(measured(rows, output));
+            std::ssize(rows) < fewest_moving
+                ? std::numeric_limits<double>::quiet_NaN()
+                : root_mean_square(error(rows, output)) / standard_deviation(measured(rows, output));
     }
     return result;
 }
@@ -50,6 +54,21 @@ std::vector<std::vector<Eigen::Index>> moving_rows(const DiagnosisSignals& signa
     return result;
 }
 
+/// Why an extended model errs more at an output than the nominal one; its suspected reason.
+std::string reason_of_harm(const Diagnosis& diagnosis, Eigen::Index output) {
+    constexpr double clear_fall = 0.9;
+    const double nominal = diagnosis.nominal.moving_nrmse[output];
+    const double extended = diagnosis.extended.moving_nrmse[output];
+    if (std::isnan(nominal)) {
+        return "where the joint stands all of that time, and its friction may hold whatever it was left with";
+    }
+    if (extended < clear_fall * nominal) {
+        return "though while the joint moves the error falls from " + percent(nominal) + " to " +
+               percent(extended) + ": standing, its friction may hold whatever it was left with";
+    }
+    return "";
+}
+
 /// Said where causes that were chosen on the first part of a recording do harm on the last.
 void suspect_poor_extension(Diagnosis& diagnosis) {
     const std::string lead = "on held-out time the extended model errs more than the nominal one at ";
@@ -59,14 +78,11 @@ void suspect_poor_extension(Diagnosis& diagnosis) {
             continue;
         }
         const std::string& name = diagnosis.output_names[static_cast<std::size_t>(output)];
-        const double nominal = diagnosis.nominal.moving_nrmse[output];
-        const double extended = diagnosis.extended.moving_nrmse[output];
-        if (extended < nominal) {
-            diagnosis.suspicions.push_back(
-                lead + name + ", though while the joint moves the error falls from " + percent(nominal) +
-                " to " + percent(extended) + ": standing, its friction holds whatever it was left with");
-        } else {
+        const std::string reason = reason_of_harm(diagnosis, output);
+        if (reason.empty()) {
             worse.append(worse.empty() ? "" : ", ").append(name);
+        } else {
+            diagnosis.suspicions.push_back(lead + name + ", " + reason);
         }
     }
     if (!worse.empty()) {

@@ -10,7 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -79,9 +79,13 @@ Finding of_push(const StandingContact& push) {
     finding.effect = "external_contact";
     finding.where = numbered("joint", push.joint);
     finding.detail = start_words(push.pulse);
+    // as a rule friction gives way before the motor has to: half of what it can change by is on top
+    const double taken_up = push.held / 2;
+    const double peak = -(push.change + std::copysign(taken_up, push.change));
     for (const EffectParameter& one :
-         contact_parameters(push.pulse, "N·m", Eigen::VectorXd::Constant(1, -push.change))) {
-        const double reach = one.name == "peak" ? deviations_of_95 * push.change_deviation : 0;
+         contact_parameters(push.pulse, "N·m", Eigen::VectorXd::Constant(1, peak))) {
+        const double reach =
+            one.name == "peak" ? taken_up + deviations_of_95 * push.deviation() : push.pulse.rise_s / 2;
         finding.parameters.push_back({one.name, one.unit, one.value, one.value - reach, one.value + reach});
     }
     finding.confidence = surest * push.probability();
@@ -92,9 +96,12 @@ Finding of_push(const StandingContact& push) {
 }
 
 std::string held_words(const StandingContact& push) {
+    const auto interval = [](double value, double deviation) {
+        return rounded_text(value) + " ± " + rounded_text(deviations_of_95 * deviation) + " N·m";
+    };
     return numbered("joint", push.joint) + " stands, where its friction can change by " +
-           rounded_text(push.held) + " N·m, and its torque changes by " +
-           rounded_text(std::abs(push.change)) + " N·m; ";
+           interval(push.held, push.held_deviation) + ", and its torque changes by " +
+           interval(std::abs(push.change), push.change_deviation) + "; ";
 }
 
 /// Those of the chosen effects with a name that bring something.
@@ -123,10 +130,9 @@ std::vector<Finding> of_pushes(const DiagnosisSignals& signals, const std::vecto
         Finding finding = of_push(push);
         Eigen::MatrixXd contribution = Eigen::MatrixXd::Zero(signals.rows(), signals.outputs());
         contribution.col(static_cast<Eigen::Index>(push.joint)) = push.share;
-        if (gains.tell(finding, contribution)) {
-            finding.evidence = held_words(push) + finding.evidence;
-            findings.push_back(std::move(finding));
-        }
+        gains.tell(finding, contribution);
+        finding.evidence = held_words(push) + finding.evidence;
+        findings.push_back(std::move(finding));
     }
     return findings;
 }
@@ -139,8 +145,14 @@ bool same_contact(const Finding& one, const Finding& other) {
            start_s(one) < end_s(other) + apart_s && start_s(other) < end_s(one) + apart_s;
 }
 
+void sort_by_gain(std::vector<Finding>& findings) {
+    std::ranges::sort(findings, std::greater<>{},
+                      [](const Finding& finding) { return finding.rms_before / finding.rms_after; });
+}
+
 /// A contact shows on several axes, and by more than one pulse: the strongest of them tells of it.
 std::vector<Finding> without_repeated_contacts(std::vector<Finding> findings) {
+    sort_by_gain(findings);
     std::vector<Finding> kept;
     for (Finding& finding : findings) {
         if (std::none_of(kept.begin(), kept.end(),
@@ -149,6 +161,17 @@ std::vector<Finding> without_repeated_contacts(std::vector<Finding> findings) {
         }
     }
     return kept;
+}
+
+/// In the place of what the search found of it, unless that is surer.
+void add_push(std::vector<Finding>& findings, Finding push) {
+    const auto same =
+        std::ranges::find_if(findings, [&](const Finding& finding) { return same_contact(finding, push); });
+    if (same == findings.end()) {
+        findings.push_back(std::move(push));
+    } else if (same->confidence < push.confidence) {
+        *same = std::move(push);
+    }
 }
 
 } // namespace
@@ -167,11 +190,12 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
                                  const std::vector<StandingContact>& pushes, const Eigen::MatrixXd& rest,
                                  const std::vector<std::string>& output_names) {
     const Gains gains(signals, rest, output_names);
-    std::vector<Finding> findings = of_causes(signals, explanation, gains);
-    std::ranges::move(of_pushes(signals, pushes, gains), std::back_inserter(findings));
-    std::ranges::sort(findings, std::greater<>{},
-                      [](const Finding& finding) { return finding.rms_before / finding.rms_after; });
-    return without_repeated_contacts(std::move(findings));
+    std::vector<Finding> findings = without_repeated_contacts(of_causes(signals, explanation, gains));
+    for (Finding& push : of_pushes(signals, pushes, gains)) {
+        add_push(findings, std::move(push));
+    }
+    sort_by_gain(findings);
+    return findings;
 }
 
 } // namespace dfdyn::tools

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "tools/diagnosis/diagnosis.hpp"
-#include "tools/diagnosis/standing_contacts.hpp"
 
 namespace dfdyn::tools {
 

@@ -7,8 +7,6 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
 
 namespace dfdyn::tools {
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -30,8 +31,8 @@ struct Holding {
 
 /// The largest of the parameters that tell of it; none, where the effect is no dry friction.
 const FoundParameter* dry_friction(const std::vector<FoundParameter>& parameters) {
-    constexpr std::array<std::string_view, 5> names{"coulomb", "coulomb_pos", "coulomb_neg", "static",
-                                                    "break_away"};
+    constexpr std::array<std::string_view, 6> names{"coulomb", "coulomb_pos", "coulomb_neg",
+                                                    "static",  "break_away",  "mu"};
     const FoundParameter* largest = nullptr;
     for (const FoundParameter& one : parameters) {
         if (std::ranges::count(names, one.name) > 0 &&
@@ -42,17 +43,21 @@ const FoundParameter* dry_friction(const std::vector<FoundParameter>& parameters
     return largest;
 }
 
-Holding holding_at(const Explanation& explanation, std::size_t joint) {
+Holding holding_at(const DiagnosisSignals& signals, const Explanation& explanation, Eigen::Index joint) {
+    const std::string where = numbered("joint", static_cast<std::size_t>(joint));
+    const std::vector<ChosenShape> named = explanation.named_effects();
     Holding result;
-    for (std::size_t i = 0; i < explanation.named_effects().size(); ++i) {
-        const Candidate& candidate = explanation.candidates[explanation.chosen[i].candidate];
-        if (candidate.where != numbered("joint", joint)) {
+    for (std::size_t i = 0; i < named.size(); ++i) {
+        const Candidate& candidate = explanation.candidates[named[i].candidate];
+        if (candidate.where != where) {
             continue;
         }
         const std::vector<FoundParameter> parameters = found_parameters(explanation, i);
         if (const FoundParameter* const friction = dry_friction(parameters)) {
-            result.most += std::abs(friction->value);
-            result.variance += std::pow(deviation_of(*friction), 2);
+            const bool by_load = friction->name == "mu";
+            const double scale = by_load ? signals.joint_torque.col(joint).cwiseAbs().maxCoeff() : 1;
+            result.most += scale * std::abs(friction->value);
+            result.variance += std::pow(scale * deviation_of(*friction), 2);
         }
     }
     return result;
@@ -103,6 +108,7 @@ struct StandPulse : EventWindow {
     std::size_t length = 0; ///< of the lengths that are looked for
     Eigen::Index first = 0; ///< row
     double height = 0;      ///< N·m
+    double rest = 0;        ///< N·m, in what the explanation leaves
 };
 
 /// Of the pulses of one length: their standard deviation, were they of a normal distribution but for a few.
@@ -110,7 +116,7 @@ double usual_height(const std::vector<StandPulse>& pulses, std::size_t length) {
     std::vector<double> heights;
     for (const StandPulse& pulse : pulses) {
         if (pulse.length == length) {
-            heights.push_back(std::abs(pulse.height));
+            heights.push_back(std::abs(pulse.rest));
         }
     }
     const auto middle = heights.begin() + std::ssize(heights) / 2;
@@ -170,13 +176,15 @@ class JointStands {
         for (std::size_t length = 0; length < fits_.size(); ++length) {
             const PulseFit& fit = fits_[length];
             for (Eigen::Index row = first; row + fit.rows() <= last; row += fit.step()) {
-                const PulseFit::Result found = smaller(fit.of(missed_, row), fit.of(rest_, row));
+                const PulseFit::Result rest = fit.of(rest_, row);
+                const PulseFit::Result found = smaller(fit.of(missed_, row), rest);
                 const double start_s = signals_.measured.time_s[row + fit.beside()];
                 pulses_.push_back({{std::abs(found.height) * std::sqrt(found.share), start_s,
                                     start_s + push_lengths_s[length]},
                                    length,
                                    row,
-                                   found.height});
+                                   found.height,
+                                   rest.height});
             }
         }
     }
@@ -202,9 +210,10 @@ class JointStands {
 
 } // namespace
 
+double StandingContact::deviation() const { return std::hypot(change_deviation, held_deviation); }
+
 double StandingContact::probability() const {
-    const double deviation = std::hypot(change_deviation, held_deviation);
-    return std::erfc((held - std::abs(change)) / (deviation * std::numbers::sqrt2)) / 2;
+    return std::erfc((held - std::abs(change)) / (deviation() * std::numbers::sqrt2)) / 2;
 }
 
 std::vector<StandingContact> standing_contacts(const DiagnosisSignals& signals,
@@ -214,7 +223,7 @@ std::vector<StandingContact> standing_contacts(const DiagnosisSignals& signals,
     const Eigen::MatrixXd rest = missed - explanation.all(signals);
     std::vector<StandingContact> result;
     for (Eigen::Index joint = 0; !signals.wrench() && joint < signals.outputs(); ++joint) {
-        const Holding holding = holding_at(explanation, static_cast<std::size_t>(joint));
+        const Holding holding = holding_at(signals, explanation, joint);
         if (holding.most > 0) {
             const JointStands stands(signals, joint, missed.col(joint), rest.col(joint));
             std::ranges::move(stands.contacts(holding), std::back_inserter(result));

@@ -129,4 +129,35 @@ TEST_CASE("a cause that shows above 5 Hz only is found by what it brings there")
     CHECK(findings.front().rms_before == Approx(2 * root_mean_square(fast)).epsilon(0.1));
 }
 
+TEST_CASE("a push at a joint that stands is told by its force, with what friction takes up, and as sure as "
+          "that allows") {
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
+    StandingContact push;
+    push.joint = 2;
+    push.pulse = {8, 9, 0.3};
+    push.change = 30;
+    push.change_deviation = 0.5;
+    push.held = 10;
+    push.held_deviation = 2;
+    push.share = 30 * pulse_series(signals, push.pulse);
+    const MatrixXd rest = MatrixXd::Constant(signals.rows(), 6, 0.1);
+    const std::vector<Finding> findings =
+        findings_of(signals, explanation_of({}, 0, VectorXd::Zero(signals.rows())), {push}, rest,
+                    {"tau1", "tau2", "tau3", "tau4", "tau5", "tau6"});
+    REQUIRE(findings.size() == 1);
+    const Finding& finding = findings.front();
+    CHECK(finding.effect == "external_contact");
+    CHECK(finding.where == "joint3");
+    CHECK(finding.output == 2);
+    CHECK(finding.confidence == Approx(0.95));
+    const FoundParameter& peak = finding.parameters[2];
+    CHECK(peak.name == "peak");
+    CHECK(peak.value == -35); // the surroundings', against the motor's 30 and half of the friction's 10
+    CHECK(peak.high == Approx(-30 + 1.96 * std::hypot(0.5, 2)));
+    CHECK(peak.low == Approx(-40 - 1.96 * std::hypot(0.5, 2)));
+    CHECK(finding.evidence.find("joint3 stands") == 0);
+    CHECK(finding.evidence.find("10 ± 3.92 N·m") != std::string::npos);
+    CHECK(finding.share == push.share);
+}
+
 } // namespace findings_test

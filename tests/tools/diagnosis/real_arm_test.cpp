@@ -32,7 +32,7 @@ Recording currents(const std::vector<std::string>& runs) {
     return joined_recording(read_recordings(files, columns));
 }
 
-Diagnosis diagnosis_of(const Recording& recording, bool measure = false) {
+Diagnosis diagnosis_of_run(const Recording& recording, bool measure = false) {
     DiagnosisOptions how;
     how.outputs = OutputKind::motor_current;
     how.measure = measure;
@@ -99,7 +99,7 @@ TEST_CASE(
     "of a real arm the friction of its joints and its wrist's centre of mass are named, and nothing that "
     "no machine has") {
     const Diagnosis diagnosis =
-        diagnosis_of(currents({"No6_Acc_slow_Verify_Model", "No7_Acc_slow_Verify_Model_short"}));
+        diagnosis_of_run(currents({"No6_Acc_slow_Verify_Model", "No7_Acc_slow_Verify_Model_short"}));
     std::set<std::string> rubbing;
     for (const Finding& finding : diagnosis.findings) {
         INFO(finding.effect << " at " << finding.where);
@@ -137,7 +137,7 @@ TEST_CASE("pushes at a real arm are found at their times, and none where nobody 
     const Recording pushed = currents({"No7_Acc_slow_Verify_Model_short_with_disturbance"});
     const std::vector<Pushes::Push> pushes = Pushes(pushed, undisturbed).all();
     REQUIRE(pushes.size() == 5);
-    const Diagnosis diagnosis = diagnosis_of(pushed);
+    const Diagnosis diagnosis = diagnosis_of_run(pushed);
     std::set<std::size_t> found, likely;
     for (const Finding& contact : diagnosis.findings) {
         if (!is_contact(contact)) {
@@ -159,14 +159,14 @@ TEST_CASE("pushes at a real arm are found at their times, and none where nobody 
     for (const char* const run : {"No7_Acc_slow_Verify_Model_short", "No5_Acc_slow_no_disturbance",
                                   "No9_Singularity_Free_NoDist", "No3_Acc"}) {
         INFO(run);
-        CHECK(std::ranges::none_of(diagnosis_of(currents({run})).findings, is_contact));
+        CHECK(std::ranges::none_of(diagnosis_of_run(currents({run})).findings, is_contact));
     }
 }
 
 TEST_CASE("with the causes of one run of a real arm two others are predicted better at every joint") {
     const Recording all =
         currents({"No6_Acc_slow_Verify_Model", "No5_Acc_slow_no_disturbance", "No9_Singularity_Free_NoDist"});
-    const Diagnosis diagnosis = diagnosis_of(all, true);
+    const Diagnosis diagnosis = diagnosis_of_run(all, true);
     REQUIRE(diagnosis.heldout_from_s > 85); // the first run ends at 82 s
     for (Eigen::Index joint = 0; joint < 6; ++joint) {
         CAPTURE(joint + 1);
