@@ -25,6 +25,11 @@ bool is_of(const Finding& contact, const HiddenPush& push) {
            value_of(contact, "start") < push.end_s && push.start_s < value_of(contact, "end");
 }
 
+bool has_peak(const Finding& contact, double peak) {
+    const auto found = std::ranges::find(contact.parameters, "peak", &FoundParameter::name);
+    return found != contact.parameters.end() && found->low <= peak && peak <= found->high;
+}
+
 PushScore run_push_case(std::uint64_t seed) {
     PushCase one = make_push_case(seed);
     DiagnosisOptions options;
@@ -37,10 +42,11 @@ PushScore run_push_case(std::uint64_t seed) {
         if (finding.effect != "external_contact") {
             continue;
         }
-        PushScore::Named named{finding.confidence, false};
+        PushScore::Named named{finding.confidence, false, false};
         for (std::size_t i = 0; i < score.pushes.size(); ++i) {
             if (is_of(finding, score.pushes[i])) {
                 named.right = true;
+                named.in_interval = has_peak(finding, score.pushes[i].peak);
                 score.found[i] = std::max(score.found[i], finding.confidence);
             }
         }
@@ -125,14 +131,21 @@ std::string describe(const PushScore& score) {
 
 std::string push_tables(const std::vector<PushScore>& scores) {
     Rate silent;
+    Rate in_interval;
     for (const PushScore& score : scores) {
+        for (const PushScore::Named& named : score.named) {
+            if (named.right && named.confidence >= 0.5) {
+                in_interval.add(named.in_interval);
+            }
+        }
         if (score.pushes.empty()) {
             silent.add(
                 std::ranges::any_of(score.named, [](const auto& one) { return one.confidence >= 0.5; }));
         }
     }
     return size_table(scores) + reliability_table(scores) +
-           "\nRecordings without a push that have a likely one: " + share(silent) + ".\n";
+           "\nRecordings without a push that have a likely one: " + share(silent) +
+           ".\n\nPeaks of right and likely pushes inside their 95 % interval: " + share(in_interval) + ".\n";
 }
 
 } // namespace dfdyn::tests

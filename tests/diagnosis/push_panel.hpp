@@ -33,7 +33,8 @@ struct PushScore {
     std::vector<double> found; ///< per push: the largest confidence of a contact at its joint and time, or 0
     struct Named {
         double confidence = 0;
-        bool right = false; ///< at the joint and time of a push
+        bool right = false;       ///< at the joint and time of a push
+        bool in_interval = false; ///< and its peak in the interval
     };
     std::vector<Named> named;
 };

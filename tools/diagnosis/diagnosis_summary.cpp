@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <set>
 
 namespace dfdyn::tools {
 
@@ -148,13 +149,15 @@ void print_unexplained(std::ostream& out, const Diagnosis& diagnosis) {
     }
 }
 
-/// Those of one kind on one line.
+/// Those of one kind on one line, each once.
 void print_not_whole(std::ostream& out, const std::vector<CarriedFinding>& carried, CarriedFinding::How how,
                      const char* lead) {
+    std::set<std::string> told;
     std::string list;
     for (const CarriedFinding& one : carried) {
-        if (one.how == how) {
-            list.append(list.empty() ? "" : "; ").append(cause_words(OtherCause{one.effect, one.where, {}}));
+        const std::string cause = cause_words(OtherCause{one.effect, one.where, {}});
+        if (one.how == how && told.insert(cause).second) {
+            list.append(list.empty() ? "" : "; ").append(cause);
         }
     }
     if (!list.empty()) {

@@ -48,8 +48,10 @@ std::string parameter_words(const FoundParameter& parameter) {
 }
 
 std::string main_parameter_words(const Finding& finding) {
-    const auto measured = std::ranges::find_if(
-        finding.parameters, [](const FoundParameter& parameter) { return parameter.low < parameter.high; });
+    const auto measured = std::ranges::find_if(finding.parameters, [](const FoundParameter& parameter) {
+        const bool when = parameter.name == "start" || parameter.name == "end";
+        return parameter.low < parameter.high && !when;
+    });
     if (measured == finding.parameters.end()) {
         return "";
     }

@@ -31,6 +31,9 @@ TEST_CASE("a finding is told by its main parameter, of a vector by the coordinat
           "amplitude 0.2 rad (0.1 … 0.3)");
     CHECK(main_parameter({{"coulomb", "N·m", 2, 1, 3}, {"static", "N·m", 4, 3.9, 4.1}}) ==
           "coulomb 2 N·m (1 … 3)");
+    CHECK(
+        main_parameter({{"start", "s", 8, 7.9, 8.1}, {"end", "s", 9, 8.9, 9.1}, {"peak", "N", 30, 20, 40}}) ==
+        "peak 30 N (20 … 40)");
     CHECK(main_parameter({{"coulomb_pos", "N·m", 0.2, -0.1, 0.5}, {"coulomb_neg", "N·m", 3, 2.8, 3.2}}) ==
           "coulomb_neg 3 N·m (2.8 … 3.2)");
 }
