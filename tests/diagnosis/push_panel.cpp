@@ -67,18 +67,18 @@ std::string size_table(const std::vector<PushScore>& scores) {
         "| peak, of what friction can change by | named | with 0.5 and more |\n| --- | --- | --- |\n";
     for (std::size_t bin = 0; bin + 1 < edges.size(); ++bin) {
         Rate named;
-        Rate likely;
+        Rate at_half;
         for (const PushScore& score : scores) {
             for (std::size_t i = 0; i < score.pushes.size(); ++i) {
                 const double size = std::abs(score.pushes[i].peak) / score.pushes[i].held;
                 if (size >= edges[bin] && size < edges[bin + 1]) {
                     named.add(score.found[i] > 0);
-                    likely.add(score.found[i] >= 0.5);
+                    at_half.add(score.found[i] >= 0.5);
                 }
             }
         }
         table += formatted("| %.1f to ", edges[bin]) + formatted("%.1f | ", edges[bin + 1]) + share(named) +
-                 " | " + share(likely) + " |\n";
+                 " | " + share(at_half) + " |\n";
     }
     return table;
 }
