@@ -36,17 +36,23 @@ PushScore run_push_case(std::uint64_t seed) {
     options.outputs = one.setup.kind.outputs;
     options.measure = false;
     const Diagnosis diagnosis = diagnose(one.setup.nominal, one.recording, options).diagnosis;
-    PushScore score{seed, one.setup.kind.name, std::move(one.pushes), {}, {}};
+    PushScore score{seed,
+                    one.setup.kind.name,
+                    one.setup.kind.outputs != OutputKind::motor_current,
+                    std::move(one.pushes),
+                    {},
+                    {}};
     score.found.assign(score.pushes.size(), 0);
     for (const Finding& finding : diagnosis.findings) {
         if (finding.effect != "external_contact") {
             continue;
         }
-        PushScore::Named named{finding.confidence, false, false};
+        PushScore::Named named{finding.confidence, false, false, 0};
         for (std::size_t i = 0; i < score.pushes.size(); ++i) {
             if (is_of(finding, score.pushes[i])) {
                 named.right = true;
                 named.in_interval = has_peak(finding, score.pushes[i].peak);
+                named.peak_over_true = value_of(finding, "peak") / score.pushes[i].peak;
                 score.found[i] = std::max(score.found[i], finding.confidence);
             }
         }
@@ -124,7 +130,8 @@ std::string describe(const PushScore& score) {
                 (score.found[i] > 0 ? formatted(" FOUND %.2f;", score.found[i]) : " missed;");
     }
     for (const PushScore::Named& named : score.named) {
-        text += named.right ? "" : formatted(" !%.2f", named.confidence);
+        text += named.right ? formatted(" %.2f", named.peak_over_true) + (named.in_interval ? "" : "(out)")
+                            : formatted(" !%.2f", named.confidence);
     }
     return text;
 }
@@ -134,7 +141,7 @@ std::string push_tables(const std::vector<PushScore>& scores) {
     Rate in_interval;
     for (const PushScore& score : scores) {
         for (const PushScore::Named& named : score.named) {
-            if (named.right && named.confidence >= 0.5) {
+            if (score.constants_known && named.right && named.confidence >= 0.5) {
                 in_interval.add(named.in_interval);
             }
         }
@@ -145,7 +152,8 @@ std::string push_tables(const std::vector<PushScore>& scores) {
     }
     return size_table(scores) + reliability_table(scores) +
            "\nRecordings without a push that have a likely one: " + share(silent) +
-           ".\n\nPeaks of right and likely pushes inside their 95 % interval: " + share(in_interval) + ".\n";
+           ".\n\nPeaks of right and likely pushes inside their 95 % interval, where torques were measured: " +
+           share(in_interval) + ".\n";
 }
 
 } // namespace dfdyn::tests

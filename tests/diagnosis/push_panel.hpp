@@ -29,12 +29,14 @@ PushCase make_push_case(std::uint64_t seed);
 struct PushScore {
     std::uint64_t seed = 0;
     std::string robot;
+    bool constants_known = true; ///< otherwise peaks are in the unit of an estimated one
     std::vector<HiddenPush> pushes;
     std::vector<double> found; ///< per push: the largest confidence of a contact at its joint and time, or 0
     struct Named {
         double confidence = 0;
         bool right = false;       ///< at the joint and time of a push
         bool in_interval = false; ///< and its peak in the interval
+        double peak_over_true = 0;
     };
     std::vector<Named> named;
 };
