@@ -68,6 +68,14 @@ int generate(const PanelOptions& options) {
     return 0;
 }
 
+void tell(const PanelOptions& options, const std::string& tables) {
+    std::printf("%d recordings, seeds from %llu\n\n%s", options.cases,
+                static_cast<unsigned long long>(*options.seed), tables.c_str());
+    if (!options.tables.empty()) {
+        dfdyn::tools::write_file(options.tables, tables);
+    }
+}
+
 int score(const PanelOptions& options) {
     const std::vector<CaseScore> scores =
         run_panel(*options.seed, options.cases, options.mix, options.threads, [](const CaseScore& one) {
@@ -75,11 +83,7 @@ int score(const PanelOptions& options) {
             std::fflush(stdout);
         });
     const std::string tables = panel_tables(scores);
-    std::printf("%d recordings, seeds from %llu\n\n%s", options.cases,
-                static_cast<unsigned long long>(*options.seed), tables.c_str());
-    if (!options.tables.empty()) {
-        dfdyn::tools::write_file(options.tables, tables);
-    }
+    tell(options, tables);
     const std::vector<std::string> worse =
         options.hold ? setbacks(summarise(scores)) : std::vector<std::string>{};
     for (const std::string& line : worse) {
@@ -94,12 +98,7 @@ int watch(const PanelOptions& options) {
             std::printf("%s\n", describe(one).c_str());
             std::fflush(stdout);
         });
-    const std::string tables = change_tables(scores);
-    std::printf("%d recordings, seeds from %llu\n\n%s", options.cases,
-                static_cast<unsigned long long>(*options.seed), tables.c_str());
-    if (!options.tables.empty()) {
-        dfdyn::tools::write_file(options.tables, tables);
-    }
+    tell(options, change_tables(scores));
     return 0;
 }
 
@@ -109,12 +108,7 @@ int push(const PanelOptions& options) {
             std::printf("%s\n", describe(one).c_str());
             std::fflush(stdout);
         });
-    const std::string tables = push_tables(scores);
-    std::printf("%d recordings, seeds from %llu\n\n%s", options.cases,
-                static_cast<unsigned long long>(*options.seed), tables.c_str());
-    if (!options.tables.empty()) {
-        dfdyn::tools::write_file(options.tables, tables);
-    }
+    tell(options, push_tables(scores));
     return 0;
 }
 
