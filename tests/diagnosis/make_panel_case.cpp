@@ -118,32 +118,6 @@ PanelRun draw_run(const PanelSetup& setup, const PanelMix& mix, Draw& draw, Pane
     return std::move(fitted.run);
 }
 
-Columns columns(std::vector<std::string> names, const Eigen::MatrixXd& rows) {
-    Columns result;
-    result.names = std::move(names);
-    for (Eigen::Index row = 0; row < rows.rows(); ++row) {
-        for (Eigen::Index column = 0; column < rows.cols(); ++column) {
-            result.values.push_back(rows(row, column));
-        }
-    }
-    return result;
-}
-
-Recording record(const PanelSetup& setup, const PanelRun& run) {
-    Recording recording;
-    recording.source = "panel";
-    recording.time_s = run.time_s;
-    for (const double time_s : run.time_s) {
-        recording.time_ns.push_back(std::llround(time_s * 1e9));
-    }
-    recording.position = columns(joint_names("q", setup.robot.joints.size()), run.position);
-    recording.output =
-        columns(output_names(setup.kind.outputs, setup.robot.joints.size()), run.output + setup.noise_rows);
-    recording.gap_before.assign(recording.time_s.size(), 0);
-    recording.gap_before.front() = 1;
-    return recording;
-}
-
 } // namespace
 
 PanelCase make_panel_case(std::uint64_t seed, const PanelMix& mix) {
@@ -164,7 +138,7 @@ PanelCase make_panel_case(std::uint64_t seed, const PanelMix& mix) {
     result.nominal = setup.nominal;
     result.mass_errors = setup.mass_errors;
     Draw effects(seed, 3);
-    result.recording = record(setup, draw_run(setup, mix, effects, result));
+    result.recording = recording_of(setup, draw_run(setup, mix, effects, result));
     return result;
 }
 

@@ -55,6 +55,13 @@ std::optional<DrawnEffect> draw_effect(const std::string& name, const EffectDraw
 /// Whether it can show on these outputs.
 bool shows(const std::string& effect, tools::OutputKind outputs, bool constants_known);
 
+inline constexpr double stiff_bend = 5e-4; ///< rad
+/// Bristles that bend by `bend` (rad) before `level` (N·m) slips, damped so that they do not ring: not faster
+/// than `fastest` (rad/s) against `inertia`, which the integration's step has to follow; 600 is for half a
+/// millisecond.
+void add_bristles(tools::LuGreParameters& friction, double level, double bend, double inertia,
+                  double fastest = 600);
+
 /// rms over the reference motion of one joint's column.
 double rms(const Eigen::VectorXd& column);
 

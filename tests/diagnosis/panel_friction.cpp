@@ -26,19 +26,9 @@ double least_inertia(const PanelSetup& setup, Eigen::Index joint) {
     return least;
 }
 
-/// Bristles that bend by `bend` (rad) before `level` (N·m) slips: stiffer than the step of the integration
-/// can follow they are not; damped so that they do not ring.
-void add_bristles(LuGreParameters& friction, double level, double bend, double inertia) {
-    constexpr double fastest = 600; // rad/s, at half a millisecond a step
-    friction.stiffness = std::min(level / bend, inertia * fastest * fastest);
-    friction.damping = 0.6 * std::sqrt(friction.stiffness * inertia);
-}
-
 LuGreParameters& friction_of(Scenario& scenario, Eigen::Index joint) {
     return scenario.actuators.friction[static_cast<std::size_t>(joint)];
 }
-
-constexpr double stiff_bend = 5e-4; // rad
 
 DrawnEffect viscous(const EffectDraw& of, Eigen::Index joint) {
     DrawnEffect effect;
@@ -152,6 +142,11 @@ DrawnEffect drift(const EffectDraw& of, Eigen::Index joint) {
 }
 
 } // namespace
+
+void add_bristles(LuGreParameters& friction, double level, double bend, double inertia, double fastest) {
+    friction.stiffness = std::min(level / bend, inertia * fastest * fastest);
+    friction.damping = 0.6 * std::sqrt(friction.stiffness * inertia);
+}
 
 std::optional<DrawnEffect> draw_friction_effect(const std::string& name, const EffectDraw& of) {
     const Eigen::Index joint = of.joint();

@@ -82,8 +82,7 @@ int score(const PanelOptions& options) {
             std::printf("%s\n", describe(one).c_str());
             std::fflush(stdout);
         });
-    const std::string tables = panel_tables(scores);
-    tell(options, tables);
+    tell(options, panel_tables(scores));
     const std::vector<std::string> worse =
         options.hold ? setbacks(summarise(scores)) : std::vector<std::string>{};
     for (const std::string& line : worse) {
@@ -112,21 +111,27 @@ int push(const PanelOptions& options) {
     return 0;
 }
 
+void add_seeds(CLI::App& command, PanelOptions& options) {
+    command.add_option("--seed", options.seed,
+                       "Of the first case; each further one has the next. Without it a new one is drawn");
+    command.add_option("--cases", options.cases, "How many")->required()->check(CLI::PositiveNumber);
+}
+
+void add_tables(CLI::App& command, PanelOptions& options) {
+    command.add_option("-o,--output", options.tables, "The tables, as Markdown");
+}
+
 CLI::App* add_pushes(CLI::App& app, PanelOptions& options) {
     CLI::App* command = app.add_subcommand("pushes", "Diagnoses arms that are pushed while they stand");
-    command->add_option("--seed", options.seed,
-                        "Of the first case; each further one has the next. Without it a new one is drawn");
-    command->add_option("--cases", options.cases, "How many")->required()->check(CLI::PositiveNumber);
-    command->add_option("-o,--output", options.tables, "The tables, as Markdown");
+    add_seeds(*command, options);
+    add_tables(*command, options);
     return command;
 }
 
 CLI::App* add_changes(CLI::App& app, PanelOptions& options) {
     CLI::App* command = app.add_subcommand(
         "changes", "Watches arms that change while they are learned, and tells what the monitor found");
-    command->add_option("--seed", options.seed,
-                        "Of the first case; each further one has the next. Without it a new one is drawn");
-    command->add_option("--cases", options.cases, "How many")->required()->check(CLI::PositiveNumber);
+    add_seeds(*command, options);
     command->add_option("--robot", options.changes.robot, "Always this arm")
         ->check(CLI::IsMember(change_robot_names()));
     command
@@ -145,14 +150,12 @@ CLI::App* add_changes(CLI::App& app, PanelOptions& options) {
     command->add_flag("--never", options.changes.never, "Nothing changes");
     command->add_option("--duration", options.changes.duration_s, "Seconds per case")
         ->check(CLI::Range(81.0, 1e5));
-    command->add_option("-o,--output", options.tables, "The tables, as Markdown");
+    add_tables(*command, options);
     return command;
 }
 
 void add_mix(CLI::App& command, PanelOptions& options) {
-    command.add_option("--seed", options.seed,
-                       "Of the first case; each further one has the next. Without it a new one is drawn");
-    command.add_option("--cases", options.cases, "How many")->required()->check(CLI::PositiveNumber);
+    add_seeds(command, options);
     command.add_option("--effect", options.mix.effect, "Always this effect");
     command.add_option("--strength", options.mix.strength, "Always this strength")
         ->check(CLI::PositiveNumber);
@@ -183,7 +186,7 @@ int main(int argc, char** argv) {
         app.add_subcommand("score", "Diagnoses the cases and tells what was found, as tables");
     add_mix(*scoring, options);
     scoring->add_option("--threads", options.threads, "Cases at the same time")->check(CLI::Range(1, 64));
-    scoring->add_option("-o,--output", options.tables, "The tables, as Markdown");
+    add_tables(*scoring, options);
     scoring->add_flag("--hold", options.hold,
                       "Status 1 where less is right than has been on the tests' panel");
     const CLI::App* const changes = add_changes(app, options);

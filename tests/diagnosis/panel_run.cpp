@@ -83,6 +83,17 @@ Eigen::MatrixXd unexplained(const PanelSetup& setup, const PanelRun& run, const 
     return run.output - rigid_outputs(setup, setup.robot, motion);
 }
 
+Columns columns(std::vector<std::string> names, const Eigen::MatrixXd& rows) {
+    Columns result;
+    result.names = std::move(names);
+    for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+        for (Eigen::Index column = 0; column < rows.cols(); ++column) {
+            result.values.push_back(rows(row, column));
+        }
+    }
+    return result;
+}
+
 } // namespace
 
 PanelRun run_panel(const PanelSetup& setup, const Robot& robot, const Scenario& scenario) {
@@ -104,6 +115,21 @@ PanelRun run_panel(const PanelSetup& setup, const Robot& robot, const Scenario& 
         }
     }
     return run;
+}
+
+Recording recording_of(const PanelSetup& setup, const PanelRun& run) {
+    Recording recording;
+    recording.source = "panel";
+    recording.time_s = run.time_s;
+    for (const double time_s : run.time_s) {
+        recording.time_ns.push_back(std::llround(time_s * 1e9));
+    }
+    recording.position = columns(joint_names("q", setup.robot.joints.size()), run.position);
+    recording.output =
+        columns(output_names(setup.kind.outputs, setup.robot.joints.size()), run.output + setup.noise_rows);
+    recording.gap_before.assign(recording.time_s.size(), 0);
+    recording.gap_before.front() = 1;
+    return recording;
 }
 
 Eigen::MatrixXd contribution(const PanelSetup& setup, const PanelRun& run, const DrawnEffect& effect,

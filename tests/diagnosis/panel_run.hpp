@@ -17,6 +17,9 @@ struct PanelRun {
 /// Throws InputError when the arm runs away.
 PanelRun run_panel(const PanelSetup& setup, const tools::Robot& robot, const tools::Scenario& scenario);
 
+/// What may be seen of it: positions, and the outputs with the setup's noise.
+tools::Recording recording_of(const PanelSetup& setup, const PanelRun& run);
+
 /// What the effect adds: the outputs less what the true arm without it would show on the same motion.
 Eigen::MatrixXd contribution(const PanelSetup& setup, const PanelRun& run, const DrawnEffect& effect,
                              double size);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/diagnosis/panel_table.hpp"
 
-#include "tools/report/report_table.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -20,12 +18,6 @@ constexpr double likely = 0.5;
 constexpr double confident = 0.9;
 constexpr double largest_harm = 0.005;
 constexpr double nominal_strength = 0.75; ///< drawn as 1, reached within 15 %
-
-std::string percent(const Rate& rate) {
-    std::array<char, 48> text{};
-    std::snprintf(text.data(), text.size(), "%.1f %% (%d of %d)", 100 * rate.share(), rate.count, rate.of);
-    return rate.of == 0 ? "–" : text.data();
-}
 
 void add_effect(PanelSummary& summary, const EffectScore& effect) {
     if (effect.strength >= 2) {
@@ -185,18 +177,34 @@ ReportTable confusion_table(const std::vector<CaseScore>& scores) {
     return table;
 }
 
-ReportTable reliability_table(const std::vector<CaseScore>& scores) {
+std::vector<Judged> judged(const std::vector<CaseScore>& scores) {
+    std::vector<Judged> result;
+    for (const CaseScore& score : scores) {
+        for (const FindingScore& finding : score.findings) {
+            result.push_back({finding.confidence, finding.right});
+        }
+    }
+    return result;
+}
+
+} // namespace
+
+std::string percent(const Rate& rate) {
+    std::array<char, 48> text{};
+    std::snprintf(text.data(), text.size(), "%.1f %% (%d of %d)", 100 * rate.share(), rate.count, rate.of);
+    return rate.of == 0 ? "–" : text.data();
+}
+
+ReportTable reliability_table(const std::vector<Judged>& judged) {
     ReportTable table{"How often findings were right", {"confidence", "mean confidence", "right"}, {}, ""};
     constexpr std::array edges{0.0, 0.2, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.01};
     for (std::size_t bin = 0; bin + 1 < edges.size(); ++bin) {
         Rate right;
         double sum = 0;
-        for (const CaseScore& score : scores) {
-            for (const FindingScore& finding : score.findings) {
-                if (finding.confidence >= edges[bin] && finding.confidence < edges[bin + 1]) {
-                    right.add(finding.right);
-                    sum += finding.confidence;
-                }
+        for (const Judged& one : judged) {
+            if (one.confidence >= edges[bin] && one.confidence < edges[bin + 1]) {
+                right.add(one.right);
+                sum += one.confidence;
             }
         }
         std::array<char, 32> range{};
@@ -206,8 +214,6 @@ ReportTable reliability_table(const std::vector<CaseScore>& scores) {
     }
     return table;
 }
-
-} // namespace
 
 PanelSummary summarise(const std::vector<CaseScore>& scores) {
     PanelSummary summary;
@@ -256,7 +262,7 @@ std::vector<std::string> setbacks(const PanelSummary& summary) {
 
 std::string panel_tables(const std::vector<CaseScore>& scores) {
     std::string text;
-    for (const ReportTable& table : {target_table(summarise(scores)), reliability_table(scores),
+    for (const ReportTable& table : {target_table(summarise(scores)), reliability_table(judged(scores)),
                                      evidence_table(scores), effect_table(scores), confusion_table(scores)}) {
         text += tools::table_markdown(table) + "\n";
     }

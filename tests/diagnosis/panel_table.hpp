@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/diagnosis/panel_score.hpp"
+#include "tools/report/report_table.hpp"
 
 #include <string>
 #include <vector>
@@ -39,6 +40,18 @@ struct PanelSummary {
 std::vector<std::string> setbacks(const PanelSummary& summary);
 
 PanelSummary summarise(const std::vector<CaseScore>& scores);
+
+/// `81.0 % (17 of 21)`; a dash for none.
+std::string percent(const Rate& rate);
+
+/// Something that was said, and whether it was so.
+struct Judged {
+    double confidence = 0;
+    bool right = false;
+};
+
+/// How often what was said with each confidence was right.
+tools::ReportTable reliability_table(const std::vector<Judged>& judged);
 
 /// Markdown: the summary against its targets; found or not per effect; what was named instead; how often
 /// findings of each confidence were right.

@@ -43,12 +43,12 @@ Eigen::VectorXd inertia_of_joints(const PanelSetup& setup, const PointToPointTas
 /// Dry and viscous friction of a size that the joint's own torques set; its gear's rotor, that bristles can
 /// be stiff against.
 void add_friction(PanelSetup& setup, const Eigen::VectorXd& inertia, Draw& draw) {
-    constexpr double bend = 5e-4;       // rad
     constexpr double fastest = 2400;    // rad/s, of a rotor on its bristles
     constexpr double least_share = 0.1; // of the largest joint's torque
-    const Eigen::VectorXd torque =
-        setup.reference_output.colwise().norm().transpose().cwiseProduct(setup.torque_constants) /
-        std::sqrt(static_cast<double>(setup.reference_output.rows()));
+    Eigen::VectorXd torque(setup.joints());
+    for (Eigen::Index joint = 0; joint < setup.joints(); ++joint) {
+        torque[joint] = rms(setup.reference_output.col(joint)) * setup.torque_constants[joint];
+    }
     for (Eigen::Index joint = 0; joint < setup.joints(); ++joint) {
         const double rotor = inertia[joint] * draw.uniform(0.3, 1);
         const double size = std::max(torque[joint], least_share * torque.maxCoeff());
@@ -58,8 +58,7 @@ void add_friction(PanelSetup& setup, const Eigen::VectorXd& inertia, Draw& draw)
         friction.breakaway = friction.coulomb * draw.uniform(1, 1.5);
         friction.stribeck_velocity = draw.uniform(0.03, 0.1);
         friction.viscous = friction.coulomb * draw.uniform(0.3, 1);
-        friction.stiffness = std::min(friction.coulomb / bend, rotor * fastest * fastest);
-        friction.damping = 0.6 * std::sqrt(friction.stiffness * rotor);
+        add_bristles(friction, friction.coulomb, stiff_bend, rotor, fastest);
     }
 }
 
@@ -93,24 +92,6 @@ std::vector<HiddenPush> draw_pushes(const PanelSetup& setup, const PointToPointT
         pushes.push_back(push);
     }
     return pushes;
-}
-
-Recording recording_of(const PanelSetup& setup, const PanelRun& run) {
-    Recording recording;
-    recording.source = "pushes";
-    recording.time_s = run.time_s;
-    recording.position.names = joint_names("q", setup.robot.joints.size());
-    recording.output.names = output_names(setup.kind.outputs, setup.robot.joints.size());
-    for (Eigen::Index row = 0; row < run.position.rows(); ++row) {
-        recording.time_ns.push_back(std::llround(run.time_s[static_cast<std::size_t>(row)] * 1e9));
-        for (Eigen::Index joint = 0; joint < setup.joints(); ++joint) {
-            recording.position.values.push_back(run.position(row, joint));
-            recording.output.values.push_back(run.output(row, joint) + setup.noise_rows(row, joint));
-        }
-    }
-    recording.gap_before.assign(recording.time_s.size(), 0);
-    recording.gap_before.front() = 1;
-    return recording;
 }
 
 } // namespace

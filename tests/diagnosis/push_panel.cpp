@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/diagnosis/push_panel.hpp"
 
-#include "tests/diagnosis/panel_table.hpp"
 #include "tools/common/number.hpp"
 #include "tools/diagnosis/diagnosis.hpp"
 
@@ -15,19 +14,14 @@ using namespace tools;
 
 namespace {
 
-double value_of(const Finding& finding, const char* name) {
-    const auto found = std::ranges::find(finding.parameters, name, &FoundParameter::name);
-    return found == finding.parameters.end() ? 0 : found->value;
+const FoundParameter& parameter_of(const Finding& contact, const char* name) {
+    return *std::ranges::find(contact.parameters, name, &FoundParameter::name);
 }
 
 bool is_of(const Finding& contact, const HiddenPush& push) {
     return contact.where == "joint" + std::to_string(push.joint + 1) &&
-           value_of(contact, "start") < push.end_s && push.start_s < value_of(contact, "end");
-}
-
-bool has_peak(const Finding& contact, double peak) {
-    const auto found = std::ranges::find(contact.parameters, "peak", &FoundParameter::name);
-    return found != contact.parameters.end() && found->low <= peak && peak <= found->high;
+           parameter_of(contact, "start").value < push.end_s &&
+           push.start_s < parameter_of(contact, "end").value;
 }
 
 PushScore run_push_case(std::uint64_t seed) {
@@ -47,12 +41,14 @@ PushScore run_push_case(std::uint64_t seed) {
         if (finding.effect != "external_contact") {
             continue;
         }
-        PushScore::Named named{finding.confidence, false, false, 0};
+        PushScore::Named named{{finding.confidence, false}, false, 0};
         for (std::size_t i = 0; i < score.pushes.size(); ++i) {
             if (is_of(finding, score.pushes[i])) {
                 named.right = true;
-                named.in_interval = has_peak(finding, score.pushes[i].peak);
-                named.peak_over_true = value_of(finding, "peak") / score.pushes[i].peak;
+                const FoundParameter& found = parameter_of(finding, "peak");
+                const double peak = score.pushes[i].peak;
+                named.in_interval = found.low <= peak && peak <= found.high;
+                named.peak_over_true = found.value / peak;
                 score.found[i] = std::max(score.found[i], finding.confidence);
             }
         }
@@ -61,16 +57,12 @@ PushScore run_push_case(std::uint64_t seed) {
     return score;
 }
 
-std::string share(const Rate& rate) {
-    return rate.of == 0 ? "–"
-                        : formatted("%.0f %% (", 100 * rate.share()) + std::to_string(rate.count) + " of " +
-                              std::to_string(rate.of) + ")";
-}
-
-std::string size_table(const std::vector<PushScore>& scores) {
+ReportTable size_table(const std::vector<PushScore>& scores) {
     constexpr std::array edges{0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 4.0};
-    std::string table =
-        "| peak, of what friction can change by | named | with 0.5 and more |\n| --- | --- | --- |\n";
+    ReportTable table{"Found, by the push's peak over what friction can change by",
+                      {"peak", "named", "with 0.5 and more"},
+                      {},
+                      ""};
     for (std::size_t bin = 0; bin + 1 < edges.size(); ++bin) {
         Rate named;
         Rate at_half;
@@ -83,28 +75,8 @@ std::string size_table(const std::vector<PushScore>& scores) {
                 }
             }
         }
-        table += formatted("| %.1f to ", edges[bin]) + formatted("%.1f | ", edges[bin + 1]) + share(named) +
-                 " | " + share(at_half) + " |\n";
-    }
-    return table;
-}
-
-std::string reliability_table(const std::vector<PushScore>& scores) {
-    constexpr std::array edges{0.0, 0.2, 0.5, 0.8, 0.93, 1.0};
-    std::string table = "\n| confidence | mean | right |\n| --- | ---: | --- |\n";
-    for (std::size_t bin = 0; bin + 1 < edges.size(); ++bin) {
-        Rate right;
-        double sum = 0;
-        for (const PushScore& score : scores) {
-            for (const PushScore::Named& named : score.named) {
-                if (named.confidence >= edges[bin] && named.confidence < edges[bin + 1]) {
-                    right.add(named.right);
-                    sum += named.confidence;
-                }
-            }
-        }
-        table += formatted("| %.2f to ", edges[bin]) + formatted("%.2f | ", edges[bin + 1]) +
-                 (right.of == 0 ? "–" : formatted("%.2f", sum / right.of)) + " | " + share(right) + " |\n";
+        table.rows.push_back({formatted("%.1f to ", edges[bin]) + formatted("%.1f", edges[bin + 1]),
+                              percent(named), percent(at_half)});
     }
     return table;
 }
@@ -139,7 +111,9 @@ std::string describe(const PushScore& score) {
 std::string push_tables(const std::vector<PushScore>& scores) {
     Rate silent;
     Rate in_interval;
+    std::vector<Judged> judged;
     for (const PushScore& score : scores) {
+        judged.insert(judged.end(), score.named.begin(), score.named.end());
         for (const PushScore::Named& named : score.named) {
             if (score.constants_known && named.right && named.confidence >= 0.5) {
                 in_interval.add(named.in_interval);
@@ -150,10 +124,10 @@ std::string push_tables(const std::vector<PushScore>& scores) {
                 std::ranges::any_of(score.named, [](const auto& one) { return one.confidence >= 0.5; }));
         }
     }
-    return size_table(scores) + reliability_table(scores) +
-           "\nRecordings without a push that have a likely one: " + share(silent) +
+    return table_markdown(size_table(scores)) + "\n" + table_markdown(reliability_table(judged)) +
+           "\nRecordings without a push that have a likely one: " + percent(silent) +
            ".\n\nPeaks of right and likely pushes inside their 95 % interval, where torques were measured: " +
-           share(in_interval) + ".\n";
+           percent(in_interval) + ".\n";
 }
 
 } // namespace dfdyn::tests

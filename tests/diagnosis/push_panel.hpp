@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/diagnosis/panel_setup.hpp"
+#include "tests/diagnosis/panel_table.hpp"
 
 #include <functional>
 
@@ -32,9 +33,7 @@ struct PushScore {
     bool constants_known = true; ///< otherwise peaks are in the unit of an estimated one
     std::vector<HiddenPush> pushes;
     std::vector<double> found; ///< per push: the largest confidence of a contact at its joint and time, or 0
-    struct Named {
-        double confidence = 0;
-        bool right = false;       ///< at the joint and time of a push
+    struct Named : Judged {    ///< right: at the joint and time of a push
         bool in_interval = false; ///< and its peak in the interval
         double peak_over_true = 0;
     };

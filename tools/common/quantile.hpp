@@ -17,4 +17,7 @@ double quantile(std::vector<double> values, double share);
 /// quantile(values, 0.5).
 double median(std::vector<double> values);
 
+/// Standard deviation of a Gaussian over the median of its magnitude.
+inline constexpr double median_to_deviation = 1.4826;
+
 } // namespace dfdyn::tools

@@ -64,7 +64,7 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     ExplanationOptions how{gains_known, 1, options.progress};
     work.explanation = explain(*signals, work.measured, how);
     work.rest = work.measured - signals->nominal - work.explanation.all(*signals);
-    work.pushes = standing_contacts(*signals, work.explanation, work.measured);
+    work.pushes = standing_contacts(*signals, work.explanation, work.measured, work.rest);
     for (const StandingContact& push : work.pushes) {
         work.rest.col(static_cast<Eigen::Index>(push.joint)) -= push.share;
     }

@@ -27,9 +27,10 @@ struct OtherCause {
     std::string effect, where, why_not;
 };
 
-inline constexpr double noticeable_standing =
-    0.02;                            ///< share of the rows from which on errors are told without
-constexpr double gains_below_hz = 5; ///< what a cause brings is measured below it
+/// What a cause brings is measured below it.
+inline constexpr double gains_below_hz = 5;
+/// Share of the rows in which a joint stands, from which on errors are told without them, too.
+inline constexpr double noticeable_standing = 0.02;
 
 /// A cause that is named.
 struct Finding {
@@ -93,8 +94,8 @@ struct DiagnosisWork {
     Eigen::MatrixXd measured;                        ///< T x m, as torques where currents were measured
     Eigen::VectorXd torque_gains; ///< per output: measured unit per N·m (N); 1 but for currents
     Explanation explanation;
-    std::vector<StandingContact> pushes;
-    Eigen::MatrixXd rest; ///< T x m: what neither that nor a push explains, as `measured`
+    std::vector<StandingContact> pushes; ///< at joints that stood
+    Eigen::MatrixXd rest;                ///< T x m: what neither that nor a push explains, as `measured`
     Diagnosis diagnosis;
 };
 

@@ -54,7 +54,7 @@ std::vector<std::vector<Eigen::Index>> moving_rows(const DiagnosisSignals& signa
     return result;
 }
 
-/// Why an extended model errs more at an output than the nominal one; its suspected reason.
+/// Why an extended model may err more at an output than the nominal one; empty: for no reason of the joint's.
 std::string reason_of_harm(const Diagnosis& diagnosis, Eigen::Index output) {
     constexpr double clear_fall = 0.9;
     const double nominal = diagnosis.nominal.moving_nrmse[output];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/standing_contacts.hpp"
 
+#include "tools/common/quantile.hpp"
 #include "tools/diagnosis/candidate_parts.hpp"
 #include "tools/diagnosis/event_windows.hpp"
 #include "tools/diagnosis/found_parameters.hpp"
@@ -22,7 +23,6 @@ constexpr double beside_s = 0.25; ///< of the same stand, before a push and behi
 constexpr double between_s = 0.5; ///< pulses closer than this tell of the same push
 constexpr double least_probability = 0.25;
 constexpr double uncertain_share = 0.2; ///< of the rigid body's change, as a deviation
-constexpr double normal_quartile = 0.6745;
 
 /// The most that dry friction holds at a joint, N·m.
 struct Holding {
@@ -119,9 +119,7 @@ double usual_height(const std::vector<StandPulse>& pulses, std::size_t length) {
             heights.push_back(std::abs(pulse.rest));
         }
     }
-    const auto middle = heights.begin() + std::ssize(heights) / 2;
-    std::ranges::nth_element(heights, middle);
-    return *middle / normal_quartile;
+    return median_to_deviation * median(std::move(heights));
 }
 
 /// Looks for pushes at one joint.
@@ -138,6 +136,9 @@ class JointStands {
             add_stands(stretch);
         }
     }
+
+    /// Long enough for a push.
+    bool none() const { return pulses_.empty(); }
 
     std::vector<StandingContact> contacts(const Holding& holding) const {
         std::vector<StandingContact> result;
@@ -218,14 +219,16 @@ double StandingContact::probability() const {
 
 std::vector<StandingContact> standing_contacts(const DiagnosisSignals& signals,
                                                const Explanation& explanation,
-                                               const Eigen::MatrixXd& measured) {
-    const Eigen::MatrixXd missed = measured - signals.nominal;
-    const Eigen::MatrixXd rest = missed - explanation.all(signals);
+                                               const Eigen::MatrixXd& measured, const Eigen::MatrixXd& rest) {
     std::vector<StandingContact> result;
     for (Eigen::Index joint = 0; !signals.wrench() && joint < signals.outputs(); ++joint) {
+        const JointStands stands(signals, joint, measured.col(joint) - signals.nominal.col(joint),
+                                 rest.col(joint));
+        if (stands.none()) {
+            continue;
+        }
         const Holding holding = holding_at(signals, explanation, joint);
         if (holding.most > 0) {
-            const JointStands stands(signals, joint, missed.col(joint), rest.col(joint));
             std::ranges::move(stands.contacts(holding), std::back_inserter(result));
         }
     }

@@ -13,9 +13,6 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Standard deviation of a Gaussian from the median of its magnitude.
-constexpr double median_to_deviation = 1.4826;
-
 Eigen::Index index(std::size_t value) { return static_cast<Eigen::Index>(value); }
 
 double median_period_s(std::span<const Recording> recordings) {

@@ -46,6 +46,12 @@ Explanation with_friction(const DiagnosisSignals& signals, const std::string& pa
     return explanation_of({friction_cause(signals, parameter)}, 1, friction * signals.direction(0));
 }
 
+std::vector<StandingContact> pushes_in(const DiagnosisSignals& signals, const Explanation& explanation,
+                                       const MatrixXd& measured) {
+    return standing_contacts(signals, explanation, measured,
+                             measured - signals.nominal - explanation.all(signals));
+}
+
 /// What is measured of a joint that stands by itself: it creeps, and its friction gives way to either side.
 MatrixXd resting(const DiagnosisSignals& signals, std::mt19937_64& engine) {
     std::uniform_real_distribution<double> held(-friction, friction);
@@ -71,8 +77,7 @@ TEST_CASE("what friction can take up while a joint stands is no push") {
     const auto most_likely = [&](double times) {
         const MatrixXd louder = signals.nominal + times * (measured - signals.nominal);
         double most = 0;
-        for (const StandingContact& push :
-             standing_contacts(signals, with_friction(signals, "coulomb"), louder)) {
+        for (const StandingContact& push : pushes_in(signals, with_friction(signals, "coulomb"), louder)) {
             most = std::max(most, push.probability());
         }
         return most;
@@ -90,7 +95,7 @@ TEST_CASE("a push that friction cannot take up is found while the joint stands, 
     MatrixXd measured = resting(signals, engine);
     measured.col(0) += change * pulse_series(signals, pulse);
     const std::vector<StandingContact> pushes =
-        standing_contacts(signals, with_friction(signals, "coulomb"), measured);
+        pushes_in(signals, with_friction(signals, "coulomb"), measured);
     const auto found = std::ranges::max_element(pushes, {}, &StandingContact::probability);
     REQUIRE(found != pushes.end());
     CHECK(found->joint == 0);
@@ -108,12 +113,12 @@ TEST_CASE("nothing is said of a joint that moves, or whose dry friction nobody k
     MatrixXd measured = resting(signals, engine);
     measured.col(0) += 30 * pulse_series(signals, {8, 8.75, 0.2});
     measured.col(1) += 30 * pulse_series(signals, {8, 8.75, 0.2});
-    CHECK(standing_contacts(signals, with_friction(signals, "viscous"), measured).empty());
-    const auto pushes = standing_contacts(signals, with_friction(signals, "coulomb"), measured);
+    CHECK(pushes_in(signals, with_friction(signals, "viscous"), measured).empty());
+    const auto pushes = pushes_in(signals, with_friction(signals, "coulomb"), measured);
     REQUIRE_FALSE(pushes.empty());
     CHECK(std::ranges::all_of(pushes, [](const StandingContact& push) { return push.joint == 0; }));
     signals.measured.weight.setOnes();
-    CHECK(standing_contacts(signals, with_friction(signals, "coulomb"), measured).empty());
+    CHECK(pushes_in(signals, with_friction(signals, "coulomb"), measured).empty());
 }
 
 TEST_CASE("a change by what friction can take up and no more is as likely a push as not") {
@@ -135,7 +140,7 @@ TEST_CASE("what a cause says of a joint that stands, and nobody measured, is no 
         explanation_of({friction_cause(signals, "coulomb"), of_one_column("payload", "tool", said)}, 2,
                        friction * signals.direction(0) + 30 * said);
     const auto likely = [&](const MatrixXd& measured) {
-        return std::ranges::any_of(standing_contacts(signals, explanation, measured),
+        return std::ranges::any_of(pushes_in(signals, explanation, measured),
                                    [](const StandingContact& push) { return push.probability() > 0.5; });
     };
     MatrixXd measured = resting(signals, engine);
@@ -152,7 +157,7 @@ TEST_CASE("a joint that stands where a recording pauses is not pushed by the pau
     constexpr Index first = 800, count = 300;
     measured.col(0).segment(first, count).array() += 40;
     const auto likely = [&] {
-        return std::ranges::any_of(standing_contacts(signals, with_friction(signals, "coulomb"), measured),
+        return std::ranges::any_of(pushes_in(signals, with_friction(signals, "coulomb"), measured),
                                    [](const StandingContact& push) { return push.probability() > 0.5; });
     };
     CHECK(likely());
