@@ -56,9 +56,9 @@ std::optional<DrawnEffect> draw_effect(const std::string& name, const EffectDraw
 bool shows(const std::string& effect, tools::OutputKind outputs, bool constants_known);
 
 inline constexpr double stiff_bend = 5e-4; ///< rad
-/// Bristles that bend by `bend` (rad) before `level` (N·m) slips, damped so that they do not ring: not faster
-/// than `fastest` (rad/s) against `inertia`, which the integration's step has to follow; 600 is for half a
-/// millisecond.
+/// Bristles that bend by `bend` (rad) before `level` (N·m) slips: not faster than `fastest` (rad/s) against
+/// `inertia`, which the integration's step has to follow; 600 is for half a millisecond. The controller damps
+/// them: of their own damping every reversal would have a bump as high as Coulomb's friction.
 void add_bristles(tools::LuGreParameters& friction, double level, double bend, double inertia,
                   double fastest = 600);
 

@@ -89,7 +89,6 @@ DrawnEffect load_dependent(const EffectDraw& of, Eigen::Index joint) {
         LuGreParameters& friction = friction_of(scenario, joint);
         friction.load_coefficient = size;
         add_bristles(friction, size * load, stiff_bend, inertia);
-        friction.damping = 0;
     };
     effect.parameters = [](double size) { return EffectParameters{{"mu", size}}; };
     effect.guess = of.wanted(joint) / load;
@@ -105,7 +104,6 @@ DrawnEffect presliding(const EffectDraw& of, Eigen::Index joint) {
         LuGreParameters& friction = friction_of(scenario, joint);
         friction.coulomb = friction.breakaway = size;
         add_bristles(friction, size, bend, inertia);
-        friction.damping = 0;
     };
     effect.parameters = [bend](double size) {
         return EffectParameters{{"break_away", size}, {"stiffness", size / bend}};
@@ -145,7 +143,6 @@ DrawnEffect drift(const EffectDraw& of, Eigen::Index joint) {
 
 void add_bristles(LuGreParameters& friction, double level, double bend, double inertia, double fastest) {
     friction.stiffness = std::min(level / bend, inertia * fastest * fastest);
-    friction.damping = 0.6 * std::sqrt(friction.stiffness * inertia);
 }
 
 std::optional<DrawnEffect> draw_friction_effect(const std::string& name, const EffectDraw& of) {

@@ -9,6 +9,7 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr Eigen::Index validation_blocks = 6;
+constexpr double price_of_a_name = 5; ///< evidence: one cause of 150
 
 /// A push, or a payload that is taken up.
 bool is_event(const Candidate& candidate) {
@@ -16,7 +17,22 @@ bool is_event(const Candidate& candidate) {
            (candidate.effect == "payload" && !candidate.detail.empty());
 }
 
-/// Are the links' masses as the robot's file says? The search went on as if they need not be.
+/// Whether exact masses need a link's name that uncertain ones do without, and no other.
+bool is_one_link_more(const Explanation& at, const std::vector<ChosenShape>& exact) {
+    bool links = false;
+    for (const ChosenShape& one : exact) {
+        const bool is_new =
+            std::ranges::find(at.chosen, one.candidate, &ChosenShape::candidate) == at.chosen.end();
+        if (is_new && at.candidates[one.candidate].effect != "link_inertia_error") {
+            return false;
+        }
+        links = links || is_new;
+    }
+    return links;
+}
+
+/// Are the links' masses as the robot's file says? The search went on as if they need not be. That one link
+/// is off is as likely as that all are; what it costs to be one cause of many does not speak against it.
 void decide_masses(Explanation& at, const EffectRegression& regression) {
     at.problem.sums = regression.weighed_sums();
     at.chosen = search_effects(at.problem, at.chosen);
@@ -25,7 +41,7 @@ void decide_masses(Explanation& at, const EffectRegression& regression) {
     exact.nuisance.erase(exact.nuisance.begin(), exact.nuisance.begin() + at.uncertain_masses);
     const std::vector<ChosenShape> chosen = search_effects(exact, at.chosen);
     const EffectFit fit = fit_effects(exact, chosen);
-    if (fit.score >= at.fit.score) {
+    if (fit.score + (is_one_link_more(at, chosen) ? price_of_a_name : 0) >= at.fit.score) {
         at.problem = std::move(exact);
         at.chosen = chosen;
         at.fit = fit;

@@ -22,11 +22,16 @@ namespace {
 constexpr double beside_s = 0.25; ///< of the same stand, before a push and behind it
 constexpr double between_s = 0.5; ///< pulses closer than this tell of the same push
 constexpr double least_probability = 0.25;
+constexpr double known_deviations = 4;  ///< by which friction that is known differs from none
 constexpr double uncertain_share = 0.2; ///< of the rigid body's change, as a deviation
 
 /// The most that dry friction holds at a joint, N·m.
 struct Holding {
     double most = 0, variance = 0;
+
+    /// Friction that is hardly there may as well be several times as much: one error, and all stands show
+    /// pushes.
+    bool known() const { return most > known_deviations * std::sqrt(variance); }
 };
 
 /// The largest of the parameters that tell of it; none, where the effect is no dry friction.
@@ -228,7 +233,7 @@ std::vector<StandingContact> standing_contacts(const DiagnosisSignals& signals,
             continue;
         }
         const Holding holding = holding_at(signals, explanation, joint);
-        if (holding.most > 0) {
+        if (holding.known()) {
             std::ranges::move(stands.contacts(holding), std::back_inserter(result));
         }
     }

@@ -30,9 +30,9 @@ struct StandingContact {
 /// the arm. These are the pulses that are more, both in what the rigid body misses of `measured` (T x m) and
 /// in what the explanation leaves of that, `rest` (T x m): a cause that was found while the joint moved may
 /// say anything of it while it stands. A push that stays is none: a step is what friction leaves, too. Where
-/// no dry friction of the joint is known nothing is said. Friction is taken to hold no more than it does
-/// while sliding, unless a static one was found. None for a wrench. Cost: 8 T products per length of a push,
-/// and a fit of each shape of each cause at a joint.
+/// no dry friction of the joint is known, by four of its deviations, nothing is said. Friction is taken to
+/// hold no more than it does while sliding, unless a static one was found. None for a wrench. Cost: 8 T
+/// products per length of a push, and a fit of each shape of each cause at a joint.
 std::vector<StandingContact> standing_contacts(const DiagnosisSignals& signals,
                                                const Explanation& explanation,
                                                const Eigen::MatrixXd& measured, const Eigen::MatrixXd& rest);

@@ -41,12 +41,25 @@ TEST_CASE("an output that keeps to the torques while its joint stands counts all
     CHECK(weight_of(stopping(), 0.01).middleRows(200, 1600).minCoeff() == 1);
 }
 
-TEST_CASE("a joint that turns round slowly does not stand, and stops of a third of a second are none") {
+TEST_CASE("a joint that sticks for a third of a second where it turns round stands there") {
+    MeasuredMotion measured = swing(1);
+    constexpr Index first = 700;
+    constexpr Index count = 33;
+    measured.motion.position.col(0).segment(first, count).setConstant(measured.motion.position(first, 0));
+    measured.outputs = 0.3 * measured.motion.position;
+    measured.outputs.col(0).segment(first, count) += 2 * Eigen::VectorXd::LinSpaced(count, -1, 1);
+    const MatrixXd weight = joint_row_weight(measured, measured.motion.position);
+    CHECK(weight.middleRows(first, count).maxCoeff() == 0);
+    CHECK(weight.middleRows(200, first - 200 - 40).minCoeff() == 1);
+    CHECK(weight.middleRows(first + count + 40, 1000).minCoeff() == 1);
+}
+
+TEST_CASE("a joint that turns round slowly does not stand, and stops of a fifth of a second are none") {
     MeasuredMotion measured = swing(1);
     measured.motion.position.col(0) = 0.5 * (0.8 * measured.time_s.array()).cos();
     CHECK(weight_of(measured, 0.2).middleRows(200, 1600).minCoeff() == 1);
     measured = swing(1);
-    measured.motion.position.col(0).segment(700, 33).setConstant(measured.motion.position(700, 0));
+    measured.motion.position.col(0).segment(700, 20).setConstant(measured.motion.position(700, 0));
     CHECK(weight_of(measured, 0.2).middleRows(200, 1600).minCoeff() == 1);
 }
 
