@@ -54,8 +54,13 @@ void add_named(PanelSummary& summary, const CaseScore& score) {
     }
 }
 
+bool any_name(const CaseScore& score) {
+    return std::ranges::any_of(score.findings,
+                               [](const FindingScore& finding) { return finding.confidence >= likely; });
+}
+
 bool wrong_name(const CaseScore& score) {
-    return std::any_of(score.findings.begin(), score.findings.end(), [](const FindingScore& finding) {
+    return std::ranges::any_of(score.findings, [](const FindingScore& finding) {
         return finding.confidence >= likely && !finding.right;
     });
 }
@@ -223,7 +228,7 @@ PanelSummary summarise(const std::vector<CaseScore>& scores) {
             summary.mean_harm += (*score.harm - summary.mean_harm) / summary.exact;
         }
         if (score.effects.empty()) {
-            summary.null_with_finding.add(wrong_name(score));
+            summary.null_with_finding.add(any_name(score));
         } else if (score.outside) {
             Rate& rate = weakest(score) >= nominal_strength ? summary.outside_silent : summary.outside_weak;
             rate.add(!wrong_name(score) && score.unexplained_right);

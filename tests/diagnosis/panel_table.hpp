@@ -26,13 +26,13 @@ struct PanelSummary {
     Rate exact_name;                          ///< strength 1 and more, where the finding has no ties
     Rate parameter_within_20, parameter_in_interval; ///< strength 1 and more
     Rate constant_within_20, constant_in_interval;   ///< per joint, where nobody gave its torque constant
-    Rate null_with_finding;                          ///< with a confidence of 0.5 and more
-    int exact = 0;                                   ///< recordings with nothing but noise to explain
-    double mean_harm = 0;                            ///< of those, CaseScore::harm
-    Rate confident_and_wrong;                        ///< of all findings with a confidence of 0.9 and more
-    Rate both_named, both_named_with_weak;           ///< both of strength 1 and more; one or both weaker
-    Rate outside_silent, outside_weak; ///< no wrong name at 0.5 and more, and the right output and input
-                                       ///< among what is unexplained; strength 1 and more, and weaker
+    Rate null_with_finding; ///< with a confidence of 0.5 and more, a link's mass that really is off included
+    int exact = 0;          ///< recordings with nothing but noise to explain
+    double mean_harm = 0;   ///< of those, CaseScore::harm
+    Rate confident_and_wrong;              ///< of all findings with a confidence of 0.9 and more
+    Rate both_named, both_named_with_weak; ///< both of strength 1 and more; one or both weaker
+    Rate outside_silent, outside_weak;     ///< no wrong name at 0.5 and more, and the right output and input
+                                           ///< among what is unexplained; strength 1 and more, and weaker
 };
 
 /// What of it is worse than it has been on the fixed panel of the tests; empty: nothing. How far each was

@@ -9,8 +9,8 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double presliding_travel = 2e-3; ///< rad (m)
-constexpr double standing_s = 0.25;        ///< at least
+constexpr double presliding_travel = 3e-3; ///< rad (m)
+constexpr double standing_s = 0.3;         ///< at least
 constexpr double fade_s = 0.1;             ///< from rows that tell nothing to such that tell all
 constexpr double longest_end_s = 2;        ///< over which rows at a stretch's end come to count in full
 constexpr double end_share = 1.0 / 6;      ///< of a stretch, at the most
