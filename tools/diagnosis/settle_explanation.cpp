@@ -17,8 +17,8 @@ bool is_event(const Candidate& candidate) {
            (candidate.effect == "payload" && !candidate.detail.empty());
 }
 
-/// Whether exact masses need a link's name that uncertain ones do without, and no other.
-bool is_one_link_more(const Explanation& at, const std::vector<ChosenShape>& exact) {
+/// Whether exact masses need names that uncertain ones do without, and those are of links.
+bool needs_links_only(const Explanation& at, const std::vector<ChosenShape>& exact) {
     bool links = false;
     for (const ChosenShape& one : exact) {
         const bool is_new =
@@ -41,7 +41,7 @@ void decide_masses(Explanation& at, const EffectRegression& regression) {
     exact.nuisance.erase(exact.nuisance.begin(), exact.nuisance.begin() + at.uncertain_masses);
     const std::vector<ChosenShape> chosen = search_effects(exact, at.chosen);
     const EffectFit fit = fit_effects(exact, chosen);
-    if (fit.score + (is_one_link_more(at, chosen) ? price_of_a_name : 0) >= at.fit.score) {
+    if (fit.score + (needs_links_only(at, chosen) ? price_of_a_name : 0) >= at.fit.score) {
         at.problem = std::move(exact);
         at.chosen = chosen;
         at.fit = fit;
