@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -106,9 +107,13 @@ ReportTable target_table(const PanelSummary& summary) {
         table.rows.push_back(
             {std::string(line.what), percent(line.rate), std::string(target.data()), std::string(met)});
     }
-    std::array<char, 64> harm{};
-    std::snprintf(harm.data(), harm.size(), "%+.2f %% (mean of %d)", 100 * summary.mean_harm, summary.exact);
-    const char* met = summary.exact == 0 ? "–" : summary.mean_harm <= largest_harm ? "yes" : "no";
+    std::array<char, 64> harm{"–"};
+    const char* met = "–";
+    if (summary.exact > 0) {
+        std::snprintf(harm.data(), harm.size(), "%+.2f %% (mean of %d)", 100 * summary.mean_harm,
+                      summary.exact);
+        met = summary.mean_harm <= largest_harm ? "yes" : "no";
+    }
     table.rows.push_back({std::string("held-out error with the causes, where there is nothing but noise"),
                           std::string(harm.data()), std::string("≤ 0.5 %"), std::string(met)});
     return table;
@@ -214,8 +219,8 @@ ReportTable reliability_table(const std::vector<Judged>& judged) {
         }
         std::array<char, 32> range{};
         std::snprintf(range.data(), range.size(), "%.2f to %.2f", edges[bin], std::min(edges[bin + 1], 1.0));
-        table.rows.push_back(
-            {std::string(range.data()), right.of == 0 ? 0.0 : sum / right.of, percent(right)});
+        const double mean = right.of == 0 ? std::numeric_limits<double>::quiet_NaN() : sum / right.of;
+        table.rows.push_back({std::string(range.data()), mean, percent(right)});
     }
     return table;
 }
