@@ -93,6 +93,7 @@ class Search {
 
   private:
     void add_nuisance();
+    void demand_of_payloads(std::vector<Candidate>& found, const Eigen::MatrixXd& weighed) const;
     Eigen::VectorXd delays() const;
     std::vector<CandidateEntry> passing() const;
     void refine();
@@ -144,6 +145,16 @@ void demand_alike(std::vector<Candidate>& candidates) {
     }
 }
 
+/// A payload that is taken up, chosen already or not, must stand out against its kind in what is left now.
+void Search::demand_of_payloads(std::vector<Candidate>& found, const Eigen::MatrixXd& weighed) const {
+    for (Candidate& candidate : found) {
+        if (candidate.effect == "payload") {
+            candidate.extra_price =
+                demanded_of_payload(signals_, regression_, weighed, payload_, candidate.shapes.front().value);
+        }
+    }
+}
+
 /// Per output, the delay that the model at hand has there.
 Eigen::VectorXd Search::delays() const {
     Eigen::VectorXd result = Eigen::VectorXd::Zero(signals_.outputs());
@@ -191,6 +202,7 @@ std::vector<CandidateEntry> Search::passing() const {
                       weighed_residual_away_from_reversals(signals_, regression_, coefficients), sites_));
     demand_alike(found);
     add(scan_taken_payload(signals_, regression_, weighed, payload_));
+    demand_of_payloads(found, weighed);
     add(play_.candidates(signals_, regression_, weighed));
     std::vector<CandidateEntry> result;
     for (Candidate& candidate : found) {

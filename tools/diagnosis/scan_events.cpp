@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <optional>
 
 namespace dfdyn::tools {
 
@@ -71,6 +72,13 @@ struct Products {
 
 constexpr double apart_s = 2; ///< windows closer than this tell of the same event
 
+constexpr std::size_t usual = 3; ///< an event must explain three times what this one of its kind does
+
+/// What an event has to explain before it is one; none where there are too few to compare with.
+std::optional<double> demanded_by(const std::vector<EventWindow>& events) {
+    return events.size() > usual ? std::optional(1.5 * events[usual].score) : std::nullopt;
+}
+
 /// All windows of one length.
 void scan_windows(const DiagnosisSignals& signals, const EffectRegression& regression,
                   const Eigen::MatrixXd& weighed, const ContactSite& site, double length_s,
@@ -95,11 +103,30 @@ void scan_windows(const DiagnosisSignals& signals, const EffectRegression& regre
     }
 }
 
+/// As a payload's columns are weighed while they are `there` (T, 0 or 1): where they begin and end matters.
+Products products_of_payload(const EffectRegression& regression, const Eigen::MatrixXd& weighed,
+                             const std::vector<EffectColumn>& payload, const Eigen::VectorXd& there) {
+    Eigen::VectorXd share = Eigen::VectorXd::Zero(weighed.cols());
+    for (const EffectColumn::Part& part : payload.front().parts) {
+        const Eigen::VectorXd series = part.series.cwiseProduct(there);
+        share[part.output] = series.isZero(0) ? 0 : weighed_share(regression, series)[part.output];
+    }
+    return {payload, weighed, share};
+}
+
+/// What comes behind the fitted time leaves no residual.
+Eigen::Index fitted_rows(const Eigen::MatrixXd& weighed) {
+    Eigen::Index rows = weighed.rows();
+    while (rows > 0 && weighed.row(rows - 1).isZero(0)) {
+        --rows;
+    }
+    return rows;
+}
+
 } // namespace
 
 std::vector<Candidate> scan_contacts(const DiagnosisSignals& signals, const EffectRegression& regression,
                                      const Eigen::MatrixXd& weighed, const std::vector<ContactSite>& sites) {
-    constexpr std::size_t usual = 3; // an event must explain three times what this one of its kind does
     std::vector<Candidate> result;
     for (const ContactSite& site : sites) {
         std::vector<EventWindow> windows;
@@ -107,12 +134,12 @@ std::vector<Candidate> scan_contacts(const DiagnosisSignals& signals, const Effe
             scan_windows(signals, regression, weighed, site, length_s, windows);
         }
         const std::vector<EventWindow> events = events_of(windows, apart_s);
-        if (events.size() > usual) {
+        if (const std::optional<double> demanded = demanded_by(events)) {
             const EventWindow& best = events.front();
             const ContactPulse pulse{best.start_s, best.end_s, push_flanks * (best.end_s - best.start_s)};
             result.push_back(contact_candidate(signals, site, pulse, pulses_about(pulse, 0.15)));
             result.back().tried = static_cast<double>(windows.size());
-            result.back().extra_price = 1.5 * events[usual].score;
+            result.back().extra_price = *demanded;
         }
     }
     return result;
@@ -122,20 +149,18 @@ std::vector<Candidate> scan_taken_payload(const DiagnosisSignals& signals, const
                                           const Eigen::MatrixXd& weighed,
                                           const std::vector<EffectColumn>& payload) {
     constexpr double least_share = 0.05; // of the time, before and after
-    Eigen::VectorXd share = Eigen::VectorXd::Zero(weighed.cols());
-    for (const EffectColumn::Part& part : payload.front().parts) {
-        share[part.output] = part.series.isZero(0) ? 0 : weighed_share(regression, part.series)[part.output];
-    }
-    const Products products(payload, weighed, share);
-    const auto margin = static_cast<Eigen::Index>(least_share * static_cast<double>(signals.rows()));
+    const Products products =
+        products_of_payload(regression, weighed, payload, Eigen::VectorXd::Ones(signals.rows()));
+    const Eigen::Index rows = fitted_rows(weighed);
+    const auto margin = static_cast<Eigen::Index>(least_share * static_cast<double>(rows));
     Eigen::VectorXd moments = Eigen::VectorXd::Zero(products.moment.cols());
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(products.square.cols());
     double best = 0;
     Eigen::Index taken = -1;
-    for (Eigen::Index row = signals.rows() - 1; row >= margin; --row) {
+    for (Eigen::Index row = rows - 1; row >= margin; --row) {
         moments += products.moment.row(row).transpose();
         squares += products.square.row(row).transpose();
-        const double gain = row + margin < signals.rows() ? products.gain(moments, squares) : 0;
+        const double gain = row + margin < rows ? products.gain(moments, squares) : 0;
         if (gain > best) {
             best = gain;
             taken = row;
@@ -149,6 +174,26 @@ std::vector<Candidate> scan_taken_payload(const DiagnosisSignals& signals, const
         taken_payload(signals, payload, {time_s, time_s - 0.3, time_s - 0.1, time_s + 0.1, time_s + 0.3});
     candidate.tried = signals.measured.time_s[signals.rows() - 1] - signals.measured.time_s[0];
     return {std::move(candidate)};
+}
+
+double demanded_of_payload(const DiagnosisSignals& signals, const EffectRegression& regression,
+                           const Eigen::MatrixXd& weighed, const std::vector<EffectColumn>& payload,
+                           double taken_s) {
+    const Eigen::VectorXd& time = signals.measured.time_s;
+    const Eigen::Index rows = fitted_rows(weighed);
+    const Eigen::Index length = (time.head(rows).array() >= taken_s).count();
+    const auto every_other = Eigen::VectorXd::NullaryExpr(signals.rows(), [length](Eigen::Index row) {
+        return row / std::max<Eigen::Index>(1, length) % 2 == 0 ? 1.0 : 0.0;
+    });
+    const Products products = products_of_payload(regression, weighed, payload, every_other);
+    std::vector<EventWindow> windows;
+    for (Eigen::Index first = 0; length > 0 && first + length <= rows;
+         first += std::max<Eigen::Index>(1, length / 8)) {
+        const double gain = products.gain(products.moment.middleRows(first, length).colwise().sum(),
+                                          products.square.middleRows(first, length).colwise().sum());
+        windows.push_back({gain, time[first], time[first + length - 1]});
+    }
+    return demanded_by(events_of(std::move(windows), apart_s)).value_or(0);
 }
 
 } // namespace dfdyn::tools

@@ -32,6 +32,13 @@ std::vector<Candidate> scan_taken_payload(const DiagnosisSignals& signals, const
                                           const Eigen::MatrixXd& weighed,
                                           const std::vector<EffectColumn>& payload);
 
+/// What one that is taken up at `taken_s` has to explain, in units of the evidence: three times, as far as
+/// that can be told without a fit, what it would in most stretches of time that are as long. 0 where there
+/// are not enough of them. Cost: T p² for p columns, and a transform per output.
+double demanded_of_payload(const DiagnosisSignals& signals, const EffectRegression& regression,
+                           const Eigen::MatrixXd& weighed, const std::vector<EffectColumn>& payload,
+                           double taken_s);
+
 /// Looks for the gap at each joint whose course goes best with a residual.
 class PlayScan {
   public:

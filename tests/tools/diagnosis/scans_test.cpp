@@ -7,9 +7,11 @@
 #include "tests/tools/diagnosis/swinging_arm.hpp"
 #include "tests/tools/robot/arms.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <vector>
 
 namespace {
 
@@ -97,6 +99,46 @@ TEST_CASE("a push is found among slow noise, at its time, and the next ones to i
     CHECK(std::abs(found[0].value - start_s) < 0.5);
     CHECK(std::abs(found[1].value - start_s - 1.5) < 0.5);
     CHECK(push.extra_price < 1.5 * 16);
+}
+
+TEST_CASE("a payload that is taken up late has to explain more than loads that come and go would") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Residual residual(engine);
+    const std::vector<EffectColumn> payload = payload_columns(residual.signals);
+    const double taken_s = residual.signals.measured.time_s.tail(1)[0] - 1.5;
+    const auto demanded = [&] {
+        const EffectRegression regression = residual.regression();
+        const MatrixXd weighed = weighed_residual(regression, VectorXd(0));
+        return demanded_of_payload(residual.signals, regression, weighed, payload, taken_s);
+    };
+    // half as much again as the fourth largest of a hundred sums of four squares of a standard normal's
+    CHECK(demanded() < 1.5 * 20);
+
+    const Candidate mass = find(body_candidates(residual.signals), "payload", "tool");
+    const MatrixXd load = 2 * contribution(residual.signals, mass, 0);
+    const MatrixXd precision = residual.regression().noise().cwiseInverse();
+    std::vector<double> explained;
+    for (const Index first : {198, 702, 1206, 1710}) { // where windows are looked at
+        MatrixXd burst = MatrixXd::Zero(load.rows(), load.cols());
+        burst.middleRows(first, 151) = load.middleRows(first, 151);
+        residual.left += burst;
+        explained.push_back(0);
+        for (Index output = 0; output < load.cols(); ++output) {
+            const MatrixXd squares = residual.rows.analyse(burst.col(output)).cwiseAbs2();
+            explained.back() += squares.rowwise().sum().dot(precision.col(output));
+        }
+    }
+    const double least = *std::ranges::min_element(explained);
+    CHECK(demanded() > least / 2); // their evidence
+    CHECK(demanded() < 1.5 * least);
+}
+
+TEST_CASE("what a payload that is taken up early has to explain cannot be compared with anything") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Residual residual(engine);
+    const EffectRegression regression = residual.regression();
+    CHECK(demanded_of_payload(residual.signals, regression, weighed_residual(regression, VectorXd(0)),
+                              payload_columns(residual.signals), 8) == 0);
 }
 
 TEST_CASE("what is left at reversals only is bridged") {

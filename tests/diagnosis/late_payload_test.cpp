@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/diagnosis/run_panel.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace dfdyn::tests;
+
+TEST_CASE("real residuals that look like a load for some seconds are no payload that was taken up then") {
+    // the first two thirds of this recording, which are to predict the rest, end with four such seconds
+    const CaseScore score = run_panel(203125, 1, PanelMix{}, 1, [](const CaseScore&) {}).front();
+    INFO(describe(score));
+    REQUIRE(score.noise == "resampled");
+    REQUIRE(score.effects.empty());
+    CHECK(score.harm < 0.005);
+}
