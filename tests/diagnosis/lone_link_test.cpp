@@ -18,7 +18,8 @@ TEST_CASE(
         INFO(describe(score));
         REQUIRE(score.effects.size() == 1);
         REQUIRE(score.effects.front().named);
-        CHECK(score.effects.front().relative_error < 0.2);
+        REQUIRE(score.effects.front().relative_error);
+        CHECK(*score.effects.front().relative_error < 0.2);
         CHECK(score.effects.front().in_interval);
     }
 }

@@ -72,10 +72,9 @@ struct Products {
 
 constexpr double apart_s = 2; ///< windows closer than this tell of the same event
 
-constexpr std::size_t usual = 3; ///< an event must explain three times what this one of its kind does
-
 /// What an event has to explain before it is one; none where there are too few to compare with.
 std::optional<double> demanded_by(const std::vector<EventWindow>& events) {
+    constexpr std::size_t usual = 3; // three times what this one of its kind does
     return events.size() > usual ? std::optional(1.5 * events[usual].score) : std::nullopt;
 }
 
