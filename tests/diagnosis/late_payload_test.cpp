@@ -4,7 +4,7 @@
 
 using namespace dfdyn::tests;
 
-TEST_CASE("real residuals that look like a load for some seconds are no payload that was taken up then") {
+TEST_CASE("real residuals that look like a load for some seconds do not make the held-out error worse") {
     // the first two thirds of this recording, which are to predict the rest, end with four such seconds
     const CaseScore score = run_panel(203125, 1, PanelMix{}, 1, [](const CaseScore&) {}).front();
     INFO(describe(score));

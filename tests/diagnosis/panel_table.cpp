@@ -66,35 +66,36 @@ bool wrong_name(const CaseScore& score) {
     });
 }
 
-/// A rate with what is asked of it, and what it has been on the fixed panel less what another machine's
-/// rounding may cost.
+/// A rate with what is asked of it; what it has been on the fixed panel of short recordings, less what
+/// another machine's rounding may cost; and on a thousand long ones, less what chance may.
 struct Line {
     const char* what;
     Rate rate;
-    double target, floor;
+    double target, floor, long_floor;
     bool at_least = true;
 
     bool within(double limit) const { return at_least ? rate.share() >= limit : rate.share() <= limit; }
 };
 
 std::vector<Line> lines_of(const PanelSummary& summary) {
-    return {{"right name and place, or its class: strength 3 and more", summary.found_at_3, 0.97, 0.88},
-            {"the same at strength 1", summary.found_at_1, 0.92, 0.8},
-            {"the same at strength 0.3", summary.found_at_03, 0.75, 0.25},
-            {"exact name where nothing ties, strength 1 and more", summary.exact_name, 0.95, 0.85},
-            {"main parameter within 20 %, strength 1 and more", summary.parameter_within_20, 0.90, 0.8},
-            {"main parameter inside its 95 % interval", summary.parameter_in_interval, 0.90, 0.8},
-            {"torque constants that nobody gave, within 20 %", summary.constant_within_20, 0.90, 0.5},
-            {"torque constants that nobody gave, inside their 95 % interval", summary.constant_in_interval,
-             0.90, 0.8},
-            {"recordings without any effect that have a finding at 0.5 or more", summary.null_with_finding,
-             0.05, 0.05, false},
-            {"findings at 0.9 or more that are wrong", summary.confident_and_wrong, 0.05, 0.05, false},
-            {"two effects at once, both of strength 1 and more: both named", summary.both_named, 0.85, 0.6},
-            {"two effects at once, one or both at 0.3: both named", summary.both_named_with_weak, 0.85, 0},
-            {"effects outside the catalogue, strength 1 and more: no wrong name, output and input told",
-             summary.outside_silent, 0.80, 0.8},
-            {"the same at strength 0.3", summary.outside_weak, 0.80, 0}};
+    return {
+        {"right name and place, or its class: strength 3 and more", summary.found_at_3, 0.97, 0.88, 0.95},
+        {"the same at strength 1", summary.found_at_1, 0.92, 0.8, 0.9},
+        {"the same at strength 0.3", summary.found_at_03, 0.75, 0.25, 0.65},
+        {"exact name where nothing ties, strength 1 and more", summary.exact_name, 0.95, 0.85, 0.94},
+        {"main parameter within 20 %, strength 1 and more", summary.parameter_within_20, 0.90, 0.8, 0.9},
+        {"main parameter inside its 95 % interval", summary.parameter_in_interval, 0.90, 0.8, 0.87},
+        {"torque constants that nobody gave, within 20 %", summary.constant_within_20, 0.90, 0.5, 0.97},
+        {"torque constants that nobody gave, inside their 95 % interval", summary.constant_in_interval, 0.90,
+         0.8, 0.93},
+        {"recordings without any effect that have a finding at 0.5 or more", summary.null_with_finding, 0.05,
+         0.05, 0.03, false},
+        {"findings at 0.9 or more that are wrong", summary.confident_and_wrong, 0.05, 0.05, 0.05, false},
+        {"two effects at once, both of strength 1 and more: both named", summary.both_named, 0.85, 0.6, 0.85},
+        {"two effects at once, one or both at 0.3: both named", summary.both_named_with_weak, 0.85, 0, 0.5},
+        {"effects outside the catalogue, strength 1 and more: no wrong name, output and input told",
+         summary.outside_silent, 0.80, 0.8, 0.85},
+        {"the same at strength 0.3", summary.outside_weak, 0.80, 0, 0.5}};
 }
 
 ReportTable target_table(const PanelSummary& summary) {
@@ -253,14 +254,14 @@ PanelSummary summarise(const std::vector<CaseScore>& scores) {
     return summary;
 }
 
-std::vector<std::string> setbacks(const PanelSummary& summary) {
+std::vector<std::string> setbacks(const PanelSummary& summary, bool long_recordings) {
     std::vector<std::string> result;
     for (const Line& line : lines_of(summary)) {
-        if (line.rate.of > 0 && !line.within(line.floor)) {
+        const double floor = long_recordings ? line.long_floor : line.floor;
+        if (line.rate.of > 0 && !line.within(floor)) {
             std::array<char, 200> text{};
             std::snprintf(text.data(), text.size(), "%s: expected %s %.0f %%, found %s", line.what,
-                          line.at_least ? "at least" : "at most", 100 * line.floor,
-                          percent(line.rate).c_str());
+                          line.at_least ? "at least" : "at most", 100 * floor, percent(line.rate).c_str());
             result.emplace_back(text.data());
         }
     }

@@ -35,9 +35,9 @@ struct PanelSummary {
                                            ///< among what is unexplained; strength 1 and more, and weaker
 };
 
-/// What of it is worse than it has been on the fixed panel of the tests; empty: nothing. How far each was
-/// from its target is in the tables.
-std::vector<std::string> setbacks(const PanelSummary& summary);
+/// What of it is worse than it has been on the tests' panels, of 60 fixed recordings of 40 to 60 s or of a
+/// thousand `long_recordings` (200 s); empty: nothing. How far each was from its target is in the tables.
+std::vector<std::string> setbacks(const PanelSummary& summary, bool long_recordings);
 
 PanelSummary summarise(const std::vector<CaseScore>& scores);
 

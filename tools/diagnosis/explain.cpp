@@ -321,7 +321,8 @@ void Search::estimate_noise(bool white) {
     at_.noise = std::move(noise);
 }
 
-/// How far a push must stand out was learned while the noise was taken for white: now it is learned anew.
+/// How far a push, or a payload that is taken up, must stand out was learned while the noise was taken for
+/// white: now it is learned anew.
 void Search::forget_prices() {
     for (const ChosenShape& one : at_.chosen) {
         at_.candidates[one.candidate].extra_price = 0;

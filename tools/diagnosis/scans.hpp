@@ -33,8 +33,9 @@ std::vector<Candidate> scan_taken_payload(const DiagnosisSignals& signals, const
                                           const std::vector<EffectColumn>& payload);
 
 /// What one that is taken up at `taken_s` has to explain, in units of the evidence: three times, as far as
-/// that can be told without a fit, what it would in most stretches of time that are as long. 0 where there
-/// are not enough of them. Cost: T p² for p columns, and a transform per output.
+/// that can be told without a fit, what it would in the fourth best of the stretches of time that are as long
+/// and apart. 0 where there are not four of them: when it is there for more than about a fifth of the time.
+/// Cost: T p² for p columns, and a transform per output.
 double demanded_of_payload(const DiagnosisSignals& signals, const EffectRegression& regression,
                            const Eigen::MatrixXd& weighed, const std::vector<EffectColumn>& payload,
                            double taken_s);

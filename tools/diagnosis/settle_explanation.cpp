@@ -32,7 +32,8 @@ bool needs_links_only(const Explanation& at, const std::vector<ChosenShape>& exa
 }
 
 /// Are the links' masses as the robot's file says? The search went on as if they need not be. That one link
-/// is off is as likely as that all are; what it costs to be one cause of many does not speak against it.
+/// is off (or some: that costs as much again for each) is as likely as that all are; what it costs to be one
+/// cause of many does not speak against it.
 void decide_masses(Explanation& at, const EffectRegression& regression) {
     at.problem.sums = regression.weighed_sums();
     at.chosen = search_effects(at.problem, at.chosen);

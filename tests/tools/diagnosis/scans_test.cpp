@@ -112,7 +112,7 @@ TEST_CASE("a payload that is taken up late has to explain more than loads that c
         return demanded_of_payload(residual.signals, regression, weighed, payload, taken_s);
     };
     // half as much again as the fourth largest of a hundred sums of four squares of a standard normal's
-    CHECK(demanded() < 1.5 * 20);
+    CHECK(demanded() < 1.5 * 15);
 
     const Candidate mass = find(body_candidates(residual.signals), "payload", "tool");
     const MatrixXd load = 2 * contribution(residual.signals, mass, 0);
@@ -129,8 +129,9 @@ TEST_CASE("a payload that is taken up late has to explain more than loads that c
         }
     }
     const double least = *std::ranges::min_element(explained);
-    CHECK(demanded() > least / 2); // their evidence
-    CHECK(demanded() < 1.5 * least);
+    // more than their evidence, which is half of that; not all of 1.5 times, for windows share one weight
+    CHECK(demanded() > 0.5 * least);
+    CHECK(demanded() < 0.8 * least);
 }
 
 TEST_CASE("what a payload that is taken up early has to explain cannot be compared with anything") {
