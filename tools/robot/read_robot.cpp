@@ -26,7 +26,8 @@ class ChainBuilder {
         if (joint.type == urdf::Joint::FIXED) {
             placement_ = placement;
             if (&joint == sensor_joint_.get()) {
-                robot_.sensor = ForceTorqueSensor{joint.name, robot_.joints.size(), placement, false, {}};
+                robot_.sensor = ForceTorqueSensor{joint.name, robot_.joints.size(), placement, false,
+                                                  InertialParameters::Zero()};
             }
         } else {
             add_moving(joint, placement);
