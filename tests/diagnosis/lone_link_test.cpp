@@ -6,26 +6,23 @@ using namespace dfdyn::tests;
 
 namespace {
 
-constexpr int first_seed = 101601;
-constexpr int cases = 8;
-
-PanelMix wrench_in_white_noise() {
-    PanelMix mix;
-    mix.null_share = mix.two_effects_share = mix.outside_share = 0;
+std::vector<CaseScore> wrenches_in_white_noise(PanelMix mix) {
+    mix.two_effects_share = mix.outside_share = 0;
     mix.robot = "icub_wrench"; // behind its sensor there are four bodies only
     mix.noise = "white";
-    return mix;
+    return run_panel(101601, 8, mix, 1, [](const CaseScore&) {});
 }
 
 } // namespace
 
 TEST_CASE(
     "the one link that is off in an otherwise exact file is named, though masses could all be uncertain") {
-    PanelMix mix = wrench_in_white_noise();
+    PanelMix mix;
+    mix.null_share = 0;
     mix.effect = "link_inertia_error";
     mix.masses_off = false;
     mix.strength = 10;
-    for (const CaseScore& score : run_panel(first_seed, cases, mix, 1, [](const CaseScore&) {})) {
+    for (const CaseScore& score : wrenches_in_white_noise(mix)) {
         INFO(describe(score));
         REQUIRE(score.effects.size() == 1);
         REQUIRE(score.effects.front().named);
@@ -37,10 +34,10 @@ TEST_CASE(
 
 TEST_CASE(
     "where all masses are a little off no link is likely, though exact masses would do with few names") {
-    PanelMix mix = wrench_in_white_noise();
+    PanelMix mix;
     mix.null_share = 1;
     mix.masses_off = true;
-    for (const CaseScore& score : run_panel(first_seed, cases, mix, 1, [](const CaseScore&) {})) {
+    for (const CaseScore& score : wrenches_in_white_noise(mix)) {
         INFO(describe(score));
         for (const FindingScore& finding : score.findings) {
             CHECK(finding.confidence < 0.5);
