@@ -6,12 +6,12 @@
 #include "tests/diagnosis/push_panel.hpp"
 #include "tests/diagnosis/run_panel.hpp"
 #include "tools/common/atomic_file.hpp"
-#include "tools/common/error.hpp"
 
 #include <CLI/CLI.hpp>
 
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <optional>
 #include <random>
@@ -174,9 +174,7 @@ void add_mix(CLI::App& command, PanelOptions& options) {
                        "Share with effects outside the catalogue");
 }
 
-} // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
     CLI::App app("Recordings of simulated arms with hidden effects, to test who looks for them");
     app.require_subcommand(1);
     PanelOptions options;
@@ -196,18 +194,24 @@ int main(int argc, char** argv) {
     const CLI::App* const changes = add_changes(app, options);
     const CLI::App* const pushes = add_pushes(app, options);
     CLI11_PARSE(app, argc, argv);
+    if (!options.seed) {
+        options.seed = std::random_device{}();
+    }
+    if (changes->parsed()) {
+        return watch(options);
+    }
+    if (pushes->parsed()) {
+        return push(options);
+    }
+    return generating->parsed() ? generate(options) : score(options);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
     try {
-        if (!options.seed) {
-            options.seed = std::random_device{}();
-        }
-        if (changes->parsed()) {
-            return watch(options);
-        }
-        if (pushes->parsed()) {
-            return push(options);
-        }
-        return generating->parsed() ? generate(options) : score(options);
-    } catch (const dfdyn::tools::InputError& error) {
+        return run(argc, argv);
+    } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return 2;
     }

@@ -97,6 +97,8 @@ class Search {
     Eigen::VectorXd delays() const;
     std::vector<CandidateEntry> passing() const;
     void refine();
+    void place_nuisance();
+    void count_rivals();
     void gather(std::vector<CandidateEntry> passing);
     void estimate_noise(bool white);
     void forget_prices();
@@ -225,6 +227,23 @@ void Search::refine() {
     }
 }
 
+/// The first columns.
+void Search::place_nuisance() {
+    at_.problem.nuisance.clear();
+    for (std::size_t i = 0; i < nuisance_.size(); ++i) {
+        at_.problem.nuisance.push_back({static_cast<Eigen::Index>(i), nuisance_deviation_[i]});
+    }
+}
+
+/// Of each candidate: those with a name, or those without, whichever it is.
+void Search::count_rivals() {
+    const auto named = std::ranges::count_if(at_.candidates, &Candidate::named);
+    const auto unnamed = std::ssize(at_.candidates) - named;
+    for (std::size_t i = 0; i < at_.candidates.size(); ++i) {
+        at_.problem.candidates[i].rivals = static_cast<double>(at_.candidates[i].named() ? named : unnamed);
+    }
+}
+
 /// The problem of all candidates with the noise at hand; chosen ones stay chosen where they are still there.
 void Search::gather(std::vector<CandidateEntry> passing) {
     struct Kept {
@@ -268,15 +287,8 @@ void Search::gather(std::vector<CandidateEntry> passing) {
         }
     }
     std::ranges::for_each(passing, add);
-    const auto named = std::ranges::count_if(at_.candidates, &Candidate::named);
-    const auto unnamed = std::ssize(at_.candidates) - named;
-    for (std::size_t i = 0; i < at_.candidates.size(); ++i) {
-        at_.problem.candidates[i].rivals = static_cast<double>(at_.candidates[i].named() ? named : unnamed);
-    }
-    at_.problem.nuisance.clear();
-    for (std::size_t i = 0; i < nuisance_.size(); ++i) {
-        at_.problem.nuisance.push_back({static_cast<Eigen::Index>(i), nuisance_deviation_[i]});
-    }
+    count_rivals();
+    place_nuisance();
     regression_.set_columns(std::move(columns));
     at_.problem.sums = regression_.weighed_sums();
     at_.chosen.clear();

@@ -82,7 +82,7 @@ void suspect_poor_extension(Diagnosis& diagnosis) {
         if (reason.empty()) {
             worse.append(worse.empty() ? "" : ", ").append(name);
         } else {
-            diagnosis.suspicions.push_back(lead + name + ", " + reason);
+            diagnosis.suspicions.push_back(std::string(lead).append(name).append(", ").append(reason));
         }
     }
     if (!worse.empty()) {
