@@ -17,6 +17,11 @@ Recording read_ur5(const std::string& name) {
                           {.joint_count = 6, .outputs = OutputKind::motor_current, .velocity = true});
 }
 
+Recording read_six_joints(const std::string& name, OutputKind outputs) {
+    return read_recording(std::filesystem::path(DFDYN_TEST_DATA_DIR) / name,
+                          {.joint_count = 6, .outputs = outputs});
+}
+
 std::int64_t longest_step_ns(const Recording& recording) {
     std::int64_t longest = 0;
     for (std::size_t row = 1; row < recording.row_count(); ++row) {
@@ -53,4 +58,18 @@ TEST_CASE("values of a shipped recording land in their columns") {
     CHECK(recording.velocity.row(0)[0] == 0);
     CHECK(recording.output.row(1)[0] == 0.006725);
     CHECK(recording.output.row(1)[5] == 0.091502);
+}
+
+TEST_CASE("the shipped recordings of the TX40 and of the second UR5 are read whole") {
+    const Recording tx40 = read_six_joints("tx40_figaroh/tx40_5kHz.csv", OutputKind::joint_torque);
+    CHECK(tx40.row_count() == 37'500);
+    CHECK(tx40.time_ns.back() == 7'499'800'000);
+    CHECK(longest_step_ns(tx40) == 200'000);
+    CHECK(tx40.output.row(0)[1] == -24.3315);
+    const Recording ur5 =
+        read_six_joints("ur5_nist/halfspeed_payload_0p726kg.csv", OutputKind::motor_current);
+    CHECK(ur5.row_count() == 7906);
+    CHECK(ur5.time_ns.back() == 63'240'000'000);
+    CHECK(longest_step_ns(ur5) == 8'000'000);
+    CHECK(ur5.output.row(0)[1] == -2.398737);
 }
