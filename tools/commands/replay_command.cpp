@@ -13,6 +13,7 @@
 #include "tools/evaluation/replay_interface.hpp"
 #include "tools/evaluation/replay_report.hpp"
 #include "tools/evaluation/replay_summary.hpp"
+#include "tools/host/frozen_estimator.hpp"
 #include "tools/model/model_file.hpp"
 #include "tools/report/report.hpp"
 
@@ -32,6 +33,7 @@ struct ReplayOptions {
     std::filesystem::path report;
     std::optional<std::size_t> horizon;
     bool from_prior = false;
+    bool frozen = false;
     MonitorOptions monitor;
 
     std::filesystem::path bus; ///< the recordings are candump logs, or there is an interface
@@ -77,6 +79,9 @@ struct Replaying {
 
 Replaying make_replaying(const ReplayOptions& options, std::span<const TrainedModel> models) {
     Replaying replaying{make_estimator(models, options.from_prior), nullptr, {}};
+    if (options.frozen) {
+        replaying.estimator = frozen(std::move(replaying.estimator));
+    }
     if (options.monitor.wanted()) {
         auto watched = monitored(std::move(replaying.estimator),
                                  options.monitor.setup(models, shown(options.models.front())));
@@ -228,9 +233,14 @@ void add_replay_command(CLI::App& app, Command& chosen) {
         ->check(CLI::Range(0, 10000));
     command->add_flag("--from-prior", options->from_prior,
                       "Start with nothing learned: keep the hyperparameters, drop the trained start");
+    command->add_flag(
+        "--frozen", options->frozen,
+        "Predict without learning: nothing of the recording's outputs reaches the model; errors "
+        "and innovations are reported as always");
     options->monitor.add_to(*command);
     command->footer(
         "Example:\n  dfdyn replay --model model.json --log run.csv -o out.csv --report report.html\n"
+        "  dfdyn replay --model model.json --log unseen.csv --frozen\n"
         "  dfdyn replay --model model.json --log run.csv --monitor --changes changes.json\n"
         "  dfdyn replay --model model.json --bus bus.json --log run.log -o out.csv\n"
         "  dfdyn replay --model model.json --bus bus.json --can can0 --record run.log -o out.csv\n"

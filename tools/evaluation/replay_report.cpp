@@ -113,7 +113,9 @@ std::string summary_sentence(const ReplaySummary& summary) {
         stretches += figures.contradictions.size();
     }
     const std::string learning =
-        std::to_string(ticks) + " ticks, every prediction made before its sample was learned. ";
+        std::to_string(ticks) + (summary.learned
+                                     ? " ticks, every prediction made before its sample was learned. "
+                                     : " ticks, predicted without learning. ");
     return learning + (stretches == 0
                            ? "Nowhere does the measurement contradict the model."
                            : "The measurement contradicts the model in " + std::to_string(stretches) +

@@ -59,6 +59,20 @@ std::string describe_model(const TrainedModel& model) {
            (model.features.orthogonal ? "orthogonal " : "") + "Fourier columns";
 }
 
+/// The durations of the ticks that learned, or else of those that predicted (µs).
+std::vector<double> durations_of(std::span<const ReplayedRecording> replayed, bool learned) {
+    std::vector<double> durations;
+    for (const ReplayedRecording& recording : replayed) {
+        for (std::size_t tick = 0; tick < recording.status.size(); ++tick) {
+            const Status& status = recording.status[tick];
+            if (learned ? status.learned() : status.predicted()) {
+                durations.push_back(recording.duration_us[tick]);
+            }
+        }
+    }
+    return durations;
+}
+
 /// As `formatted`; a dash for what there is none of.
 std::string formatted_or_dash(const char* format, double value) {
     return std::isnan(value) ? "-" : formatted(format, value);
@@ -92,15 +106,11 @@ ReplaySummary summarise(std::span<const TrainedModel> models, const HostEstimato
     }
     summary.state_bytes = estimator.state_bytes();
     summary.operations = estimator.cost().predict + estimator.cost().learn;
-    std::vector<double> durations;
     for (const ReplayedRecording& recording : replayed) {
         summary.recordings.push_back(figures_of(recording, models.front()));
-        for (std::size_t tick = 0; tick < recording.status.size(); ++tick) {
-            if (recording.status[tick].learned()) {
-                durations.push_back(recording.duration_us[tick]);
-            }
-        }
+        summary.learned = summary.learned || summary.recordings.back().learned > 0;
     }
+    const std::vector<double> durations = durations_of(replayed, summary.learned);
     if (!durations.empty()) {
         summary.median_us = median(durations);
         summary.p99_us = quantile(durations, 0.99);
@@ -132,9 +142,10 @@ void print_summary(std::ostream& out, const ReplaySummary& summary) {
             print_values(out, index + ", after", recording.horizon_steady);
         }
     }
-    out << "time of a tick that learns, on this machine: median " << formatted("%.1f", summary.median_us)
-        << " us, 99 % " << formatted("%.1f", summary.p99_us) << " us, longest "
-        << formatted("%.1f", summary.longest_us) << " us (" << summary.operations << " multiply-adds)\n"
+    out << "time of a tick that " << (summary.learned ? "learns" : "predicts") << ", on this machine: median "
+        << formatted("%.1f", summary.median_us) << " us, 99 % " << formatted("%.1f", summary.p99_us)
+        << " us, longest " << formatted("%.1f", summary.longest_us) << " us (" << summary.operations
+        << " multiply-adds)\n"
         << "learned state: " << summary.state_bytes << " bytes\n"
         << "build: " << build_flags() << '\n';
 }

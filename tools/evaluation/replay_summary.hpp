@@ -29,8 +29,9 @@ struct ReplaySummary {
     std::size_t horizon = 0;
     std::string model; ///< one line: structure, input, features, of each that is combined
     std::size_t state_bytes = 0;
-    std::int64_t operations = 0;                      ///< multiply-adds per tick that learns
-    double median_us = 0, p99_us = 0, longest_us = 0; ///< of the ticks that learned
+    std::int64_t operations = 0; ///< multiply-adds per tick that learns; if none did, per tick
+    bool learned = false;        ///< whether any tick learned
+    double median_us = 0, p99_us = 0, longest_us = 0; ///< of ticks that learned; if none did, that predicted
 };
 
 /// The time after which the paper takes a model to have settled.

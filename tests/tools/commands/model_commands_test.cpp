@@ -23,8 +23,9 @@ const std::string robot = " --robot " + urdf + " --tip tool ";
 const std::string icub =
     " --robot " DFDYN_TEST_DATA_DIR "/robots/icub_right_arm/icub_right_arm.urdf --base chest --tip r_hand ";
 
-/// The rows of a CSV file without the columns whose names begin with `prefix`.
-std::string without_columns(const std::string& csv, const std::string& prefix) {
+/// The rows of a CSV file without the columns for whose names `dropped` is true.
+template <class Dropped>
+std::string without_columns(const std::string& csv, const Dropped& dropped) {
     std::istringstream lines(csv);
     std::vector<bool> kept;
     std::string result;
@@ -37,7 +38,7 @@ std::string without_columns(const std::string& csv, const std::string& prefix) {
         std::string row;
         for (std::size_t column = 0; column < values.size(); ++column) {
             if (kept.size() < values.size()) {
-                kept.push_back(!values[column].starts_with(prefix));
+                kept.push_back(!dropped(values[column]));
             }
             if (kept[column]) {
                 row.append(row.empty() ? "" : ",").append(values[column]);
@@ -55,10 +56,14 @@ class Bench {
         REQUIRE(call("simulate --robot " + urdf +
                      " --scenario " DFDYN_TEST_DATA_DIR "/scenarios/small_arm.json -o " + path("run.csv"))
                     .status == 0);
-        directory_.write("positions.csv", without_columns(file_content(path("run.csv")), "qd"));
+        write("positions.csv", without_columns(file_content(path("run.csv")), [](const std::string& name) {
+                  return name.starts_with("qd");
+              }));
     }
 
     std::string path(const std::string& name) const { return directory_.path() / name; }
+
+    void write(const std::string& name, const std::string& content) const { directory_.write(name, content); }
 
     Outcome call(const std::string& arguments) const { return run_program(directory_, arguments); }
 
@@ -218,6 +223,48 @@ TEST_CASE("several models are replayed as one, if they are of the same arm") {
     check_refused(
         bench.call("replay --model " + bench.path("model.json") + "," + bench.path("wrench.json") + on_log),
         "expected joints and outputs as in ");
+}
+
+/// The outputs tau1 and tau2 of the rows in reverse order, everything else as it was.
+std::string with_reversed_outputs(const std::string& csv) {
+    std::istringstream lines(csv);
+    std::vector<std::vector<std::string>> rows;
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream fields(line);
+        rows.emplace_back();
+        for (std::string field; std::getline(fields, field, ',');) {
+            rows.back().push_back(field);
+        }
+    }
+    std::string result;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+        for (std::size_t column = 0; column < rows[row].size(); ++column) {
+            const bool output = rows[0][column].starts_with("tau");
+            const std::size_t from = output && row > 0 ? rows.size() - row : row;
+            result.append(column == 0 ? "" : ",").append(rows[from][column]);
+        }
+        result.append("\n");
+    }
+    return result;
+}
+
+TEST_CASE("a frozen replay predicts the same whatever was measured") {
+    const Bench bench;
+    REQUIRE(bench.train("--outputs tau --model SPK --input DFSR" + robot).status == 0);
+    const std::string reversed = with_reversed_outputs(file_content(bench.path("run.csv")));
+    bench.write("reversed.csv", reversed);
+    const auto predictions = [&bench](const std::string& log, const std::string& options) {
+        const Outcome outcome = bench.replay(bench.path(log), options + " -o " + bench.path("out.csv"));
+        CAPTURE(outcome.error);
+        REQUIRE(outcome.status == 0);
+        CHECK((outcome.out.find(" 0 learned") != std::string::npos) == (options == "--frozen"));
+        return without_columns(file_content(bench.path("out.csv")), [](const std::string& name) {
+            return !name.ends_with("_pred") && !name.ends_with("_std");
+        });
+    };
+    const std::string frozen = predictions("run.csv", "--frozen");
+    CHECK(predictions("reversed.csv", "--frozen") == frozen);
+    CHECK(predictions("run.csv", "") != frozen);
 }
 
 } // namespace model_commands_test
