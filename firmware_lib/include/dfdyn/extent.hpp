@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/strict_math.hpp"
+
 namespace dfdyn {
 
 /// Marks a size that only the host's tools know at run time. Firmware never uses it: every size is then a

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/strict_math.hpp"
+
 namespace dfdyn {
 
 /// Rows that give position, velocity and acceleration in the middle of a window of M+1 samples (M even, ≥ 2),

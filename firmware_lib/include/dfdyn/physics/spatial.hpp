@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/strict_math.hpp"
+
 namespace dfdyn {
 
 /// A vector of space. The scalar may be any type with arithmetic, also one that carries derivatives.

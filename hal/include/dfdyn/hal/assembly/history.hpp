@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/strict_math.hpp"
 #include "dfdyn/hal/reason.hpp"
 
 #include <array>

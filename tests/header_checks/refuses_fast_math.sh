@@ -1,0 +1,77 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# refuses_fast_math.sh COMPILER INCLUDE_DIRS HEADER...: fails when a translation unit that includes one of these headers would
+# compile with flags under which the library is wrong without a sign of it (dfdyn/strict_math.hpp). INCLUDE_DIRS, separated by
+# colons, are where the headers are. A header without floating-point numbers need not refuse.
+set -euo pipefail
+
+compiler=$1
+IFS=: read -r -a include_dirs <<<"$2"
+shift 2
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+bad=0
+
+# message FLAG...: what the compiler says of a translation unit that needs nothing but the check.
+message() {
+    echo '#include "dfdyn/strict_math.hpp"' >"$scratch/unit.cpp"
+    "$compiler" -std=c++20 "${include_dirs[@]/#/-I}" -w "$@" -fsyntax-only "$scratch/unit.cpp" 2>&1 || true
+}
+
+# expect refuses|accepts FLAG...
+expect() {
+    local wanted=$1 outcome=accepts said
+    shift
+    said=$(message "$@")
+    if grep -q 'error.*dfdyn does not work with.*Compile this file without' <<<"$said"; then
+        outcome=refuses
+    elif [[ -n $said ]]; then
+        outcome="says otherwise of"
+    fi
+    if [[ $outcome != "$wanted" ]]; then
+        echo "dfdyn/strict_math.hpp $outcome $*: $said"
+        bad=1
+    fi
+}
+
+expect accepts -O3
+expect accepts -O3 -fno-math-errno -ffp-contract=fast
+expect accepts -ffast-math -fno-fast-math
+expect refuses -ffast-math
+expect refuses -Ofast
+expect refuses -O1 -ffinite-math-only
+if ! "$compiler" --version | grep -q clang; then # which has no macro for it
+    expect refuses -ffast-math -fno-finite-math-only
+    expect refuses -funsafe-math-optimizations
+fi
+
+# Every header reaches the check through our own includes.
+if ! perl -e '
+    my ($dirs, @headers) = @ARGV;
+    my (%text, %reaches);
+    sub text_of {
+        my ($header) = @_;
+        for my $dir (split /:/, $dirs) {
+            next unless open my $file, "<", "$dir/$header";
+            local $/;
+            return <$file>;
+        }
+        die "$header: not found below $dirs\n";
+    }
+    sub reaches {
+        my ($header) = @_;
+        return $reaches{$header} if defined $reaches{$header};
+        $reaches{$header} = $header eq "dfdyn/strict_math.hpp";
+        $text{$header} = text_of($header);
+        for my $next ($text{$header} =~ /^#include "(dfdyn\/[^"]+)"/gm) {
+            $reaches{$header} ||= reaches($next);
+        }
+        return $reaches{$header};
+    }
+    my @without = grep { !reaches($_) && $text{$_} =~ /\b(float|double|Scalar|isfinite)\b/ } @headers;
+    print "$_: does not include dfdyn/strict_math.hpp\n" for @without;
+    exit(@headers == 0 || @without > 0);
+' "$(IFS=:; echo "${include_dirs[*]}")" "$@"; then
+    bad=1
+fi
+exit "$bad"
