@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 namespace change_detector_test {
 
@@ -147,6 +149,45 @@ TEST_CASE("one block, however large, raises no alarm", "[monitor]") {
     REQUIRE(alarms(detector, innovations, 1000, engine) == 0);
     CHECK_FALSE(step(detector, innovations, engine, {.shift = 1e30}));
     CHECK(alarms(detector, innovations, 1000, engine) == 0);
+}
+
+/// Blocks until the alarm of a payload that comes after 1,500 blocks, the first of which or one in the middle
+/// is absurd: all of its means are `spike`.
+template <class Scalar>
+int blocks_to_payload(std::optional<Scalar> spike, int at, std::mt19937_64 engine) {
+    Innovations<Scalar> innovations(0.3, false);
+    Detector<Scalar> detector({}, true, static_cast<Scalar>(10 * blocks_per_hour));
+    std::array<OutputBlock<Scalar>, outputs> absurd{};
+    bool follows = false;
+    for (int block = 0; block < 2000; ++block) {
+        auto now = innovations.next(engine, {.payload = block < 1500 ? 0 : 0.4});
+        const auto* before = follows ? absurd.data() : innovations.before();
+        follows = spike && block == at;
+        if (follows) {
+            for (OutputBlock<Scalar>& one : now) {
+                one.innovation = one.payload[0] = one.force[0] = one.friction[0] = *spike;
+            }
+            absurd = now;
+        }
+        if (detector.add(now.data(), before, speed<Scalar>)) {
+            return block - 1500;
+        }
+    }
+    return 500;
+}
+
+TEMPLATE_TEST_CASE("an absurd block raises no alarm and hides no later change", "[monitor]", float, double) {
+    DFDYN_SEEDED_ENGINE(engine);
+    using Limits = std::numeric_limits<TestType>;
+    const TestType spike =
+        GENERATE(TestType(1e10), TestType(1e20), TestType(-1e30), Limits::max(), Limits::quiet_NaN());
+    const int at = GENERATE(0, 100, 1000);
+    CAPTURE(spike, at);
+    const int usual = blocks_to_payload<TestType>({}, at, engine);
+    REQUIRE(usual >= 0);
+    const int found = blocks_to_payload<TestType>(spike, at, engine);
+    CHECK(found >= 0);
+    CHECK(found <= usual + 10);
 }
 
 TEST_CASE("alarms that were nothing raise the limit of their kind", "[monitor]") {

@@ -61,6 +61,7 @@ constexpr double force_x = 12;
 /// What a fault of a sample does to its values; nothing by itself.
 struct Fault {
     int kind = 0;
+    double size = 0; ///< of kinds 5 to 8, a spike on output, prediction or position, or two on the output
 
     template <class Scalar>
     void operator()(Scalar* position, Scalar* output, Scalar* predicted) const {
@@ -78,6 +79,16 @@ struct Fault {
             break;
         case 4:
             output[0] = 1e30F;
+            break;
+        case 5:
+        case 8:
+            output[0] = static_cast<Scalar>(size);
+            break;
+        case 6:
+            predicted[1] = static_cast<Scalar>(size);
+            break;
+        case 7:
+            position[0] = static_cast<Scalar>(size);
             break;
         default:
             break;
@@ -260,6 +271,29 @@ TEST_CASE("samples that are not numbers count as gaps, and the monitor goes on",
     REQUIRE(run(monitor, arm, 80, engine) > 0);
     CHECK(name(monitor.change().cause) == std::string(name(Cause::bias)));
     CHECK(std::isfinite(monitor.change().confidence));
+}
+
+TEMPLATE_TEST_CASE("after a spike of any size nothing is announced, and a change is found as soon as ever",
+                   "[monitor]", float, double) {
+    DFDYN_SEEDED_ENGINE(engine);
+    const int kind = GENERATE(5, 6, 7, 8);
+    const double size = GENERATE(1e6, 1e10, 1e15, 1e20, 1e25, 1e38, -3e38);
+    const Cause cause = GENERATE(Cause::payload, Cause::bias, Cause::frozen);
+    CAPTURE(kind, size, name(cause));
+    const auto fixed = constants<TestType>();
+    TestMonitor<TestType> monitor(fixed);
+    constexpr double spike_s = 25;
+    constexpr double from_s = 40;
+    Swinging<TestType> arm({cause, from_s, 1e9});
+    int early = run(monitor, arm, spike_s, engine);
+    early += arm.step(monitor, engine, {kind, size}) ? 1 : 0;
+    early += arm.step(monitor, engine, {kind == 8 ? kind : 0, -size}) ? 1 : 0;
+    early += run(monitor, arm, from_s, engine);
+    CHECK(early == 0);
+    REQUIRE(run(monitor, arm, from_s + 30, engine) > 0);
+    CHECK(name(monitor.change().cause) == std::string(name(cause)));
+    CHECK(1e-9 * static_cast<double>(monitor.change().alarm_ns) - from_s < 4);
+    CHECK(monitor.change().confidence > TestType(0.8));
 }
 
 TEST_CASE("after a restart the monitor begins anew: no alarm by what was before", "[monitor]") {

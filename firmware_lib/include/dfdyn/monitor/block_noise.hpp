@@ -49,8 +49,12 @@ class BlockNoise {
 
     static constexpr int cost = 2 * function_cost + 25; ///< of `learn`, `smallest` and `whitening`
 
-    /// A block of class `c`, after one of class `before` (-1: after none).
+    /// A block of class `c`, after one of class `before` (-1: after none). One that is no number is passed
+    /// over.
     void learn(Scalar block, Scalar block_before, int c, int before) noexcept {
+        if (!std::isfinite(block) || !std::isfinite(block_before)) {
+            return;
+        }
         Class& one = class_[c];
         const Scalar value = std::clamp(block, -largest, largest);
         one.blocks = std::min(one.blocks + 1, 2 * memory);

@@ -126,6 +126,9 @@ class ChangeDetector {
   private:
     static constexpr int shared_columns = 1 + force_columns; ///< payload's mass, force
     static constexpr Scalar power_memory = 600;              ///< blocks
+    static constexpr Scalar power_first = 5;                 ///< blocks
+    static constexpr Scalar power_outlier = 100;             ///< times the mean, that a block counts at most
+    static constexpr Scalar largest_power = Scalar(1e12);    ///< that the first one counts at most
 
     struct Cusum {
         Scalar sum, peak;
@@ -185,7 +188,7 @@ class ChangeDetector {
     void sum_shared(const Shared& shared) noexcept {
         powers_ = std::min(powers_ + 1, power_memory);
         for (int i = 0; i < shared_columns; ++i) {
-            power_[i] += (shared.square[i] - power_[i]) / powers_;
+            learn_power(i, shared.square[i]);
             if (power_[i] > 0) {
                 using std::sqrt;
                 const Scalar size = (i == 0 ? shift_size : force_size) / sqrt(power_[i]);
@@ -193,6 +196,19 @@ class ChangeDetector {
             }
         }
         rise(5 * outputs_ + 2 * shared_columns, std::min(shared.burst, burst_limit) - burst_drift);
+    }
+
+    /// The mean begins with the smallest of the first few blocks; later none counts for much more than the
+    /// mean. So one of absurd columns, or of none that are numbers, does not hide what follows.
+    void learn_power(int i, Scalar square) noexcept {
+        Scalar& power = power_[i];
+        const Scalar most = power > 0 ? power_outlier * power : largest_power;
+        const Scalar bounded = std::min(most, square); // `most` if it is no number
+        if (powers_ <= power_first) {
+            power = power > 0 ? std::min(power, bounded) : bounded;
+        } else {
+            power += (bounded - power) / powers_;
+        }
     }
 
     /// Of a shift g δ and one of -g δ: δ Σ g e and δ² Σ g².

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace dfdyn {
 
@@ -73,7 +74,13 @@ class FrozenWatch {
     };
     using States = Storage<State, count>;
 
-    static void observe(State& state, Scalar step, bool repeated, bool others_move) noexcept {
+    /// One step counts at most so many usual ones, once those are known.
+    static constexpr Scalar outlier = 100;
+
+    static void observe(State& state, Scalar whole_step, bool repeated, bool others_move) noexcept {
+        const bool known = state.moves >= 10 * steps;
+        const Scalar most = known ? outlier * state.usual_step : std::numeric_limits<Scalar>::max() / memory;
+        const Scalar step = std::min(most, whole_step);
         if (!repeated) {
             state.longest = std::max(state.longest, state.run);
             state.run = 0;

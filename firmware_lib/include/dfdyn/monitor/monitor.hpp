@@ -72,6 +72,10 @@ class Monitor {
     };
 
     static constexpr int catch_up = 3; ///< blocks of the past that the bank takes in per block
+    /// Deviations that an innovation or a residual counts at most. One spike then cannot overflow a square or
+    /// outweigh all later blocks in a mean; what is as large as this for long is still an alarm.
+    static constexpr Scalar largest_deviation = 1000;
+    static constexpr Scalar largest_position = 10'000; ///< rad, m: beyond it a sample counts as a gap
 
     explicit Monitor(const Constants&&) = delete; // it would refer to a temporary
     explicit Monitor(const Constants& constants) noexcept
@@ -96,10 +100,10 @@ class Monitor {
         since_renewal_ = 2 * constants.renewal_blocks;
     }
 
-    /// One tick; one of values that are not finite counts as a gap. True: there is news of `change()`, which
-    /// is found, is better known, or is over.
+    /// One tick; one of values that are not finite, or of an absurd position, counts as a gap. True: there is
+    /// news of `change()`, which is found, is better known, or is over.
     bool tick(const Observation<Scalar>& observation) noexcept {
-        if (!finite(observation)) {
+        if (!usable(observation)) {
             interrupt();
             return false;
         }
@@ -180,10 +184,10 @@ class Monitor {
     [[nodiscard]] int joints() const noexcept { return constants_->sizes.joint_count; }
     [[nodiscard]] int outputs() const noexcept { return constants_->sizes.output_count; }
 
-    [[nodiscard]] bool finite(const Observation<Scalar>& observation) const noexcept {
+    [[nodiscard]] bool usable(const Observation<Scalar>& observation) const noexcept {
         bool all = true;
         for (int i = 0; i < joints(); ++i) {
-            all = all && std::isfinite(observation.position[i]);
+            all = all && std::abs(observation.position[i]) <= largest_position; // NaN is not
         }
         for (int k = 0; k < outputs(); ++k) {
             all = all && std::isfinite(observation.output[k]) && std::isfinite(observation.prediction[k]) &&
@@ -193,15 +197,19 @@ class Monitor {
         return all;
     }
 
+    [[nodiscard]] static Scalar bounded(Scalar value, Scalar deviation) noexcept {
+        return std::clamp(value, -largest_deviation * deviation, largest_deviation * deviation);
+    }
+
     void push(const Observation<Scalar>& observation) noexcept {
         motion_.push(Pose{{observation.position}});
         for (int k = 0; k < outputs(); ++k) {
             deviations_[k] = observation.standard_deviation[k];
-            scaled_[k] = (observation.output[k] - observation.prediction[k]) / deviations_[k];
+            scaled_[k] = bounded((observation.output[k] - observation.prediction[k]) / deviations_[k], 1);
         }
         innovations_.push(scaled_.data());
         for (int k = 0; k < outputs(); ++k) {
-            scaled_[k] = observation.output[k] - observation.held_prediction[k];
+            scaled_[k] = bounded(observation.output[k] - observation.held_prediction[k], deviations_[k]);
         }
         residuals_.push(scaled_.data());
     }
