@@ -110,14 +110,14 @@ TEMPLATE_TEST_CASE("samples that arrive meanwhile are skipped, and counted", "",
     const auto constants = make_constants<TestType>(engine);
     Estimator<TestType> estimator(constants);
     std::uniform_int_distribution<std::int64_t> operations(0, 2 * cost_of<TestType>().learn);
-    std::uint32_t begun = 0;
+    std::uint64_t begun = 0;
     for (int t = 0; t < 2000; ++t) {
         begun += taken(estimator.tick(moving_sample<TestType>(t, engine), Budget{operations(engine)}).status)
                      ? 1
                      : 0;
         const Counters& counters = estimator.counters();
         const auto count_of = [&](Reason reason) { return counters.reasons[static_cast<int>(reason)]; };
-        REQUIRE(counters.ticks == static_cast<std::uint32_t>(t + 1));
+        REQUIRE(counters.ticks == static_cast<std::uint64_t>(t + 1));
         REQUIRE(counters.learned + (estimator.regression().sample_pending() ? 1 : 0) == begun);
         REQUIRE(begun == count_of(Reason::ok) + count_of(Reason::learning_in_progress));
         REQUIRE(counters.predicted == begun + count_of(Reason::learner_busy) + count_of(Reason::no_budget));
@@ -139,7 +139,7 @@ TEMPLATE_TEST_CASE("a budget of the largest step always gets on, a smaller one n
         enough.tick(sample, Budget{cost.largest_step});
         too_little.tick(sample, Budget{cost.largest_step - 1});
     }
-    const auto steps = static_cast<std::uint32_t>(2 * cost.learn / cost.largest_step + 1);
+    const auto steps = static_cast<std::uint64_t>(2 * cost.learn / cost.largest_step + 1);
     CHECK(enough.counters().learned >= 494 / steps);
     CHECK(too_little.counters().learned == 0);
     CHECK(std::ranges::all_of(weights_of(too_little), [](auto weight) { return weight == 0; }));

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
+#include <utility>
 
 namespace estimator_test {
 
@@ -239,6 +241,16 @@ TEMPLATE_TEST_CASE("reset gives a new estimator, restart_window keeps what was l
         REQUIRE(same(used.tick(sample, Budget::unlimited()), fresh.tick(sample, Budget::unlimited())));
     }
     CHECK((snapshot_of(used) == snapshot_of(fresh)));
+}
+
+TEST_CASE("counters outlast every robot: a million years at 10 kHz") {
+    constexpr std::uint64_t ticks = std::uint64_t{10'000} * 3600 * 24 * 365 * 1'000'000;
+    using Number = decltype(Counters::ticks);
+    static_assert(std::numeric_limits<Number>::max() > ticks);
+    static_assert(std::is_same_v<Number, decltype(Counters::predicted)>);
+    static_assert(std::is_same_v<Number, decltype(Counters::learned)>);
+    static_assert(std::is_same_v<Number&, decltype(std::declval<Counters&>().reasons[0])>);
+    SUCCEED();
 }
 
 } // namespace estimator_test

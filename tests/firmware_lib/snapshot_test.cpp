@@ -58,7 +58,8 @@ TEST_CASE("the checksum is the CRC-32 of ISO 3309") {
 TEST_CASE("a state comes back as it was") {
     const State state{{0.5F, -0.0F, 1e30F}, {1e-300, 2}, 9};
     const auto bytes = written(state);
-    CHECK(bytes.size() == sizeof(SnapshotHeader) + 3 * sizeof(float) + 2 * sizeof(double) + sizeof(int));
+    CHECK(bytes.size() == sizeof(SnapshotHeader) + 3 * sizeof(float) + 2 * sizeof(double) + sizeof(int) +
+                              sizeof(SnapshotChecksum));
     State restored;
     CHECK(read_snapshot(restored, model, bytes) == SnapshotResult::ok);
     CHECK(restored == state);
@@ -107,7 +108,9 @@ TEST_CASE("each part of the head has its own reason") {
     CHECK(with_word(2, model + 1) == SnapshotResult::wrong_model);
     CHECK(with_word(3, 0) == SnapshotResult::wrong_size);
     CHECK(with_word(3, 0xFFFFFFFF) == SnapshotResult::wrong_size);
-    CHECK(with_word(4, 0) == SnapshotResult::corrupted);
+    CHECK(with_word(4, 0) ==
+          SnapshotResult::corrupted); // the first number, of a state whose checksum differs
+    CHECK(with_word(bytes.size() / 4 - 1, 0) == SnapshotResult::corrupted); // the checksum
 }
 
 TEST_CASE("content that cannot be a state is rejected although its checksum is right") {

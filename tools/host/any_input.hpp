@@ -25,6 +25,15 @@ struct AnyInput {
                                    typename DerivativeFree<dynamic>::template Constants<Scalar, n>,
                                    typename DerivativeFreeReduced<dynamic, k>::template Constants<Scalar, n>>;
 
+    /// That of the kind that runs.
+    template <class AnyConstants>
+    static constexpr int identity_of(const AnyConstants& constants) noexcept {
+        constexpr int identities[] = {Standard<dynamic>::identity, StandardMeasured::identity,
+                                      DerivativeFree<dynamic>::identity,
+                                      DerivativeFreeReduced<dynamic, k>::identity};
+        return identities[constants.index()];
+    }
+
     template <class Scalar, int n>
     class Map {
       public:

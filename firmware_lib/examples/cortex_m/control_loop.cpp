@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Learning on the metal: a periodic timer interrupt takes what has come over CAN, gates it into a sample,
-// predicts, and learns within its budget. The frames come from memory in the place of the controller's
-// mailbox; for another board write `Mailbox` anew.
+// predicts, and learns within its budget. The idle loop saves what has been learned meanwhile. The frames
+// come from memory in the place of the controller's mailbox; for another board write `Mailbox` anew.
 #include "report.hpp"
 #include "stack_watermark.hpp"
 #include "systick.hpp"
@@ -103,8 +103,13 @@ struct Statistics {
     std::uint32_t longest = 0;  ///< of an interrupt, in counts of the timer
     float error_square = 0;     ///< of joint 2
     float output_square = 0;
+    std::uint32_t saved = 0;   ///< snapshots
+    std::uint32_t refused = 0; ///< that were not of one moment
 };
 Statistics statistics;
+constexpr std::uint32_t interrupts_before_save = 150;
+std::array<std::byte, Estimator::snapshot_capacity>
+    flash; ///< in its place: a page is appended after the other
 volatile bool ended;
 
 void learn(std::int64_t instant_ns) {
@@ -127,19 +132,34 @@ void end_of_interrupt() {
     ended = mailbox.ended();
 }
 
+/// What has been learned, page by page, while the interrupt ticks and predicts.
+void save() {
+    constexpr std::size_t page_bytes = 256;
+    dfdyn::SnapshotWriter writer(estimator);
+    while (writer.step(flash, page_bytes) == dfdyn::SnapshotResult::in_progress) {
+        asm volatile("wfi" ::: "memory"); // other work of the idle loop
+    }
+    (writer.result() == dfdyn::SnapshotResult::ok ? statistics.saved : statistics.refused) += 1;
+}
+
+/// An estimator takes over from the last snapshot, as after the next start.
+bool restored() { return estimator.restore(flash) == dfdyn::SnapshotResult::ok; }
+
 bool learned_well() {
     const dfdyn::Counters& counters = estimator.counters();
     report(DFDYN_CORE ": control loop: interrupts ", statistics.interrupts, "");
     report(", frames ", static_cast<std::uint32_t>(mailbox.counters().received), "");
-    report(", samples ", counters.ticks, "");
-    report(", predicted ", counters.predicted, "");
-    report(", learned ", counters.learned, "");
+    report(", samples ", static_cast<std::uint32_t>(counters.ticks), "");
+    report(", predicted ", static_cast<std::uint32_t>(counters.predicted), "");
+    report(", learned ", static_cast<std::uint32_t>(counters.learned), "");
     report(", overruns ", statistics.overruns, "");
+    report(", snapshots saved meanwhile ", statistics.saved, "");
     report("; an interrupt took at most ", statistics.longest / (core_clock_hz / 1'000'000),
            " us of 1000, at 500 million instructions per second");
     report("; stack ", stack_used_bytes(), " bytes\n");
     return counters.ticks >= 285 && counters.predicted >= 275 && counters.learned > 50 &&
-           statistics.overruns == 0 && statistics.error_square < 0.05F * statistics.output_square;
+           statistics.overruns == 0 && statistics.saved > 0 && statistics.refused == 0 && restored() &&
+           statistics.error_square < 0.05F * statistics.output_square;
 }
 
 } // namespace
@@ -160,7 +180,10 @@ int application() {
     systick().value = 0;
     systick().control = SysTick::enabled | SysTick::interrupts | SysTick::core_clock;
     while (!ended) {
-        asm volatile("wfi");
+        asm volatile("wfi" ::: "memory");
+        if (statistics.saved == 0 && statistics.interrupts >= interrupts_before_save) {
+            save();
+        }
     }
     return learned_well() ? 0 : 1;
 }

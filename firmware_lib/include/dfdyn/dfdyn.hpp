@@ -15,6 +15,7 @@
 #include "dfdyn/physics/effects.hpp"
 #include "dfdyn/physics/physics.hpp"
 #include "dfdyn/physics/rigid_body.hpp"
+#include "dfdyn/snapshot_writer.hpp"
 #include "dfdyn/structure/parametric.hpp"
 #include "dfdyn/structure/semiparametric_kernel.hpp"
 #include "dfdyn/structure/semiparametric_mean.hpp"

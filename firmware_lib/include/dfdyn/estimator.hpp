@@ -2,8 +2,10 @@
 #pragma once
 
 #include "dfdyn/budget.hpp"
+#include "dfdyn/input/input_identity.hpp"
 #include "dfdyn/model.hpp"
 #include "dfdyn/snapshot.hpp"
+#include "dfdyn/state_sequence.hpp"
 #include "dfdyn/status.hpp"
 #include "dfdyn/structure/regression.hpp"
 
@@ -25,18 +27,22 @@ struct Estimate {
     Status status;
 };
 
-/// How often each reason occurred since the last reset; never decreases in between.
+/// How often each reason occurred since the last reset; never decreases in between: 64 bits last for ever (at
+/// 1 kHz, 584 million years), where 32 would have wrapped after 49.7 days, and a count that saturated there
+/// would have hidden every later fault. On a core of 32 bits a counter is read in two loads: read it where
+/// the estimator ticks, or while nothing ticks.
 struct Counters {
-    std::uint32_t ticks = 0;
-    std::uint32_t predicted = 0;
-    std::uint32_t learned = 0;
-    Storage<std::uint32_t, reason_count>
-        reasons{}; ///< by the reason's number: of prediction, or of learning if predicted
+    std::uint64_t ticks = 0;
+    std::uint64_t predicted = 0;
+    std::uint64_t learned = 0;
+    /// By the reason's number: of prediction, or of learning if predicted.
+    Storage<std::uint64_t, reason_count> reasons{};
 };
 
 /// Learns an arm's inverse dynamics tick by tick and predicts in every tick. The whole state is in this
 /// object: no heap, no globals; give it static storage (it may be large). Refers to `constants`, which must
-/// outlive it. Not thread-safe: one thread ticks it.
+/// outlive it. Not thread-safe: one context ticks it, and all other calls are made there, or while nothing
+/// ticks. Only a `SnapshotWriter` may copy from another context meanwhile.
 template <class ModelType>
 class Estimator {
   public:
@@ -66,6 +72,7 @@ class Estimator {
     Estimate tick(const Sample& sample, Budget budget) noexcept {
         Estimate estimate = unknown();
         Status& status = estimate.status;
+        held_ = !sequence_.try_change();
         status.prediction = accept(sample);
         if (status.predicted() && !regression_.evaluate()) {
             status.prediction = Reason::input_out_of_range;
@@ -75,18 +82,26 @@ class Estimator {
         } else {
             work(budget);
         }
+        end_change();
         count(status);
         return estimate;
     }
 
     /// Goes on with what earlier ticks began to learn, so that the rest of a sample can be spread over the
     /// time until the next: at most the budget's multiply-adds. True when nothing is left.
-    bool advance(Budget budget) noexcept { return work(budget); }
+    bool advance(Budget budget) noexcept {
+        held_ = !sequence_.try_change(0);
+        const bool idle = work(budget);
+        end_change();
+        return idle;
+    }
 
     /// Back to the state after construction: the start that the constants give, an empty window, counters at
     /// zero.
     void reset() noexcept {
+        sequence_.begin_change();
         regression_.reset();
+        sequence_.end_change();
         restart_window();
         counters_ = {};
     }
@@ -101,20 +116,28 @@ class Estimator {
 
     /// Bytes of a snapshot: what has been learned, including a sample still being learned. Not the window:
     /// positions of the past are of no use to a later start.
-    [[nodiscard]] std::size_t snapshot_bytes() const noexcept { return dfdyn::snapshot_bytes(regression_); }
+    [[nodiscard]] std::size_t snapshot_bytes() const noexcept { return dfdyn::snapshot_bytes(*this); }
 
     /// A buffer of this many bytes holds any snapshot of a firmware model.
-    static constexpr std::size_t snapshot_capacity = sizeof(SnapshotHeader) + sizeof(Regression);
+    static constexpr std::size_t snapshot_capacity =
+        sizeof(SnapshotHeader) + sizeof(Regression) + sizeof(SnapshotChecksum);
 
-    /// Writes a snapshot to the front of `buffer`, of at least `snapshot_bytes()`.
+    /// Writes a snapshot to the front of `buffer`, of at least `snapshot_bytes()`. It takes the time of
+    /// hundreds of ticks; one that learns meanwhile, in an interrupt, makes the result `changed`: for that
+    /// case there is the `SnapshotWriter`.
     [[nodiscard]] SnapshotResult snapshot(std::span<std::byte> buffer) const noexcept {
-        return write_snapshot(regression_, model_identity(), buffer);
+        const std::uint32_t before = sequence_.read();
+        const SnapshotResult result = write_snapshot(*this, model_identity(), buffer);
+        const bool whole = before % 2 == 0 && sequence_.read_again() == before;
+        return whole || result != SnapshotResult::ok ? result : SnapshotResult::changed;
     }
 
     /// Restores a snapshot of an estimator of the same model and restarts the window; rejects it whole if
     /// anything is wrong.
     [[nodiscard]] SnapshotResult restore(std::span<const std::byte> buffer) noexcept {
-        const SnapshotResult result = read_snapshot(regression_, model_identity(), buffer);
+        sequence_.begin_change();
+        const SnapshotResult result = read_snapshot(*this, model_identity(), buffer);
+        sequence_.end_change();
         if (result == SnapshotResult::ok) {
             restart_window();
         }
@@ -139,7 +162,17 @@ class Estimator {
                 .stack_bytes = frame_bytes + 3 * sizeof(Estimate) + Regression::stack_bytes({})};
     }
 
+    /// What a snapshot holds. It changes between `sequence_.begin_change` (or `try_change`) and `end_change`
+    /// only.
+    template <class Self, class Visitor>
+    static void visit_state(Self& self, Visitor& visitor) noexcept {
+        Regression::visit_state(self.regression_, visitor);
+    }
+
   private:
+    template <class>
+    friend class SnapshotWriter;
+
     using Outputs = Storage<Scalar, Model::outputs>;
 
     /// Multiply-adds that an output takes between the regression's units and its own.
@@ -252,7 +285,8 @@ class Estimator {
         }
         const bool measured = status.learning == Reason::ok;
         const bool doubtful = error_square > constants_->innovation_limit;
-        const bool at_once = measured && !doubtful && regression_.idle() && budget.affords(learn_cost_);
+        const bool at_once =
+            measured && !doubtful && !held_ && regression_.idle() && budget.affords(learn_cost_);
         if (!at_once) {
             regression_.variances(ratio_.data());
         }
@@ -277,7 +311,9 @@ class Estimator {
         if (status.learning != Reason::ok) {
             return;
         }
-        if (!idle) {
+        if (held_) {
+            status.learning = Reason::learning_held;
+        } else if (!idle) {
             status.learning = Reason::learner_busy;
         } else if (budget.operations <= 0) {
             status.learning = Reason::no_budget;
@@ -301,6 +337,9 @@ class Estimator {
 
     /// Goes on with what the learner has in hand; true when it has nothing left.
     bool work(Budget& budget) noexcept {
+        if (held_) {
+            return regression_.idle();
+        }
         const bool pending = regression_.sample_pending();
         const bool idle = regression_.advance(budget);
         counters_.learned += pending && !regression_.sample_pending() ? 1 : 0;
@@ -341,19 +380,34 @@ class Estimator {
         }
     }
 
+    void end_change() noexcept {
+        if (!held_) {
+            sequence_.end_change();
+        }
+    }
+
     void count(const Status& status) noexcept {
         ++counters_.ticks;
         counters_.predicted += status.predicted() ? 1 : 0;
         ++counters_.reasons[static_cast<int>(status.reason())];
     }
 
-    /// Sizes and scalar as well as the constants' identity: two builds may share the latter.
+    /// Kinds of all parts, sizes and scalar as well as the constants' identity: models that differ in any of
+    /// them may share the latter.
     [[nodiscard]] std::uint32_t model_identity() const noexcept {
-        const std::int32_t parts[] = {sizes_.joint_count,         sizes_.output_count,
-                                      sizes_.lag_count,           sizes_.features_per_joint,
-                                      sizes_.feature_count,       sizes_.physics.column_count,
-                                      Model::Structure::identity, sizeof(Scalar)};
-        return crc32(std::as_bytes(std::span(parts)), constants_->identity);
+        const std::int32_t parts[] = {sizes_.joint_count,
+                                      sizes_.output_count,
+                                      sizes_.lag_count,
+                                      sizes_.features_per_joint,
+                                      sizes_.feature_count,
+                                      sizes_.physics.column_count,
+                                      sizeof(Scalar),
+                                      Model::Structure::identity,
+                                      Regression::Learner::identity,
+                                      Model::Features::identity,
+                                      input_identity<typename Model::Input>(constants_->input)};
+        const std::uint32_t kinds = crc32(std::as_bytes(std::span(parts)), constants_->identity);
+        return crc32_of(Model::Physics::identity_of(constants_->physics), kinds);
     }
 
     const Constants* constants_;
@@ -363,6 +417,8 @@ class Estimator {
     Outputs target_;
     Outputs ratio_; ///< 1 + the variance of each predicted mean, in units of the noise's
     Counters counters_;
+    StateSequence sequence_;
+    bool held_ = false; ///< nothing may be learned in this tick
     std::int64_t last_time_ns_ = 0;
     bool has_time_ = false;
     int past_samples_ = 0;

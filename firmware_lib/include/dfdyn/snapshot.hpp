@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/checksum.hpp"
 #include "dfdyn/strict_math.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -21,38 +23,38 @@ enum class SnapshotResult : std::uint8_t {
     wrong_version = 3,  ///< written by another version of the format
     wrong_model = 4,    ///< taken from an estimator with other sizes, another scalar type or other constants
     corrupted = 5,      ///< the checksum does not match, or the content cannot be a state
+    changed = 6, ///< the state changed while it was copied, so the copy is none of one moment; take another
+    in_progress = 7, ///< not finished yet (`SnapshotWriter`)
 };
 
-/// CRC-32 (ISO 3309, reflected 0xEDB88320) of some bytes, going on from `crc`.
-constexpr std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t crc = 0) noexcept {
-    crc = ~crc;
-    for (const std::byte byte : bytes) {
-        crc ^= static_cast<std::uint32_t>(byte);
-        for (int bit = 0; bit < 8; ++bit) {
-            crc = (crc >> 1) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
-        }
-    }
-    return ~crc;
-}
-
-/// The head of a snapshot, in the machine's byte order.
+/// The head of a snapshot, in the machine's byte order. The parts of the state follow, in the order of
+/// `visit_state`, and then the CRC-32 of all bytes before it: a snapshot can be written from its begin to its
+/// end without going back, and one that was not finished is none.
 struct SnapshotHeader {
     static constexpr std::uint32_t expected_magic = 0x59444644; // "DFDY"
-    static constexpr std::uint32_t expected_version = 4;
+    static constexpr std::uint32_t expected_version = 5;
 
     std::uint32_t magic = expected_magic;
     std::uint32_t version = expected_version;
     std::uint32_t model = 0;
-    std::uint32_t payload_bytes = 0;
-    std::uint32_t payload_crc = 0;
+    std::uint32_t payload_bytes = 0; ///< of the state
 };
+
+using SnapshotChecksum = std::uint32_t;
 
 namespace detail {
 
 /// Visitors of a state. A state names its parts once, in `visit_state`: each array, and each index with its
 /// range; then a snapshot can be measured, written, checked as a whole before anything is changed, and read.
+/// Before many small parts it can ask whether the visitor has no use for any of them (`skips`, with how many
+/// numbers of type T they have together): then they need not be visited.
 class SnapshotMeasure {
   public:
+    template <class T>
+    constexpr bool skips(int count) noexcept {
+        array(static_cast<const T*>(nullptr), count);
+        return true;
+    }
     template <class T>
     constexpr void array(const T* /*values*/, int count) noexcept {
         bytes_ += sizeof(T) * static_cast<std::size_t>(count);
@@ -71,16 +73,32 @@ class SnapshotMeasure {
     std::size_t bytes_ = 0;
 };
 
-class SnapshotWriter {
+/// Copies the bytes from `first` on of a state, as many as `into` has room for.
+class SnapshotSlice {
   public:
-    explicit SnapshotWriter(std::byte* cursor) noexcept : cursor_(cursor) {}
+    SnapshotSlice(std::size_t first, std::span<std::byte> into) noexcept : before_(first), into_(into) {}
 
+    template <class T>
+    bool skips(int count) noexcept {
+        const std::size_t bytes = sizeof(T) * static_cast<std::size_t>(count);
+        if (before_ >= bytes) {
+            before_ -= bytes;
+            return true;
+        }
+        return into_.empty();
+    }
     template <class T>
     void array(const T* values, int count) noexcept {
         static_assert(std::is_trivially_copyable_v<T>);
-        const std::size_t bytes = sizeof(T) * static_cast<std::size_t>(count);
-        std::memcpy(cursor_, values, bytes);
-        cursor_ += bytes;
+        if (skips<T>(count)) {
+            return;
+        }
+        const std::span<const std::byte> bytes =
+            std::as_bytes(std::span(values, static_cast<std::size_t>(count))).subspan(before_);
+        const std::size_t copied = std::min(bytes.size(), into_.size());
+        std::memcpy(into_.data(), bytes.data(), copied);
+        into_ = into_.subspan(copied);
+        before_ = 0;
     }
     template <class T>
     void positive_array(const T* values, int count) noexcept {
@@ -92,13 +110,18 @@ class SnapshotWriter {
     }
 
   private:
-    std::byte* cursor_;
+    std::size_t before_; ///< bytes still to pass over
+    std::span<std::byte> into_;
 };
 
 class SnapshotReader {
   public:
     explicit SnapshotReader(const std::byte* cursor) noexcept : cursor_(cursor) {}
 
+    template <class T>
+    static constexpr bool skips(int /*count*/) noexcept {
+        return false;
+    }
     template <class T>
     void array(T* values, int count) noexcept {
         static_assert(std::is_trivially_copyable_v<T>);
@@ -124,6 +147,10 @@ class SnapshotCheck {
   public:
     explicit SnapshotCheck(const std::byte* cursor) noexcept : reader_(cursor) {}
 
+    template <class T>
+    static constexpr bool skips(int /*count*/) noexcept {
+        return false;
+    }
     template <class T>
     void array(const T* /*values*/, int count) noexcept {
         for (int i = 0; i < count; ++i) {
@@ -158,13 +185,26 @@ class SnapshotCheck {
 
 } // namespace detail
 
-/// Bytes that a snapshot of `state` takes.
+/// Returns the bytes that a snapshot of `state` takes.
 template <class State>
 std::size_t snapshot_bytes(const State& state) noexcept {
     detail::SnapshotMeasure measure;
     State::visit_state(state, measure);
-    return sizeof(SnapshotHeader) + measure.bytes();
+    return sizeof(SnapshotHeader) + measure.bytes() + sizeof(SnapshotChecksum);
 }
+
+namespace detail {
+
+/// What a snapshot of that many bytes begins with.
+inline SnapshotHeader snapshot_header(std::uint32_t model, std::size_t bytes) noexcept {
+    SnapshotHeader header;
+    header.model = model;
+    header.payload_bytes =
+        static_cast<std::uint32_t>(bytes - sizeof(SnapshotHeader) - sizeof(SnapshotChecksum));
+    return header;
+}
+
+} // namespace detail
 
 /// Writes `state`, marked with the model it belongs to, into the front of `buffer`. O(bytes).
 template <class State>
@@ -173,15 +213,13 @@ SnapshotResult write_snapshot(const State& state, std::uint32_t model, std::span
     if (buffer.size() < bytes) {
         return SnapshotResult::wrong_size;
     }
-    const std::span<std::byte> payload =
-        buffer.subspan(sizeof(SnapshotHeader), bytes - sizeof(SnapshotHeader));
-    detail::SnapshotWriter writer(payload.data());
-    State::visit_state(state, writer);
-    SnapshotHeader header;
-    header.model = model;
-    header.payload_bytes = static_cast<std::uint32_t>(payload.size());
-    header.payload_crc = crc32(payload);
-    std::memcpy(buffer.data(), &header, sizeof header);
+    const std::span<std::byte> checked = buffer.first(bytes - sizeof(SnapshotChecksum));
+    const SnapshotHeader header = detail::snapshot_header(model, bytes);
+    std::memcpy(checked.data(), &header, sizeof header);
+    detail::SnapshotSlice slice(0, checked.subspan(sizeof header));
+    State::visit_state(state, slice);
+    const SnapshotChecksum checksum = crc32(checked);
+    std::memcpy(buffer.data() + checked.size(), &checksum, sizeof checksum);
     return SnapshotResult::ok;
 }
 
@@ -203,16 +241,19 @@ SnapshotResult read_snapshot(State& state, std::uint32_t model, std::span<const 
         return SnapshotResult::wrong_model;
     }
     const std::size_t bytes = snapshot_bytes(state);
-    if (buffer.size() < bytes || header.payload_bytes != bytes - sizeof header) {
+    if (buffer.size() < bytes ||
+        header.payload_bytes != detail::snapshot_header(model, bytes).payload_bytes) {
         return SnapshotResult::wrong_size;
     }
-    const std::span<const std::byte> payload = buffer.subspan(sizeof header, header.payload_bytes);
-    detail::SnapshotCheck check(payload.data());
+    const std::span<const std::byte> checked = buffer.first(bytes - sizeof(SnapshotChecksum));
+    SnapshotChecksum checksum = 0;
+    std::memcpy(&checksum, buffer.data() + checked.size(), sizeof checksum);
+    detail::SnapshotCheck check(checked.data() + sizeof header);
     State::visit_state(state, check);
-    if (header.payload_crc != crc32(payload) || !check.valid()) {
+    if (checksum != crc32(checked) || !check.valid()) {
         return SnapshotResult::corrupted;
     }
-    detail::SnapshotReader reader(payload.data());
+    detail::SnapshotReader reader(checked.data() + sizeof header);
     State::visit_state(state, reader);
     return SnapshotResult::ok;
 }

@@ -31,6 +31,9 @@ enum class Reason : std::uint8_t {
     /// The budget was not positive: predicted, not learned.
     no_budget = 7,
 
+    /// A snapshot is being copied: predicted, not learned, until it is finished (`SnapshotWriter`).
+    learning_held = 8,
+
     /// A position is NaN or infinite.
     position_not_finite = 32,
     /// A position is beyond the model's limit. Cure: check the encoder and its unit (radians).
@@ -76,6 +79,8 @@ constexpr const char* name(Reason reason) noexcept {
         return "learner_busy";
     case Reason::no_budget:
         return "no_budget";
+    case Reason::learning_held:
+        return "learning_held";
     case Reason::position_not_finite:
         return "position_not_finite";
     case Reason::position_out_of_range:

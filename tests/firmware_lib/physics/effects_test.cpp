@@ -21,6 +21,7 @@ constexpr double xi[] = {0.3, -0.7, 2.5, -1.1, 0.2, -4};
 
 /// An effect of a user's own: nothing else has to know of it.
 struct CubicDamping {
+    static constexpr int identity = 1000;
     static constexpr int columns = 1;
     template <class>
     static constexpr std::int64_t column_cost = 2;

@@ -103,7 +103,7 @@ TEST_CASE("F11: a measurement is delivered as new just once") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
-    const std::uint32_t before = arm.estimator.counters().learned;
+    const std::uint64_t before = arm.estimator.counters().learned;
     for (int tick = 0; tick < 300; ++tick) { // a sensor at half the rate of the joints
         const auto every_other = tick % 2 == 0 ? arm.tick() : arm.tick(without_wrench);
         CHECK(every_other.predicted);

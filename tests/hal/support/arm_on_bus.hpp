@@ -134,7 +134,7 @@ class ArmOnBus {
         assembly.drain(bus, buffer_);
         Tick tick;
         tick.assembled = assembly.assemble(bus.now - delay_ns, bus.now);
-        const std::uint32_t learned_before = estimator.counters().learned;
+        const std::uint64_t learned_before = estimator.counters().learned;
         if (tick.assembled.valid()) {
             tick.predicted = estimator.tick(tick.assembled.sample, Budget::unlimited()).status.predicted();
         }

@@ -15,6 +15,7 @@ namespace dfdyn {
 /// Evaluate costs d·dim(ξ) multiply-adds and those of d cosines and sines.
 template <int d>
 struct RandomFourier {
+    static constexpr int identity = 1;
     static constexpr int count = d;
     static constexpr int columns = product(2, d);
 

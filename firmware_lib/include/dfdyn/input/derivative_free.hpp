@@ -10,11 +10,13 @@ namespace dfdyn {
 /// Input DF: ξ_i = q_i(t⁻), the last M+1 positions themselves (paper, "Derivative-free features", R = I),
 /// scaled.
 ///
-/// An input is a type that names its sizes and holds a `Map`: the map keeps what it needs of the past
+/// An input is a type that names its sizes, has a number that differs from every other input's (`identity`;
+/// it is part of a snapshot) and holds a `Map`: the map keeps what it needs of the past
 /// (`push`), says when it has enough (`ready`), and computes ξ on request (`evaluate`). Element (i, j) of ξ,
 /// feature j of joint i, has index i·k + j. Evaluate costs n (M+1) multiplications.
 template <int M>
 struct DerivativeFree {
+    static constexpr int identity = 1;
     static constexpr int lags = M;
     static constexpr int features_per_joint = sum(M, 1);
     template <class Scalar, int n, int m>
@@ -74,6 +76,8 @@ struct DerivativeFree {
 /// Input DFW: ξ_i = diag(r) q_i(t⁻) (paper, eq. eqRdiag). The weight of each lag is part of the element's
 /// scale, so the computation is that of DF.
 template <int M>
-struct DerivativeFreeWeighted : DerivativeFree<M> {};
+struct DerivativeFreeWeighted : DerivativeFree<M> {
+    static constexpr int identity = 2;
+};
 
 } // namespace dfdyn

@@ -31,6 +31,7 @@ constexpr void to_difference_form(const Scalar* rows, int row_count, int lags,
 template <int M, int k>
 struct DerivativeFreeReduced {
     static_assert(k == dynamic || M == dynamic || k <= M + 1, "more rows than lags: use DerivativeFree");
+    static constexpr int identity = 3;
     static constexpr int lags = M;
     static constexpr int features_per_joint = k;
     template <class Scalar, int n, int m>

@@ -46,6 +46,7 @@ constexpr void structured_rows(const StructuredFilters<Scalar>& filters, int lag
 template <int M>
 struct DerivativeFreeStructured : DerivativeFreeReduced<M, 3> {
     static_assert(M == dynamic || M >= 2, "the acceleration row needs three positions");
+    static constexpr int identity = 4;
 };
 
 /// Input DFSR as the recursive filter that the FIR rows truncate: its memory does not grow with M and nothing
@@ -55,6 +56,7 @@ struct DerivativeFreeStructured : DerivativeFreeReduced<M, 3> {
 template <int M>
 struct DerivativeFreeStructuredRecursive {
     static_assert(M == dynamic || M >= 2);
+    static constexpr int identity = 5;
     static constexpr int lags = M;
     static constexpr int features_per_joint = 3;
     template <class Scalar, int n, int m>

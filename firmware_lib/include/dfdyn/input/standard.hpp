@@ -14,6 +14,7 @@ namespace dfdyn {
 template <int M>
 struct Standard {
     static_assert(M == dynamic || M >= 2, "an acceleration needs three positions");
+    static constexpr int identity = 6;
     static constexpr int lags = M;
     static constexpr int features_per_joint = 3;
     template <class Scalar, int n, int m>
@@ -94,6 +95,7 @@ struct Standard {
 
 /// Input STD with measured derivatives: the sample brings q̇ and q̈. Evaluate costs O(n).
 struct StandardMeasured {
+    static constexpr int identity = 7;
     static constexpr int lags = 0;
     static constexpr int features_per_joint = 3;
     template <class Scalar, int n, int m>

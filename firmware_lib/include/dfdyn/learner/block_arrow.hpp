@@ -37,6 +37,7 @@ struct BlockArrowConstants {
 template <class Scalar, int columns, int p, int m>
 class BlockArrow {
   public:
+    static constexpr int identity = 3;
     using Constants = BlockArrowConstants<Scalar, columns, p, m>;
 
     BlockArrow(const Constants& constants, Extent<columns> column_count, Extent<p> parameters,

@@ -21,6 +21,7 @@ namespace dfdyn {
 template <class Scalar, int p, int m>
 class CholeskyInformation {
   public:
+    static constexpr int identity = 2;
     using Constants = LearnerConstants<Scalar, p, m>;
 
     CholeskyInformation(const Constants& constants, Extent<p> columns, Extent<m> outputs) noexcept

@@ -12,6 +12,7 @@ namespace dfdyn {
 template <class Scalar, int p, int m>
 class CommonParameters {
   public:
+    static constexpr int identity = 4;
     using Constants = LearnerConstants<Scalar, p, 1>;
 
     CommonParameters(const Constants& constants, Extent<p> parameters, Extent<m> outputs) noexcept

@@ -35,6 +35,8 @@ struct LearnerConstants {
 
 /// Recursive least squares in a square-root form.
 ///
+/// `identity` is a number that differs from every other form's; it is part of a snapshot.
+///
 /// With λ = 1 the recursion is exact: after any number of rows, weights and covariance are those of the batch
 /// solution of eq. ReLS. With λ < 1 the same holds, each row t weighed by λ^(N-t), as long as the account of
 /// `Forgetting` pays for it and no parameter's variance exceeds the prior's; beyond, forgetting is reduced

@@ -17,6 +17,7 @@ namespace dfdyn {
 template <class Scalar, int p, int m>
 class UdCovariance {
   public:
+    static constexpr int identity = 1;
     using Constants = LearnerConstants<Scalar, p, m>;
 
     /// `rows_of_instant`: that `begin_row` is given before it forgets.

@@ -182,6 +182,9 @@ class UdFactor {
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         for (int j = 1; j < self.columns_; ++j) {
+            if (visitor.template skips<Scalar>(j)) {
+                continue;
+            }
             for (int i = 0; i < j; i += rows) {
                 visitor.array(&element(self, i, j), i + rows < j ? rows : j - i);
             }

@@ -30,9 +30,11 @@ inline constexpr int inertial_parameters = 10;
 
 /// The outputs of a chain are the generalised forces of its joints (N·m, N); every link counts.
 ///
-/// A kind of outputs says how many there are, which bodies count (the last `bodies` links), and where along
-/// the chain each output's screw begins: the motion whose virtual power is that output.
+/// A kind of outputs has a number that differs from every other kind's, and says how many there are, which
+/// bodies count (the last `bodies` links), and where along the chain each output's screw begins: the motion
+/// whose virtual power is that output.
 struct JointTorques {
+    static constexpr int identity = 1;
     static constexpr int outputs(int joints) noexcept { return joints; }
     static constexpr int bodies(int joints) noexcept { return joints; }
 
@@ -72,6 +74,7 @@ struct JointTorques {
 /// sensor sits on the base.
 template <int body_count>
 struct WrenchAtSensor {
+    static constexpr int identity = 2;
     static constexpr int outputs(int /*joints*/) noexcept { return 6; }
     static constexpr int bodies(int /*joints*/) noexcept { return body_count; }
 

@@ -13,6 +13,8 @@ namespace dfdyn {
 
 /// A named effect adds columns to the physics: each column acts on one output and is known but for its
 /// factor, which is learned. An effect says
+///  - `identity`: a number that differs from every other effect's, 1000 or more for a user's own; it is part
+///    of a snapshot;
 ///  - `columns`: how many; `column_cost<Scalar>`: multiply-adds of one, at most;
 ///  - `at_joint`: its columns act on joints, so that the outputs must be the joints' torques;
 ///  - `Constants`: `row` gives the output (0: the first) that each column acts on, the rest is the effect's
@@ -23,6 +25,7 @@ namespace dfdyn {
 template <class E>
 concept PhysicsEffect = requires(const typename E::template Constants<float>& constants, int column,
                                  const float* xi) {
+    { E::identity } -> std::convertible_to<int>;
     { E::columns } -> std::convertible_to<int>;
     { E::template column_cost<float> } -> std::convertible_to<std::int64_t>;
     { E::at_joint } -> std::convertible_to<bool>;
@@ -58,11 +61,14 @@ struct MotionColumns {
 
 /// `viscous_friction`: q̇; the parameter is N·m·s/rad.
 template <int count>
-struct ViscousFriction : detail::MotionColumns<ViscousFriction, count, 1> {};
+struct ViscousFriction : detail::MotionColumns<ViscousFriction, count, 1> {
+    static constexpr int identity = 1;
+};
 
 /// `coulomb_friction`: tanh(q̇ / v), a sign without a step; the parameter is N·m.
 template <int count>
 struct CoulombFriction {
+    static constexpr int identity = 2;
     static constexpr int columns = count;
     template <class>
     static constexpr std::int64_t column_cost = function_cost + 1;
@@ -85,6 +91,7 @@ struct CoulombFriction {
 /// friction (N·m).
 template <int count>
 struct StribeckFriction {
+    static constexpr int identity = 3;
     static constexpr int columns = count;
     template <class>
     static constexpr std::int64_t column_cost = 2 * function_cost + 4;
@@ -116,16 +123,21 @@ struct StribeckFriction {
 
 /// `rotor_inertia`: q̈; the parameter is the inertia seen at the joint (kg·m²).
 template <int count>
-struct RotorInertia : detail::MotionColumns<RotorInertia, count, 2> {};
+struct RotorInertia : detail::MotionColumns<RotorInertia, count, 2> {
+    static constexpr int identity = 4;
+};
 
 /// `joint_spring`: q; the parameter is its stiffness (N·m/rad). Where it rests is part of the row's offset.
 template <int count>
-struct JointSpring : detail::MotionColumns<JointSpring, count, 0> {};
+struct JointSpring : detail::MotionColumns<JointSpring, count, 0> {
+    static constexpr int identity = 5;
+};
 
 /// `torque_ripple`: sin(c q + phase). Two columns of phases 0 and pi/2 are a wave of any phase; the
 /// parameters are N·m.
 template <int count>
 struct TorqueRipple {
+    static constexpr int identity = 6;
     static constexpr int columns = count;
     template <class Scalar>
     static constexpr std::int64_t column_cost = cos_sin_cost<Scalar>(1) + 1;
@@ -152,6 +164,7 @@ struct TorqueRipple {
 /// `torque_offset` or `ft_bias`: 1; the parameter is what is added to the output (N·m, N).
 template <int count>
 struct OutputOffset {
+    static constexpr int identity = 7;
     static constexpr int columns = count;
     template <class>
     static constexpr std::int64_t column_cost = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/checksum.hpp"
+#include "dfdyn/input/input_identity.hpp"
 #include "dfdyn/physics/effects.hpp"
 #include "dfdyn/physics/rigid_body.hpp"
 
@@ -49,6 +51,19 @@ struct Physics {
             return {joint_count, output_count, body_count};
         }
     };
+
+    /// Returns a number that differs between physics whose parameters mean different things: the motion's
+    /// input, the kind of the outputs, the effects that have columns, and which columns are selected. O(p).
+    template <class Scalar, class Arm>
+    static std::uint32_t identity_of(const Constants<Scalar, Arm>& constants) noexcept {
+        std::uint32_t crc = crc32_of(std::int32_t{input_identity<MotionType>(constants.motion)}, 0);
+        crc = crc32_of(std::int32_t{Arm::Output::identity}, crc);
+        (..., add_effect<EffectTypes, Scalar>(constants.effects, crc));
+        for (const std::int32_t column : constants.selected) {
+            crc = crc32_of(column, crc);
+        }
+        return crc;
+    }
 
     /// Writes ψ (outputs × p, row-major, in the outputs' units) of a motion: (q, q̇, q̈) of each joint, element
     /// j of joint i at 3i + j; rad, m, s. Its scalar may carry derivatives. Nothing is checked. An effect
@@ -140,6 +155,16 @@ struct Physics {
     };
 
   private:
+    /// Adds an effect to a checksum, unless it has no column: a host program's physics has all effects.
+    template <class Effect, class Scalar>
+    static void add_effect(const typename Effect::template Constants<Scalar>& effect,
+                           std::uint32_t& crc) noexcept {
+        if (effect.row.size() > 0) {
+            crc = crc32_of(std::int32_t{Effect::identity}, crc);
+            crc = crc32_of(std::int32_t{effect.row.size()}, crc);
+        }
+    }
+
     /// Writes the selected columns of all bodies; returns how many they are.
     template <class Arm, class Real, class Scalar>
     static int write_bodies(const Constants<Real, Arm>& constants, const Sizes<Arm>& sizes, const Scalar* xi,

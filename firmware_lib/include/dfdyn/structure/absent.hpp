@@ -7,6 +7,7 @@ namespace dfdyn {
 
 /// The input of a model without features (P: physics alone).
 struct NoInput {
+    static constexpr int identity = 0;
     static constexpr int lags = 0;
     static constexpr int features_per_joint = 0;
     template <class Scalar, int n, int m>
@@ -17,6 +18,7 @@ struct NoInput {
 
 /// The features of such a model.
 struct NoFeatures {
+    static constexpr int identity = 0;
     static constexpr int count = 0;
     static constexpr int columns = 0;
     template <class Scalar, int inputs>
@@ -33,6 +35,11 @@ struct NoPhysics {
     };
     template <class Scalar, class Arm>
     struct Constants {};
+
+    template <class Scalar, class Arm>
+    static constexpr std::uint32_t identity_of(const Constants<Scalar, Arm>& /*constants*/) noexcept {
+        return 0;
+    }
 };
 
 } // namespace dfdyn
