@@ -29,6 +29,7 @@ constexpr Model::Constants widened(const Single::Constants& model) {
     return {.sizes = {},
             .identity = model.identity,
             .gap_ns = model.gap_ns,
+            .period_ns = model.period_ns,
             .input = {widened(model.input.rows), widened(model.input.scale)},
             .features = {widened(model.features.frequencies), static_cast<double>(model.features.amplitude)},
             .physics = {},

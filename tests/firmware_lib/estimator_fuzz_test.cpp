@@ -30,6 +30,7 @@ FuzzModel::Constants fuzz_constants(std::mt19937_64& engine) {
     std::uniform_real_distribution<float> size(0.5F, 1.5F);
     constants.identity = 1;
     constants.gap_ns = 3 * period_ns / 2;
+    constants.period_ns = period_ns;
     for (int entry = 0; entry < constants.input.rows.size(); ++entry) {
         constants.input.rows[entry] = entry % (lags + 1) == 0 ? -1 : size(engine);
     }
@@ -65,8 +66,10 @@ class Gates {
                 return Reason::time_not_increasing;
             }
             window_.clear();
+            clock_.restart();
             reason = Reason::clock_restarted;
-        } else if (!window_.empty() && sample.time_ns > last_ns_ + 3 * period_ns / 2) {
+        } else if (!window_.empty() &&
+                   clock_.lost_before(static_cast<std::uint64_t>(sample.time_ns - last_ns_), period_ns)) {
             window_.clear();
             reason = Reason::gap;
         }
@@ -84,6 +87,7 @@ class Gates {
 
   private:
     std::vector<float> window_; ///< of joint 1, newest first
+    SampleClock clock_;
     std::int64_t last_ns_ = 0;
     int past_ = 0;
 };

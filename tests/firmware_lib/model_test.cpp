@@ -46,6 +46,7 @@ DynamicModel::Constants on_heap(const FixedModel::Constants& fixed) {
                        {FixedModel::Features::count}};
     constants.identity = fixed.identity;
     constants.gap_ns = fixed.gap_ns;
+    constants.period_ns = fixed.period_ns;
     constants.input.rows = on_heap(fixed.input.rows);
     constants.input.scale = on_heap(fixed.input.scale);
     constants.features.frequencies = on_heap(fixed.features.frequencies);

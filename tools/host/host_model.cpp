@@ -302,6 +302,7 @@ std::unique_ptr<HostConstants<Model>> make_host_constants(const TrainedModel& mo
     constants.sizes = host_sizes<Model>(model);
     constants.identity = model_identity(model);
     constants.gap_ns = gap_ns(model);
+    constants.period_ns = std::llround(1e9 * model.sample_period_s);
     set_columns<Model>(constants, model);
     constants.output_offset = converted<float, Model::outputs>(model.outputs.offset);
     constants.output_noise_std = converted<float, Model::outputs>(model.outputs.noise_std);

@@ -132,6 +132,7 @@ std::string model_to_header(const TrainedModel& model, const std::string& name_s
            << starts(model)
            << "inline constexpr Model::Constants constants{\n    .sizes = {},\n    .identity = "
            << model_identity(model) << "U,\n    .gap_ns = " << gap_ns(model)
+           << ",\n    .period_ns = " << std::llround(1e9 * model.sample_period_s)
            << ",\n    .input = " << (features ? input_constants(model.input) : "{}")
            << ",\n    .features = " << (features ? feature_constants(model) : "{}")
            << ",\n    .physics = " << (model.physics ? physics_constants(*model.physics) : "{}")

@@ -46,6 +46,7 @@ constexpr Model::Constants make_constants() {
     Model::Constants constants{};
     std::uint32_t state = 2;
     constants.gap_ns = 1'500'000;
+    constants.period_ns = 1'000'000;
     fill(constants.input.rows, 1, state);
     fill(constants.input.scale, 1, state);
     fill(constants.features.frequencies, 1, state);

@@ -212,6 +212,7 @@ template <class AnyModel>
 void fill_model(typename AnyModel::Constants& constants) {
     using Scalar = typename AnyModel::Scalar;
     constants.gap_ns = 1'500'000;
+    constants.period_ns = 1'000'000;
     constants.innovation_limit = Scalar(1e30);
     for (int k = 0; k < AnyModel::outputs; ++k) {
         constants.output_noise_std[k] = 1;

@@ -4,6 +4,7 @@
 #include "dfdyn/budget.hpp"
 #include "dfdyn/input/input_identity.hpp"
 #include "dfdyn/model.hpp"
+#include "dfdyn/sample_clock.hpp"
 #include "dfdyn/snapshot.hpp"
 #include "dfdyn/state_sequence.hpp"
 #include "dfdyn/status.hpp"
@@ -109,6 +110,7 @@ class Estimator {
     /// Begins a new recording or motion: the window and the clock start again, what has been learned stays.
     void restart_window() noexcept {
         regression_.restart();
+        clock_.restart();
         has_time_ = false;
         past_samples_ = 0;
         implausible_samples_ = 0;
@@ -202,8 +204,9 @@ class Estimator {
                 return Reason::time_not_increasing;
             }
             regression_.restart();
+            clock_.restart();
             filling = Reason::clock_restarted;
-        } else if (has_time_ && time_since_last(sample) > static_cast<std::uint64_t>(constants_->gap_ns)) {
+        } else if (has_time_ && lost_before(time_since_last(sample))) {
             regression_.restart();
             filling = Reason::gap;
         }
@@ -212,6 +215,12 @@ class Estimator {
         last_time_ns_ = sample.time_ns;
         regression_.push(sample);
         return regression_.ready() ? Reason::ok : filling;
+    }
+
+    /// Whether samples were lost in a step of that length.
+    bool lost_before(std::uint64_t step_ns) noexcept {
+        return constants_->period_ns > 0 ? clock_.lost_before(step_ns, constants_->period_ns)
+                                         : step_ns > static_cast<std::uint64_t>(constants_->gap_ns);
     }
 
     /// Of a sample later than the last (ns); the difference of two stamps may need all 64 bits.
@@ -414,6 +423,7 @@ class Estimator {
     [[no_unique_address]] typename Model::Sizes sizes_;
     std::int64_t learn_cost_;
     Regression regression_;
+    SampleClock clock_;
     Outputs target_;
     Outputs ratio_; ///< 1 + the variance of each predicted mean, in units of the noise's
     Counters counters_;

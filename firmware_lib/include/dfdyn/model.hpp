@@ -70,7 +70,8 @@ struct Model {
     struct Constants {
         [[no_unique_address]] Sizes sizes;
         std::uint32_t identity; ///< differs between models: a snapshot of one is not restored into another
-        std::int64_t gap_ns;    ///< a longer time between two samples is a gap; about 1.5 sample periods
+        std::int64_t gap_ns;    ///< without a period: a longer time between two samples is a gap
+        std::int64_t period_ns = 0; ///< nominal sample period: what is a gap follows from the sample grid
         [[no_unique_address]] InputConstants input;
         [[no_unique_address]] FeatureConstants features;
         [[no_unique_address]] PhysicsConstants physics;

@@ -159,6 +159,7 @@ typename Model::Constants make_constants(std::mt19937_64& engine, double forgett
     typename Model::Constants constants{};
     constants.identity = 0x1234;
     constants.gap_ns = 3 * period_ns / 2;
+    constants.period_ns = period_ns;
     if constexpr (Model::columns > 0) {
         set_input<typename Model::Input>(constants.input, {1, 0.3, 0.05});
         std::normal_distribution<double> normal(0, 0.4);

@@ -28,6 +28,7 @@ inline WrenchModel::Constants wrench_model_constants(std::mt19937_64& engine) {
     WrenchModel::Constants constants{};
     constants.identity = 1;
     constants.gap_ns = 3 * ms / 2;
+    constants.period_ns = ms;
     set_input<WrenchModel::Input>(constants.input, {1, 0.3, 0.05});
     std::normal_distribution<double> normal(0, 0.4);
     for (double& frequency : constants.features.frequencies) {
