@@ -2,8 +2,8 @@
 #include "tools/training/recorded_data.hpp"
 
 #include "dfdyn/input/adaptive_window.hpp"
-#include "tools/common/error.hpp"
 #include "tools/common/quantile.hpp"
+#include "tools/recording/sample_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,24 +14,6 @@ namespace dfdyn::tools {
 namespace {
 
 Eigen::Index index(std::size_t value) { return static_cast<Eigen::Index>(value); }
-
-double median_period_s(std::span<const Recording> recordings) {
-    std::vector<double> steps;
-    for (const Recording& recording : recordings) {
-        for (std::size_t row = 1; row < recording.row_count(); ++row) {
-            steps.push_back(1e-9 * static_cast<double>(recording.time_ns[row] - recording.time_ns[row - 1]));
-        }
-    }
-    if (steps.empty()) {
-        throw InputError(recordings.front().source + ": expected at least two rows to train on, found one");
-    }
-    return median(std::move(steps));
-}
-
-bool follows_gap(const Recording& recording, std::size_t row, double period_s) {
-    return recording.gap_before[row] != 0 ||
-           1e-9 * static_cast<double>(recording.time_ns[row] - recording.time_ns[row - 1]) > 1.5 * period_s;
-}
 
 std::size_t total_rows(std::span<const Recording> recordings) {
     std::size_t total = 0;
@@ -57,17 +39,18 @@ std::vector<double> sample_times_s(std::span<const Recording> recordings) {
 
 TrainingData gather_training_data(std::span<const Recording> recordings) {
     TrainingData data;
-    data.sample_period_s = median_period_s(recordings);
+    data.sample_period_s = sample_period_s(recordings);
     data.output_names = recordings.front().output.names;
     const auto rows = index(total_rows(recordings));
     data.positions.resize(rows, index(recordings.front().joint_count()));
     data.outputs.resize(rows, index(data.output_names.size()));
     for (const Recording& recording : recordings) {
+        const std::vector<std::uint8_t> restarts = window_restarts(recording, data.sample_period_s);
         for (std::size_t row = 0; row < recording.row_count(); ++row) {
             const auto sample = index(data.gap_before.size());
             copy_row(recording.position.row(row), data.positions, sample);
             copy_row(recording.output.row(row), data.outputs, sample);
-            data.gap_before.push_back(row == 0 || follows_gap(recording, row, data.sample_period_s));
+            data.gap_before.push_back(row == 0 || restarts[row] != 0);
         }
     }
     return data;

@@ -8,10 +8,9 @@
 
 namespace dfdyn::tools {
 
-/// The samples of `recordings`, in order. A row follows a gap where the recording says so, and where more
-/// than one and a half sample periods passed; the sample period is the median of the time steps. Throws
-/// InputError when there are fewer than two rows. All recordings have the same columns (as `read_recordings`
-/// sees to).
+/// The samples of `recordings`, in order, with their sample_period_s(); a row follows a gap where
+/// window_restarts() says so. Throws InputError when there are fewer than two rows. All recordings have the
+/// same columns (as `read_recordings` sees to).
 TrainingData gather_training_data(std::span<const Recording> recordings);
 
 /// Fills velocities and accelerations from the recordings' columns, which they must have.
