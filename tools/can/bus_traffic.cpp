@@ -4,6 +4,7 @@
 #include "tools/can/frame_recorder.hpp"
 #include "tools/common/error.hpp"
 #include "tools/common/number.hpp"
+#include "tools/recording/sample_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,16 +19,6 @@ constexpr std::int64_t long_ago_ns = std::numeric_limits<std::int64_t>::min();
 
 std::int64_t period_ns(const BusSource& source) { return std::llround(1e9 / source.rate_hz); }
 
-/// Whether a source that sends at a period sends with a row of that time; `next_ns`: its next time.
-bool due(std::int64_t time_ns, std::int64_t period_ns, std::int64_t& next_ns) {
-    if (next_ns != long_ago_ns && time_ns < next_ns - period_ns / 100) {
-        return false;
-    }
-    const bool late = next_ns == long_ago_ns || time_ns > next_ns + period_ns;
-    next_ns = (late ? time_ns : next_ns) + period_ns;
-    return true;
-}
-
 } // namespace
 
 BusTraffic::BusTraffic(const BusDescription& description, const TrafficOptions& options,
@@ -35,8 +26,8 @@ BusTraffic::BusTraffic(const BusDescription& description, const TrafficOptions& 
     : source_(description.source), bit_rate_(description.bit_rate),
       joint_period_ns_(period_ns(description.joints)), output_period_ns_(period_ns(description.output)),
       efforts_(!description.sensor), frames_(description), wire_(description.bit_rate, std::move(on_frame)),
-      engine_(options.seed), largest_jitter_ns_(1e3 * options.jitter_us), next_joints_ns_(long_ago_ns),
-      next_output_ns_(long_ago_ns), next_heartbeat_ns_(long_ago_ns) {}
+      engine_(options.seed), largest_jitter_ns_(1e3 * options.jitter_us), row_period_s_(options.row_period_s),
+      next_joints_ns_(long_ago_ns), next_output_ns_(long_ago_ns), next_heartbeat_ns_(long_ago_ns) {}
 
 void BusTraffic::add(std::int64_t time_ns, std::span<const double> position, std::span<const double> output) {
     if (rows_ == 0) {
@@ -70,7 +61,7 @@ void BusTraffic::add(std::int64_t time_ns, std::span<const double> position, std
 void BusTraffic::finish() {
     wire_.send_all();
     const double fastest_hz = 1e9 / static_cast<double>(std::min(joint_period_ns_, output_period_ns_));
-    const double rows_hz = 1 / mean_period_s();
+    const double rows_hz = 1 / (row_period_s_ > 0 ? row_period_s_ : mean_period_s());
     if (rows_hz < 0.99 * fastest_hz) {
         throw InputError(source_ + ": rate_hz: expected up to " + number_text(rows_hz) +
                          ", the mean rate of the rows, found " + number_text(fastest_hz));
@@ -93,6 +84,21 @@ void BusTraffic::offer(const std::vector<hal::Frame>& frames, std::int64_t ready
     }
 }
 
+/// Whether a source that sends at a period sends with a row of that time; `next_ns`: its next time.
+bool BusTraffic::due(std::int64_t time_ns, std::int64_t period_ns, std::int64_t& next_ns) const {
+    const auto row_ns = static_cast<std::int64_t>(1e9 * row_period_s_);
+    if (2 * period_ns <= 3 * row_ns) {
+        return true;
+    }
+    const std::int64_t early_ns = std::max(row_ns / 2, period_ns / 100);
+    if (next_ns != long_ago_ns && time_ns < next_ns - early_ns) {
+        return false;
+    }
+    const bool late = next_ns == long_ago_ns || time_ns > next_ns + period_ns;
+    next_ns = (late ? time_ns : next_ns) + period_ns;
+    return true;
+}
+
 double BusTraffic::mean_period_s() const {
     return rows_ < 2 ? std::numeric_limits<double>::infinity()
                      : 1e-9 * static_cast<double>(last_ns_ - first_ns_) / static_cast<double>(rows_ - 1);
@@ -109,7 +115,9 @@ double write_bus_log(const Recording& recording, const BusDescription& descripti
         throw InputError(recording.source + ": expected rows from time 0 on, found none or earlier ones");
     }
     FrameRecorder recorder(log, "can0");
-    BusTraffic traffic(description, options, [&](const hal::Frame& frame) { recorder.write(frame); });
+    TrafficOptions timed = options;
+    timed.row_period_s = recording.row_count() > 1 ? sample_period_s({&recording, 1}) : 0;
+    BusTraffic traffic(description, timed, [&](const hal::Frame& frame) { recorder.write(frame); });
     for (std::size_t row = 0; row < recording.row_count(); ++row) {
         traffic.add(recording.time_ns[row], recording.position.row(row), recording.output.row(row));
     }

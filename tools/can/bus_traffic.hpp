@@ -13,6 +13,9 @@ namespace dfdyn::tools {
 struct TrafficOptions {
     double jitter_us = 0; ///< joints' frames, and wrenches, are late by up to this, evenly distributed
     std::uint64_t seed = 1;
+    /// Sample period of rows whose times have jitter: a source that sends less than 1.5 times as rarely sends
+    /// with every row, a slower one with the row closest to its time. 0: the rows' times are exact.
+    double row_period_s = 0;
 };
 
 /// What the devices of a bus description would have sent while an arm did what is told row by row: frames
@@ -42,6 +45,7 @@ class BusTraffic {
     void offer(const std::vector<hal::Frame>& frames, std::int64_t ready_ns);
     std::int64_t jitter_ns();
     double mean_period_s() const;
+    bool due(std::int64_t time_ns, std::int64_t period_ns, std::int64_t& next_ns) const;
 
     std::string source_;
     double bit_rate_;
@@ -51,6 +55,7 @@ class BusTraffic {
     BusWire wire_;
     std::mt19937_64 engine_;
     double largest_jitter_ns_;
+    double row_period_s_;
     std::int64_t next_joints_ns_, next_output_ns_, next_heartbeat_ns_;
     std::int64_t first_ns_ = 0, last_ns_ = 0;
     std::int64_t rows_ = 0;
@@ -58,8 +63,8 @@ class BusTraffic {
 };
 
 /// Writes the traffic of a recording as a candump log; returns the load of the bus. `recording` has the
-/// outputs of the description. Throws InputError as BusTraffic, and where the recording has other joints;
-/// then there is no log.
+/// outputs of the description; `options.row_period_s` is filled in. Throws InputError as BusTraffic, and
+/// where the recording has other joints; then there is no log.
 double write_bus_log(const Recording& recording, const BusDescription& description,
                      const TrafficOptions& options, const std::filesystem::path& log);
 
