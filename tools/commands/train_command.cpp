@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/commands/clock_options.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options.hpp"
 #include "tools/commands/robot_options.hpp"
+#include "tools/commands/size_options.hpp"
 #include "tools/commands/train_outcome.hpp"
 #include "tools/common/atomic_file.hpp"
 #include "tools/common/error.hpp"
@@ -11,6 +13,7 @@
 #include "tools/model/model_file.hpp"
 #include "tools/model/model_header.hpp"
 #include "tools/physics/model_training.hpp"
+#include "tools/recording/sample_grid.hpp"
 #include "tools/training/training_options.hpp"
 
 #include <initializer_list>
@@ -37,6 +40,8 @@ struct TrainOptions {
     std::vector<std::string> effects;
     double sign_velocity = 0.05;
     std::vector<double> torque_constants;
+    ClockOptions clock;
+    SizeOptions sizes;
     TrainingOptions training;
 };
 
@@ -71,9 +76,6 @@ void add_physics_options(CLI::App& command, TrainOptions& options) {
 }
 
 void add_training_options(CLI::App& command, TrainingOptions& training) {
-    command.add_option("--lags", training.lags, "M: the window holds M+1 positions per joint")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
     command.add_option("--features-per-joint", training.rows_per_joint, "k: rows of R (DFR)")
         ->check(CLI::Range(1, 1001))
         ->capture_default_str();
@@ -82,9 +84,6 @@ void add_training_options(CLI::App& command, TrainingOptions& training) {
         ->capture_default_str();
     command.add_flag("--orthogonal,!--independent", training.orthogonal,
                      "Orthogonal (default) or independent random features");
-    command
-        .add_option("--forgetting", training.forgetting_factor, "Forgetting factor of the learner; 1: none")
-        ->capture_default_str();
     command.add_flag("--relevance,!--no-relevance", training.relevance,
                      "Input STD with ML: velocity and acceleration have gains of their own (default), or, as "
                      "in the paper, one width for inputs of unit deviation");
@@ -169,18 +168,30 @@ void note_ignored(const TrainOptions& options, OutputKind outputs) {
     note(options.structure != "NP", {"--centred"}, model);
 }
 
+/// The sizes that no option gives.
+FreeSizes free_sizes(const TrainOptions& options) {
+    const ClockOptions& clock = options.clock;
+    return {!clock.lags && !clock.window_s && !clock.every,
+            options.command->count("--features-per-joint") == 0, options.command->count("--features") == 0,
+            !clock.forgetting_factor && !clock.memory_s};
+}
+
 int run(const TrainOptions& options) {
     check_distinct({options.model, options.header}, options.recordings.logs);
     const OutputKind outputs = parse_output_kind(options.outputs);
-    const ModelTraining training = model_training(options, outputs);
+    ModelTraining training = model_training(options, outputs);
     note_ignored(options, outputs);
     ReadOptions columns;
     columns.outputs = outputs;
     columns.velocity = columns.acceleration =
         sees_derivatives(training) && training.derivatives != DerivativeSource::estimated;
     const std::vector<Recording> recordings = options.recordings.read(columns);
-    ModelTrainingResult result = train_model(prepare_training(recordings, training), outputs, training,
-                                             progress_line(training.options.hyper));
+    options.clock.apply(training.options, sample_period_s(recordings));
+    const ProgressCallback progress = progress_line(training.options.hyper);
+    ModelTrainingResult result =
+        options.sizes.given()
+            ? train_within(options.sizes, free_sizes(options), recordings, outputs, training, progress)
+            : train_model(prepare_training(recordings, training), outputs, training, progress);
     TrainedModel& model = result.model;
     const std::string trained_on = file_names(recordings, model.training);
     model.training.rows = options.recordings.rows;
@@ -229,6 +240,8 @@ void add_train_command(CLI::App& app, Command& chosen) {
                      "Input STD: columns qd and qdd of the recording, or estimated from the positions")
         ->check(CLI::IsMember(sources))
         ->capture_default_str();
+    options->clock.add_to(*command);
+    options->sizes.add_to(*command);
     add_training_options(*command, options->training);
     add_physics_options(*command, *options);
     command->footer(

@@ -19,8 +19,6 @@ constexpr std::array<std::pair<InputKind, const char*>, 5> input_names{{{InputKi
                                                                         {InputKind::DFR, "DFR"},
                                                                         {InputKind::DFSR, "DFSR"}}};
 
-constexpr int largest_lag_count = 1000;
-
 Derivatives read_derivatives(const JsonReader& reader) {
     const std::string text = reader.text("derivatives");
     if (text != "measured" && text != "estimated") {

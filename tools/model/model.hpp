@@ -18,6 +18,8 @@ enum class Derivatives {
     measured,  ///< columns qd, qdd of the recording
 };
 
+inline constexpr int largest_lag_count = 1000; ///< of any input
+
 /// How each joint's last positions become k features: xi_(i,j) = relevance-scaled row j of R applied to joint
 /// i. Element (i, j) of xi has index i * rows_per_joint + j.
 struct InputModel {

@@ -8,6 +8,7 @@
 #include "tools/physics/chain_model.hpp"
 #include "tools/physics/robot_regressor.hpp"
 #include "tools/physics/stored_motion.hpp"
+#include "tools/training/lag_spacing.hpp"
 #include "tools/training/recorded_data.hpp"
 #include "tools/training/start_state.hpp"
 #include "tools/training/training_options.hpp"
@@ -183,7 +184,8 @@ PreparedTraining prepare_training(std::span<const Recording> recordings, const M
         return prepared;
     }
     prepared.position_noise_bound = estimate_position_noise_bound(prepared.data);
-    estimate_derivatives(prepared.data, recordings, training.options.lags, prepared.position_noise_bound);
+    const int lags = dense_lags({training.options.lags, training.options.every});
+    estimate_derivatives(prepared.data, recordings, lags, prepared.position_noise_bound);
     return prepared;
 }
 

@@ -6,6 +6,7 @@
 #include "tools/common/to_vector.hpp"
 #include "tools/model/model_file.hpp"
 #include "tools/training/fit.hpp"
+#include "tools/training/lag_spacing.hpp"
 #include "tools/training/random_features.hpp"
 #include "tools/training/start_state.hpp"
 #include "tools/training/training_options.hpp"
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 namespace dfdyn::tools {
 namespace {
@@ -116,12 +118,9 @@ TrainedPhysics start_physics(const TrainingSetup& setup, const PhysicsPart& part
     return physics;
 }
 
-} // namespace
-
-TrainingResult train(const TrainingData& data, const TrainingOptions& options,
-                     const ProgressCallback& progress) {
-    check_options(options, data);
-    check_training_data(data, options.input);
+/// train() with the lags as they are in `data`.
+TrainingResult train_unspaced(const TrainingData& data, const TrainingOptions& options,
+                              const ProgressCallback& progress) {
     const TrainingSetup setup(data, options);
     check_outputs_vary(setup);
     const Fit fit = options.hyper == HyperMethod::ML ? fit_by_likelihood(setup, progress)
@@ -131,6 +130,24 @@ TrainingResult train(const TrainingData& data, const TrainingOptions& options,
         result.physics = start_physics(setup, *fit.physics, result.model);
     } else {
         result.model.start = batch_start(result.model, data, setup.rows.usable);
+    }
+    return result;
+}
+
+} // namespace
+
+TrainingResult train(const TrainingData& data, const TrainingOptions& options,
+                     const ProgressCallback& progress) {
+    check_options(options, data);
+    check_training_data(data, options.input);
+    if (options.every == 1) {
+        return train_unspaced(data, options, progress);
+    }
+    TrainingResult result = train_unspaced(spaced_data(data, options.every), options, progress);
+    result.model.sample_period_s = data.sample_period_s;
+    result.model.input = dense_input(std::move(result.model.input), options.every);
+    if (result.physics) {
+        result.physics->motion_rows = dense_rows(result.physics->motion_rows, options.every);
     }
     return result;
 }

@@ -52,6 +52,7 @@ struct TrainingOptions {
     PhysicsOptions physics; ///< read unless the model is NP
     InputKind input = InputKind::DFR;
     int lags = 10; ///< M >= 1 (DFSR and filters of the physics: >= 2); STD: the longest window minus one
+    int every = 1; ///< lags are so many samples apart, see LagSpacing; > 1: not STD, not CV
     int rows_per_joint = 3; ///< k of DFR, 1 … M+1; the other inputs have their own
     /// STD: gains of velocity and acceleration beside the length scale, by ML. False, the paper's: one width
     /// for inputs of unit deviation.

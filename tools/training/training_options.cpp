@@ -5,6 +5,7 @@
 #include "tools/common/number.hpp"
 #include "tools/common/text.hpp"
 #include "tools/model/model_file.hpp"
+#include "tools/training/lag_spacing.hpp"
 
 #include <algorithm>
 #include <array>
@@ -59,6 +60,14 @@ void check_lags(const TrainingOptions& options) {
         expect(options.rows_per_joint >= 1 && options.rows_per_joint <= options.lags + 1,
                "1 to lags + 1 rows per joint", options.rows_per_joint);
     }
+    expect(options.every >= 1, "lags at least 1 sample apart", options.every);
+    if (options.every > 1) {
+        expect(options.input != InputKind::STD, "lags one sample apart for input STD", options.every);
+        expect(options.hyper != HyperMethod::CV, "lags one sample apart for cross validation", options.every);
+    }
+    const int samples = dense_lags({options.lags, options.every});
+    expect(samples <= largest_lag_count,
+           "a window of at most " + std::to_string(largest_lag_count) + " samples", samples);
 }
 
 void check_search(const TrainingOptions& options) {

@@ -120,7 +120,7 @@ TEST_CASE("models with a robot are trained and replayed from one command each") 
         {"--outputs tau --model P --input STD --derivatives measured --hyper CV", 0.40},
         {"--outputs tau --model SP --input STD --derivatives estimated --effects viscous_friction", 0.13},
         {"--outputs tau --model SP --input DFW --own-motion", 0.13},
-        {"--outputs tau --model SP2 --input DFSR --hyper CV", 0.09},
+        {"--outputs tau --model SP2 --input DFSR --lags 10 --hyper CV", 0.09},
         {"--outputs i --model SP --torque-constants 5,3 --effects coulomb_friction,rotor_inertia", 0.07},
         {"--outputs i --model SPK --effects stribeck_friction,joint_spring", 0.10},
         {"--outputs tau --model SPK --own-motion --prior unit --input DF", 0.12},

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/commands/clock_options.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tools/common/error.hpp"
+
+#include <cmath>
+
+namespace clock_options_test {
+
+using namespace dfdyn::tools;
+
+TrainingOptions applied(const ClockOptions& clock, double period_s, InputKind input = InputKind::DFR) {
+    TrainingOptions options;
+    options.input = input;
+    clock.apply(options, period_s);
+    return options;
+}
+
+TEST_CASE("the default window is as long at any sample rate") {
+    for (const double period_s : {0.02, 0.011, 0.008, 0.002, 0.001, 0.0002}) {
+        const TrainingOptions options = applied({}, period_s);
+        CHECK(period_s * options.lags * options.every == Approx(0.08).margin(0.6 * period_s));
+        CHECK(options.lags <= 20);
+    }
+    CHECK(applied({}, 0.008).lags == 10);
+    CHECK(applied({}, 0.008).every == 1);
+}
+
+TEST_CASE("a memory in seconds is the same at any sample rate") {
+    ClockOptions clock;
+    clock.memory_s = 10;
+    for (const double period_s : {0.02, 0.008, 0.001, 0.0002}) {
+        const double samples = 10 / period_s;
+        CHECK(std::pow(applied(clock, period_s).forgetting_factor, samples) == Approx(std::exp(-1)));
+    }
+}
+
+TEST_CASE("lags and forgetting in samples are taken as they are") {
+    ClockOptions clock;
+    clock.lags = 30;
+    clock.forgetting_factor = 0.9999;
+    const TrainingOptions options = applied(clock, 0.0002);
+    CHECK(options.lags == 30);
+    CHECK(options.every == 1);
+    CHECK(options.forgetting_factor == 0.9999);
+}
+
+TEST_CASE("a given spacing sets the lags of a window") {
+    ClockOptions clock;
+    clock.window_s = 0.1;
+    clock.every = 5;
+    CHECK(applied(clock, 0.001).lags == 20);
+    CHECK(applied(clock, 0.001).every == 5);
+}
+
+TEST_CASE("input STD has lags one sample apart") {
+    CHECK(applied({}, 0.001, InputKind::STD).every == 1);
+    CHECK(applied({}, 0.001, InputKind::STD).lags == 80);
+}
+
+TEST_CASE("a window of more samples than a model holds is refused") {
+    ClockOptions clock;
+    clock.window_s = 0.3;
+    CHECK_THROWS_WITH(applied(clock, 0.0002),
+                      "--window: expected at most 1000 sample periods, 0.2 s, found 0.3 s");
+}
+
+} // namespace clock_options_test

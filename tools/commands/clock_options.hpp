@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/training/train.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <optional>
+
+namespace dfdyn::tools {
+
+/// The options of `train` that state windows and memories: in seconds, or in samples.
+struct ClockOptions {
+    /// The window where none is given (s).
+    static constexpr double default_window_s = 0.08;
+
+    std::optional<int> lags;
+    std::optional<int> every;
+    std::optional<double> window_s;
+    std::optional<double> memory_s;
+    std::optional<double> forgetting_factor;
+
+    void add_to(CLI::App& command);
+
+    /// Sets lags, their spacing and the forgetting factor for recordings with that sample period. Input and
+    /// method must be set: input STD and cross validation have lags one sample apart. Throws InputError for a
+    /// window of more than 1000 samples and a memory that is shorter than a sample period.
+    void apply(TrainingOptions& training, double period_s) const;
+};
+
+} // namespace dfdyn::tools
