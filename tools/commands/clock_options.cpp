@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 namespace dfdyn::tools {
 
@@ -75,6 +77,20 @@ void ClockOptions::apply(TrainingOptions& training, double period_s) const {
     } else if (memory_s) {
         training.forgetting_factor = std::exp(-period_s / *memory_s);
     }
+}
+
+std::string describe_clock(const TrainingOptions& training, double period_s) {
+    const double lambda = training.forgetting_factor;
+    std::ostringstream text;
+    text << std::setprecision(4) << "sample period " << period_s << " s, window "
+         << period_s * training.lags * training.every << " s (" << training.lags << " lags, "
+         << training.every << (training.every == 1 ? " sample" : " samples") << " apart), memory ";
+    if (lambda < 1) {
+        text << -period_s / std::log(lambda) << " s";
+    } else {
+        text << "unlimited";
+    }
+    return text.str();
 }
 
 } // namespace dfdyn::tools

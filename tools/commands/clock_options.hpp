@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include <optional>
+#include <string>
 
 namespace dfdyn::tools {
 
@@ -27,5 +28,8 @@ struct ClockOptions {
     /// window of more than 1000 samples and a memory that is shorter than a sample period.
     void apply(TrainingOptions& training, double period_s) const;
 };
+
+/// "sample period 0.001 s, window 0.08 s (20 lags, 4 samples apart), memory unlimited".
+std::string describe_clock(const TrainingOptions& training, double period_s);
 
 } // namespace dfdyn::tools

@@ -186,7 +186,8 @@ int run(const TrainOptions& options) {
     columns.velocity = columns.acceleration =
         sees_derivatives(training) && training.derivatives != DerivativeSource::estimated;
     const std::vector<Recording> recordings = options.recordings.read(columns);
-    options.clock.apply(training.options, sample_period_s(recordings));
+    const double period_s = sample_period_s(recordings);
+    options.clock.apply(training.options, period_s);
     const ProgressCallback progress = progress_line(training.options.hyper);
     ModelTrainingResult result =
         options.sizes.given()
@@ -203,6 +204,7 @@ int run(const TrainOptions& options) {
         write_file(options.header, model_to_header(model, to_identifier(options.header.stem().string())));
     }
     print_outcome(result, trained_on);
+    std::cout << describe_clock(training.options, period_s) << '\n';
     return 0;
 }
 

@@ -146,8 +146,8 @@ class SizeSearch {
         Trained result;
         result.model = train_model(prepare_training(split_.training, training), outputs_, training, {}).model;
         result.model.limits.innovation = std::numeric_limits<float>::max();
-        result.candidate = {options, period_s_ * dense_lags({options.lags, options.every}), 0,
-                            needs_of(result.model), mean_error(result.model, split_.judging)};
+        result.candidate = {options, period_s_ * options.lags * options.every, 0, needs_of(result.model),
+                            mean_error(result.model, split_.judging)};
         const double lambda = options.forgetting_factor;
         result.candidate.memory_s = lambda < 1 ? -period_s_ / std::log(lambda) : 0;
         return result;

@@ -49,7 +49,7 @@ struct HostConstants {
 template <class Model>
 std::unique_ptr<HostConstants<Model>> make_host_constants(const TrainedModel& model, bool from_prior);
 
-/// The time between samples beyond which the window restarts (ns): one and a half sample periods.
+/// The step that is a gap for an estimator that does not know its sample period (ns): one and a half periods.
 std::int64_t gap_ns(const TrainedModel& model);
 
 /// The factor of each element of ξ that the firmware applies: for DFW it includes the weight of the lag.

@@ -67,9 +67,9 @@ class Estimator {
     /// Predicts the sample's output from its position and the past, then learns it as far as the budget goes.
     /// A refused sample leaves what has been learned as it is. Takes at most `cost().predict` +
     /// `cost().variance` + the budget multiply-adds, whatever the input; where the sample is learned at once,
-    /// the variance comes with it. Within the budget, learning may take more than `cost().learn`:
-    /// `cost().forget` with forgetting, and for SPK the products of φ with all weights once more where
-    /// another sample ended in the same tick.
+    /// the variance comes with it; deciding on gaps takes `SampleClock::cost` besides. Within the budget,
+    /// learning may take more than `cost().learn`: `cost().forget` with forgetting, and for SPK the products
+    /// of φ with all weights once more where another sample ended in the same tick.
     Estimate tick(const Sample& sample, Budget budget) noexcept {
         Estimate estimate = unknown();
         Status& status = estimate.status;

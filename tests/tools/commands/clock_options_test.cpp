@@ -54,6 +54,15 @@ TEST_CASE("a given spacing sets the lags of a window") {
     CHECK(applied(clock, 0.001).every == 5);
 }
 
+TEST_CASE("window and memory are described in seconds") {
+    ClockOptions clock;
+    CHECK(describe_clock(applied(clock, 0.008), 0.008) ==
+          "sample period 0.008 s, window 0.08 s (10 lags, 1 sample apart), memory unlimited");
+    clock.memory_s = 20;
+    CHECK(describe_clock(applied(clock, 0.0002), 0.0002) ==
+          "sample period 0.0002 s, window 0.08 s (20 lags, 20 samples apart), memory 20 s");
+}
+
 TEST_CASE("input STD has lags one sample apart") {
     CHECK(applied({}, 0.001, InputKind::STD).every == 1);
     CHECK(applied({}, 0.001, InputKind::STD).lags == 80);
