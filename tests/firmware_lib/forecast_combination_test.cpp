@@ -29,6 +29,15 @@ Combination<Scalar> combination(Scalar memory) {
     return {Extent<members>{}, Extent<outputs>{}, memory};
 }
 
+/// Deviations of the members' noise: 0.5, 1, 2 in the first output, 1 in the second.
+template <class Scalar>
+constexpr Values<Scalar> noise{Scalar(0.5), 1, 1, 1, 2, 1};
+
+template <class Scalar>
+Combination<Scalar> scaled_combination(Scalar memory) {
+    return {Extent<members>{}, Extent<outputs>{}, memory, noise<Scalar>.data()};
+}
+
 /// Predictions of an output 0 whose error has the deviations 1, 2, 4 (first output) and 3, 3, 0.3 (second).
 template <class Scalar>
 Values<Scalar> predictions(std::mt19937_64& engine) {
@@ -116,7 +125,8 @@ TEMPLATE_TEST_CASE("whatever it has seen, the combination lies among its members
                                       infinite,
                                       std::numeric_limits<TestType>::quiet_NaN()};
     std::uniform_int_distribution<std::size_t> pick(0, 2 * odd.size());
-    Combination<TestType> combined = combination<TestType>(7);
+    Combination<TestType> combined =
+        GENERATE(false, true) ? scaled_combination<TestType>(7) : combination<TestType>(7);
     std::array<TestType, outputs> to{};
     for (int t = 0; t < 10'000; ++t) {
         Values<TestType> from = predictions<TestType>(engine);
@@ -126,7 +136,12 @@ TEMPLATE_TEST_CASE("whatever it has seen, the combination lies among its members
             value = choice < odd.size() ? odd[choice] : value;
         }
         measured[0] = odd[pick(engine) % odd.size()];
-        combined.learn(from.data(), measured.data());
+        Values<TestType> ahead = predictions<TestType>(engine);
+        ahead[pick(engine) % ahead.size()] = odd[pick(engine) % odd.size()];
+        combined.learn(from.data(), ahead.data(), measured.data());
+        if (pick(engine) % 2 == 0) {
+            combined.weigh(ahead.data()); // deviations may be anything
+        }
         from = predictions<TestType>(engine);
         combined.combine(from.data(), to.data());
         for (std::size_t k = 0; k < outputs; ++k) {
@@ -154,6 +169,51 @@ TEMPLATE_TEST_CASE("an absurd error is forgotten within five memories", "", floa
         combined.learn(good.data(), measured.data());
     }
     CHECK(combined.weights()[outputs] > TestType(0.99));
+}
+
+TEMPLATE_TEST_CASE("members of known noise weigh by it until they have been seen to predict", "", float,
+                   double) {
+    const Combination<TestType> combined = scaled_combination<TestType>(100);
+    const double sum = 16 + 1 + 1.0 / 16; // 1/σ⁴
+    CHECK(combined.weights()[0] == Approx(16 / sum));
+    CHECK(combined.weights()[2] == Approx(1 / sum));
+    CHECK(combined.weights()[4] == Approx(1.0 / 16 / sum));
+    CHECK(combined.weights()[1] == Approx(1.0 / 3));
+}
+
+TEMPLATE_TEST_CASE("a member whose parameters are uncertain at an input counts less there", "", float,
+                   double) {
+    Combination<TestType> combined = scaled_combination<TestType>(100);
+    Values<TestType> deviations = noise<TestType>;
+    combined.weigh(deviations.data());
+    const TestType before = combined.weights()[1];
+    CHECK(before == Approx(1.0 / 3));
+    deviations[1] = 2; // a variance of 3 of the parameters, besides 1 of the noise
+    combined.weigh(deviations.data());
+    const double doubtful = 1 + 3 * static_cast<double>(Combination<TestType>::variance_factor);
+    CHECK(combined.weights()[1] == Approx(1 / (doubtful * doubtful) / (2 + 1 / (doubtful * doubtful))));
+    CHECK(combined.weights()[3] == combined.weights()[5]);
+    deviations[1] = std::numeric_limits<TestType>::infinity();
+    combined.weigh(deviations.data());
+    CHECK(combined.weights()[1] < TestType(1e-6));
+    combined.weigh(noise<TestType>.data()); // of this input only: nothing of it stays
+    CHECK(combined.weights()[1] == before);
+}
+
+TEST_CASE("a member that only tracks weighs less than one that predicts ahead as well") {
+    Combination<double> combined = scaled_combination<double>(50);
+    const std::array<double, outputs> measured{};
+    const Values<double> one_step{0.1, 0.1, 0.3, 0.3, 5, 5};
+    const Values<double> ahead{2, 2, 0.3, 0.3, 5, 5};
+    for (int t = 0; t < 500; ++t) {
+        combined.learn(one_step.data(), ahead.data(), measured.data());
+    }
+    CHECK(combined.weights()[2] > 0.99);
+    Combination<double> tracking = scaled_combination<double>(50);
+    for (int t = 0; t < 500; ++t) {
+        tracking.learn(one_step.data(), measured.data());
+    }
+    CHECK(tracking.weights()[0] > 0.98);
 }
 
 TEST_CASE("a combination goes on from its snapshot, and takes no other") {
@@ -190,7 +250,8 @@ TEST_CASE("a combination does not allocate") {
     std::array<float, outputs> to{};
     std::array<std::byte, 256> bytes{};
     const dfdyn::tests::AllocationGuard guard;
-    combined.learn(from.data(), to.data());
+    combined.learn(from.data(), from.data(), to.data());
+    combined.weigh(from.data());
     combined.combine(from.data(), to.data());
     const SnapshotResult written = combined.snapshot(bytes);
     const SnapshotResult read = combined.restore(bytes);
