@@ -2,10 +2,13 @@
 #include "tools/host/combined_estimator.hpp"
 
 #include "dfdyn/forecast_combination.hpp"
+#include "dfdyn/monitor/held_weights.hpp"
 #include "tools/host/dynamic_storage.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <limits>
 #include <stdexcept>
 
 namespace dfdyn::tools {
@@ -14,24 +17,49 @@ namespace {
 
 using Members = std::vector<CombinationMember>;
 
+/// Deviations of the members' noise, member by member.
+std::vector<float> noise_of(const Members& members) {
+    std::vector<float> noise;
+    for (const CombinationMember& member : members) {
+        std::ranges::transform(member.noise_std, std::back_inserter(noise),
+                               [](double x) { return static_cast<float>(x); });
+    }
+    return noise;
+}
+
+bool refused(Reason learning) { return learning == Reason::output_missing || is_fault(learning); }
+
 class CombinedEstimator final : public HostEstimator {
   public:
-    CombinedEstimator(Members members, std::size_t outputs)
+    CombinedEstimator(Members members, std::size_t outputs, double sample_period_s)
         : members_(std::move(members)), outputs_(outputs),
           combination_(Extent<dynamic>{static_cast<int>(members_.size())},
-                       Extent<dynamic>{static_cast<int>(outputs)}, combination_memory),
-          predictions_(members_.size() * outputs), deviations_(predictions_.size()), measured_(outputs),
-          prediction_(outputs), deviation_(outputs) {}
+                       Extent<dynamic>{static_cast<int>(outputs)},
+                       static_cast<float>(combination_memory_s / sample_period_s), noise_of(members_).data()),
+          period_(std::max(1L, std::lround(held_weights_period_s / sample_period_s))),
+          predictions_(members_.size() * outputs), ahead_(predictions_.size()),
+          deviations_(predictions_.size()), measured_(outputs), prediction_(outputs), deviation_(outputs) {
+        for (const CombinationMember& member : members_) {
+            held_.emplace_back(Extent<dynamic>{static_cast<int>(member.estimator->weight_count())});
+        }
+        hold_all();
+    }
 
     Tick tick(const MeasuredSample& sample, Budget budget) override {
-        Tick all = tick_members(sample, budget);
-        combination_.combine(predictions_.data(), prediction_.data());
-        combination_.combine(deviations_.data(), deviation_.data());
-        if (all.status.learned()) {
-            std::ranges::transform(sample.output, measured_.begin(),
-                                   [](double y) { return static_cast<float>(y); });
-            combination_.learn(predictions_.data(), measured_.data());
+        auto [all, refused_by_all] = tick_members(sample, budget);
+        if (all.status.predicted()) {
+            combination_.weigh(deviations_.data());
+            combination_.combine(predictions_.data(), prediction_.data());
+            combination_.combine(deviations_.data(), deviation_.data());
+            if (!sample.output.empty() && !refused_by_all && budget.operations > 0) {
+                learn(sample.output);
+            }
+        } else {
+            std::ranges::fill(prediction_, 0.0F);
+            std::ranges::fill(deviation_, std::numeric_limits<float>::infinity());
         }
+        ++since_held_;
+        hold_when_due();
         all.prediction = prediction_;
         all.standard_deviation = deviation_;
         return all;
@@ -42,29 +70,31 @@ class CombinedEstimator final : public HostEstimator {
         for (const CombinationMember& member : members_) {
             idle = member.estimator->advance(budget) && idle;
         }
+        hold_when_due();
         return idle;
     }
 
     void predict_with(std::span<const float> weights, std::span<float> prediction) const override {
         std::span<const float> rest = weights.subspan(predictions_.size());
-        std::vector<float> of_member(outputs_);
-        std::ranges::fill(prediction, 0.0F);
+        std::vector<float> of_members(predictions_.size());
+        std::vector<float> combined(predictions_.size());
         for (std::size_t j = 0; j < members_.size(); ++j) {
-            members_[j].estimator->predict_with(rest.first(members_[j].estimator->weight_count()), of_member);
-            rest = rest.subspan(members_[j].estimator->weight_count());
-            for (std::size_t k = 0; k < outputs_; ++k) {
-                prediction[k] += weights[j * outputs_ + k] * of_member[k];
-            }
+            const HostEstimator& member = *members_[j].estimator;
+            member.predict_with(rest.first(member.weight_count()),
+                                std::span(of_members).subspan(j * outputs_, outputs_));
+            rest = rest.subspan(member.weight_count());
         }
+        combination_.weigh(weights.data(), deviations_.data(), combined.data());
+        combination_.combine(combined.data(), of_members.data(), prediction.data());
     }
 
-    /// Those of the combination, then those of each member.
+    /// The combination's mean square errors, then the weights of each member.
     std::size_t weight_count() const override {
         return sum_over_members([](const HostEstimator& member) { return member.weight_count(); },
                                 predictions_.size());
     }
     void copy_weights(std::span<float> weights) const override {
-        std::copy_n(combination_.weights(), predictions_.size(), weights.begin());
+        std::copy_n(combination_.mean_squares(), predictions_.size(), weights.begin());
         std::span<float> rest = weights.subspan(predictions_.size());
         for (const CombinationMember& member : members_) {
             member.estimator->copy_weights(rest.first(member.estimator->weight_count()));
@@ -75,6 +105,7 @@ class CombinedEstimator final : public HostEstimator {
     void begin_recording() override {
         std::ranges::for_each(members_,
                               [](CombinationMember& member) { member.estimator->begin_recording(); });
+        hold_all(); // nobody knows how long ago the last recording was
     }
 
     /// That of the combination, then those of each member.
@@ -98,6 +129,7 @@ class CombinedEstimator final : public HostEstimator {
         if (!restored) {
             restore_parts(before);
         }
+        hold_all();
         return restored;
     }
 
@@ -106,12 +138,13 @@ class CombinedEstimator final : public HostEstimator {
                                 combination_.snapshot_bytes());
     }
 
+    /// With what the members predict by held weights.
     Cost cost() const override {
         const auto table = static_cast<std::int64_t>(predictions_.size());
-        Cost cost{.predict = 2 * table, .variance = 0, .learn = 8 * table, .forget = 0, .largest_step = 0};
+        Cost cost{.predict = 8 * table, .variance = 0, .learn = 10 * table, .forget = 0, .largest_step = 0};
         for (const CombinationMember& member : members_) {
             const Cost one = member.estimator->cost();
-            cost.predict += one.predict;
+            cost.predict += 2 * one.predict;
             cost.variance += one.variance;
             cost.learn += one.learn;
             cost.forget += one.forget;
@@ -121,9 +154,11 @@ class CombinedEstimator final : public HostEstimator {
     }
 
   private:
-    /// The members' ticks, their predictions put into the tables; without prediction of the combination.
-    Tick tick_members(const MeasuredSample& sample, Budget budget) {
+    /// The members' ticks, their predictions put into the tables; without prediction of the combination. And
+    /// whether every member refused the sample.
+    std::pair<Tick, bool> tick_members(const MeasuredSample& sample, Budget budget) {
         Tick all;
+        bool refused_by_all = true;
         for (std::size_t j = 0; j < members_.size(); ++j) {
             const Tick one = members_[j].estimator->tick(sample, budget);
             const auto row = static_cast<std::ptrdiff_t>(j * outputs_);
@@ -135,6 +170,7 @@ class CombinedEstimator final : public HostEstimator {
             all.normalised_innovation_squared =
                 j == 0 ? innovation : std::min(all.normalised_innovation_squared, innovation);
             all.duration += one.duration;
+            refused_by_all = refused_by_all && refused(one.status.learning);
             if (all.status.prediction == Reason::ok) {
                 all.status.prediction = one.status.prediction;
             }
@@ -142,7 +178,44 @@ class CombinedEstimator final : public HostEstimator {
                 all.status.learning = one.status.learning;
             }
         }
-        return all;
+        return {all, refused_by_all};
+    }
+
+    /// Learns how the members predicted the sample that they have just ticked.
+    void learn(std::span<const double> output) {
+        std::ranges::transform(output, measured_.begin(), [](double y) { return static_cast<float>(y); });
+        for (std::size_t j = 0; j < members_.size(); ++j) {
+            const HostEstimator& member = *members_[j].estimator;
+            member.predict_with({held_[j].older(), member.weight_count()},
+                                std::span(ahead_).subspan(j * outputs_, outputs_));
+        }
+        combination_.learn(predictions_.data(), ahead_.data(), measured_.data());
+    }
+
+    /// Both copies become what the members have learned now.
+    void hold_all() {
+        for (int copy = 0; copy < 2; ++copy) {
+            hold();
+        }
+        since_held_ = 0;
+    }
+
+    void hold() {
+        for (std::size_t j = 0; j < members_.size(); ++j) {
+            const HostEstimator& member = *members_[j].estimator;
+            member.copy_weights({held_[j].renew(), member.weight_count()});
+        }
+    }
+
+    /// Once a period, as soon as no member has anything left to learn.
+    void hold_when_due() {
+        const auto idle = [](CombinationMember& member) {
+            return member.estimator->advance(Budget::predict_only());
+        };
+        if (since_held_ >= period_ && std::ranges::all_of(members_, idle)) {
+            hold();
+            since_held_ = 0;
+        }
     }
 
     bool restore_parts(std::span<const std::byte> bytes) {
@@ -168,14 +241,17 @@ class CombinedEstimator final : public HostEstimator {
     Members members_;
     std::size_t outputs_;
     ForecastCombination<float, dynamic, dynamic> combination_;
-    std::vector<float> predictions_, deviations_; ///< members × outputs
+    long period_;         ///< of the held weights, samples
+    long since_held_ = 0; ///< samples
+    std::vector<HeldWeights<float, dynamic>> held_;
+    std::vector<float> predictions_, ahead_, deviations_; ///< members × outputs
     std::vector<float> measured_, prediction_, deviation_;
 };
 
 } // namespace
 
-std::unique_ptr<HostEstimator> combine(Members members, std::size_t outputs) {
-    return std::make_unique<CombinedEstimator>(std::move(members), outputs);
+std::unique_ptr<HostEstimator> combine(Members members, std::size_t outputs, double sample_period_s) {
+    return std::make_unique<CombinedEstimator>(std::move(members), outputs, sample_period_s);
 }
 
 } // namespace dfdyn::tools

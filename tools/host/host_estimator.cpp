@@ -145,9 +145,10 @@ std::unique_ptr<HostEstimator> make_estimator(std::span<const TrainedModel> mode
     }
     std::vector<CombinationMember> members;
     for (const TrainedModel& model : models) {
-        members.push_back({make_estimator(model, from_prior), model.limits.innovation});
+        members.push_back(
+            {make_estimator(model, from_prior), model.limits.innovation, model.outputs.noise_std});
     }
-    return combine(std::move(members), models.front().outputs.names.size());
+    return combine(std::move(members), models.front().outputs.names.size(), models.front().sample_period_s);
 }
 
 } // namespace dfdyn::tools
