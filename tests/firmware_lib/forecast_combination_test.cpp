@@ -140,6 +140,7 @@ TEMPLATE_TEST_CASE("whatever it has seen, the combination lies among its members
         ahead[pick(engine) % ahead.size()] = odd[pick(engine) % odd.size()];
         combined.learn(from.data(), ahead.data(), measured.data());
         if (pick(engine) % 2 == 0) {
+            combined.skip();
             combined.weigh(ahead.data()); // deviations may be anything
         }
         from = predictions<TestType>(engine);
@@ -198,6 +199,26 @@ TEMPLATE_TEST_CASE("a member whose parameters are uncertain at an input counts l
     CHECK(combined.weights()[1] < TestType(1e-6));
     combined.weigh(noise<TestType>.data()); // of this input only: nothing of it stays
     CHECK(combined.weights()[1] == before);
+}
+
+TEST_CASE("after a memory without samples the noise decides again, and the errors return with the next") {
+    Combination<double> combined = scaled_combination<double>(50);
+    const std::array<double, outputs> measured{};
+    const double start = combined.weights()[0];
+    const Values<double> standing{3, 3, 0.01, 0.01, 3, 3}; // the second is good where the arm stands
+    for (int t = 0; t < 300; ++t) {
+        combined.learn(standing.data(), measured.data());
+    }
+    CHECK(combined.weights()[2] > 0.99);
+    for (int t = 0; t < 500; ++t) {
+        combined.skip();
+    }
+    combined.weigh(noise<double>.data());
+    CHECK(combined.weights()[0] == Approx(start).margin(0.01));
+    for (int t = 0; t < 300; ++t) {
+        combined.learn(standing.data(), measured.data());
+    }
+    CHECK(combined.weights()[2] > 0.99);
 }
 
 TEST_CASE("a member that only tracks weighs less than one that predicts ahead as well") {

@@ -53,6 +53,8 @@ class CombinedEstimator final : public HostEstimator {
             combination_.combine(deviations_.data(), deviation_.data());
             if (!sample.output.empty() && !refused_by_all && budget.operations > 0) {
                 learn(sample.output);
+            } else {
+                combination_.skip();
             }
         } else {
             std::ranges::fill(prediction_, 0.0F);
@@ -94,7 +96,7 @@ class CombinedEstimator final : public HostEstimator {
                                 predictions_.size());
     }
     void copy_weights(std::span<float> weights) const override {
-        std::copy_n(combination_.mean_squares(), predictions_.size(), weights.begin());
+        combination_.copy_mean_squares(weights.data());
         std::span<float> rest = weights.subspan(predictions_.size());
         for (const CombinationMember& member : members_) {
             member.estimator->copy_weights(rest.first(member.estimator->weight_count()));
@@ -141,7 +143,7 @@ class CombinedEstimator final : public HostEstimator {
     /// With what the members predict by held weights.
     Cost cost() const override {
         const auto table = static_cast<std::int64_t>(predictions_.size());
-        Cost cost{.predict = 8 * table, .variance = 0, .learn = 10 * table, .forget = 0, .largest_step = 0};
+        Cost cost{.predict = 10 * table, .variance = 0, .learn = 12 * table, .forget = 0, .largest_step = 0};
         for (const CombinationMember& member : members_) {
             const Cost one = member.estimator->cost();
             cost.predict += 2 * one.predict;

@@ -33,8 +33,9 @@ namespace dfdyn {
 ///     combination.weigh(deviations);                        // at this input; without: by past errors alone
 ///     combination.combine(predictions, prediction);
 ///     if the sample was not refused: combination.learn(predictions, ahead, sample.output.data());
+///     else: combination.skip();
 ///
-/// Cost in multiply-adds for c members: weigh 6 c m, combine c m, learn 10 c m; 3 c m + 2 scalars. Never
+/// Cost in multiply-adds for c members: weigh 8 c m, combine c m, learn 12 c m; 3 c m + 3 scalars. Never
 /// allocates.
 template <class Scalar, int members, int m>
 class ForecastCombination {
@@ -59,6 +60,7 @@ class ForecastCombination {
     /// Back to what is expected at the start.
     constexpr void restart() noexcept {
         const bool known = noise_square_[0] > 0;
+        trust_ = 1;
         samples_ = known ? std::min(first_samples, memory_) : Scalar(0);
         for (int i = 0; i < count(); ++i) {
             mean_square_[i] = known ? noise_square_[i] : least;
@@ -70,10 +72,12 @@ class ForecastCombination {
     /// in the outputs' units, parameters and noise together as in `Estimate`. One that is no number counts as
     /// infinite.
     constexpr void weigh(const Scalar* deviations) noexcept {
-        weigh(mean_square_.data(), deviations, weights_.data());
+        copy_mean_squares(weights_.data());
+        weigh(weights_.data(), deviations, weights_.data());
     }
 
-    /// Likewise with other mean square errors, as `mean_squares` gave them, into `weights`.
+    /// Likewise with other mean square errors, as `copy_mean_squares` gave them, into `weights`, which may be
+    /// the same table.
     constexpr void weigh(const Scalar* mean_squares, const Scalar* deviations,
                          Scalar* weights) const noexcept {
         for (int i = 0; i < count(); ++i) {
@@ -106,6 +110,8 @@ class ForecastCombination {
     /// Learns how the members' predictions of a sample compare with its m outputs. `ahead`: what they predict
     /// for it with weights of a while ago; may be `predictions`. Then weighs by the errors alone.
     constexpr void learn(const Scalar* predictions, const Scalar* ahead, const Scalar* measured) noexcept {
+        copy_mean_squares(mean_square_.data());
+        trust_ = 1;
         const bool scaled = samples_ >= memory_ || noise_square_[0] > 0; // it is known what is absurd
         samples_ = samples_ < memory_ ? samples_ + 1 : memory_;
         for (int k = 0; k < outputs_; ++k) {
@@ -121,15 +127,24 @@ class ForecastCombination {
         weigh();
     }
 
-    /// Likewise by the errors of the predictions alone.
+    /// A tick that learns nothing: past errors count for less, the members' noise for more, until after a
+    /// memory the noise and the variances decide. The last errors before a standstill say little about a
+    /// motion that follows. Without `noise_std` it does nothing.
+    constexpr void skip() noexcept { trust_ *= noise_square_[0] > 0 ? 1 - 1 / memory_ : Scalar(1); }
+
+    /// `learn` by the errors of the predictions alone.
     constexpr void learn(const Scalar* predictions, const Scalar* measured) noexcept {
         learn(predictions, predictions, measured);
     }
 
     /// Of each member for each output, member by member.
     [[nodiscard]] constexpr const Scalar* weights() const noexcept { return weights_.data(); }
-    /// Mean square errors, member by member.
-    [[nodiscard]] constexpr const Scalar* mean_squares() const noexcept { return mean_square_.data(); }
+    /// Copies the mean square errors that count now, member by member.
+    constexpr void copy_mean_squares(Scalar* to) const noexcept {
+        for (int i = 0; i < count(); ++i) {
+            to[i] = trust_ * mean_square_[i] + (1 - trust_) * noise_square_[i];
+        }
+    }
 
     [[nodiscard]] std::size_t snapshot_bytes() const noexcept { return dfdyn::snapshot_bytes(*this); }
 
@@ -141,6 +156,7 @@ class ForecastCombination {
     /// Restores a snapshot of a combination of as many members and outputs, whole or not at all.
     [[nodiscard]] SnapshotResult restore(std::span<const std::byte> buffer) noexcept {
         const SnapshotResult result = read_snapshot(*this, identity(), buffer);
+        trust_ = 1;
         weigh();
         return result;
     }
@@ -215,6 +231,7 @@ class ForecastCombination {
     [[no_unique_address]] Extent<m> outputs_;
     Scalar memory_;
     Scalar samples_ = 0; ///< that the means are over, at most the memory
+    Scalar trust_ = 1;   ///< in the means, in [0, 1]; the rest is the noise's
     Table noise_square_; ///< zero: not known
     Table mean_square_;
     Table weights_;
