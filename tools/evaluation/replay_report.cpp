@@ -63,8 +63,11 @@ ReportTable table_of(const RecordingFigures& figures, const ReplaySummary& summa
     table.caption = figures.name;
     table.columns = {"error"};
     table.columns.insert(table.columns.end(), summary.outputs.begin(), summary.outputs.end());
-    table.rows = {table_row("nRMSE, one step", figures.normalised_error),
-                  table_row("nRMSE, second half", figures.normalised_error_second_half)};
+    table.rows = {table_row("nRMSE, one step", figures.normalised_error)};
+    for (const OpponentErrors& opponent : figures.opponents) {
+        table.rows.push_back(table_row("nRMSE, one step, " + opponent.label, opponent.normalised_error));
+    }
+    table.rows.push_back(table_row("nRMSE, second half", figures.normalised_error_second_half));
     table.rows.push_back(table_row("share within 2σ", figures.within_two_deviations));
     if (summary.horizon > 0) {
         table.rows.push_back(table_row("ε, median of the first 30 s", figures.horizon_transient));

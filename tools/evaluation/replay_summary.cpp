@@ -47,6 +47,7 @@ RecordingFigures figures_of(const ReplayedRecording& replayed, const TrainedMode
         figures.horizon_steady.push_back(
             median_horizon_index(replayed, k, transient_s, std::numeric_limits<double>::infinity()));
     }
+    figures.opponents = opponent_errors(replayed, model);
     figures.contradictions = find_contradictions(replayed, model.limits.innovation);
     return figures;
 }
@@ -129,6 +130,9 @@ void print_summary(std::ostream& out, const ReplaySummary& summary) {
         }
         print_line(out, "", summary.outputs);
         print_values(out, "nRMSE, one step", recording.normalised_error);
+        for (const OpponentErrors& opponent : recording.opponents) {
+            print_values(out, "  " + opponent.label, opponent.normalised_error);
+        }
         print_values(out, "nRMSE, second half", recording.normalised_error_second_half);
         print_values(out, "share within 2 sigma", recording.within_two_deviations);
         for (const Contradiction& contradiction : recording.contradictions) {

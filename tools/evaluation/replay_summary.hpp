@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tools/evaluation/contradiction.hpp"
+#include "tools/evaluation/opponents.hpp"
 
 #include <ostream>
 #include <span>
@@ -17,6 +18,7 @@ struct RecordingFigures {
     std::vector<std::pair<std::string, std::size_t>> refusals; ///< reasons other than ok, and how often
     std::vector<double> within_two_deviations;                 ///< share of ticks
     std::vector<double> normalised_error;                      ///< one-step nRMSE over all ticks
+    std::vector<OpponentErrors> opponents;                     ///< at the same ticks
     std::vector<double> normalised_error_second_half; ///< over the second half of the recording's ticks
     std::vector<double> horizon_transient;            ///< median of ε over the first 30 s
     std::vector<double> horizon_steady;               ///< median of ε after that

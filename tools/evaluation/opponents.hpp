@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/evaluation/replay.hpp"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// One-step forecasts of the measured outputs that a model is compared with: ticks × m, row by row. Each uses
+/// measurements before its own tick only; where nothing was measured before, it is 0.
+using Forecasts = std::vector<double>;
+
+/// Persistence: the last measurement of the output.
+Forecasts persistence(const ReplayedRecording& replayed, std::size_t outputs);
+
+/// AR(2) of each output: y(t) = a y(t-1) + b y(t-2) + c. The coefficients are learned online over the
+/// recording, by recursive least squares in double without forgetting (prior variance 1e6), from every
+/// measurement.
+Forecasts autoregression(const ReplayedRecording& replayed, std::size_t outputs);
+
+/// The model itself with the firmware's residual state (dfdyn::ColouredResidual) of a memory of
+/// `residual_memory_s`, learned online over the recording. `noise_std`: m values of the model.
+Forecasts with_residual_state(const ReplayedRecording& replayed, const TrainedModel& model);
+
+/// The state's memory (s). Chosen on UR5 No5, No6 and XL330 00 to 06, where 0.16 s to 8 s differ little.
+inline constexpr double residual_memory_s = 0.8;
+
+/// What stands beside a model's own one-step errors: a label and the nRMSE of each output, over exactly the
+/// ticks that the model predicted and that were measured; NaN if there are none.
+struct OpponentErrors {
+    std::string label;
+    std::vector<double> normalised_error;
+};
+
+/// The errors of the model with its residual state, then of each opponent.
+std::vector<OpponentErrors> opponent_errors(const ReplayedRecording& replayed, const TrainedModel& model);
+
+} // namespace dfdyn::tools
