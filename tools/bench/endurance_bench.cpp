@@ -58,6 +58,10 @@ class Going final : public Ticking {
 /// Looks at a learner's state.
 struct DenormalCounter {
     std::int64_t count = 0;
+    template <class T>
+    static constexpr bool skips(int /*count*/) {
+        return false;
+    }
     void array(const float* values, int size) {
         for (int i = 0; i < size; ++i) {
             count += std::fpclassify(values[i]) == FP_SUBNORMAL ? 1 : 0;
