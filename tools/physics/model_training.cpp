@@ -6,6 +6,7 @@
 #include "tools/host/host_model.hpp"
 #include "tools/model/model_file.hpp"
 #include "tools/physics/chain_model.hpp"
+#include "tools/physics/machine_size.hpp"
 #include "tools/physics/robot_regressor.hpp"
 #include "tools/physics/stored_motion.hpp"
 #include "tools/training/lag_spacing.hpp"
@@ -210,10 +211,12 @@ ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind out
     columns.effects = effect_models(robot.effects, columns.chain, robot.sign_velocity);
     const auto regressor = robot_regressor(columns.chain, columns.effects, columns.output_gain);
     options.physics.regressor = regressor.get();
+    options.physics.parameter_size = parameter_sizes(robot.robot, columns.chain, columns.effects);
     TrainingResult result = train(prepared.data, options, progress);
     TrainedModel model = std::move(result.model);
     set_derivatives(model, prepared);
     model.physics = physics_model(model, *result.physics, columns, robot.robot);
+    check_parameters(*model.physics, options.physics.parameter_size);
     model.physics->motion_limit = motion_limits(model.physics->motion, prepared.data);
     if (!has_features(model.structure)) {
         model.input = {};

@@ -10,11 +10,15 @@ namespace dfdyn::tools {
 
 using Eigen::Index;
 
-ColumnChoice select_columns(const Eigen::MatrixXd& psi, double threshold) {
+ColumnChoice select_columns(const Eigen::MatrixXd& psi, double threshold, const Eigen::VectorXd& size) {
     const Eigen::VectorXd norms = psi.colwise().norm().transpose();
+    const double root_rows = std::sqrt(static_cast<double>(psi.rows()));
+    const Eigen::VectorXd effects =
+        (size.size() > 0 ? Eigen::VectorXd(norms.cwiseProduct(size)) : norms) / root_rows;
+    const double least = std::max(rounding_share * effects.maxCoeff(), size.size() > 0 ? least_effect : 0);
     Eigen::MatrixXd unit = psi;
     for (Index c = 0; c < psi.cols(); ++c) {
-        unit.col(c) /= norms[c] > 0 ? norms[c] : 1;
+        unit.col(c) *= effects[c] > least ? 1 / norms[c] : 0;
     }
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(unit);
     ColumnChoice choice;
@@ -26,8 +30,7 @@ ColumnChoice select_columns(const Eigen::MatrixXd& psi, double threshold) {
     std::sort(choice.columns.begin(), choice.columns.end());
     choice.scale.resize(static_cast<Index>(choice.columns.size()));
     for (std::size_t c = 0; c < choice.columns.size(); ++c) {
-        choice.scale[static_cast<Index>(c)] =
-            std::sqrt(static_cast<double>(psi.rows())) / norms[choice.columns[c]];
+        choice.scale[static_cast<Index>(c)] = root_rows / norms[choice.columns[c]];
     }
     return choice;
 }

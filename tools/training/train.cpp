@@ -12,6 +12,7 @@
 #include "tools/training/training_options.hpp"
 #include "tools/training/training_problem.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -72,6 +73,16 @@ MatrixXd full_motion_rows(const TrainingSetup& setup, const VectorXd& parameters
     return full;
 }
 
+/// Reduces the scales of parameters whose prior deviation, column_scale gamma, exceeds their size in a
+/// machine.
+void bound_prior(TrainedPhysics& physics, const VectorXd& parameter_size) {
+    const double deviation = std::sqrt(physics.prior_variance);
+    for (Index c = 0; c < physics.column_scale.size() && parameter_size.size() > 0 && deviation > 0; ++c) {
+        const double size = parameter_size[physics.columns[static_cast<std::size_t>(c)]];
+        physics.column_scale[c] = std::min(physics.column_scale[c], size / deviation);
+    }
+}
+
 /// Units of the parameters such that the prior is gamma^2 I and psi~ of order 1, as far as the options leave
 /// it open.
 TrainedPhysics units_of(const TrainingSetup& setup, const PhysicsPart& part, const OutputModel& outputs) {
@@ -91,6 +102,7 @@ TrainedPhysics units_of(const TrainingSetup& setup, const PhysicsPart& part, con
         physics.column_scale *= unit;
         physics.prior_variance /= unit * unit;
     }
+    bound_prior(physics, options.parameter_size);
     return physics;
 }
 

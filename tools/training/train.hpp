@@ -41,7 +41,10 @@ struct PhysicsOptions {
     /// DFSR's, with poles of their own.
     bool own_motion = false;
     PriorForm prior = PriorForm::scaled;
-    double column_threshold = 1e-3;       ///< of select_columns(), in (0, 1)
+    double column_threshold = 1e-3; ///< of select_columns(), in (0, 1)
+    /// P: magnitude that each parameter of the regressor can have in a machine, > 0, in the parameter's own
+    /// unit; empty: unknown. Chooses columns (see select_columns()) and bounds the deviation of the prior.
+    Eigen::VectorXd parameter_size;
     std::optional<Eigen::VectorXd> given; ///< SP2: all physical parameters, in place of least squares
 };
 
@@ -96,7 +99,9 @@ struct TrainedPhysics {
     std::vector<Eigen::Index> columns; ///< p chosen columns of the regressor, ascending
     /// p: prior "scaled": 1 / (root mean square of the column over the likelihood rows, each output's rows
     /// over the output's deviation), times the geometric mean of noise_std over that of the outputs'
-    /// deviations, so that psi~ is of order 1; "unit": 1; "diagonal": the square roots of D.
+    /// deviations, so that psi~ is of order 1; "unit": 1; "diagonal": the square roots of D. At most
+    /// PhysicsOptions::parameter_size / gamma, so that no parameter's prior deviation exceeds what a machine
+    /// can have.
     Eigen::VectorXd column_scale;
     double prior_variance = 0; ///< gamma^2 in these units; 0 for SP and SP2, whose pi is fixed
     PhysicsStart start;

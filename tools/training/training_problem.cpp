@@ -137,12 +137,13 @@ ColumnChoice choose_columns(const TrainingSetup& setup) {
         throw InputError("training: expected finite columns of the physics over the recording, found some "
                          "that are not");
     }
-    ColumnChoice choice = select_columns(relative, setup.options.physics.column_threshold);
+    const PhysicsOptions& physics = setup.options.physics;
+    ColumnChoice choice = select_columns(relative, physics.column_threshold, physics.parameter_size);
     if (choice.columns.empty()) {
         throw InputError("training: expected physics that the recording excites, found " +
-                         std::to_string(regressor.columns()) + " columns of zeros");
+                         std::to_string(regressor.columns()) + " columns without effect on the outputs");
     }
-    if (setup.options.physics.prior == PriorForm::unit) {
+    if (physics.prior == PriorForm::unit) {
         choice.scale.setOnes();
     }
     return choice;

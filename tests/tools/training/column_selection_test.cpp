@@ -6,6 +6,7 @@
 #include "tools/training/random_source.hpp"
 
 #include <cmath>
+#include <vector>
 
 namespace tools = dfdyn::tools;
 using Eigen::Index;
@@ -39,4 +40,28 @@ TEST_CASE("the threshold is the part of a column that the others must leave") {
     CHECK(tools::select_columns(psi, 0.0099).columns.size() == 2);
     CHECK(tools::select_columns(psi, 0.0101).columns.size() == 1);
     CHECK(tools::select_columns(MatrixXd::Zero(5, 3), 0.1).columns.empty());
+}
+
+TEST_CASE("a column of rounding error is never chosen, however well it fits") {
+    const std::uint64_t seed = dfdyn::tests::seed() + GENERATE(range(0U, 5U));
+    CAPTURE(seed);
+    tools::NormalSource random(seed);
+    MatrixXd psi = random.matrix(300, 5);
+    psi.col(3) *= 1e-15;
+    CHECK(tools::select_columns(psi, 1e-3).columns == std::vector<Index>{0, 1, 2, 4});
+    CHECK(tools::select_columns(1e-15 * psi, 1e-3).columns == std::vector<Index>{0, 1, 2, 4});
+}
+
+TEST_CASE("a column counts by what the largest parameter of a machine makes of it") {
+    tools::NormalSource random(dfdyn::tests::seed());
+    MatrixXd psi = random.matrix(300, 3);
+    for (Index c = 0; c < 3; ++c) {
+        psi.col(c) *= std::sqrt(300) / psi.col(c).norm();
+    }
+    Eigen::VectorXd size{{1, 0.9 * tools::least_effect, 1.1 * tools::least_effect}};
+    CHECK(tools::select_columns(psi, 1e-3, size).columns == std::vector<Index>{0, 2});
+    psi.col(1) *= 2;
+    psi.col(2) /= 2;
+    CHECK(tools::select_columns(psi, 1e-3, size).columns == std::vector<Index>{0, 1});
+    CHECK(tools::select_columns(psi, 1e-3).columns.size() == 3); // nothing is known of the machine
 }

@@ -82,6 +82,32 @@ struct Arm {
     }
 };
 
+/// A regressor with one more column, of rounding errors.
+class WithRoundingColumn final : public tools::Regressor {
+  public:
+    explicit WithRoundingColumn(const tools::Regressor& exact) : exact_(exact) {}
+
+    Index outputs() const override { return exact_.outputs(); }
+    Index columns() const override { return exact_.columns() + 1; }
+
+    void evaluate(const tools::MotionState& state, MatrixXd& values) const override {
+        MatrixXd exact(outputs(), exact_.columns());
+        exact_.evaluate(state, exact);
+        values.leftCols(exact.cols()) = exact;
+        for (Index k = 0; k < outputs(); ++k) {
+            values(k, exact.cols()) = 1e-15 * std::sin(40 * state.position[0] + 3 * state.velocity[k]);
+        }
+    }
+
+    tools::RegressorGradient pull_back(const tools::MotionState& state,
+                                       const MatrixXd& gradient) const override {
+        return exact_.pull_back(state, gradient.leftCols(exact_.columns()));
+    }
+
+  private:
+    const tools::Regressor& exact_;
+};
+
 /// The model's predictions at `rows` of `data` as the firmware makes them, from the result's numbers alone.
 MatrixXd predictions(const Arm& arm, const tools::TrainingResult& result, const tools::TrainingData& data,
                      const tools::RowList& rows) {
@@ -203,6 +229,47 @@ TEST_CASE("physical parameters come out where the physics is right") {
     }
     if (prior == tools::PriorForm::diagonal && model == ModelClass::SPK) {
         CHECK(result.physics->prior_variance == 1);
+    }
+}
+
+TEST_CASE("a column of rounding error never becomes a parameter") {
+    const auto model = GENERATE(ModelClass::P, ModelClass::SP, ModelClass::SP2, ModelClass::SPK);
+    const auto prior = GENERATE(tools::PriorForm::scaled, tools::PriorForm::unit, tools::PriorForm::diagonal);
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    CAPTURE(static_cast<int>(model), static_cast<int>(prior));
+    Arm arm;
+    const WithRoundingColumn regressor(arm.regressor);
+    arm.options.physics.regressor = &regressor;
+    arm.options.physics.prior = prior;
+    arm.options.model = model;
+    arm.options.input = InputKind::STD;
+    arm.options.starts = 1;
+    const tools::TrainingResult result = tools::train(arm.data, arm.options);
+    CHECK(std::ranges::count(result.physics->columns, 6) == 0);
+    CHECK(result.physics->columns.size() == 6);
+}
+
+TEST_CASE("the prior deviation of a parameter is at most what a machine can have") {
+    const auto model = GENERATE(ModelClass::P, ModelClass::SPK);
+    const auto prior = GENERATE(tools::PriorForm::scaled, tools::PriorForm::unit, tools::PriorForm::diagonal);
+    INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
+    CAPTURE(static_cast<int>(model), static_cast<int>(prior));
+    Arm arm;
+    arm.options.model = model;
+    arm.options.input = InputKind::STD;
+    arm.options.physics.prior = prior;
+    const auto deviations = [&] {
+        const tools::TrainedPhysics physics = *tools::train(arm.data, arm.options).physics;
+        return VectorXd(std::sqrt(physics.prior_variance) * physics.column_scale);
+    };
+    const VectorXd free = deviations();
+    const double size = 0.5 * free.maxCoeff();
+    arm.options.physics.parameter_size = VectorXd::Constant(6, size);
+    const VectorXd bounded = deviations();
+    REQUIRE(bounded.size() == 6);
+    CHECK(bounded.maxCoeff() == Approx(size));
+    for (Index c = 0; c < 6; ++c) {
+        CHECK(bounded[c] == Approx(std::min(free[c], size)));
     }
 }
 
