@@ -6,6 +6,10 @@
 #include <exception>
 #include <iostream>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace {
 
 int run(int argc, char** argv) {
@@ -41,11 +45,24 @@ int run(int argc, char** argv) {
     return status;
 }
 
+/// Keeps freed memory instead of returning it to the system at once. Training allocates and frees matrices of
+/// megabytes for each evaluation; by default glibc maps and unmaps them, and the page faults of the next use
+/// take 40 % of the time. 32 MiB is the largest threshold that glibc accepts.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+    constexpr int largest_on_heap = 32 << 20;
+    constexpr int kept_on_top = 1 << 30;
+    ::mallopt(M_MMAP_THRESHOLD, largest_on_heap);
+    ::mallopt(M_TRIM_THRESHOLD, kept_on_top);
+#endif
+}
+
 } // namespace
 
 /// Exit status: 0 done, 1 the work ran and its answer is negative, 2 bad usage or input, 3 a fault of the
 /// program.
 int main(int argc, char** argv) {
+    keep_freed_memory();
     try {
         return run(argc, argv);
     } catch (const dfdyn::tools::InputError& error) {
