@@ -187,6 +187,18 @@ std::ostream& AtomicFile::stream() noexcept { return implementation_->stream(); 
 
 void AtomicFile::commit() { implementation_->commit(); }
 
+void check_writable(const fs::path& target) {
+    struct stat status {};
+    if (::stat(target.c_str(), &status) != 0 || S_ISREG(status.st_mode)) {
+        const AtomicFile file(target); // not committed: its temporary file is removed
+        return;
+    }
+    const int reason = S_ISDIR(status.st_mode) ? EISDIR : ::access(target.c_str(), W_OK) == 0 ? 0 : errno;
+    if (reason != 0) {
+        throw system_error(target, "cannot write", reason);
+    }
+}
+
 void make_folder(const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);

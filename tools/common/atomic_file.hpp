@@ -35,6 +35,10 @@ class AtomicFile {
     std::unique_ptr<Implementation> implementation_;
 };
 
+/// Throws InputError as the constructor of AtomicFile for `target` does, so that a long work fails before it
+/// begins. Leaves nothing behind; pipes and devices are not opened.
+void check_writable(const std::filesystem::path& target);
+
 /// Makes `folder`, and those that it lies in, unless they are there. Throws InputError with path and reason.
 void make_folder(const std::filesystem::path& folder);
 

@@ -57,7 +57,7 @@ PointCallback counted(const ProgressCallback& progress, int points) {
     if (!progress) {
         return {};
     }
-    return [&progress, so_far = TrainingProgress{0, points, std::nullopt}]() mutable {
+    return [&progress, so_far = TrainingProgress{true, 0, points, std::nullopt}]() mutable {
         ++so_far.evaluations;
         progress(so_far);
     };

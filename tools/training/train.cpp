@@ -137,6 +137,11 @@ TrainingResult train_unspaced(const TrainingData& data, const TrainingOptions& o
     check_outputs_vary(setup);
     const Fit fit = options.hyper == HyperMethod::ML ? fit_by_likelihood(setup, progress)
                                                      : fit_by_hold_out(setup, progress);
+    if (progress) {
+        TrainingProgress starting;
+        starting.searching = false;
+        progress(starting);
+    }
     TrainingResult result{model_of(setup, fit), std::nullopt, fit.hold_out};
     if (fit.physics) {
         result.physics = start_physics(setup, *fit.physics, result.model);

@@ -74,8 +74,10 @@ struct TrainingOptions {
     double training_share = 0.7;     ///< CV: of the likelihood rows, the others are held out; in (0, 1)
 };
 
-/// How far training is: after every evaluation of the likelihood, or every point of the grid.
+/// How far training is: after every evaluation of the likelihood, or every point of the grid, and once when
+/// the batch solution begins.
 struct TrainingProgress {
+    bool searching = true;    ///< false: the hyperparameters are found, the start of learning is computed
     int evaluations = 0;      ///< so far, of all starts and the refinement
     int evaluations_most = 0; ///< if none ends early
     /// Only in the call that reports a start's end.

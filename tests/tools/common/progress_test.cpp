@@ -59,7 +59,7 @@ TEST_CASE("Progress shows one line on a terminal and erases it") {
         Progress progress("train", 400, terminal.descriptor());
         wait_one_period();
         progress.update(100);
-        CHECK(terminal.written() == "\r\x1b[Ktrain: 100 of 400 (25 %)");
+        CHECK(terminal.written() == "\r\x1b[Ktrain: [#####...............] 100 of 400 (25 %)");
     }
     CHECK(terminal.written() == "\r\x1b[K");
 }
@@ -87,18 +87,72 @@ TEST_CASE("Progress writes nothing for short work, and at most once a period") {
     CHECK(std::count(written.begin(), written.end(), '\r') <= periods);
 }
 
-TEST_CASE("Progress is silent in a pipe") {
-    std::array<int, 2> ends{};
-    REQUIRE(::pipe(ends.data()) == 0);
+/// A pipe whose end the test reads without waiting.
+class Pipe {
+  public:
+    Pipe() { REQUIRE(::pipe2(ends_.data(), O_NONBLOCK) == 0); }
+    ~Pipe() {
+        ::close(ends_[0]);
+        ::close(ends_[1]);
+    }
+    Pipe(const Pipe&) = delete;
+    Pipe& operator=(const Pipe&) = delete;
+
+    int descriptor() const { return ends_[1]; }
+
+    std::string written() const {
+        std::array<char, 4096> text{};
+        const ssize_t count = ::read(ends_[0], text.data(), text.size());
+        return {text.data(), count < 0 ? 0 : static_cast<std::size_t>(count)};
+    }
+
+  private:
+    std::array<int, 2> ends_{};
+};
+
+TEST_CASE("Progress of short work is silent in a pipe") {
+    const Pipe pipe;
     {
-        Progress progress("train", 400, ends[1]);
+        Progress progress("train", 400, pipe.descriptor());
         wait_one_period();
         progress.update(100);
     }
-    ::close(ends[1]);
-    char byte = 0;
-    CHECK(::read(ends[0], &byte, 1) == 0);
-    ::close(ends[0]);
+    CHECK(pipe.written().empty());
+}
+
+TEST_CASE("Progress of long work writes plain lines into a pipe, one a period over all objects") {
+    const Pipe pipe;
+    constexpr std::chrono::milliseconds plain{250};
+    for (const char* const label : {"first", "second"}) {
+        Progress progress(label, 400, pipe.descriptor(), plain);
+        progress.update(1);
+        std::this_thread::sleep_for(plain + std::chrono::milliseconds(10));
+        progress.update(100);
+        progress.update(200);
+        CHECK(pipe.written() == std::string(label) + ": 100 of 400 (25 %)\n");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(110)); // longer than a terminal's period
+    Progress progress("third", 400, pipe.descriptor(), std::chrono::seconds(60));
+    progress.update(1);
+    CHECK(pipe.written().empty());
+}
+
+TEST_CASE("an activity shows its seconds while it lasts") {
+    const PseudoTerminal terminal;
+    {
+        const dfdyn::tools::Activity activity("solving", terminal.descriptor());
+        std::this_thread::sleep_for(std::chrono::milliseconds(400));
+        CHECK(terminal.written().starts_with("\r\x1b[Ksolving: 0 s"));
+    }
+    CHECK(terminal.written().ends_with("\r\x1b[K"));
+    const Pipe pipe;
+    {
+        const dfdyn::tools::Activity activity("solving", pipe.descriptor(), std::chrono::milliseconds(150));
+        std::this_thread::sleep_for(std::chrono::milliseconds(600));
+    }
+    const std::string lines = pipe.written();
+    CHECK(lines.starts_with("solving: 0 s\n"));
+    CHECK(std::ranges::count(lines, '\n') <= 4);
 }
 
 TEST_CASE("Progress shows parts of one as tenths") {
@@ -106,5 +160,5 @@ TEST_CASE("Progress shows parts of one as tenths") {
     Progress progress("units", 360, terminal.descriptor());
     wait_one_period();
     progress.update_part(37.44);
-    CHECK(terminal.written().ends_with("units: 37.4 of 360 (10 %)"));
+    CHECK(terminal.written().ends_with("units: [##..................] 37.4 of 360 (10 %)"));
 }
