@@ -19,7 +19,7 @@ struct ConvertOptions {
 };
 
 int run(const ConvertOptions& options) {
-    check_distinct({options.log}, {options.recording, options.bus});
+    check_outputs({options.log}, {options.recording, options.bus});
     const BusDescription description = read_bus_description(options.bus);
     ReadOptions columns;
     columns.joint_count = static_cast<std::size_t>(description.joint_count);

@@ -99,11 +99,17 @@ int run(const DiagnoseOptions& options) {
     std::vector<std::filesystem::path> inputs = options.recordings.logs;
     inputs.push_back(options.robot.urdf);
     check_distinct({options.json(), options.page(), options.model(), options.header}, std::move(inputs));
+    if (!options.header.empty()) {
+        check_writable(options.header);
+    }
     const OutputKind outputs = parse_output_kind(options.outputs);
     const Robot robot = options.robot.read(outputs);
     check_torque_constants(options, outputs, robot.joints.size());
     const std::vector<Recording> recordings = options.recordings.read(robot.joints.size(), outputs);
     make_folder(options.folder);
+    for (const std::filesystem::path& output : {options.json(), options.page(), options.model()}) {
+        check_writable(output);
+    }
     const DiagnosisWork work = run_diagnosis(robot, recordings, options, outputs);
     const Extension extension = answered(work) ? extension_of(work) : Extension{};
     const std::optional<TrainedModel> model = make_model(work, extension, recordings);

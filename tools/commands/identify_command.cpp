@@ -94,7 +94,7 @@ int run(const IdentifyOptions& options) {
     check_window(options.window);
     std::vector<std::filesystem::path> inputs = options.recordings.logs;
     inputs.push_back(options.robot.urdf);
-    check_distinct({options.json}, std::move(inputs));
+    check_outputs({options.json}, std::move(inputs));
     const OutputKind outputs = parse_output_kind(options.outputs);
     const Robot robot = options.robot.read(outputs);
     const std::vector<Recording> recordings = read_all(options, robot, outputs);

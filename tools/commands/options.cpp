@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/commands/options.hpp"
 
+#include "tools/common/atomic_file.hpp"
 #include "tools/common/error.hpp"
 #include "tools/common/text.hpp"
 
@@ -58,6 +59,16 @@ void check_distinct(const std::vector<std::filesystem::path>& outputs,
             }
         }
         inputs.push_back(output);
+    }
+}
+
+void check_outputs(const std::vector<std::filesystem::path>& outputs,
+                   std::vector<std::filesystem::path> inputs) {
+    check_distinct(outputs, std::move(inputs));
+    for (const std::filesystem::path& output : outputs) {
+        if (!output.empty()) {
+            check_writable(output);
+        }
     }
 }
 

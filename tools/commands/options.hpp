@@ -31,6 +31,10 @@ struct RecordingOptions {
 void check_distinct(const std::vector<std::filesystem::path>& outputs,
                     std::vector<std::filesystem::path> inputs);
 
+/// Call before the work: check_distinct(), and InputError when an output cannot be written.
+void check_outputs(const std::vector<std::filesystem::path>& outputs,
+                   std::vector<std::filesystem::path> inputs);
+
 /// The kind of outputs that has these column names; throws InputError when none has.
 OutputKind kind_of_outputs(const std::vector<std::string>& names, std::size_t joint_count);
 

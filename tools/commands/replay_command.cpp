@@ -19,8 +19,10 @@
 
 #include <algorithm>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 namespace dfdyn::tools {
 
@@ -159,9 +161,36 @@ void write_results(const ReplayOptions& options, std::span<const TrainedModel> m
     }
 }
 
-/// Whether a bus gave any prediction.
-bool predicted(const ReplayedBus& one) {
-    return std::ranges::any_of(one.replayed.status, [](const Status& status) { return status.predicted(); });
+bool predicted(const ReplayedRecording& replayed) {
+    return std::ranges::any_of(replayed.status, [](const Status& status) { return status.predicted(); });
+}
+
+/// Says on stderr why a recording gave no prediction: the most frequent reason.
+void explain_no_prediction(const ReplayedRecording& replayed) {
+    std::map<std::string_view, std::size_t> counts;
+    for (std::size_t tick = 0; tick < replayed.status.size(); ++tick) {
+        ++counts[reason_name(replayed, tick)];
+    }
+    std::cerr << shown(replayed.source) << ": nothing was predicted: ";
+    if (counts.empty()) {
+        std::cerr << "it has no ticks\n";
+        return;
+    }
+    const auto most = std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
+    std::cerr << most->second << " of " << replayed.status.size() << " ticks " << most->first
+              << "; check that units, sample period and columns are those of the model's training\n";
+}
+
+/// Exit status. A bus that gave no prediction is a failure; of CSV recordings, when none gave any.
+int exit_status(std::span<const ReplayedRecording> replayed, bool bus) {
+    const auto count = std::ranges::count_if(replayed, predicted);
+    const bool done = bus ? count == std::ssize(replayed) : count > 0;
+    for (const ReplayedRecording& one : replayed) {
+        if (!done && !predicted(one)) {
+            explain_no_prediction(one);
+        }
+    }
+    return done ? 0 : 1;
 }
 
 int run(const ReplayOptions& options) {
@@ -169,17 +198,15 @@ int run(const ReplayOptions& options) {
     std::vector<std::filesystem::path> inputs = options.recordings.logs;
     inputs.insert(inputs.end(), options.models.begin(), options.models.end());
     inputs.push_back(options.bus);
-    check_distinct({options.csv, options.report, options.can.record, options.monitor.file},
-                   std::move(inputs));
+    check_outputs({options.csv, options.report, options.can.record, options.monitor.file}, std::move(inputs));
     const std::vector<TrainedModel> models = read_models(options.models);
     Replaying replaying = make_replaying(options, models);
     if (options.bus.empty()) {
         const std::vector<ReplayedRecording> replayed = replay_all(options, models, replaying);
         write_results(options, models, replaying, replayed);
-        return 0;
+        return exit_status(replayed, false);
     }
     std::vector<ReplayedBus> buses = replay_bus(options, models, replaying);
-    const bool all_predicted = std::ranges::all_of(buses, predicted);
     std::vector<ReplayedRecording> replayed;
     for (ReplayedBus& one : buses) {
         replayed.push_back(std::move(one.replayed));
@@ -188,7 +215,7 @@ int run(const ReplayOptions& options) {
     for (const ReplayedBus& one : buses) {
         print_bus(std::cout, one.bus);
     }
-    return all_predicted ? 0 : 1;
+    return exit_status(replayed, true);
 }
 
 } // namespace
@@ -244,7 +271,8 @@ void add_replay_command(CLI::App& app, Command& chosen) {
         "  dfdyn replay --model model.json --log run.csv --monitor --changes changes.json\n"
         "  dfdyn replay --model model.json --bus bus.json --log run.log -o out.csv\n"
         "  dfdyn replay --model model.json --bus bus.json --can can0 --record run.log -o out.csv\n"
-        "Exit status: 0 done, 1 a bus gave no prediction at all, 2 bad usage or input.");
+        "Exit status: 0 done, 1 nothing was predicted (of several buses: by one of them), 2 bad usage or "
+        "input.");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }
 

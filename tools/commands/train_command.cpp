@@ -114,16 +114,25 @@ std::string file_names(const std::vector<Recording>& recordings, TrainingRecord&
     return listed(record.recordings);
 }
 
-/// One line for the search over hyperparameters, from whichever thread.
+/// Shows the search over hyperparameters, from whichever thread, then the computation of the start of
+/// learning until the callback is destroyed.
 ProgressCallback progress_line(HyperMethod hyper) {
-    const auto line = std::make_shared<std::unique_ptr<Progress>>();
-    return [line, hyper](const TrainingProgress& progress) {
-        if (*line == nullptr) {
-            *line = std::make_unique<Progress>(
+    struct Shown {
+        std::unique_ptr<Progress> search;
+        std::unique_ptr<Activity> start;
+    };
+    return [shown = std::make_shared<Shown>(), hyper](const TrainingProgress& progress) {
+        if (!progress.searching) {
+            shown->search.reset();
+            shown->start = std::make_unique<Activity>("computing the start of learning");
+            return;
+        }
+        if (shown->search == nullptr) {
+            shown->search = std::make_unique<Progress>(
                 hyper == HyperMethod::CV ? "cross validation" : "maximising the marginal likelihood",
                 static_cast<std::size_t>(progress.evaluations_most));
         }
-        (*line)->update(static_cast<std::size_t>(progress.evaluations));
+        shown->search->update(static_cast<std::size_t>(progress.evaluations));
     };
 }
 
@@ -177,7 +186,7 @@ FreeSizes free_sizes(const TrainOptions& options) {
 }
 
 int run(const TrainOptions& options) {
-    check_distinct({options.model, options.header}, options.recordings.logs);
+    check_outputs({options.model, options.header}, options.recordings.logs);
     const OutputKind outputs = parse_output_kind(options.outputs);
     ModelTraining training = model_training(options, outputs);
     note_ignored(options, outputs);
@@ -196,7 +205,10 @@ int run(const TrainOptions& options) {
     TrainedModel& model = result.model;
     const std::string trained_on = file_names(recordings, model.training);
     model.training.rows = options.recordings.rows;
-    calibrate_innovation_limit(model, recordings);
+    {
+        const Activity activity("calibrating the innovation limit");
+        calibrate_innovation_limit(model, recordings);
+    }
     const std::string json = model_to_json(model);
     model_from_json(json, shown(options.model)); // nothing is written that `replay` would refuse
     write_file(options.model, json);
