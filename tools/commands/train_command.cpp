@@ -202,7 +202,7 @@ void check_recordings(const std::vector<Recording>& recordings, OutputKind outpu
 }
 
 ModelTrainingResult train_as_asked(const TrainOptions& options, const std::vector<Recording>& recordings,
-                                   OutputKind outputs, const ModelTraining& training) {
+                                   OutputKind outputs, ModelTraining& training) {
     const ProgressCallback progress = progress_line(training.options.hyper);
     return options.sizes.given()
                ? train_within(options.sizes, free_sizes(options), recordings, outputs, training, progress)
@@ -222,7 +222,8 @@ int run(const TrainOptions& options) {
     if (!options.no_setup_check) {
         check_recordings(recordings, outputs, training);
     }
-    options.clock.apply(training.options, sample_period_s(recordings));
+    const double period_s = sample_period_s(recordings);
+    options.clock.apply(training.options, period_s);
     ModelTrainingResult result = train_as_asked(options, recordings, outputs, training);
     TrainedModel& model = result.model;
     const std::string trained_on = file_names(recordings, model.training);
