@@ -113,6 +113,17 @@ TEMPLATE_TEST_CASE("a standstill stops forgetting, however many rows an instant 
     }
 }
 
+TEMPLATE_TEST_CASE("rows that bring no more than rounding pay for no forgetting", "", float, double) {
+    constexpr TestType epsilon = std::numeric_limits<TestType>::epsilon();
+    for (const int rows : {1, 6}) {
+        CAPTURE(rows);
+        Forgetting<TestType> forgetting(TestType(0.999), 32, rows);
+        static_cast<void>(forgotten_at_rest(forgetting, 30'000)); // the account is empty
+        CHECK(forgetting.factor_after(1 + TestType(1000 * rows) * epsilon) == 1);
+        CHECK(forgetting.factor_after(1 + TestType(32 * 1048 * rows) * epsilon) < 1);
+    }
+}
+
 TEST_CASE("the parameters come in turn") {
     Forgetting<float> forgetting(0.99F, 3);
     for (const int parameter : {0, 1, 2, 0, 1}) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace dfdyn {
 
@@ -19,6 +20,13 @@ namespace dfdyn {
 /// 20 but at most half of the parameters per row (and at least 1), and forgetting stops by itself. What grows
 /// nevertheless is bounded by the learner, which looks at one parameter per sample and takes its variance
 /// back to the prior's.
+///
+/// What a row at rest brings falls as 1/t, and its sum as log t, in exact arithmetic. In the scalar's it
+/// stops falling where one more row no longer changes the factor of P: at some hundred ε, the rounding of 1 +
+/// φ'Pφ and of the factor's elements. From there on rounding would pay for forgetting for ever. So an instant
+/// pays nothing unless it brings `least_paid` = 1024 ε per row; what it teaches is not touched. A float then
+/// protects at rest whatever λ; a moving arm is forgotten at λ as long as one row in `payback` brings more
+/// than that, which memories beyond about p / (1024 ε) samples (8000 p in float, 4·10¹² p in double) do not.
 template <class Scalar>
 class Forgetting {
   public:
@@ -26,7 +34,8 @@ class Forgetting {
     /// them. `parameters` ≥ 1, `rows` ≥ 1 in an instant.
     constexpr Forgetting(Scalar factor, int parameters, int rows = 1) noexcept
         : factor_(factor), parameters_(static_cast<Scalar>(parameters)),
-          payback_(std::clamp(parameters_ / (2 * static_cast<Scalar>(rows)), Scalar(1), Scalar(20))) {
+          payback_(std::clamp(parameters_ / (2 * static_cast<Scalar>(rows)), Scalar(1), Scalar(20))),
+          least_paid_(static_cast<Scalar>(rows) * 1024 * std::numeric_limits<Scalar>::epsilon()) {
         using std::log;
         price_ = active() ? parameters_ * -log(factor) : Scalar(0);
         restart();
@@ -48,7 +57,7 @@ class Forgetting {
         }
         using std::exp;
         using std::log;
-        account_ += payback_ * log(ratio);
+        account_ += ratio - 1 < least_paid_ ? Scalar(0) : payback_ * log(ratio);
         account_ = account_ < capacity() ? account_ : capacity();
         if (account_ >= price_) {
             account_ -= price_;
@@ -82,7 +91,8 @@ class Forgetting {
     Scalar factor_;
     Scalar parameters_;
     Scalar payback_;
-    Scalar price_ = 0; ///< of applying the factor once, in nats
+    Scalar least_paid_; ///< of φ'Pφ
+    Scalar price_ = 0;  ///< of applying the factor once, in nats
     Scalar account_ = 0;
     int next_parameter_ = 0;
 };

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hours of samples in float: what was learned is neither given away nor lost to rounding.
+#include "dfdyn/learner/ud_covariance.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/support/slow_build.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+namespace hours_test {
+
+using namespace dfdyn;
+using dfdyn::tests::slow_build;
+
+/// A smooth motion of two joints that comes back to its start after `instants` samples, as the rows of
+/// `columns` random features of unit length in sum.
+template <int columns>
+class Motion {
+  public:
+    static constexpr int instants = 2000;
+    using Row = std::array<float, columns>;
+
+    explicit Motion(std::mt19937_64& engine) : rows_(instants) {
+        std::normal_distribution<double> normal;
+        std::uniform_real_distribution<double> phase(0, 2 * std::numbers::pi);
+        std::array<double, 4> phases{};
+        std::array<std::array<double, 4>, columns / 2> frequencies{};
+        std::generate(phases.begin(), phases.end(), [&] { return phase(engine); });
+        for (auto& frequency : frequencies) {
+            std::generate(frequency.begin(), frequency.end(), [&] { return normal(engine); });
+        }
+        for (int t = 0; t < instants; ++t) {
+            std::array<double, 4> state{}; // two positions and two velocities
+            for (std::size_t i = 0; i < 4; ++i) {
+                const double turns = static_cast<double>(3 + 2 * i) * t / instants;
+                state[i] = std::sin(2 * std::numbers::pi * turns + phases[i]);
+            }
+            rows_[static_cast<std::size_t>(t)] = features(frequencies, state);
+        }
+    }
+
+    [[nodiscard]] const Row& row(std::int64_t t) const {
+        return rows_[static_cast<std::size_t>(t % instants)];
+    }
+
+  private:
+    template <class Frequencies>
+    static Row features(const Frequencies& frequencies, const std::array<double, 4>& state) {
+        Row row{};
+        for (std::size_t i = 0; i < columns / 2; ++i) {
+            double angle = 0;
+            for (std::size_t k = 0; k < 4; ++k) {
+                angle += frequencies[i][k] * state[k];
+            }
+            row[2 * i] = static_cast<float>(std::cos(angle) / std::sqrt(columns / 2));
+            row[2 * i + 1] = static_cast<float>(std::sin(angle) / std::sqrt(columns / 2));
+        }
+        return row;
+    }
+
+    std::vector<Row> rows_;
+};
+
+/// Noise of unit variance, fast: a sum of the four parts of a number of 64 random bits.
+class Noise {
+  public:
+    explicit Noise(std::uint64_t seed) : state_(seed | 1) {}
+    double operator()() {
+        state_ ^= state_ << 13U;
+        state_ ^= state_ >> 7U;
+        state_ ^= state_ << 17U;
+        std::int64_t sum = 0;
+        for (unsigned part = 0; part < 4; ++part) {
+            sum += static_cast<std::int64_t>(state_ >> (16U * part) & 0xFFFFU);
+        }
+        return (static_cast<double>(sum) / 65536 - 2) * std::sqrt(3.0);
+    }
+
+  private:
+    std::uint64_t state_;
+};
+
+/// A learner of `Scalar` of an arm with weights as the prior expects them.
+template <class Scalar, int columns = 32>
+class Arm {
+  public:
+    Arm(std::mt19937_64& engine, double prior_variance, double forgetting_factor)
+        : motion_(engine), noise_(engine()), constants_{static_cast<Scalar>(prior_variance),
+                                                        static_cast<Scalar>(forgetting_factor), nullptr},
+          learner_(constants_, {}, {}) {
+        std::normal_distribution<double> normal(0, std::sqrt(prior_variance));
+        std::generate(weights_.begin(), weights_.end(), [&] { return normal(engine); });
+    }
+
+    void move(std::int64_t samples) {
+        for (std::int64_t t = 0; t < samples; ++t) {
+            learn(motion_.row(instant_++));
+        }
+    }
+    void stand(std::int64_t samples) {
+        for (std::int64_t t = 0; t < samples; ++t) {
+            learn(motion_.row(instant_));
+        }
+    }
+
+    /// Root mean square over the motion of the mean's error, in standard deviations of the noise.
+    [[nodiscard]] double error() const {
+        double squares = 0;
+        for (int t = 0; t < Motion<columns>::instants; ++t) {
+            const auto row = scalars(motion_.row(t));
+            Scalar mean = 0;
+            learner_.predict(row.data(), &mean);
+            squares += std::pow(static_cast<double>(mean) - truth(motion_.row(t)), 2);
+        }
+        return std::sqrt(squares / Motion<columns>::instants);
+    }
+
+    /// The same of the learner's own standard deviation.
+    [[nodiscard]] double deviation() const {
+        double sum = 0;
+        for (int t = 0; t < Motion<columns>::instants; ++t) {
+            sum += static_cast<double>(learner_.variance(scalars(motion_.row(t)).data()));
+        }
+        return std::sqrt(sum / Motion<columns>::instants);
+    }
+
+    /// Mean square of the innovations since the last call, each in units of its variance.
+    [[nodiscard]] double normalised_innovation() {
+        const double mean = innovation_squares_ / static_cast<double>(learned_);
+        innovation_squares_ = 0;
+        learned_ = 0;
+        return mean;
+    }
+
+  private:
+    using Row = typename Motion<columns>::Row;
+
+    static std::array<Scalar, columns> scalars(const Row& row) {
+        std::array<Scalar, columns> result{};
+        std::copy(row.begin(), row.end(), result.begin());
+        return result;
+    }
+
+    [[nodiscard]] double truth(const Row& row) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < columns; ++i) {
+            sum += weights_[i] * static_cast<double>(row[i]);
+        }
+        return sum;
+    }
+
+    void learn(const Row& original) {
+        const auto row = scalars(original);
+        const auto target = static_cast<Scalar>(truth(original) + noise_());
+        Scalar mean = 0;
+        learner_.predict(row.data(), &mean);
+        Budget budget = Budget::unlimited();
+        learner_.begin(row.data(), &target);
+        learner_.advance(budget);
+        const auto innovation = static_cast<double>(target - mean);
+        innovation_squares_ += innovation * innovation / static_cast<double>(learner_.last_ratio());
+        ++learned_;
+    }
+
+    using Learner = UdCovariance<Scalar, columns, 1>;
+
+    Motion<columns> motion_;
+    Noise noise_;
+    typename Learner::Constants constants_;
+    Learner learner_;
+    std::array<double, columns> weights_{};
+    std::int64_t instant_ = 0;
+    double innovation_squares_ = 0;
+    std::int64_t learned_ = 0;
+};
+
+// What a row at rest brings falls as 1/t in exact arithmetic, and its rounding must not pay for more.
+TEST_CASE("an arm that stands gives away no more in float than in double") {
+    DFDYN_SEEDED_ENGINE(engine);
+    for (const double forgetting_factor : {0.999, 0.9999}) {
+        CAPTURE(forgetting_factor);
+        auto same = engine;
+        Arm<float> arm(engine, 1000, forgetting_factor);
+        Arm<double> exact(same, 1000, forgetting_factor);
+        arm.move(100'000);
+        exact.move(100'000);
+        CHECK(arm.error() < 0.25);
+        arm.stand(slow_build ? 200'000 : 3'000'000);
+        exact.stand(slow_build ? 200'000 : 3'000'000);
+        CHECK(arm.deviation() < exact.deviation());
+        CHECK(arm.error() < 1);
+        CHECK(arm.normalised_innovation() == Approx(1).margin(0.1));
+    }
+}
+
+} // namespace hours_test
