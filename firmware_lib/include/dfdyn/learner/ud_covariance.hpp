@@ -23,10 +23,10 @@ class UdCovariance {
     /// `rows_of_instant`: that `begin_row` is given before it forgets.
     UdCovariance(const Constants& constants, Extent<p> columns, Extent<m> outputs,
                  int rows_of_instant = 1) noexcept
-        : constants_(&constants), columns_(columns), outputs_(outputs),
-          forgetting_(constants.forgetting_factor, columns, rows_of_instant), factor_(columns),
+        : factor_(columns),
           weights_(Weights::zeros(extent<product(m, padded(p))>(outputs * padded(columns)))),
-          innovation_(Outputs::zeros(outputs)) {
+          innovation_(Outputs::zeros(outputs)), columns_(columns), outputs_(outputs), constants_(&constants),
+          forgetting_(constants.forgetting_factor, columns, rows_of_instant) {
         reset();
     }
 
@@ -228,13 +228,13 @@ class UdCovariance {
         return true;
     }
 
-    const Constants* constants_;
-    [[no_unique_address]] Extent<p> columns_;
-    [[no_unique_address]] Extent<m> outputs_;
-    Forgetting<Scalar> forgetting_;
     Factor factor_;
     Weights weights_;
     Outputs innovation_;
+    [[no_unique_address]] Extent<p> columns_;
+    [[no_unique_address]] Extent<m> outputs_;
+    const Constants* constants_;
+    Forgetting<Scalar> forgetting_;
     Scalar noise_variance_ = 1;
     Scalar ratio_ = 1;
     Scalar information_ = 1; ///< product of the ratios of this instant's rows
