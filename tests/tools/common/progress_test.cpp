@@ -88,15 +88,15 @@ TEST_CASE("Progress writes nothing for short work, and at most once a period") {
 }
 
 /// A pipe whose end the test reads without waiting.
-class Pipe {
+class LogPipe {
   public:
-    Pipe() { REQUIRE(::pipe2(ends_.data(), O_NONBLOCK) == 0); }
-    ~Pipe() {
+    LogPipe() { REQUIRE(::pipe2(ends_.data(), O_NONBLOCK) == 0); }
+    ~LogPipe() {
         ::close(ends_[0]);
         ::close(ends_[1]);
     }
-    Pipe(const Pipe&) = delete;
-    Pipe& operator=(const Pipe&) = delete;
+    LogPipe(const LogPipe&) = delete;
+    LogPipe& operator=(const LogPipe&) = delete;
 
     int descriptor() const { return ends_[1]; }
 
@@ -111,7 +111,7 @@ class Pipe {
 };
 
 TEST_CASE("Progress of short work is silent in a pipe") {
-    const Pipe pipe;
+    const LogPipe pipe;
     {
         Progress progress("train", 400, pipe.descriptor());
         wait_one_period();
@@ -121,7 +121,7 @@ TEST_CASE("Progress of short work is silent in a pipe") {
 }
 
 TEST_CASE("Progress of long work writes plain lines into a pipe, one a period over all objects") {
-    const Pipe pipe;
+    const LogPipe pipe;
     constexpr std::chrono::milliseconds plain{250};
     for (const char* const label : {"first", "second"}) {
         Progress progress(label, 400, pipe.descriptor(), plain);
@@ -145,7 +145,7 @@ TEST_CASE("an activity shows its seconds while it lasts") {
         CHECK(terminal.written().starts_with("\r\x1b[Ksolving: 0 s"));
     }
     CHECK(terminal.written().ends_with("\r\x1b[K"));
-    const Pipe pipe;
+    const LogPipe pipe;
     {
         const dfdyn::tools::Activity activity("solving", pipe.descriptor(), std::chrono::milliseconds(150));
         std::this_thread::sleep_for(std::chrono::milliseconds(600));
