@@ -23,13 +23,21 @@ double travel(const RobotJoint& joint) {
     return joint.prismatic && joint.lower ? std::max(std::abs(*joint.lower), std::abs(*joint.upper)) : 0;
 }
 
+double centre_distance(const RobotJoint& joint) {
+    const double mass = joint.inertia[0];
+    return mass > 0 ? joint.inertia.segment<3>(1).norm() / mass : 0;
+}
+
 double reach_of(const Robot& robot) {
-    double reach = robot.tip_placement.translation().norm();
+    double to_joint = 0;
+    double reach = shortest_reach;
     for (std::size_t i = 0; i < robot.joints.size(); ++i) {
         const RobotJoint& joint = robot.joints[i];
-        reach += travel(joint) + (i > 0 ? joint.placement.translation().norm() : 0); // not the base's height
+        to_joint +=
+            travel(joint) + (i > 0 ? joint.placement.translation().norm() : 0); // not the base's height
+        reach = std::max(reach, to_joint + centre_distance(joint));
     }
-    return std::max(reach, shortest_reach);
+    return std::max(reach, to_joint + robot.tip_placement.translation().norm());
 }
 
 double mass_of(const Robot& robot, double reach) {

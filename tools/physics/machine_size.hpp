@@ -16,7 +16,8 @@ inline constexpr double parameter_margin = 10;
 
 /// The magnitude that each physical parameter can have in a machine of the robot's size: P entries > 0, ten
 /// per body of `chain`, then `effects`. From the total mass m of the moving links (kg), the reach r (sum of
-/// the distances between joints, to the tip, and of sliding travels, m), and per joint the torque T =
+/// the distances between joints and of sliding travels, on to the tip or the farthest centre of mass, m), and
+/// per joint the torque T =
 /// max(effort limit, m g r) and the velocity limit v:
 /// - mass: m; first moment: m r; rotational inertia and rotor inertia: m r^2, because a column stands for
 ///   combinations over all links, not for one link;

@@ -21,7 +21,7 @@ VectorXd sizes_of(const Robot& robot, const std::vector<std::string>& effects = 
 
 TEST_CASE("the size of each parameter follows from mass, reach and limits") {
     Robot robot = dfdyn::tests::planar_arm(9.81); // two links of 1 kg, 1 m from joint to joint
-    robot.tip_placement.translation() = Eigen::Vector3d(0.5, 0, 0);
+    robot.tip_placement.translation() = Eigen::Vector3d(0.6, 0, 0);
     robot.joints[0].effort = 200;
     robot.joints[0].velocity = 4;
     robot.joints[1].effort = 1e6; // a placeholder
@@ -29,13 +29,21 @@ TEST_CASE("the size of each parameter follows from mass, reach and limits") {
     const VectorXd sizes =
         sizes_of(robot, {"viscous_friction", "coulomb_friction", "rotor_inertia", "torque_offset"});
     REQUIRE(sizes.size() == 28);
-    const double weight = 2 * 9.81 * 1.5;
+    const double weight = 2 * 9.81 * 1.6;
     CHECK(sizes[0] == Approx(2));
-    CHECK(sizes[13] == Approx(2 * 1.5));
-    CHECK(sizes[19] == Approx(2 * 1.5 * 1.5));
+    CHECK(sizes[13] == Approx(2 * 1.6));
+    CHECK(sizes[19] == Approx(2 * 1.6 * 1.6));
     const VectorXd expected{
-        {200 / 4.0, weight, 200, weight, 2 * 1.5 * 1.5, 2 * 1.5 * 1.5, 200, weight}}; // by effect, by joint
+        {200 / 4.0, weight, 200, weight, 2 * 1.6 * 1.6, 2 * 1.6 * 1.6, 200, weight}}; // by effect, by joint
     CHECK((sizes.tail(8) - expected).norm() < 1e-9);
+}
+
+TEST_CASE("a link reaches as far as its centre of mass, whatever the tip") {
+    Robot robot = dfdyn::tests::planar_arm(9.81);
+    robot.joints.resize(1);
+    robot.tip_placement.setIdentity();
+    robot.joints[0].inertia << 0.5, 0, 0, -0.5 * 0.1, 0.005, 0, 0, 0.005, 0, 0; // 0.5 kg, hanging at 0.1 m
+    CHECK(sizes_of(robot)[3] == Approx(0.5 * 0.1));
 }
 
 TEST_CASE("a robot's file without masses gives sizes by its efforts, one without either by a tonne") {
