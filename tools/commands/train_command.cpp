@@ -14,7 +14,6 @@
 #include "tools/model/model_header.hpp"
 #include "tools/physics/model_training.hpp"
 #include "tools/recording/sample_grid.hpp"
-#include "tools/setup_check/setup_check.hpp"
 #include "tools/training/training_options.hpp"
 
 #include <initializer_list>
@@ -43,7 +42,6 @@ struct TrainOptions {
     std::vector<double> torque_constants;
     ClockOptions clock;
     SizeOptions sizes;
-    bool no_setup_check = false;
     TrainingOptions training;
 };
 
@@ -129,7 +127,6 @@ ProgressCallback progress_line(HyperMethod hyper) {
             shown->start = std::make_unique<Activity>("computing the start of learning");
             return;
         }
-        shown->start.reset(); // of a training before this one
         if (shown->search == nullptr) {
             shown->search = std::make_unique<Progress>(
                 hyper == HyperMethod::CV ? "cross validation" : "maximising the marginal likelihood",
@@ -188,27 +185,6 @@ FreeSizes free_sizes(const TrainOptions& options) {
             !clock.forgetting_factor && !clock.memory_s};
 }
 
-/// Refuses mistakes in the set-up; says on stderr what else is odd.
-void check_recordings(const std::vector<Recording>& recordings, OutputKind outputs,
-                      const ModelTraining& training) {
-    const Robot* const robot = training.physics ? &training.physics->robot : nullptr;
-    const SetupFindings findings =
-        check_setup(recordings, outputs, robot,
-                    training.physics ? training.physics->torque_constants : std::vector<double>());
-    refuse_mistakes(findings);
-    for (const SetupFinding& finding : findings) {
-        std::cerr << "note: " << finding.text << '\n';
-    }
-}
-
-ModelTrainingResult train_as_asked(const TrainOptions& options, const std::vector<Recording>& recordings,
-                                   OutputKind outputs, ModelTraining& training) {
-    const ProgressCallback progress = progress_line(training.options.hyper);
-    return options.sizes.given()
-               ? train_within(options.sizes, free_sizes(options), recordings, outputs, training, progress)
-               : train_model(prepare_training(recordings, training), outputs, training, progress);
-}
-
 int run(const TrainOptions& options) {
     check_outputs({options.model, options.header}, options.recordings.logs);
     const OutputKind outputs = parse_output_kind(options.outputs);
@@ -219,12 +195,13 @@ int run(const TrainOptions& options) {
     columns.velocity = columns.acceleration =
         sees_derivatives(training) && training.derivatives != DerivativeSource::estimated;
     const std::vector<Recording> recordings = options.recordings.read(columns);
-    if (!options.no_setup_check) {
-        check_recordings(recordings, outputs, training);
-    }
     const double period_s = sample_period_s(recordings);
     options.clock.apply(training.options, period_s);
-    ModelTrainingResult result = train_as_asked(options, recordings, outputs, training);
+    const ProgressCallback progress = progress_line(training.options.hyper);
+    ModelTrainingResult result =
+        options.sizes.given()
+            ? train_within(options.sizes, free_sizes(options), recordings, outputs, training, progress)
+            : train_model(prepare_training(recordings, training), outputs, training, progress);
     TrainedModel& model = result.model;
     const std::string trained_on = file_names(recordings, model.training);
     model.training.rows = options.recordings.rows;
@@ -279,8 +256,6 @@ void add_train_command(CLI::App& app, Command& chosen) {
         ->capture_default_str();
     options->clock.add_to(*command);
     options->sizes.add_to(*command);
-    command->add_flag("--no-setup-check", options->no_setup_check,
-                      "Train although units, columns or signs look wrong");
     add_training_options(*command, options->training);
     add_physics_options(*command, *options);
     command->footer(

@@ -4,13 +4,10 @@
 #include "tools/diagnosis/extension_errors.hpp"
 #include "tools/diagnosis/findings.hpp"
 #include "tools/diagnosis/granted.hpp"
+#include "tools/diagnosis/plausibility.hpp"
 #include "tools/diagnosis/unexplained.hpp"
 #include "tools/physics/torque_constants.hpp"
-#include "tools/setup_check/recording_checks.hpp"
-#include "tools/setup_check/robot_checks.hpp"
 
-#include <algorithm>
-#include <iterator>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -40,43 +37,14 @@ Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOpt
     return gains;
 }
 
-/// What the file shows, before any motion is made of it.
-SetupFindings findings_of_file(const Robot& robot, const Recording& recording) {
-    SetupFindings findings = check_recording(recording);
-    std::ranges::copy(check_duration(recording), std::back_inserter(findings));
-    std::ranges::copy(check_position_limits(robot, recording), std::back_inserter(findings));
-    return findings;
-}
-
-/// What the motion shows, and the rigid body's outputs along it. `torques`: T x m, from currents by their
-/// gains; where these are not known, the currents themselves count.
-SetupFindings findings_of_motion(const DiagnosisSignals& signals, const Diagnosis& diagnosis,
-                                 const Eigen::MatrixXd& torques, bool gains_known) {
-    SetupFindings findings = check_standstill(signals.measured.motion.position);
-    if (!any_of_severity(findings, Severity::unanswerable)) {
-        const RigidComparison comparison(
-            signals.robot, signals.kind, diagnosis.output_names, signals.measured.motion,
-            gains_known ? torques : signals.measured.outputs, signals.sign_velocity);
-        std::ranges::copy(check_against_robot(comparison, gains_known), std::back_inserter(findings));
-    }
-    return findings;
-}
-
-/// Adds the findings' sentences, the gravest first. Returns whether the recording cannot answer.
-bool add_suspicions(SetupFindings findings, Diagnosis& diagnosis) {
-    std::ranges::stable_sort(findings, std::ranges::greater(), &SetupFinding::severity);
-    for (SetupFinding& finding : findings) {
-        diagnosis.suspicions.push_back(std::move(finding.text));
-    }
-    return any_of_severity(findings, Severity::unanswerable);
-}
-
 } // namespace
 
 DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const DiagnosisOptions& options) {
     DiagnosisWork work;
     work.diagnosis.output_names = recording.output.names;
-    if (add_suspicions(findings_of_file(robot, recording), work.diagnosis)) {
+    Suspicions suspicions = suspicions_of_file(robot, recording);
+    work.diagnosis.suspicions = std::move(suspicions.sentences);
+    if (suspicions.fatal) {
         return work;
     }
     auto signals = std::make_shared<DiagnosisSignals>(
@@ -86,8 +54,10 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     work.measured = signals->measured.outputs * work.torque_gains.cwiseInverse().asDiagonal();
     const bool gains_known =
         options.outputs != OutputKind::motor_current || !options.torque_constants.empty();
-    if (add_suspicions(findings_of_motion(*signals, work.diagnosis, work.measured, gains_known),
-                       work.diagnosis)) {
+    suspicions = suspicions_of_motion(*signals, work.measured, gains_known);
+    work.diagnosis.suspicions.insert(work.diagnosis.suspicions.end(), suspicions.sentences.begin(),
+                                     suspicions.sentences.end());
+    if (suspicions.fatal) {
         measure_from(work, 0, work.explanation); // without causes
         return work;
     }

@@ -11,8 +11,10 @@
 namespace dfdyn::tools {
 
 /// A fitted parameter is refused beyond this many times its size: a column chosen for a combination of
-/// parameters carries, for instance, a first moment divided by a short link as a mass.
-inline constexpr double parameter_margin = 10;
+/// parameters carries, for instance, a first moment divided by a short link as a mass, and the values of
+/// columns that are nearly the same may cancel each other. Two real recordings that predict tolerably have
+/// such values at 13 times their size; columns of rounding error had 1e13 times.
+inline constexpr double parameter_margin = 100;
 
 /// The magnitude that each physical parameter can have in a machine of the robot's size: P entries > 0, ten
 /// per body of `chain`, then `effects`. From the total mass m of the moving links (kg), the reach r (sum of

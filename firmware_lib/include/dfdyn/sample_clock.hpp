@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/strict_math.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

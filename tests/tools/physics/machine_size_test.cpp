@@ -74,10 +74,10 @@ TEST_CASE("a parameter beyond its bound is refused with name, value and bound") 
     CHECK_THROWS_AS(check_parameters(physics, sizes), InputError);
     CHECK_THROWS_WITH(
         check_parameters(physics, sizes),
-        Catch::Matchers::StartsWith("trained physics: parameter link1 mcz (kg·m): expected at most 40 in "
+        Catch::Matchers::StartsWith("trained physics: parameter link1 mcz (kg·m): expected at most 400 in "
                                     "magnitude") &&
             Catch::Matchers::ContainsSubstring("found 2e+13"));
-    physics.start.weights = {-60, 4e-14}; // |-30|, 40: at the bounds
+    physics.start.weights = {-600, 4e-13}; // |-300|, 400: at the bounds
     CHECK_NOTHROW(check_parameters(physics, sizes));
     physics.start.weights[0] = std::numeric_limits<double>::quiet_NaN();
     CHECK_THROWS_AS(check_parameters(physics, sizes), InputError);

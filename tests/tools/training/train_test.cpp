@@ -214,7 +214,12 @@ TEST_CASE("training reports every evaluation and every start") {
     std::size_t ended = 0;
     std::vector<double> ends(3);
     tools::TrainingProgress last;
+    int starting_calls = 0;
     const auto model = trained(three_joints(), options, [&](const tools::TrainingProgress& progress) {
+        if (!progress.searching) {
+            ++starting_calls;
+            return;
+        }
         ++calls;
         last = progress;
         after_the_starts += ended == 3 ? 1 : 0;
@@ -228,6 +233,7 @@ TEST_CASE("training reports every evaluation and every start") {
     CHECK(last.evaluations_most == 80); // three starts and the refinement
     CHECK(after_the_starts > 0);
     CHECK(ends == model.training.all_starts);
+    CHECK(starting_calls == 1); // then the start of learning is computed
 }
 
 TEST_CASE("cross validation reports every point of its grid") {
@@ -235,6 +241,9 @@ TEST_CASE("cross validation reports every point of its grid") {
     options.hyper = tools::HyperMethod::CV;
     int calls = 0;
     trained(three_joints(), options, [&](const tools::TrainingProgress& progress) {
+        if (!progress.searching) {
+            return;
+        }
         CHECK(progress.evaluations == ++calls);
         CHECK(progress.evaluations_most == 169);
         CHECK_FALSE(progress.end);
