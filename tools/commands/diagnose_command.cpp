@@ -99,9 +99,6 @@ int run(const DiagnoseOptions& options) {
     std::vector<std::filesystem::path> inputs = options.recordings.logs;
     inputs.push_back(options.robot.urdf);
     check_distinct({options.json(), options.page(), options.model(), options.header}, std::move(inputs));
-    if (!options.header.empty()) {
-        check_writable(options.header);
-    }
     const OutputKind outputs = parse_output_kind(options.outputs);
     const Robot robot = options.robot.read(outputs);
     check_torque_constants(options, outputs, robot.joints.size());
@@ -109,6 +106,9 @@ int run(const DiagnoseOptions& options) {
     make_folder(options.folder);
     for (const std::filesystem::path& output : {options.json(), options.page(), options.model()}) {
         check_writable(output);
+    }
+    if (!options.header.empty()) { // may be in the folder
+        check_writable(options.header);
     }
     const DiagnosisWork work = run_diagnosis(robot, recordings, options, outputs);
     const Extension extension = answered(work) ? extension_of(work) : Extension{};
