@@ -199,4 +199,31 @@ TEST_CASE("an arm that stands gives away no more in float than in double") {
     }
 }
 
+/// That a motion of `samples` samples is learned as well as the learner says, at a high signal to noise
+/// ratio.
+template <int columns>
+void check_motion(std::mt19937_64& engine, double prior_variance, std::int64_t samples) {
+    CAPTURE(prior_variance, columns);
+    Arm<float, columns> arm(engine, prior_variance, 1);
+    arm.move(samples / 2);
+    static_cast<void>(arm.normalised_innovation());
+    arm.move(samples - samples / 2);
+    CHECK(arm.error() < 3 * arm.deviation());
+    CHECK(arm.normalised_innovation() == Approx(1).margin(0.02));
+}
+
+TEST_CASE("an arm that moves for an hour without forgetting is learned as well as the learner says") {
+    DFDYN_SEEDED_ENGINE(engine);
+    check_motion<32>(engine, 1e7, slow_build ? 200'000 : 4'000'000);
+}
+
+TEST_CASE("an arm that moves for a day without forgetting is learned as well as the learner says",
+          "[.long]") {
+    DFDYN_SEEDED_ENGINE(engine);
+    for (const double prior_variance : {1e4, 1e7}) {
+        check_motion<32>(engine, prior_variance, 100'000'000);
+        check_motion<100>(engine, prior_variance, 100'000'000);
+    }
+}
+
 } // namespace hours_test

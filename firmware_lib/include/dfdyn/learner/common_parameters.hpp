@@ -8,7 +8,7 @@ namespace dfdyn {
 /// Recursive least squares of p parameters that all outputs share: y_k = h_k'π + e_k, k = 1 … m, a row h_k of
 /// its own for each output, as a rigid body has. The m rows of an instant are folded in one after the other,
 /// each exactly; forgetting happens once per instant. Sliced learning can stop between rows: π is then that
-/// of the rows done. Memory about p²/2 + (m+4) p.
+/// of the rows done. Memory about p²/2 + (m+5) p.
 template <class Scalar, int p, int m>
 class CommonParameters {
   public:

@@ -24,9 +24,9 @@ namespace dfdyn {
 /// What a row at rest brings falls as 1/t, and its sum as log t, in exact arithmetic. In the scalar's it
 /// stops falling where one more row no longer changes the factor of P: at some hundred ε, the rounding of 1 +
 /// φ'Pφ and of the factor's elements. From there on rounding would pay for forgetting for ever. So an instant
-/// pays nothing unless it brings `least_paid` = 1024 ε per row; what it teaches is not touched. A float then
-/// protects at rest whatever λ; a moving arm is forgotten at λ as long as one row in `payback` brings more
-/// than that, which memories beyond about p / (1024 ε) samples (8000 p in float, 4·10¹² p in double) do not.
+/// pays nothing unless it brings `least_paid` = 1024 ε per row; what it teaches is not touched. A moving arm
+/// forgets at λ as long as one row in `payback` brings more; where the memory is well beyond p / (1024 ε)
+/// samples (8000 p in float, 4·10¹² p in double), none does, and the memory becomes longer than λ says.
 template <class Scalar>
 class Forgetting {
   public:

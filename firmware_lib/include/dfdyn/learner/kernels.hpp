@@ -78,6 +78,34 @@ void add_scaled(Scalar factor, const Scalar* x, Scalar* y, int count) noexcept {
     }
 }
 
+/// y += factor x, where y alone is too coarse: `rest` holds what rounding has kept from it so far (T. J.
+/// Dekker's fast two-sum, "A floating-point technique for extending the available precision", 1971). The sum
+/// y + rest is then as precise as if it had twice the digits, as long as |factor x| < |y|; else it is as
+/// `add_scaled` leaves it.
+template <class Scalar>
+void add_compensated(Scalar factor, const Scalar* x, Scalar* y, Scalar* rest, int count) noexcept {
+    using Wide = Vector<Scalar, wide<Scalar>>;
+    typename Wide::Type from;
+    typename Wide::Type to;
+    typename Wide::Type kept;
+    const int whole = whole_vectors<wide<Scalar>>(0, count);
+    for (int i = 0; i < whole; i += wide<Scalar>) {
+        Wide::load(x + i, from);
+        Wide::load(y + i, to);
+        Wide::load(rest + i, kept);
+        const typename Wide::Type change = factor * from + kept;
+        const typename Wide::Type sum = to + change;
+        Wide::store(change - (sum - to), rest + i);
+        Wide::store(sum, y + i);
+    }
+    for (int i = whole; i < count; ++i) {
+        const Scalar change = factor * x[i] + rest[i];
+        const Scalar sum = y[i] + change;
+        rest[i] = change - (sum - y[i]);
+        y[i] = sum;
+    }
+}
+
 /// What the four columns of a panel do to one another and to the gain.
 template <class Scalar>
 struct PanelFactors {

@@ -13,7 +13,12 @@ namespace dfdyn {
 /// (`UdFactor`): one sweep per row, after which the gain gives the weights of all outputs.
 ///
 /// Learning can be sliced after the innovations, after any panel of the sweep and before forgetting. Until it
-/// is done the weights and `variance` are the old ones. Memory about p²/2 + (m+3) p.
+/// is done the weights and `variance` are the old ones.
+///
+/// After t rows a row changes the weights by about 1/t of what it first did, and soon by less than half of
+/// their last digit: a float would then drop the change, always where P is largest, and drift. So the sum is
+/// compensated (`detail::add_compensated`): what rounding keeps back is added with the next row. Memory about
+/// p²/2 + (2m+3) p.
 template <class Scalar, int p, int m>
 class UdCovariance {
   public:
@@ -24,7 +29,7 @@ class UdCovariance {
     UdCovariance(const Constants& constants, Extent<p> columns, Extent<m> outputs,
                  int rows_of_instant = 1) noexcept
         : factor_(columns),
-          weights_(Weights::zeros(extent<product(m, padded(p))>(outputs * padded(columns)))),
+          weights_(Weights::zeros(extent<product(m, padded(p))>(outputs * padded(columns)))), rest_(weights_),
           innovation_(Outputs::zeros(outputs)), columns_(columns), outputs_(outputs), constants_(&constants),
           forgetting_(constants.forgetting_factor, columns, rows_of_instant) {
         reset();
@@ -32,9 +37,8 @@ class UdCovariance {
 
     void reset() noexcept {
         factor_.reset(constants_->prior_variance);
-        for (Scalar& weight : weights_) {
-            weight = 0;
-        }
+        std::fill(weights_.begin(), weights_.end(), Scalar(0));
+        std::fill(rest_.begin(), rest_.end(), Scalar(0));
         if (constants_->start != nullptr) {
             load(*constants_->start);
         }
@@ -125,7 +129,8 @@ class UdCovariance {
     }
 
     [[nodiscard]] static constexpr std::int64_t state_bytes(int columns, int outputs) noexcept {
-        return Factor::state_bytes(columns) + storage_bytes<Scalar>(std::int64_t{outputs} * padded(columns)) +
+        return Factor::state_bytes(columns) +
+               2 * storage_bytes<Scalar>(std::int64_t{outputs} * padded(columns)) +
                storage_bytes<Scalar>(outputs);
     }
 
@@ -140,6 +145,7 @@ class UdCovariance {
         const int stride = self.weights_.size() / self.outputs_;
         for (int k = 0; k < self.outputs_; ++k) {
             visitor.array(self.weights_.data() + k * stride, self.columns_);
+            visitor.array(self.rest_.data() + k * stride, self.columns_);
         }
         visitor.array(self.innovation_.data(), self.innovation_.size());
         visitor.positive_array(&self.noise_variance_, 1);
@@ -158,7 +164,7 @@ class UdCovariance {
 
     static constexpr int padded(int columns) noexcept { return Factor::padded(columns); }
     static constexpr std::int64_t finish_cost(int columns, int outputs) noexcept {
-        return std::int64_t{outputs} * (columns + 1) + 2;
+        return std::int64_t{outputs} * (padded(columns) + 1) + 3;
     }
     static constexpr std::int64_t forget_cost(int columns) noexcept {
         return Forgetting<Scalar>::cost + 1 + Factor::scale_and_bound_cost(columns);
@@ -199,9 +205,11 @@ class UdCovariance {
     }
 
     bool finish() noexcept {
+        const Scalar share = 1 / factor_.alpha();
         for (int k = 0; k < outputs_; ++k) {
-            detail::add_scaled(innovation_[k] / factor_.alpha(), factor_.gain(),
-                               weights_.data() + k * padded(columns_), columns_);
+            const int first = k * padded(columns_);
+            detail::add_compensated(innovation_[k] * share, factor_.gain(), weights_.data() + first,
+                                    rest_.data() + first, padded(columns_));
         }
         ratio_ = factor_.alpha() / noise_variance_;
         information_ = std::min(information_ * ratio_, std::numeric_limits<Scalar>::max());
@@ -230,6 +238,7 @@ class UdCovariance {
 
     Factor factor_;
     Weights weights_;
+    Weights rest_; ///< what rounding has kept from the weights
     Outputs innovation_;
     [[no_unique_address]] Extent<p> columns_;
     [[no_unique_address]] Extent<m> outputs_;
