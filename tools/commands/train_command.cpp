@@ -90,6 +90,11 @@ void add_training_options(CLI::App& command, TrainingOptions& training) {
     command.add_flag(
         "--centred,!--not-centred", training.centred,
         "Model NP: outputs less their mean (default), or, as in the paper, a prior of mean zero");
+    command.add_flag(
+        "--shrinkage,!--no-shrinkage", training.shrinkage,
+        "Away from the data, predictions go back to the mean (NP) or the physics (SP, SP2, SPK), "
+        "and standard deviations grow to what the outputs span (default), or, as in the paper, "
+        "neither");
     command.add_option("--likelihood-rows", training.likelihood_rows, "Samples in the exact kernel, at most")
         ->check(CLI::Range(20, 20000))
         ->capture_default_str();
@@ -166,6 +171,7 @@ void note_ignored(const TrainOptions& options, OutputKind outputs) {
         }
     };
     note(!physics, {"--robot", "--effects", "--sign-velocity", "--own-motion"}, model);
+    note(!has_features(options.structure), {"--shrinkage"}, model);
     note(!learned, {"--prior"}, model);
     note(!physics, {"--torque-constants"}, model);
     note(physics && outputs != OutputKind::motor_current, {"--torque-constants"},

@@ -42,6 +42,7 @@ ModelTraining training_of(const Case& one, const RobotChoice& robot, int threads
     options.likelihood_rows = one.likelihood_rows;
     options.starts = one.starts;
     options.refinement_evaluations = 0; // it would depend on the draw
+    options.shrinkage = false;          // the paper's predictions, and it would depend on the draw
     options.seed = search_seed;
     options.threads = threads;
     options.physics.own_motion = one.physics_input == "own";

@@ -180,6 +180,17 @@ void set_columns(typename Model::Constants& constants, const TrainedModel& model
     }
 }
 
+/// Zeros where the model has none: the firmware then does as the paper.
+template <class Model>
+void set_extrapolation(typename Model::Constants& constants, const TrainedModel& model) {
+    const std::vector<double> zeros(model.outputs.names.size(), 0);
+    const bool given = model.extrapolation.has_value();
+    constants.extrapolation = {
+        given ? static_cast<float>(model.extrapolation->inverse_far_variance) : 0.0F,
+        converted<float, Model::outputs>(given ? model.extrapolation->extra_noise : zeros),
+        converted<float, Model::outputs>(given ? model.extrapolation->prior_variance : zeros)};
+}
+
 } // namespace
 
 template <class Scalar, class Arm>
@@ -311,6 +322,7 @@ std::unique_ptr<HostConstants<Model>> make_host_constants(const TrainedModel& mo
     constants.innovation_limit = static_cast<float>(model.limits.innovation);
     constants.innovation_patience = model.limits.innovation_patience;
     set_learners(*host, model, from_prior);
+    set_extrapolation<Model>(constants, model);
     return host;
 }
 

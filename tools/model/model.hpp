@@ -61,6 +61,14 @@ struct LimitModel {
     int innovation_patience = 0;      ///< samples in a row beyond it that are not learned
 };
 
+/// What a model with features knows of the outputs away from its data (see dfdyn::Extrapolation). Empty: the
+/// paper's predictions and standard deviations. Variances in units of noise_std squared.
+struct ExtrapolationModel {
+    double inverse_far_variance = 0;    ///< 1 / φ'Pφ at a φ that has nothing in common with the data; > 0
+    std::vector<double> extra_noise;    ///< m: variance near the data beyond the noise's; >= 0
+    std::vector<double> prior_variance; ///< m: of what the features add, where nothing is known
+};
+
 /// Where learning starts: weights of each output and the unit-upper-triangular / diagonal factor of the
 /// covariance P = U D U'.
 struct StartModel {
@@ -141,6 +149,7 @@ struct TrainedModel {
     std::optional<PhysicsModel> physics;
     OutputModel outputs;
     LimitModel limits;
+    std::optional<ExtrapolationModel> extrapolation; ///< nothing: the paper's
     StartModel start;
     TrainingRecord training;
 };

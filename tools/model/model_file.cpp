@@ -3,6 +3,7 @@
 
 #include "dfdyn/snapshot.hpp"
 #include "tools/common/error.hpp"
+#include "tools/common/number.hpp"
 #include "tools/common/read_file.hpp"
 #include "tools/common/text.hpp"
 #include "tools/model/json_reader.hpp"
@@ -38,6 +39,12 @@ ordered_json features_to_json(const FeatureModel& features) {
             {"omega", singles(features.omega)}};
 }
 
+ordered_json extrapolation_to_json(const ExtrapolationModel& extrapolation) {
+    return {{"inverse_far_variance", single(extrapolation.inverse_far_variance)},
+            {"extra_noise", singles(extrapolation.extra_noise)},
+            {"prior_variance", singles(extrapolation.prior_variance)}};
+}
+
 ordered_json training_to_json(const TrainingRecord& record) {
     return {{"recordings", record.recordings},
             {"rows", record.rows},
@@ -69,6 +76,9 @@ ordered_json model_json(const TrainedModel& model) {
                       {"output", singles(model.limits.output)},
                       {"innovation", single(model.limits.innovation)},
                       {"innovation_patience", model.limits.innovation_patience}};
+    if (model.extrapolation) {
+        json["extrapolation"] = extrapolation_to_json(*model.extrapolation);
+    }
     if (has_features(model.structure)) {
         json["start"] = start_to_json(model.start);
     }
@@ -94,6 +104,19 @@ OutputModel read_outputs(const JsonReader& reader) {
     outputs.noise_std = reader.positive_numbers("noise_std", count);
     outputs.prior_variance = reader.positive_number("prior_variance");
     return outputs;
+}
+
+ExtrapolationModel read_extrapolation(const JsonReader& reader, int outputs) {
+    ExtrapolationModel extrapolation;
+    extrapolation.inverse_far_variance = reader.positive_number("inverse_far_variance");
+    extrapolation.extra_noise = reader.numbers("extra_noise", outputs);
+    for (const double value : extrapolation.extra_noise) {
+        if (value < 0) {
+            throw reader.error("extra_noise", "numbers of at least 0", number_text(value));
+        }
+    }
+    extrapolation.prior_variance = reader.positive_numbers("prior_variance", outputs);
+    return extrapolation;
 }
 
 TrainingRecord read_training(const JsonReader& reader) {
@@ -134,6 +157,9 @@ TrainedModel read_fields(const JsonReader& reader) {
     if (has_features(model.structure)) {
         model.start = read_start(reader.object("start"), 2 * model.features.count, outputs);
         least = least_forgetting_factor(model.features.count);
+        if (reader.has("extrapolation")) {
+            model.extrapolation = read_extrapolation(reader.object("extrapolation"), outputs);
+        }
     }
     if (has_physics(model.structure)) {
         model.physics = read_physics(reader.object("physics"), model);

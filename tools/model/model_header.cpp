@@ -105,6 +105,16 @@ std::string learner_constants(const TrainedModel& model) {
                                   : "{.features = " + features() + ", .common = " + parameters + "}";
 }
 
+std::string extrapolation_constants(const TrainedModel& model) {
+    if (!model.extrapolation) {
+        return "";
+    }
+    return ",\n    .extrapolation = {.inverse_far_variance = " +
+           literal(model.extrapolation->inverse_far_variance) +
+           ",\n        .extra_noise = " + braced(model.extrapolation->extra_noise) +
+           ",\n        .prior_variance = " + braced(model.extrapolation->prior_variance) + "}";
+}
+
 } // namespace
 
 std::string to_identifier(const std::string& stem) {
@@ -142,8 +152,8 @@ std::string model_to_header(const TrainedModel& model, const std::string& name_s
            << ",\n    .output_limit = " << braced(model.limits.output)
            << ",\n    .innovation_limit = " << literal(model.limits.innovation)
            << ",\n    .innovation_patience = " << model.limits.innovation_patience
-           << ",\n    .learner = " << learner_constants(model) << "};\n\n} // namespace " << name_space
-           << "\n";
+           << ",\n    .learner = " << learner_constants(model) << extrapolation_constants(model)
+           << "};\n\n} // namespace " << name_space << "\n";
     return header.str();
 }
 

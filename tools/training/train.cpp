@@ -5,8 +5,10 @@
 #include "tools/common/number.hpp"
 #include "tools/common/to_vector.hpp"
 #include "tools/model/model_file.hpp"
+#include "tools/training/extrapolation.hpp"
 #include "tools/training/fit.hpp"
 #include "tools/training/lag_spacing.hpp"
+#include "tools/training/normal_equations.hpp"
 #include "tools/training/random_features.hpp"
 #include "tools/training/start_state.hpp"
 #include "tools/training/training_options.hpp"
@@ -106,6 +108,18 @@ TrainedPhysics units_of(const TrainingSetup& setup, const PhysicsPart& part, con
     return physics;
 }
 
+/// What the features have to explain, in units of noise_std: what the physics (columns of physics.columns at
+/// the usable rows, N x (m p)) leaves of the outputs.
+MatrixXd feature_targets(const TrainingSetup& setup, const OutputModel& outputs, const MatrixXd& columns,
+                         const VectorXd& parameters) {
+    MatrixXd targets = scaled_outputs(outputs, setup.data.outputs, setup.rows.usable);
+    for (Index k = 0; k < targets.cols(); ++k) {
+        targets.col(k) -= columns.middleCols(k * parameters.size(), parameters.size()) * parameters /
+                          outputs.noise_std[static_cast<std::size_t>(k)];
+    }
+    return targets;
+}
+
 /// Fills the start of the model and what it says of the physics.
 TrainedPhysics start_physics(const TrainingSetup& setup, const PhysicsPart& part, TrainedModel& model) {
     TrainedPhysics physics = units_of(setup, part, model.outputs);
@@ -127,6 +141,11 @@ TrainedPhysics start_physics(const TrainingSetup& setup, const PhysicsPart& part
     }();
     model.start = start.kernel;
     physics.start = start.physics;
+    if (setup.options.shrinkage && setup.options.model != ModelClass::P) {
+        model.extrapolation =
+            measure_extrapolation(model, setup.data, setup.rows.usable,
+                                  feature_targets(setup, model.outputs, columns, start.physics.parameters));
+    }
     return physics;
 }
 
@@ -147,6 +166,11 @@ TrainingResult train_unspaced(const TrainingData& data, const TrainingOptions& o
         result.physics = start_physics(setup, *fit.physics, result.model);
     } else {
         result.model.start = batch_start(result.model, data, setup.rows.usable);
+        if (options.shrinkage) {
+            result.model.extrapolation =
+                measure_extrapolation(result.model, data, setup.rows.usable,
+                                      scaled_outputs(result.model.outputs, data.outputs, setup.rows.usable));
+        }
     }
     return result;
 }

@@ -60,11 +60,14 @@ struct TrainingOptions {
     /// STD: gains of velocity and acceleration beside the length scale, by ML. False, the paper's: one width
     /// for inputs of unit deviation.
     bool relevance = true;
-    bool centred = true;        ///< NP: outputs less their mean; false, the paper's: a prior of mean zero
-    int feature_count = 250;    ///< d >= 1; P has none
-    bool orthogonal = true;     ///< orthogonal random features
-    int likelihood_rows = 1000; ///< samples in the exact kernel, at most; >= 20; time goes with the cube
-    int starts = 6;             ///< local searches, >= 1
+    bool centred = true; ///< NP: outputs less their mean; false, the paper's: a prior of mean zero
+    /// Away from the data, predictions go back to the mean (NP) or the physics, and standard deviations grow
+    /// to what the outputs span; false: neither, as in the paper.
+    bool shrinkage = true;
+    int feature_count = 250;         ///< d >= 1; P has none
+    bool orthogonal = true;          ///< orthogonal random features
+    int likelihood_rows = 1000;      ///< samples in the exact kernel, at most; >= 20; time goes with the cube
+    int starts = 6;                  ///< local searches, >= 1
     int evaluations_per_start = 200; ///< at most, >= 1
     int refinement_evaluations = 40; ///< at most, by the model that will run over all rows; 0: no refinement
     int threads = 2;                 ///< >= 1; does not change the result

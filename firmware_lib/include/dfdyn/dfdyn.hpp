@@ -3,6 +3,7 @@
 
 // Everything an embedding needs; each header also stands alone.
 #include "dfdyn/estimator.hpp"
+#include "dfdyn/extrapolation.hpp"
 #include "dfdyn/features/random_fourier.hpp"
 #include "dfdyn/forecast_combination.hpp"
 #include "dfdyn/input/derivative_free.hpp"

@@ -62,7 +62,8 @@ class Estimator {
     explicit Estimator(const Constants&&) = delete; // it would refer to a temporary
     explicit Estimator(const Constants& constants) noexcept
         : constants_(&constants), sizes_(constants.sizes), learn_cost_(cost(constants.sizes).learn),
-          regression_(constants), target_(Outputs::zeros(sizes_.output_count)), ratio_(target_) {}
+          regression_(constants), target_(Outputs::zeros(sizes_.output_count)), ratio_(target_),
+          without_features_(target_) {}
 
     /// Predicts the sample's output from its position and the past, then learns it as far as the budget goes.
     /// A refused sample leaves what has been learned as it is. Takes at most `cost().predict` +
@@ -152,7 +153,7 @@ class Estimator {
     /// Cost of a tick's parts in multiply-adds, a constant expression for a firmware model.
     [[nodiscard]] static constexpr Cost cost(const typename Model::Sizes& sizes = {}) noexcept {
         Cost cost = Regression::cost(sizes);
-        cost.predict += std::int64_t{sizes.output_count} * output_cost;
+        cost.predict += std::int64_t{sizes.output_count} * output_cost + Extrapolation<Scalar>::cost;
         return cost;
     }
 
@@ -178,7 +179,7 @@ class Estimator {
     using Outputs = Storage<Scalar, Model::outputs>;
 
     /// Multiply-adds that an output takes between the regression's units and its own.
-    static constexpr int output_cost = function_cost + 6;
+    static constexpr int output_cost = function_cost + 8;
 
     [[nodiscard]] Estimate unknown() const noexcept {
         Estimate estimate{Outputs::zeros(sizes_.output_count),
@@ -264,6 +265,7 @@ class Estimator {
 
     void predict(const Sample& sample, Budget budget, Estimate& estimate) noexcept {
         regression_.predict(estimate.prediction.data());
+        regression_.predict_without_features(without_features_.data());
         if (finite(estimate.prediction)) {
             estimate.status.learning = check_output(sample);
             learn(sample, budget, estimate);
@@ -296,8 +298,9 @@ class Estimator {
         const bool doubtful = error_square > constants_->innovation_limit;
         const bool at_once =
             measured && !doubtful && !held_ && regression_.idle() && budget.affords(learn_cost_);
+        Scalar feature_variance = 0;
         if (!at_once) {
-            regression_.variances(ratio_.data());
+            feature_variance = regression_.variances(ratio_.data());
         }
         Scalar& square = estimate.normalised_innovation_squared;
         square = doubtful ? innovation_square(estimate.innovation) : error_square;
@@ -306,12 +309,12 @@ class Estimator {
         }
         fold(budget, status);
         if (at_once) {
-            regression_.last_ratios(ratio_.data());
+            feature_variance = regression_.last_ratios(ratio_.data());
         }
         if (measured && !doubtful) {
             square = innovation_square(estimate.innovation);
         }
-        complete(sample, measured, estimate);
+        complete(sample, measured, feature_variance, estimate);
     }
 
     /// Goes on with an earlier sample, then with this one unless it was refused.
@@ -378,13 +381,22 @@ class Estimator {
         return total;
     }
 
-    /// From the regression's units to the output's.
-    void complete(const Sample& sample, bool measured, Estimate& estimate) const noexcept {
+    /// From the regression's units to the output's, without what features say too far from their data.
+    void complete(const Sample& sample, bool measured, Scalar feature_variance,
+                  Estimate& estimate) const noexcept {
+        const auto& known = constants_->extrapolation;
+        const Extrapolation<Scalar> beyond(feature_variance, known.inverse_far_variance);
+        const bool given = known.inverse_far_variance > 0;
         for (int k = 0; k < sizes_.output_count; ++k) {
             const Scalar noise = constants_->output_noise_std[k];
-            estimate.prediction[k] = constants_->output_offset[k] + noise * estimate.prediction[k];
+            const Scalar mean =
+                estimate.prediction[k] - beyond.doubt() * (estimate.prediction[k] - without_features_[k]);
+            estimate.prediction[k] = constants_->output_offset[k] + noise * mean;
             using std::sqrt;
-            estimate.standard_deviation[k] = noise * sqrt(ratio_[k]);
+            estimate.standard_deviation[k] =
+                noise *
+                sqrt(beyond.variance(ratio_[k], feature_variance, given ? known.extra_noise[k] : Scalar(0),
+                                     given ? known.prior_variance[k] : Scalar(0)));
             estimate.innovation[k] = measured ? sample.output[k] - estimate.prediction[k] : Scalar(0);
         }
     }
@@ -425,7 +437,8 @@ class Estimator {
     Regression regression_;
     SampleClock clock_;
     Outputs target_;
-    Outputs ratio_; ///< 1 + the variance of each predicted mean, in units of the noise's
+    Outputs ratio_;            ///< 1 + the variance of each predicted mean, in units of the noise's
+    Outputs without_features_; ///< what the physics alone predicts, in the regression's units
     Counters counters_;
     StateSequence sequence_;
     bool held_ = false; ///< nothing may be learned in this tick

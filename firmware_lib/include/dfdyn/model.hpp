@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/extrapolation.hpp"
 #include "dfdyn/sample.hpp"
 #include "dfdyn/structure/nonparametric.hpp"
 
@@ -82,6 +83,7 @@ struct Model {
         Scalar innovation_limit; ///< samples with a larger normalised innovation squared are not learned; > 0
         std::int32_t innovation_patience; ///< but after so many of them in a row they are; ≥ 0
         StructureConstants learner;
+        ExtrapolationConstants<Scalar, outputs> extrapolation{}; ///< of models with features
     };
 };
 

@@ -104,6 +104,23 @@ TEST_CASE("a model reads back bit for bit in single precision") {
     }
 }
 
+TEST_CASE("what a model knows away from its data reads back; a model without it stays without") {
+    DFDYN_SEEDED_ENGINE(engine);
+    TrainedModel model = small_model(engine, InputKind::DFR);
+    CHECK_FALSE(model_from_json(model_to_json(model), "m.json").extrapolation.has_value());
+    const auto identity = model_identity(model);
+    dfdyn::tests::add_extrapolation(model, engine);
+    const std::string text = model_to_json(model);
+    CHECK(model_to_json(model_from_json(text, "m.json")) == text);
+    CHECK(model_identity(model) != identity);
+    model.extrapolation->extra_noise[1] = -0.5;
+    CHECK(refusal(model_to_json(model)) ==
+          "m.json: extrapolation.extra_noise: expected numbers of at least 0, found \"-0.5\"");
+    model.extrapolation->extra_noise[1] = 0;
+    model.extrapolation->inverse_far_variance = 0;
+    CHECK(refusal(model_to_json(model)).has_value());
+}
+
 TEST_CASE("models that differ in one number differ in identity") {
     std::mt19937_64 engine(1);
     TrainedModel model = small_model(engine, InputKind::DFR);

@@ -131,6 +131,18 @@ TEST_CASE("so does the header of a model with physics") {
     check_header(small_physics_model(engine, "SPK", InputKind::STD, true));
 }
 
+TEST_CASE("the header knows what the model file does of the outputs away from the data") {
+    DFDYN_SEEDED_ENGINE(engine);
+    TrainedModel model = small_model(engine, InputKind::DFR);
+    const std::vector<double> without = run_host(model);
+    dfdyn::tests::add_extrapolation(model, engine);
+    CHECK(run_host(model) != without);
+    check_header(model);
+    TrainedModel with_physics = small_physics_model(engine, "SPK", InputKind::DFR, false);
+    dfdyn::tests::add_extrapolation(with_physics, engine);
+    check_header(with_physics);
+}
+
 TEST_CASE("hostile names do not leave their comment") {
     std::mt19937_64 engine(1);
     TrainedModel model = small_model(engine, InputKind::DF);

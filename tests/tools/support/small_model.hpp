@@ -51,6 +51,14 @@ inline tools::TrainedModel small_model(std::mt19937_64& engine, tools::InputKind
     return model;
 }
 
+/// Lets the model know something of the outputs away from its data.
+inline void add_extrapolation(tools::TrainedModel& model, std::mt19937_64& engine) {
+    std::uniform_real_distribution<double> positive(0.5, 2);
+    const std::size_t outputs = model.outputs.names.size();
+    model.extrapolation = {positive(engine), numbers(engine, outputs, positive),
+                           numbers(engine, outputs, positive)};
+}
+
 /// The same model with physics: `structure` is P, SP, SP2 or SPK; the outputs are a wrench at a sensor on
 /// link 1, or the two joints' torques. The motion is DFR, or with input STD the measured derivatives.
 inline tools::TrainedModel small_physics_model(std::mt19937_64& engine, const std::string& structure,

@@ -89,13 +89,15 @@ class BlockArrow {
         fresh_ = true;
     }
 
-    /// Variance of each predicted mean at the present columns, of which `phi` is the φ. O((2d)² + m p²).
-    void variances(const Scalar* phi, Scalar* variances) const noexcept {
+    /// Variance of each predicted mean at the present columns, of which `phi` is the φ; returns the features'
+    /// part of it, φ'Pφ. O((2d)² + m p²).
+    Scalar variances(const Scalar* phi, Scalar* variances) const noexcept {
         common_.variances(present_.rows.data(), variances);
         const Scalar shared = factor_.variance(phi);
         for (int k = 0; k < outputs_; ++k) {
             variances[k] += shared;
         }
+        return shared;
     }
 
     [[nodiscard]] bool idle() const noexcept { return task_ == Task::none; }
@@ -129,13 +131,16 @@ class BlockArrow {
         return true;
     }
 
-    /// 1 + the variance of each output's mean at the last sample learned, before it was.
-    void last_ratios(Scalar* ratios) const noexcept {
+    /// 1 + the variance of each output's mean at the last sample learned, before it was; returns φ'Pφ then.
+    Scalar last_ratios(Scalar* ratios) const noexcept {
         for (int k = 0; k < outputs_; ++k) {
             ratios[k] = alpha_ + common_.last_variances()[k];
         }
+        return alpha_ - 1;
     }
 
+    /// Of P, which all outputs share.
+    [[nodiscard]] const UdFactor<Scalar, columns>& factor() const noexcept { return factor_; }
     [[nodiscard]] const CommonParameters<Scalar, p, m>& common() const noexcept { return common_; }
 
     /// E[w_k] of all outputs, m × 2d. O(2d m p).

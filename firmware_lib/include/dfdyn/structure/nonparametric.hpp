@@ -45,10 +45,16 @@ struct Nonparametric {
         bool evaluate() noexcept { return columns_.evaluate(); }
 
         void predict(Scalar* means) noexcept { learner_.predict(columns_.data(), means); }
-        void variances(Scalar* ratios) const noexcept {
-            fill(1 + learner_.variance(columns_.data()), ratios);
+        void predict_without_features(Scalar* means) const noexcept { fill(0, means); }
+        Scalar variances(Scalar* ratios) const noexcept {
+            const Scalar ratio = 1 + learner_.variance(columns_.data());
+            fill(ratio, ratios);
+            return ratio - 1;
         }
-        void last_ratios(Scalar* ratios) const noexcept { fill(learner_.last_ratio(), ratios); }
+        Scalar last_ratios(Scalar* ratios) const noexcept {
+            fill(learner_.last_ratio(), ratios);
+            return learner_.last_ratio() - 1;
+        }
 
         [[nodiscard]] bool idle() const noexcept { return learner_.idle(); }
         [[nodiscard]] bool sample_pending() const noexcept { return learner_.sample_pending(); }
@@ -91,9 +97,9 @@ struct Nonparametric {
         }
 
       private:
-        void fill(Scalar ratio, Scalar* ratios) const noexcept {
+        void fill(Scalar value, Scalar* values) const noexcept {
             for (int k = 0; k < outputs_; ++k) {
-                ratios[k] = ratio;
+                values[k] = value;
             }
         }
 

@@ -38,15 +38,22 @@ struct Parametric {
         bool evaluate() noexcept { return physics_.evaluate(); }
 
         void predict(Scalar* means) noexcept { learner_.predict(physics_.data(), means); }
-        void variances(Scalar* ratios) const noexcept {
+        void predict_without_features(Scalar* means) const noexcept {
+            for (int k = 0; k < outputs_; ++k) {
+                means[k] = 0; // there are none, and nothing is taken off
+            }
+        }
+        Scalar variances(Scalar* ratios) const noexcept {
             learner_.variances(physics_.data(), ratios);
             add_noise(ratios);
+            return 0;
         }
-        void last_ratios(Scalar* ratios) const noexcept {
+        Scalar last_ratios(Scalar* ratios) const noexcept {
             for (int k = 0; k < outputs_; ++k) {
                 ratios[k] = learner_.last_variances()[k];
             }
             add_noise(ratios);
+            return 0;
         }
 
         [[nodiscard]] bool idle() const noexcept { return learner_.idle(); }

@@ -11,7 +11,9 @@ namespace dfdyn {
 /// in units of their noise and about their offset.
 ///  - `push`, `ready`, `restart`: the window of past positions.
 ///  - `evaluate`: computes the present columns; false if they mean nothing.
-///  - `predict(means)` at the present columns, m values; `variances(ratios)`: 1 + the variance of each mean.
+///  - `predict(means)` at the present columns, m values; `predict_without_features(means)`: the physics'
+///  part.
+///  - `variances(ratios)`: 1 + the variance of each mean; returns φ'Pφ, what the features have in it.
 ///  - `begin(targets)`: takes the present columns in, after `predict`, when `idle()`.
 ///  - `advance(budget)`: works on them, and says whether nothing is left to do.
 ///  - `sample_pending()`: they are not learned yet; `last_ratios(ratios)`: `variances` before the last sample
@@ -28,8 +30,9 @@ concept RegressionOf = requires(R regression, const R& constant, Scalar* values,
     { constant.ready() } -> std::same_as<bool>;
     { regression.evaluate() } -> std::same_as<bool>;
     regression.predict(values);
-    constant.variances(values);
-    constant.last_ratios(values);
+    constant.predict_without_features(values);
+    { constant.variances(values) } -> std::same_as<Scalar>;
+    { constant.last_ratios(values) } -> std::same_as<Scalar>;
     { constant.idle() } -> std::same_as<bool>;
     { constant.sample_pending() } -> std::same_as<bool>;
     regression.begin(numbers);

@@ -44,13 +44,17 @@ struct SemiparametricKernel {
         bool evaluate() noexcept { return columns_.evaluate() && physics_.evaluate(); }
 
         void predict(Scalar* means) noexcept { learner_.predict(columns_.data(), physics_.data(), means); }
-        void variances(Scalar* ratios) const noexcept {
-            learner_.variances(columns_.data(), ratios);
+        void predict_without_features(Scalar* means) const noexcept {
+            learner_.common().predict(physics_.data(), means);
+        }
+        Scalar variances(Scalar* ratios) const noexcept {
+            const Scalar of_features = learner_.variances(columns_.data(), ratios);
             for (int k = 0; k < outputs_; ++k) {
                 ratios[k] += 1;
             }
+            return of_features;
         }
-        void last_ratios(Scalar* ratios) const noexcept { learner_.last_ratios(ratios); }
+        Scalar last_ratios(Scalar* ratios) const noexcept { return learner_.last_ratios(ratios); }
 
         [[nodiscard]] bool idle() const noexcept { return learner_.idle(); }
         [[nodiscard]] bool sample_pending() const noexcept { return learner_.sample_pending(); }
@@ -81,7 +85,8 @@ struct SemiparametricKernel {
 
         [[nodiscard]] static constexpr Cost cost(const typename Model::Sizes& sizes) noexcept {
             Cost cost = Learner::cost(sizes.column_count(), sizes.physics.column_count, sizes.output_count);
-            cost.predict += FeatureColumns<Model>::cost(sizes) + PhysicsColumns<Model>::cost(sizes);
+            cost.predict += FeatureColumns<Model>::cost(sizes) + PhysicsColumns<Model>::cost(sizes) +
+                            std::int64_t{sizes.output_count} * sizes.physics.column_count;
             return cost;
         }
 

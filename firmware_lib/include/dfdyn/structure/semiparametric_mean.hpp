@@ -65,6 +65,11 @@ struct SemiparametricMean {
             Residual::predict(means);
             add_mean(means);
         }
+        void predict_without_features(Scalar* means) const noexcept {
+            for (int k = 0; k < constants_->sizes.output_count; ++k) {
+                means[k] = mean_[k];
+            }
+        }
         void predict_with(const Scalar* weights, Scalar* means) const noexcept {
             Residual::predict_with(weights, means);
             add_mean(means);
