@@ -83,7 +83,8 @@ TEST_CASE("what is forgotten is never more than was brought in, and as much as t
     int paid_in_full = 0;
     for (int t = 0; t < 10'000; ++t) {
         const double nats = brought(engine);
-        account = std::min<double>(account + payback * nats, parameters);
+        const double paid = std::expm1(nats) < 1 - factor ? 0 : payback * nats;
+        account = std::min<double>(account + paid, parameters);
         const double applied = forgetting.factor_after(std::exp(nats));
         REQUIRE(applied == Approx(account >= price ? factor : std::exp(-account / parameters)).epsilon(1e-9));
         paid_in_full += account >= price ? 1 : 0;
@@ -113,15 +114,28 @@ TEMPLATE_TEST_CASE("a standstill stops forgetting, however many rows an instant 
     }
 }
 
-TEMPLATE_TEST_CASE("rows that bring no more than rounding pay for no forgetting", "", float, double) {
-    constexpr TestType epsilon = std::numeric_limits<TestType>::epsilon();
-    for (const int rows : {1, 6}) {
-        CAPTURE(rows);
+TEMPLATE_TEST_CASE("rows that bring no more than standing still pay for no forgetting", "", float, double) {
+    const auto paid = [](int rows, double brought) {
         Forgetting<TestType> forgetting(TestType(0.999), 32, rows);
         static_cast<void>(forgotten_at_rest(forgetting, 30'000)); // the account is empty
-        CHECK(forgetting.factor_after(1 + TestType(1000 * rows) * epsilon) == 1);
-        CHECK(forgetting.factor_after(1 + TestType(32 * 1048 * rows) * epsilon) < 1);
+        return forgetting.factor_after(static_cast<TestType>(1 + rows * brought)) < 1;
+    };
+    for (const int rows : {1, 6}) {
+        CAPTURE(rows);
+        CHECK_FALSE(paid(rows, 0.00095));
+        CHECK(paid(rows, 0.00105));
     }
+}
+
+TEST_CASE("rows that bring no more than rounding pay for no forgetting, however long the memory") {
+    constexpr float epsilon = std::numeric_limits<float>::epsilon();
+    const auto paid = [](float brought) {
+        Forgetting<float> forgetting(0.99999F, 32);
+        static_cast<void>(forgotten_at_rest(forgetting, 3'000'000)); // the account is empty
+        return forgetting.factor_after(1 + brought) < 1;
+    };
+    CHECK_FALSE(paid(1000 * epsilon));
+    CHECK(paid(4000 * epsilon));
 }
 
 TEST_CASE("the parameters come in turn") {

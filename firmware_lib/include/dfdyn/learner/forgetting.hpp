@@ -21,12 +21,14 @@ namespace dfdyn {
 /// nevertheless is bounded by the learner, which looks at one parameter per sample and takes its variance
 /// back to the prior's.
 ///
-/// What a row at rest brings falls as 1/t, and its sum as log t, in exact arithmetic. In the scalar's it
-/// stops falling where one more row no longer changes the factor of P: at some hundred ε, the rounding of 1 +
-/// φ'Pφ and of the factor's elements. From there on rounding would pay for forgetting for ever. So an instant
-/// pays nothing unless it brings `least_paid` = 1024 ε per row; what it teaches is not touched. A moving arm
-/// forgets at λ as long as one row in `payback` brings more; where the memory is well beyond p / (1024 ε)
-/// samples (8000 p in float, 4·10¹² p in double), none does, and the memory becomes longer than λ says.
+/// A row that repeats for ever brings φ'Pφ = (1-λ)/λ under forgetting at λ, and less once the account holds
+/// forgetting back. So a row that brings less than 1-λ stands still, and pays nothing: otherwise the log t
+/// that it brings in t samples would be given away 20 times over by what the arm knows of other places. Nor
+/// does a row pay that brings less than 1024 ε: there φ'Pφ is rounding, which stops falling where one more
+/// row no longer changes the factor of P, and would pay for ever. What such rows teach is learned all the
+/// same. A moving arm forgets at λ as long as one row in `payback` brings more than both; where the memory is
+/// well beyond p / (1024 ε) samples (8000 p in float, 4·10¹² p in double), none does, and the memory becomes
+/// longer than λ says.
 template <class Scalar>
 class Forgetting {
   public:
@@ -35,7 +37,8 @@ class Forgetting {
     constexpr Forgetting(Scalar factor, int parameters, int rows = 1) noexcept
         : factor_(factor), parameters_(static_cast<Scalar>(parameters)),
           payback_(std::clamp(parameters_ / (2 * static_cast<Scalar>(rows)), Scalar(1), Scalar(20))),
-          least_paid_(static_cast<Scalar>(rows) * 1024 * std::numeric_limits<Scalar>::epsilon()) {
+          least_paid_(static_cast<Scalar>(rows) *
+                      std::max<Scalar>(1024 * std::numeric_limits<Scalar>::epsilon(), 1 - factor)) {
         using std::log;
         price_ = active() ? parameters_ * -log(factor) : Scalar(0);
         restart();
