@@ -45,6 +45,8 @@ struct Cost {
     std::int64_t forget; ///< what forgetting adds to that, at most
     std::int64_t
         largest_step; ///< the largest part that learning is sliced into: a smaller budget may not get on
+    /// What it takes, within the budget and before the next sample, when the arm is found to have changed.
+    std::int64_t reset_covariance = 0;
 };
 
 /// Bytes of stack for the registers that a part's calls save, at most.

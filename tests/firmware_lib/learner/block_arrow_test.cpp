@@ -14,6 +14,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <type_traits>
+#include <vector>
 
 namespace block_arrow_test {
 
@@ -128,15 +130,16 @@ class Arrow {
         return result.template cast<double>();
     }
 
-    void begin(const ArrowProblem& problem, int t) {
+    void begin(const ArrowProblem& problem, int t, double noise_variance = 1) {
         const Instant instant(problem, t);
         const Values targets = problem.targets.row(t).transpose().cast<Scalar>();
-        learner_.begin(instant.phi.data(), instant.psi.data(), targets.data());
+        learner_.begin(instant.phi.data(), instant.psi.data(), targets.data(),
+                       static_cast<Scalar>(noise_variance));
     }
 
-    void learn(const ArrowProblem& problem, int t) {
+    void learn(const ArrowProblem& problem, int t, double noise_variance = 1) {
         predict(problem, t);
-        begin(problem, t);
+        begin(problem, t, noise_variance);
         Budget budget = Budget::unlimited();
         learner_.advance(budget);
     }
@@ -153,9 +156,10 @@ class Arrow {
 
     Learner& learner() { return learner_; }
 
+    static constexpr Scalar ceiling = 1000;
+
   private:
     using Values = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
-    static constexpr Scalar ceiling = 1000;
 
     struct Instant {
         Values phi;
@@ -342,6 +346,57 @@ TEST_CASE("the cost of the block arrow is that of its parts, far below that of a
     static_assert(100 * (arrow.predict + arrow.learn) < dense);
     static_assert(arrow.largest_step < arrow.learn / 40);
     SUCCEED();
+}
+
+TEMPLATE_TEST_CASE("a covariance taken back to the prior's leaves the predictions, in any slices", "", float,
+                   double) {
+    DFDYN_SEEDED_ENGINE(engine);
+    const double tolerance = std::is_same_v<TestType, float> ? 1e-4 : 1e-12;
+    const ArrowProblem problem(engine, 120, 16, 5, 3);
+    auto arrow = std::make_unique<Arrow<TestType>>(problem);
+    for (int t = 0; t < 110; ++t) {
+        arrow->learn(problem, t);
+    }
+    std::vector<VectorXd> before;
+    for (int t = 110; t < 120; ++t) {
+        before.push_back(arrow->predict(problem, t));
+    }
+    using Learner = typename Arrow<TestType>::Learner;
+    const Cost cost = Learner::cost(problem.columns, problem.parameters, problem.outputs);
+    arrow->learner().reset_covariance();
+    std::int64_t spent = 0;
+    for (bool done = false; !done;) {
+        Budget budget{cost.largest_step};
+        done = arrow->learner().advance(budget);
+        spent += cost.largest_step - budget.operations;
+        REQUIRE(spent <= cost.reset_covariance);
+    }
+    CHECK(spent == cost.reset_covariance);
+    for (int t = 110; t < 120; ++t) {
+        const VectorXd after = arrow->predict(problem, t);
+        CHECK(relative_error(after, before[static_cast<std::size_t>(t - 110)]) < tolerance);
+        const VectorXd variances = arrow->variances(problem, t);
+        for (int k = 0; k < problem.outputs; ++k) {
+            const double prior = double{Arrow<TestType>::ceiling} * problem.dense_row(t, k).squaredNorm();
+            CHECK(variances[k] == Approx(prior).epsilon(tolerance));
+        }
+    }
+}
+
+TEMPLATE_TEST_CASE("instants of other noise weigh as the dense solution says", "", float, double) {
+    DFDYN_SEEDED_ENGINE(engine);
+    const double tolerance = std::is_same_v<TestType, float> ? 1e-3 : 1e-9;
+    ArrowProblem problem(engine, 120, 16, 5, 3);
+    auto arrow = std::make_unique<Arrow<TestType>>(problem);
+    for (int t = 0; t < problem.instants(); ++t) {
+        const double deviation = 1 << (engine() % 6); // exact in float
+        arrow->learn(problem, t, deviation * deviation);
+        problem.phi.row(t) /= deviation;
+        problem.psi[static_cast<std::size_t>(t)] /= deviation;
+        problem.targets.row(t) /= deviation;
+    }
+    const DenseSolution truth(problem, problem.instants());
+    CHECK(relative_error(arrow->all_unknowns(), truth.mean) < tolerance);
 }
 
 } // namespace block_arrow_test

@@ -263,4 +263,55 @@ TEMPLATE_TEST_CASE("the ratio of a row is one plus its variance before it was le
     }
 }
 
+TEMPLATE_TEST_CASE("rows of other noise weigh as the batch solution says", "", UdFloat, UdDouble,
+                   InformationFloat, InformationDouble) {
+    DFDYN_SEEDED_ENGINE(engine);
+    constexpr int columns = 20;
+    Regression regression =
+        with_prior(random_regression(engine, {300, columns, 3}, Columns::independent), 100, 1);
+    LearnerUnderTest<TestType> learner(columns, 3, 100, 1);
+    for (int t = 0; t < regression.row_count(); ++t) {
+        const double deviation = 1 << (engine() % 8); // exact in float
+        learner.learn_noisy(regression.rows.row(t), regression.targets.row(t), deviation * deviation);
+        regression.rows.row(t) /= deviation;
+        regression.targets.row(t) /= deviation;
+    }
+    const BatchSolution truth = solve_by_qr(regression);
+    CHECK(relative_error(learner.weights(), truth.weights) < TestType::tolerance);
+    CHECK(largest_relative_error(learner.parameter_variances(), truth.parameter_variances()) <
+          TestType::tolerance);
+}
+
+TEMPLATE_TEST_CASE("a covariance taken back to the prior's leaves the weights, and goes on as from a start",
+                   "", UdFloat, UdDouble, InformationFloat, InformationDouble) {
+    DFDYN_SEEDED_ENGINE(engine);
+    constexpr int columns = 20;
+    const Regression regression =
+        with_prior(random_regression(engine, {200, columns, 3}, Columns::independent), 100, 1);
+    LearnerUnderTest<TestType> learner(columns, 3, 100, 1);
+    learner.learn(part(regression, 0, 100));
+    const MatrixXd before = learner.weights();
+    learner.learner().reset_covariance();
+    const Cost cost = TestType::template Learner<dynamic, dynamic>::cost(columns, 3);
+    std::int64_t spent = 0;
+    for (bool done = false; !done;) {
+        Budget budget{cost.largest_step};
+        const std::int64_t given = budget.operations;
+        done = learner.learner().advance(budget);
+        spent += given - budget.operations;
+        REQUIRE(spent <= cost.reset_covariance);
+    }
+    CHECK(spent == cost.reset_covariance);
+    CHECK(relative_error(learner.weights(), before) < TestType::tolerance / 10);
+    CHECK(largest_relative_error(learner.parameter_variances(), VectorXd::Constant(columns, 100)) <
+          TestType::tolerance / 10);
+
+    Start start = Start::prior(columns, 3, 100);
+    start.weights = learner.weights();
+    LearnerUnderTest<TestType> fresh(start, 100, 1);
+    learner.learn(part(regression, 100, 200));
+    fresh.learn(part(regression, 100, 200));
+    CHECK(relative_error(learner.weights(), fresh.weights()) < TestType::tolerance / 10);
+}
+
 } // namespace learner_test

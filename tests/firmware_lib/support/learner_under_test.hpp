@@ -76,6 +76,12 @@ class LearnerUnderTest {
         learner_.begin(scalars(row).data(), scalars(target).data());
     }
 
+    /// A row whose targets have `noise_variance` in units of their noise.
+    void learn_noisy(const Eigen::VectorXd& row, const Eigen::VectorXd& target, double noise_variance) {
+        learner_.begin(scalars(row).data(), scalars(target).data(), static_cast<Scalar>(noise_variance));
+        advance(Budget::unlimited());
+    }
+
     bool advance(Budget budget) { return learner_.advance(budget); }
 
     void learn(const Regression& regression) {

@@ -64,6 +64,7 @@ class BlockArrow {
         clear(present_);
         clear(in_hand_);
         alpha_ = 1;
+        noise_variance_ = 1;
         task_ = Task::none;
         next_ = 0;
         fresh_ = false;
@@ -101,23 +102,33 @@ class BlockArrow {
     }
 
     [[nodiscard]] bool idle() const noexcept { return task_ == Task::none; }
-    [[nodiscard]] bool sample_pending() const noexcept {
-        return !idle() && task_ != Task::forget && task_ != Task::bound;
-    }
+    [[nodiscard]] bool sample_pending() const noexcept { return !idle() && task_ < Task::forget; }
 
-    /// Takes in the present columns, as given to `predict`, with the m targets. Only when idle. If weights
-    /// were updated since `predict`, what φ leaves of the columns is computed once more, within the budget.
-    void begin(const Scalar* phi, const Scalar* psi, const Scalar* targets) noexcept {
+    /// Takes in the present columns, as given to `predict`, with the m targets, measured with
+    /// `noise_variance` in units of their noise. Only when idle. If weights were updated since `predict`,
+    /// what φ leaves of the columns is computed once more, within the budget.
+    void begin(const Scalar* phi, const Scalar* psi, const Scalar* targets,
+               Scalar noise_variance = 1) noexcept {
         for (int k = 0; k < outputs_; ++k) {
             in_hand_.output[k] = fresh_ ? targets[k] - present_.output[k] : targets[k];
         }
         for (int element = 0; element < outputs_ * parameters_; ++element) {
             in_hand_.rows[element] = fresh_ ? present_.rows[element] : psi[element];
         }
-        factor_.begin(phi, 1);
+        factor_.begin(phi, noise_variance);
+        noise_variance_ = noise_variance;
         next_ = 0;
         task_ = fresh_ ? Task::sweep : Task::residual;
         fresh_ = false;
+    }
+
+    /// Begins to take the covariance back to the prior's, in which w and π are independent, while predictions
+    /// stay. Only when idle.
+    void reset_covariance() noexcept {
+        factor_.begin_reset();
+        next_ = 0;
+        fresh_ = false;
+        task_ = Task::reset_factor;
     }
 
     /// Works on the sample in hand as far as the budget goes; true when there is nothing left.
@@ -134,7 +145,7 @@ class BlockArrow {
     /// 1 + the variance of each output's mean at the last sample learned, before it was; returns φ'Pφ then.
     Scalar last_ratios(Scalar* ratios) const noexcept {
         for (int k = 0; k < outputs_; ++k) {
-            ratios[k] = alpha_ + common_.last_variances()[k];
+            ratios[k] = alpha_ + (1 - noise_variance_) + common_.last_variances()[k];
         }
         return alpha_ - 1;
     }
@@ -169,7 +180,9 @@ class BlockArrow {
                 .learn = sweep + shared.learn + regression_count * weights_cost(column_count),
                 .forget = shared.forget + forget_cost(column_count) + sweep,
                 .largest_step = std::max({Factor::largest_step(column_count), weights_cost(column_count),
-                                          forget_cost(column_count), shared.largest_step})};
+                                          forget_cost(column_count), shared.largest_step}),
+                .reset_covariance = Factor::reset_cost(column_count) + shared.reset_covariance +
+                                    std::int64_t{outputs} * parameters * weights_cost(column_count)};
     }
 
     [[nodiscard]] static constexpr std::int64_t state_bytes(int column_count, int parameters,
@@ -198,13 +211,26 @@ class BlockArrow {
         visitor.array(self.in_hand_.rows.data(), self.in_hand_.rows.size());
         visitor.array(self.in_hand_.output.data(), self.in_hand_.output.size());
         visitor.positive_array(&self.alpha_, 1);
+        visitor.positive_array(&self.noise_variance_, 1);
         visitor.ranged(self.next_, 0, self.regression_count());
-        visitor.ranged(self.task_, Task::none, Task::bound);
+        visitor.ranged(self.task_, Task::none, Task::reset_parameters);
         Forgetting<Scalar>::visit_state(self.forgetting_, visitor);
     }
 
   private:
-    enum class Task : int { none, residual, sweep, common, weights, forget, bound };
+    /// What is to be done next; from `forget` on, no sample is in hand.
+    enum class Task : int {
+        none,
+        residual,
+        sweep,
+        common,
+        weights,
+        forget,
+        bound,
+        reset_factor,
+        reset_coupling,
+        reset_parameters
+    };
 
     static constexpr int regressions = product(m, sum(p, 1));
 
@@ -232,7 +258,7 @@ class BlockArrow {
         return std::int64_t{column_count} + 1;
     }
     static constexpr std::int64_t forget_cost(int column_count) noexcept {
-        return Forgetting<Scalar>::cost + 1 + Factor::scale_and_bound_cost(column_count);
+        return Forgetting<Scalar>::cost + 2 + Factor::scale_and_bound_cost(column_count);
     }
     [[nodiscard]] int regression_count() const noexcept { return outputs_ * (1 + parameters_); }
 
@@ -267,6 +293,12 @@ class BlockArrow {
             return update_weights(budget);
         case Task::forget:
             return common_.advance(budget) && (!forgetting_.active() || budget.spend(forget_cost(columns_)));
+        case Task::reset_factor:
+            return factor_.reset(constants_->features.prior_variance, budget);
+        case Task::reset_coupling:
+            return decouple(budget);
+        case Task::reset_parameters:
+            return common_.advance(budget);
         default:
             return factor_.sweep(budget);
         }
@@ -293,6 +325,13 @@ class BlockArrow {
             break;
         case Task::forget:
             task_ = forget() ? Task::bound : Task::none;
+            break;
+        case Task::reset_factor:
+            task_ = Task::reset_coupling;
+            break;
+        case Task::reset_coupling:
+            common_.reset_covariance();
+            task_ = Task::reset_parameters;
             break;
         default:
             factor_.close();
@@ -331,12 +370,31 @@ class BlockArrow {
         return true;
     }
 
+    /// Column after column: G_k = 0 and a_k = E[w_k], which leaves the predictions as they are.
+    bool decouple(Budget& budget) noexcept {
+        for (; next_ < regression_count(); ++next_) {
+            const int k = next_ / (1 + parameters_);
+            const int c = next_ % (1 + parameters_);
+            if (c == 0) {
+                continue;
+            }
+            if (!budget.spend(weights_cost(columns_))) {
+                return false;
+            }
+            Scalar* const coupling = weights_.data() + next_ * padded(columns_);
+            detail::add_scaled(-common_.parameters()[c - 1], coupling,
+                               weights_.data() + k * (1 + parameters_) * padded(columns_), columns_);
+            std::fill_n(coupling, int{columns_}, Scalar(0));
+        }
+        return true;
+    }
+
     /// True if a variance must be taken back.
     bool forget() noexcept {
         if (!forgetting_.active()) {
             return false;
         }
-        factor_.scale(1 / forgetting_.factor_after(alpha_));
+        factor_.scale(1 / forgetting_.factor_after(alpha_ / noise_variance_));
         return factor_.begin_bound(forgetting_.next_parameter(), constants_->features.prior_variance);
     }
 
@@ -350,7 +408,8 @@ class BlockArrow {
     Weights weights_; ///< m (1+p) × padded 2d
     Residual present_;
     Residual in_hand_;
-    Scalar alpha_ = 1;   ///< 1 + φ'Pφ of the sample in hand, once its sweep is done
+    Scalar alpha_ = 1; ///< noise variance + φ'Pφ of the sample in hand, once its sweep is done
+    Scalar noise_variance_ = 1;
     int next_ = 0;       ///< column of weights to work on
     bool fresh_ = false; ///< the present residual is that of the present weights
     Task task_ = Task::none;

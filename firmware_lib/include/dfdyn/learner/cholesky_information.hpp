@@ -35,13 +35,7 @@ class CholeskyInformation {
     }
 
     void reset() noexcept {
-        using std::sqrt;
-        const Scalar diagonal = 1 / sqrt(constants_->prior_variance);
-        for (int i = 0; i < columns_; ++i) {
-            for (int j = i; j < columns_; ++j) {
-                factor_row(i)[j - i] = i == j ? diagonal : Scalar(0);
-            }
-        }
+        fill_prior();
         for (Scalar& z : right_hand_sides_) {
             z = 0;
         }
@@ -57,6 +51,7 @@ class CholeskyInformation {
         }
         forgetting_.restart();
         task_ = Task::none;
+        noise_variance_ = 1;
         ratio_ = 1;
     }
 
@@ -77,15 +72,20 @@ class CholeskyInformation {
     [[nodiscard]] bool idle() const noexcept { return task_ == Task::none; }
     [[nodiscard]] bool sample_pending() const noexcept { return task_ == Task::sample; }
 
-    void begin(const Scalar* row, const Scalar* target) noexcept {
+    /// `noise_variance`: of the targets, in units of their noise.
+    void begin(const Scalar* row, const Scalar* target, Scalar noise_variance = 1) noexcept {
         for (int j = 0; j < columns_; ++j) {
             row_[j] = row[j];
         }
         for (int k = 0; k < outputs_; ++k) {
             target_[k] = target[k];
         }
+        noise_variance_ = noise_variance;
         task_ = Task::sample;
     }
+
+    /// Begins to take the covariance back to the prior's, while the weights stay. Only when idle.
+    void reset_covariance() noexcept { task_ = Task::reset; }
 
     bool advance(Budget& budget) noexcept {
         while (!idle()) {
@@ -111,14 +111,16 @@ class CholeskyInformation {
     }
 
     [[nodiscard]] static constexpr Cost cost(int columns, int outputs) noexcept {
-        const std::int64_t learn = variance_cost(columns) + fold_and_solve_cost(columns, outputs);
+        const std::int64_t learn =
+            weigh_cost(columns, outputs) + variance_cost(columns) + fold_and_solve_cost(columns, outputs);
         const std::int64_t bound = outputs + fold_and_solve_cost(columns, outputs);
         const std::int64_t forget = forget_cost(columns, outputs);
         return {.predict = std::int64_t{columns} * outputs,
                 .variance = variance_cost(columns),
                 .learn = learn,
                 .forget = forget + bound,
-                .largest_step = std::max({learn, forget, bound})};
+                .largest_step = std::max({learn, forget, bound}),
+                .reset_covariance = reset_cost(columns, outputs)};
     }
 
     [[nodiscard]] static constexpr std::int64_t state_bytes(int columns, int outputs) noexcept {
@@ -142,14 +144,15 @@ class CholeskyInformation {
         visitor.array(self.weights_.data(), self.weights_.size());
         visitor.array(self.row_.data(), self.row_.size());
         visitor.array(self.target_.data(), self.target_.size());
+        visitor.positive_array(&self.noise_variance_, 1);
         visitor.positive_array(&self.ratio_, 1);
-        visitor.ranged(self.task_, Task::none, Task::bound);
+        visitor.ranged(self.task_, Task::none, Task::reset);
         visitor.ranged(self.bounded_, 0, self.columns_ - 1);
         Forgetting<Scalar>::visit_state(self.forgetting_, visitor);
     }
 
   private:
-    enum class Task : int { none, sample, forget, bound };
+    enum class Task : int { none, sample, forget, bound, reset };
 
     static constexpr std::int64_t half_square(int columns) noexcept {
         return std::int64_t{columns} * (columns + 1) / 2;
@@ -161,6 +164,12 @@ class CholeskyInformation {
     static constexpr std::int64_t fold_and_solve_cost(int columns, int outputs) noexcept {
         return std::int64_t{columns} * (function_cost + 2 + 4 * outputs) +
                (4 + outputs) * half_square(columns);
+    }
+    static constexpr std::int64_t weigh_cost(int columns, int outputs) noexcept {
+        return function_cost + 1 + std::int64_t{columns} + outputs;
+    }
+    static constexpr std::int64_t reset_cost(int columns, int outputs) noexcept {
+        return function_cost + 1 + half_square(columns) + std::int64_t{columns} * outputs;
     }
     static constexpr std::int64_t forget_cost(int columns, int outputs) noexcept {
         return Forgetting<Scalar>::cost + 2 * function_cost + 2 + half_square(columns) +
@@ -183,6 +192,17 @@ class CholeskyInformation {
 
     [[nodiscard]] Scalar& right_hand_side(int k, int i) noexcept {
         return right_hand_sides_[k * columns_ + i];
+    }
+
+    /// R = I / sqrt(prior variance).
+    void fill_prior() noexcept {
+        using std::sqrt;
+        const Scalar diagonal = 1 / sqrt(constants_->prior_variance);
+        for (int i = 0; i < columns_; ++i) {
+            for (int j = i; j < columns_; ++j) {
+                factor_row(i)[j - i] = i == j ? diagonal : Scalar(0);
+            }
+        }
     }
 
     /// R = D^(-1/2) U⁻¹ and z = R w.
@@ -259,16 +279,43 @@ class CholeskyInformation {
             return budget.spend(cost(columns_, outputs_).learn) && learn();
         case Task::forget:
             return budget.spend(forget_cost(columns_, outputs_)) && forget();
+        case Task::reset:
+            return budget.spend(reset_cost(columns_, outputs_)) && finish_reset();
         default:
             return budget.spend(outputs_ + fold_and_solve_cost(columns_, outputs_)) && bound_variance();
         }
     }
 
     bool learn() noexcept {
+        weigh();
         ratio_ = 1 + variance(row_.data());
         fold(0);
         solve_weights();
         task_ = forgetting_.active() ? Task::forget : Task::none;
+        return true;
+    }
+
+    /// Takes the row and the targets in hand to those of unit noise.
+    void weigh() noexcept {
+        using std::sqrt;
+        const Scalar scale = 1 / sqrt(noise_variance_);
+        for (Scalar& value : row_) {
+            value *= scale;
+        }
+        for (Scalar& value : target_) {
+            value *= scale;
+        }
+    }
+
+    /// R = I / sqrt(prior variance), z = R w.
+    bool finish_reset() noexcept {
+        fill_prior();
+        for (int k = 0; k < outputs_; ++k) {
+            for (int i = 0; i < columns_; ++i) {
+                right_hand_side(k, i) = factor_row(i)[0] * weights(k)[i];
+            }
+        }
+        task_ = Task::none;
         return true;
     }
 
@@ -322,6 +369,7 @@ class CholeskyInformation {
     Columns row_;
     mutable Columns scratch_; ///< of `variance`
     Outputs target_;
+    Scalar noise_variance_ = 1; ///< of the sample in hand
     Scalar ratio_ = 1;
     Task task_ = Task::none;
     int bounded_ = 0; ///< the parameter whose variance is taken back

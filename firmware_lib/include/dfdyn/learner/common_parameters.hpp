@@ -63,6 +63,9 @@ class CommonParameters {
         next_ = 0;
     }
 
+    /// Begins to take the covariance back to the prior's, while the parameters stay. Only when idle.
+    void reset_covariance() noexcept { learner_.reset_covariance(); }
+
     /// Works on the rows in hand as far as the budget goes; true when there is nothing left.
     bool advance(Budget& budget) noexcept { return learn(budget) && learner_.advance(budget); }
 
@@ -101,7 +104,8 @@ class CommonParameters {
                 .variance = outputs * row.variance,
                 .learn = outputs * (variance + row.learn),
                 .forget = row.forget,
-                .largest_step = std::max(variance, row.largest_step)};
+                .largest_step = std::max(variance, row.largest_step),
+                .reset_covariance = row.reset_covariance};
     }
 
     [[nodiscard]] static constexpr std::int64_t state_bytes(int parameters, int outputs) noexcept {

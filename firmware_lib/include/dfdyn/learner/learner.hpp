@@ -43,7 +43,10 @@ struct LearnerConstants {
 /// and the variance is taken back. Rows and targets must be finite.
 ///  - `predict(row, means)`: the m means φ'w. O(m p).
 ///  - `variance(row)`: φ'Pφ of the last whole state, also while a row is being folded in. O(p²).
-///  - `begin(row, target)`: takes a row in when `idle()`.
+///  - `begin(row, target, noise_variance)`: takes a row in when `idle()`, with targets measured with
+///    `noise_variance` in units of their noise variance, 1 without it.
+///  - `reset_covariance()`: begins, when `idle()`, to take the covariance back to the prior's; `advance` does
+///  it.
 ///  - `advance(budget)`: works on it and says whether there is nothing left to do.
 ///  - `sample_pending()`: the row is not learned yet; under forgetting there is more work after that.
 ///  - `last_ratio()`: 1 + φ'Pφ of the last row, before it was learned.
@@ -60,7 +63,10 @@ concept Learner = requires(L learner, const L& constant, const Scalar* row, Scal
     noexcept->std::same_as<bool>;
     { constant.sample_pending() }
     noexcept->std::same_as<bool>;
-    { learner.begin(row, row) }
+    learner.begin(row, row);
+    { learner.begin(row, row, *row) }
+    noexcept;
+    { learner.reset_covariance() }
     noexcept;
     { learner.advance(budget) }
     noexcept->std::same_as<bool>;

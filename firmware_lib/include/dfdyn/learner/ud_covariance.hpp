@@ -68,11 +68,13 @@ class UdCovariance {
         return task_ == Task::innovation || task_ == Task::sample;
     }
 
-    /// Takes in φ (p values) and the m targets, each in units of its noise. Only when idle.
-    void begin(const Scalar* row, const Scalar* target) noexcept { begin_row(row, target, 1, true); }
+    /// Takes in φ (p values) and the m targets, each in units of its noise, measured with `noise_variance` in
+    /// those units. Only when idle.
+    void begin(const Scalar* row, const Scalar* target, Scalar noise_variance = 1) noexcept {
+        begin_row(row, target, noise_variance, true);
+    }
 
-    /// The same with a noise of `noise_variance` times the unit, for one of several rows of the same instant:
-    /// forgetting happens once, after the last.
+    /// The same for one of several rows of the same instant: forgetting happens once, after the last.
     void begin_row(const Scalar* row, const Scalar* target, Scalar noise_variance,
                    bool last_of_instant) noexcept {
         for (int k = 0; k < outputs_; ++k) {
@@ -82,6 +84,12 @@ class UdCovariance {
         noise_variance_ = noise_variance;
         last_of_instant_ = last_of_instant ? 1 : 0;
         task_ = Task::innovation;
+    }
+
+    /// Begins to take the covariance back to the prior's, while the weights stay. Only when idle.
+    void reset_covariance() noexcept {
+        factor_.begin_reset();
+        task_ = Task::reset;
     }
 
     /// Works on the row in hand as far as the budget goes; true when there is none left.
@@ -125,7 +133,8 @@ class UdCovariance {
                 .variance = Factor::variance_cost(columns) + Factor::sweeping_variance_cost(columns),
                 .learn = predict + sweep + finish,
                 .forget = forget_cost(columns) + sweep,
-                .largest_step = std::max({Factor::largest_step(columns), finish, forget_cost(columns)})};
+                .largest_step = std::max({Factor::largest_step(columns), finish, forget_cost(columns)}),
+                .reset_covariance = Factor::reset_cost(columns)};
     }
 
     [[nodiscard]] static constexpr std::int64_t state_bytes(int columns, int outputs) noexcept {
@@ -152,7 +161,7 @@ class UdCovariance {
         visitor.positive_array(&self.ratio_, 1);
         visitor.positive_array(&self.information_, 1);
         visitor.ranged(self.last_of_instant_, 0, 1);
-        visitor.ranged(self.task_, Task::none, Task::bound);
+        visitor.ranged(self.task_, Task::none, Task::reset);
         Forgetting<Scalar>::visit_state(self.forgetting_, visitor);
     }
 
@@ -160,7 +169,7 @@ class UdCovariance {
     using Factor = UdFactor<Scalar, p>;
 
     /// What is to be done next; a sample and a bound are sweeps.
-    enum class Task : int { none, innovation, sample, forget, bound };
+    enum class Task : int { none, innovation, sample, forget, bound, reset };
 
     static constexpr int padded(int columns) noexcept { return Factor::padded(columns); }
     static constexpr std::int64_t finish_cost(int columns, int outputs) noexcept {
@@ -191,6 +200,8 @@ class UdCovariance {
             return factor_.sweep(budget) && budget.spend(finish_cost(columns_, outputs_)) && finish();
         case Task::forget:
             return budget.spend(forget_cost(columns_)) && forget();
+        case Task::reset:
+            return factor_.reset(constants_->prior_variance, budget) && close();
         default:
             return factor_.sweep(budget) && close();
         }

@@ -127,6 +127,25 @@ class UdFactor {
     [[nodiscard]] Scalar alpha() const noexcept { return alpha_; }
     [[nodiscard]] const Scalar* gain() const noexcept { return gain_.data(); }
 
+    /// Begins to take the covariance back to that of a prior; not while a sweep is under way.
+    void begin_reset() noexcept { panel_ = 0; }
+
+    /// Takes the covariance to `variance` I, panel by panel as far as the budget goes; true when it is done.
+    /// In between it is that of the panels done and, given them, of the others.
+    [[nodiscard]] bool reset(Scalar variance, Budget& budget) noexcept {
+        for (; panel_ < panel_count(); ++panel_) {
+            if (!budget.spend(projection_cost(panel_))) {
+                return false;
+            }
+            std::fill_n(panel(panel_), size * block_count(panel_), Scalar(0));
+            for (int j = width * panel_; j < width * (panel_ + 1); ++j) {
+                element(*this, j, j) = 1;
+                diagonal_[j] = variance;
+            }
+        }
+        return true;
+    }
+
     /// P *= growth.
     void scale(Scalar growth) noexcept {
         for (int j = 0; j < columns_; ++j) {
@@ -157,6 +176,14 @@ class UdFactor {
     }
     [[nodiscard]] static constexpr std::int64_t largest_step(int columns) noexcept {
         return panel_cost(panels_of(columns) - 1);
+    }
+    /// Of `reset` with a budget: one for each element.
+    [[nodiscard]] static constexpr std::int64_t reset_cost(int columns) noexcept {
+        std::int64_t total = 0;
+        for (int b = 0; b < panels_of(columns); ++b) {
+            total += projection_cost(b);
+        }
+        return total;
     }
     /// Of `variance`, and what it takes beyond that while a sweep is under way, at most.
     [[nodiscard]] static constexpr std::int64_t variance_cost(int columns) noexcept {
