@@ -39,8 +39,12 @@ constexpr Model::Constants widened(const Single::Constants& model) {
             .output_limit = widened(model.output_limit),
             .innovation_limit = static_cast<double>(model.innovation_limit),
             .innovation_patience = model.innovation_patience,
+            .prediction_limit = widened(model.prediction_limit),
             .learner = {static_cast<double>(model.learner.prior_variance),
-                        static_cast<double>(model.learner.forgetting_factor), &start}};
+                        static_cast<double>(model.learner.forgetting_factor), &start},
+            .extrapolation = {static_cast<double>(model.extrapolation.inverse_far_variance),
+                              widened(model.extrapolation.extra_noise),
+                              widened(model.extrapolation.prior_variance)}};
 }
 
 constexpr Model::Constants constants = widened(ur5_model::constants);

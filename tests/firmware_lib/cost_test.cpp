@@ -114,10 +114,10 @@ TEMPLATE_TEST_CASE("no tick does more than predict, a variance and its budget", 
     for (const double forgetting_factor : {1.0, 0.99}) {
         auto constants = make_constants<TestType>(engine, forgetting_factor);
         constants.innovation_limit = 30;
-        constants.innovation_patience = 3;
+        constants.innovation_patience = 30;
         Estimator<TestType> estimator(constants);
         std::int64_t most = 0;
-        for (int t = 0; t < 6000; ++t) {
+        for (int t = 0; t < 12000; ++t) {
             const auto sample = perhaps_faulty(moving_sample<TestType>(t, engine), engine);
             const std::int64_t budget = random_budget(cost, engine);
             const std::int64_t operations = count([&] { estimator.tick(sample, Budget{budget}); });

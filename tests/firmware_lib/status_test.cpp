@@ -23,6 +23,7 @@ constexpr std::pair<int, const char*> published[] = {
     {6, "learner_busy"},
     {7, "no_budget"},
     {8, "learning_held"},
+    {9, "prediction_bounded"},
     {32, "position_not_finite"},
     {33, "position_out_of_range"},
     {34, "time_not_increasing"},

@@ -108,7 +108,7 @@ std::int64_t LearnedFeedForward::tick_cost() const {
 
 bool LearnedFeedForward::predict(std::int64_t time_ns, const JointVector& reference, JointVector& torque) {
     const Tick tick = follower_->tick({time_ns, values(reference), {}, {}, {}});
-    if (!tick.status.predicted()) {
+    if (!tick.status.estimated()) {
         ++counters_.reference_unknown;
         return false;
     }

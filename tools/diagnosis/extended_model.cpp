@@ -12,6 +12,7 @@
 #include "tools/robot/regressor.hpp"
 #include "tools/training/covariance_start.hpp"
 #include "tools/training/derivative_rows.hpp"
+#include "tools/training/limits.hpp"
 #include "tools/training/recorded_data.hpp"
 
 #include <algorithm>
@@ -19,7 +20,6 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <numbers>
 
 namespace dfdyn::tools {
 
@@ -33,7 +33,6 @@ constexpr double window_s = 0.2;
 constexpr int most_lags = 100;
 constexpr std::array filter_poles{0.0, 0.3, 0.5, 0.65, 0.75, 0.83, 0.9, 0.95}; ///< that are tried
 constexpr std::size_t rows_for_filters = 1500; ///< that filters are compared on
-constexpr double limit_factor = 10;
 
 /// Velocity and acceleration as weighted means of first and second differences, a pole each.
 InputModel filters(double velocity_pole, double acceleration_pole, const TrainingData& data) {
@@ -189,13 +188,6 @@ void set_start(PhysicsModel& physics, const StartingPoint& start) {
     physics.prior_variance = 1;
     physics.start.weights = to_vector(VectorXd(start.value.cwiseQuotient(deviation)));
     store_covariance(correlation, physics.start.unit_upper, physics.start.diagonal);
-}
-
-LimitModel limits_of(const TrainingData& data) {
-    const VectorXd positions = limit_factor * data.positions.cwiseAbs().colwise().maxCoeff().transpose();
-    const VectorXd outputs = limit_factor * data.outputs.cwiseAbs().colwise().maxCoeff().transpose();
-    return {to_vector(VectorXd(positions.cwiseMax(2 * std::numbers::pi))),
-            to_vector(VectorXd(outputs.cwiseMax(1e-3)))};
 }
 
 } // namespace

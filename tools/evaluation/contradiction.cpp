@@ -13,19 +13,45 @@ namespace {
 constexpr double merged_below_s = 0.25;
 constexpr double margin = 3;
 constexpr double ordinary_share = 0.999;
-constexpr double patience_s = 1;
+constexpr double patience_s = 1.5; // a push of 1 s, and what else contradicted shortly before
 
-std::vector<double> settled_innovations(const TrainedModel& model, std::span<const Recording> recordings,
-                                        bool from_prior) {
-    const auto estimator = make_estimator(model, from_prior);
+/// Learns the rows from `first` to `last` of all recordings, counted through, and returns their innovations.
+std::vector<double> learn_rows(HostEstimator& estimator, std::span<const Recording> recordings,
+                               std::size_t first, std::size_t last) {
     std::vector<double> innovations;
+    std::size_t count = 0;
+    bool begins = true;
     for (const Recording& recording : recordings) {
-        const ReplayedRecording replayed = replay(*estimator, {&model, 1}, recording, 0, [](std::size_t) {});
-        std::ranges::copy_if(replayed.normalised_innovation_squared, std::back_inserter(innovations),
-                             [](float value) { return !std::isnan(value); });
+        for (std::size_t row = 0; row < recording.row_count(); ++row, ++count) {
+            if (count < first || count >= last) {
+                continue;
+            }
+            if (begins || recording.gap_before[row] != 0) {
+                estimator.begin_recording();
+            }
+            begins = false;
+            const Tick tick = estimator.tick(sample_at(recording, row));
+            if (tick.status.estimated()) {
+                innovations.push_back(static_cast<double>(tick.normalised_innovation_squared));
+            }
+        }
     }
-    innovations.erase(innovations.begin(),
-                      innovations.begin() + static_cast<std::ptrdiff_t>(innovations.size() / 2));
+    return innovations;
+}
+
+/// Of each half of the rows, by an estimator that has learned the other half.
+std::vector<double> innovations_by_halves(const TrainedModel& model, std::span<const Recording> recordings,
+                                          bool from_prior) {
+    std::size_t rows = 0;
+    for (const Recording& recording : recordings) {
+        rows += recording.row_count();
+    }
+    const auto later = make_estimator(model, from_prior);
+    learn_rows(*later, recordings, 0, rows / 2);
+    std::vector<double> innovations = learn_rows(*later, recordings, rows / 2, rows);
+    const auto earlier = make_estimator(model, from_prior);
+    learn_rows(*earlier, recordings, rows / 2, rows);
+    std::ranges::copy(learn_rows(*earlier, recordings, 0, rows / 2), std::back_inserter(innovations));
     return innovations;
 }
 
@@ -53,7 +79,7 @@ std::vector<Contradiction> find_contradictions(const ReplayedRecording& replayed
 void calibrate_innovation_limit(TrainedModel& model, std::span<const Recording> recordings, bool from_prior) {
     model.limits.innovation = std::numeric_limits<float>::max();
     model.limits.innovation_patience = static_cast<int>(std::ceil(patience_s / model.sample_period_s));
-    const std::vector<double> innovations = settled_innovations(model, recordings, from_prior);
+    const std::vector<double> innovations = innovations_by_halves(model, recordings, from_prior);
     if (!innovations.empty()) {
         model.limits.innovation = margin * quantile(innovations, ordinary_share);
     }

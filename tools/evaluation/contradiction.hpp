@@ -20,10 +20,11 @@ struct Contradiction {
 /// second apart counts as one, less than two ticks as none.
 std::vector<Contradiction> find_contradictions(const ReplayedRecording& replayed, double limit);
 
-/// Sets the model's limit of the normalised innovation squared from what learning its own training rows
-/// showed, from nothing or (`from_prior` false) from its own start: three times the value that 99.9 % of the
-/// innovations of their second half do not exceed. Residuals of a real arm are neither white nor Gaussian, so
-/// a chi-square bound would refuse good samples. The patience becomes one second.
+/// Sets the model's limit of the normalised innovation squared from its training rows, each half by an
+/// estimator that has learned the other half, from nothing or (`from_prior` false) from the model's own
+/// start: three times the value that 99.9 % of the innovations do not exceed. Residuals of a real arm are
+/// neither white nor Gaussian, so a chi-square bound would refuse good samples. The patience becomes one and
+/// a half seconds. Cost: two ticks a row.
 void calibrate_innovation_limit(TrainedModel& model, std::span<const Recording> recordings,
                                 bool from_prior = true);
 

@@ -45,7 +45,7 @@ Forecasts with_residual_state(const ReplayedRecording& replayed, const TrainedMo
     for (std::size_t tick = 0; tick < replayed.status.size(); ++tick) {
         const std::size_t row = tick * outputs;
         const float* const predicted =
-            replayed.status[tick].predicted() ? replayed.predicted.data() + row : nullptr;
+            replayed.status[tick].estimated() ? replayed.predicted.data() + row : nullptr;
         if (predicted != nullptr) {
             state.forecast(predicted, forecast.data());
             std::ranges::copy(forecast, forecasts.begin() + static_cast<std::ptrdiff_t>(row));

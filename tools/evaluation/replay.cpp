@@ -33,6 +33,8 @@ void check_fit(const TrainedModel& model, const Recording& recording) {
     }
 }
 
+} // namespace
+
 MeasuredSample sample_at(const Recording& recording, std::size_t row) {
     const auto derivative = [&](const Columns& columns) {
         return columns.present() ? columns.row(row) : std::span<const double>();
@@ -40,8 +42,6 @@ MeasuredSample sample_at(const Recording& recording, std::size_t row) {
     return {recording.time_ns[row], recording.position.row(row), derivative(recording.velocity),
             derivative(recording.acceleration), recording.output.row(row)};
 }
-
-} // namespace
 
 bool needs_derivatives(const TrainedModel& model) {
     const auto measured = [](const InputModel& input) {
@@ -67,7 +67,7 @@ void Replayer::tick(double time_s, const MeasuredSample& sample) {
     replayed_.clock_origin_s = time_s - 1e-9 * static_cast<double>(sample.time_ns);
     replayed_.time_s.push_back(time_s);
     append(tick, sample.output);
-    if (!tick.status.predicted() || sample.output.empty()) {
+    if (!tick.status.estimated() || sample.output.empty()) {
         errors_.skip();
     } else if (horizon_ > 0) {
         errors_.add(estimator_, sample.output);
@@ -76,7 +76,7 @@ void Replayer::tick(double time_s, const MeasuredSample& sample) {
 
 void Replayer::tick(double time_s, const MeasuredSample& sample, hal::Reason output) {
     tick(time_s, sample);
-    replayed_.bus_reason.push_back(replayed_.status.back().predicted() ? output : hal::Reason::ok);
+    replayed_.bus_reason.push_back(replayed_.status.back().estimated() ? output : hal::Reason::ok);
 }
 
 void Replayer::skip(double time_s, hal::Reason position) {
@@ -94,7 +94,7 @@ ReplayedRecording Replayer::finish() {
 }
 
 void Replayer::append(const Tick& tick, std::span<const double> output) {
-    const bool predicted = tick.status.predicted();
+    const bool predicted = tick.status.estimated();
     for (std::size_t k = 0; k < outputs_; ++k) {
         replayed_.measured.push_back(output.empty() ? not_measured : output[k]);
         replayed_.predicted.push_back(predicted ? tick.prediction[k] : not_predicted);

@@ -34,6 +34,9 @@ struct ReplayedRecording {
 /// The one reason worth reporting of a tick ("ok" for none): the bus' if there is one, else the estimator's.
 std::string_view reason_name(const ReplayedRecording& replayed, std::size_t tick);
 
+/// One row as the estimator takes it; it refers to `recording`.
+MeasuredSample sample_at(const Recording& recording, std::size_t row);
+
 /// Whether a part of the model needs the recording's own derivatives, columns qd and qdd.
 bool needs_derivatives(const TrainedModel& model);
 

@@ -66,7 +66,7 @@ std::vector<double> durations_of(std::span<const ReplayedRecording> replayed, bo
     for (const ReplayedRecording& recording : replayed) {
         for (std::size_t tick = 0; tick < recording.status.size(); ++tick) {
             const Status& status = recording.status[tick];
-            if (learned ? status.learned() : status.predicted()) {
+            if (learned ? status.learned() : status.estimated()) {
                 durations.push_back(recording.duration_us[tick]);
             }
         }

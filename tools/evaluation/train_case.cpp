@@ -65,6 +65,7 @@ TrainedModel tune(const CaseContext& context, const ModelTraining& training, con
             progress(static_cast<double>(done.evaluations) / static_cast<double>(done.evaluations_most));
         }).model;
     model.limits.innovation = static_cast<double>(std::numeric_limits<float>::max());
+    model.limits.prediction.clear(); // the paper's predictions
     return model;
 }
 

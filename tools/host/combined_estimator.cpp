@@ -47,7 +47,7 @@ class CombinedEstimator final : public HostEstimator {
 
     Tick tick(const MeasuredSample& sample, Budget budget) override {
         auto [all, refused_by_all] = tick_members(sample, budget);
-        if (all.status.predicted()) {
+        if (all.status.estimated()) {
             combination_.weigh(deviations_.data());
             combination_.combine(predictions_.data(), prediction_.data());
             combination_.combine(deviations_.data(), deviation_.data());
@@ -173,8 +173,8 @@ class CombinedEstimator final : public HostEstimator {
                 j == 0 ? innovation : std::min(all.normalised_innovation_squared, innovation);
             all.duration += one.duration;
             refused_by_all = refused_by_all && refused(one.status.learning);
-            if (all.status.prediction == Reason::ok) {
-                all.status.prediction = one.status.prediction;
+            if (all.status.estimated() && (j == 0 || one.status.prediction != Reason::prediction_bounded)) {
+                all.status.prediction = one.status.prediction; // bounded: if all are
             }
             if (all.status.learning == Reason::ok) {
                 all.status.learning = one.status.learning;

@@ -67,6 +67,9 @@ class EstimatorOf final : public HostEstimator {
         for (int k = 0; k < output_count(); ++k) {
             float& mean = prediction[static_cast<std::size_t>(k)];
             mean = constants().output_offset[k] + constants().output_noise_std[k] * mean;
+            if (const float limit = constants().prediction_limit[k]; limit > 0) {
+                mean = std::clamp(mean, -limit, limit);
+            }
         }
     }
 

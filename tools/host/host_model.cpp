@@ -214,6 +214,11 @@ typename Arm::template Constants<Scalar> host_chain(const ChainModel& chain) {
 
 std::int64_t gap_ns(const TrainedModel& model) { return std::llround(1.5e9 * model.sample_period_s); }
 
+std::vector<double> prediction_limits(const TrainedModel& model) {
+    return model.limits.prediction.empty() ? std::vector<double>(model.outputs.names.size(), 0)
+                                           : model.limits.prediction;
+}
+
 std::vector<double> firmware_scale(const InputModel& input) {
     std::vector<double> scale = input.scale;
     if (input.kind == InputKind::DFW) {
@@ -321,6 +326,7 @@ std::unique_ptr<HostConstants<Model>> make_host_constants(const TrainedModel& mo
     constants.output_limit = converted<float, Model::outputs>(model.limits.output);
     constants.innovation_limit = static_cast<float>(model.limits.innovation);
     constants.innovation_patience = model.limits.innovation_patience;
+    constants.prediction_limit = converted<float, Model::outputs>(prediction_limits(model));
     set_learners(*host, model, from_prior);
     set_extrapolation<Model>(constants, model);
     return host;

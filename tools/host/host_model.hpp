@@ -52,6 +52,9 @@ std::unique_ptr<HostConstants<Model>> make_host_constants(const TrainedModel& mo
 /// The step that is a gap for an estimator that does not know its sample period (ns): one and a half periods.
 std::int64_t gap_ns(const TrainedModel& model);
 
+/// |prediction| of each output at most; 0 where the model has no bound.
+std::vector<double> prediction_limits(const TrainedModel& model);
+
 /// The factor of each element of ξ that the firmware applies: for DFW it includes the weight of the lag.
 std::vector<double> firmware_scale(const InputModel& input);
 

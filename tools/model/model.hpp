@@ -57,8 +57,9 @@ struct OutputModel {
 struct LimitModel {
     std::vector<double> position_rad; ///< |q_i| at most
     std::vector<double> output;       ///< |y_k| at most
-    double innovation = 0;            ///< normalised innovation squared at most
-    int innovation_patience = 0;      ///< samples in a row beyond it that are not learned
+    double innovation = 0;            ///< normalised innovation squared beyond which a sample contradicts
+    int innovation_patience = 0;      ///< samples of contradiction that make a changed arm
+    std::vector<double> prediction{}; ///< |prediction| at most, > 0; empty: no bound
 };
 
 /// What a model with features knows of the outputs away from its data (see dfdyn::Extrapolation). Empty: the

@@ -76,6 +76,9 @@ ordered_json model_json(const TrainedModel& model) {
                       {"output", singles(model.limits.output)},
                       {"innovation", single(model.limits.innovation)},
                       {"innovation_patience", model.limits.innovation_patience}};
+    if (!model.limits.prediction.empty()) { // absent from older files: their identity stays
+        json["limits"]["prediction"] = singles(model.limits.prediction);
+    }
     if (model.extrapolation) {
         json["extrapolation"] = extrapolation_to_json(*model.extrapolation);
     }
@@ -119,6 +122,18 @@ ExtrapolationModel read_extrapolation(const JsonReader& reader, int outputs) {
     return extrapolation;
 }
 
+LimitModel read_limits(const JsonReader& reader, int joints, int outputs) {
+    LimitModel limits;
+    limits.position_rad = reader.positive_numbers("position_rad", joints);
+    limits.output = reader.positive_numbers("output", outputs);
+    limits.innovation = reader.positive_number("innovation");
+    limits.innovation_patience = reader.whole_number("innovation_patience", 0, 1000000);
+    if (reader.has("prediction")) {
+        limits.prediction = reader.positive_numbers("prediction", outputs);
+    }
+    return limits;
+}
+
 TrainingRecord read_training(const JsonReader& reader) {
     TrainingRecord record;
     record.recordings = reader.texts("recordings", 10000);
@@ -149,10 +164,7 @@ TrainedModel read_fields(const JsonReader& reader) {
     }
     model.outputs = read_outputs(reader.object("outputs"));
     const int outputs = static_cast<int>(model.outputs.names.size());
-    const JsonReader limits = reader.object("limits");
-    model.limits = {limits.positive_numbers("position_rad", model.joints),
-                    limits.positive_numbers("output", outputs), limits.positive_number("innovation"),
-                    limits.whole_number("innovation_patience", 0, 1000000)};
+    model.limits = read_limits(reader.object("limits"), model.joints, outputs);
     double least = 0;
     if (has_features(model.structure)) {
         model.start = read_start(reader.object("start"), 2 * model.features.count, outputs);

@@ -105,6 +105,11 @@ std::string learner_constants(const TrainedModel& model) {
                                   : "{.features = " + features() + ", .common = " + parameters + "}";
 }
 
+/// Nothing where the model has none.
+std::string prediction_limit(const LimitModel& limits) {
+    return limits.prediction.empty() ? "" : ",\n    .prediction_limit = " + braced(limits.prediction);
+}
+
 std::string extrapolation_constants(const TrainedModel& model) {
     if (!model.extrapolation) {
         return "";
@@ -152,8 +157,8 @@ std::string model_to_header(const TrainedModel& model, const std::string& name_s
            << ",\n    .output_limit = " << braced(model.limits.output)
            << ",\n    .innovation_limit = " << literal(model.limits.innovation)
            << ",\n    .innovation_patience = " << model.limits.innovation_patience
-           << ",\n    .learner = " << learner_constants(model) << extrapolation_constants(model)
-           << "};\n\n} // namespace " << name_space << "\n";
+           << prediction_limit(model.limits) << ",\n    .learner = " << learner_constants(model)
+           << extrapolation_constants(model) << "};\n\n} // namespace " << name_space << "\n";
     return header.str();
 }
 

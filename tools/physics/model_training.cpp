@@ -10,6 +10,7 @@
 #include "tools/physics/robot_regressor.hpp"
 #include "tools/physics/stored_motion.hpp"
 #include "tools/training/lag_spacing.hpp"
+#include "tools/training/limits.hpp"
 #include "tools/training/recorded_data.hpp"
 #include "tools/training/start_state.hpp"
 #include "tools/training/training_options.hpp"
@@ -28,6 +29,15 @@ bool have_derivatives(std::span<const Recording> recordings) {
     return std::ranges::all_of(recordings, [](const Recording& recording) {
         return recording.velocity.present() && recording.acceleration.present();
     });
+}
+
+/// 0 where the URDF has none.
+std::vector<double> joint_efforts(const Robot& robot) {
+    std::vector<double> efforts;
+    for (const RobotJoint& joint : robot.joints) {
+        efforts.push_back(joint.effort.value_or(0));
+    }
+    return efforts;
 }
 
 /// The chain, its effects and the outputs' gains.
@@ -218,6 +228,9 @@ ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind out
     model.physics = physics_model(model, *result.physics, columns, robot.robot);
     check_parameters(*model.physics, options.physics.parameter_size);
     model.physics->motion_limit = motion_limits(model.physics->motion, prepared.data);
+    if (outputs == OutputKind::joint_torque) {
+        bound_by_efforts(model.limits, joint_efforts(robot.robot));
+    }
     if (!has_features(model.structure)) {
         model.input = {};
     }

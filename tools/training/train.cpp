@@ -8,6 +8,7 @@
 #include "tools/training/extrapolation.hpp"
 #include "tools/training/fit.hpp"
 #include "tools/training/lag_spacing.hpp"
+#include "tools/training/limits.hpp"
 #include "tools/training/normal_equations.hpp"
 #include "tools/training/random_features.hpp"
 #include "tools/training/start_state.hpp"
@@ -17,7 +18,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -27,14 +27,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double limit_factor = 10;
-
-LimitModel limits_of(const TrainingData& data) {
-    const VectorXd positions = limit_factor * data.positions.cwiseAbs().colwise().maxCoeff().transpose();
-    const VectorXd outputs = limit_factor * data.outputs.cwiseAbs().colwise().maxCoeff().transpose();
-    return {to_vector(VectorXd(positions.cwiseMax(2 * std::numbers::pi))), to_vector(outputs)};
-}
 
 /// All but the start.
 TrainedModel model_of(const TrainingSetup& setup, const Fit& fit) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dfdyn/budget.hpp"
+#include "dfdyn/innovation_gate.hpp"
 #include "dfdyn/input/input_identity.hpp"
 #include "dfdyn/model.hpp"
 #include "dfdyn/sample_clock.hpp"
@@ -10,19 +11,22 @@
 #include "dfdyn/status.hpp"
 #include "dfdyn/structure/regression.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace dfdyn {
 
 /// What one tick gives. Where nothing could be predicted the prediction is 0, so that a careless feed-forward
-/// adds no torque, and its standard deviation is infinite.
+/// adds no torque, and its standard deviation is infinite. A prediction beyond the model's `prediction_limit`
+/// is that limit, and its standard deviation at least the distance between the two.
 template <class Scalar, int m>
 struct Estimate {
     Storage<Scalar, m> prediction;         ///< in the output's unit, made before the sample was learned
     Storage<Scalar, m> standard_deviation; ///< of the measurement about it: parameter uncertainty and noise
     Storage<Scalar, m> innovation;         ///< measured - prediction; 0 without a usable measurement
-    /// Over the outputs; about m while the model holds, 0 without a measurement. Where outputs share
+    /// The sum over the outputs of (measured - unbounded prediction)² / `standard_deviation`²; about m while
+    /// the model holds, 0 without a measurement. Where outputs share
     /// parameters (P, SPK) it is not chi-square: how their errors correlate is not looked at.
     Scalar normalised_innovation_squared;
     Status status;
@@ -63,7 +67,7 @@ class Estimator {
     explicit Estimator(const Constants& constants) noexcept
         : constants_(&constants), sizes_(constants.sizes), learn_cost_(cost(constants.sizes).learn),
           regression_(constants), target_(Outputs::zeros(sizes_.output_count)), ratio_(target_),
-          without_features_(target_) {}
+          without_features_(target_), gate_(constants.innovation_limit, constants.innovation_patience) {}
 
     /// Predicts the sample's output from its position and the past, then learns it as far as the budget goes.
     /// A refused sample leaves what has been learned as it is. Takes at most `cost().predict` +
@@ -103,8 +107,10 @@ class Estimator {
     void reset() noexcept {
         sequence_.begin_change();
         regression_.reset();
+        changed_ = 0;
         sequence_.end_change();
         restart_window();
+        gate_ = Gate(constants_->innovation_limit, constants_->innovation_patience);
         counters_ = {};
     }
 
@@ -114,7 +120,7 @@ class Estimator {
         clock_.restart();
         has_time_ = false;
         past_samples_ = 0;
-        implausible_samples_ = 0;
+        gate_.restart();
     }
 
     /// Bytes of a snapshot: what has been learned, including a sample still being learned. Not the window:
@@ -123,7 +129,7 @@ class Estimator {
 
     /// A buffer of this many bytes holds any snapshot of a firmware model.
     static constexpr std::size_t snapshot_capacity =
-        sizeof(SnapshotHeader) + sizeof(Regression) + sizeof(SnapshotChecksum);
+        sizeof(SnapshotHeader) + sizeof(Regression) + sizeof(int) + sizeof(SnapshotChecksum);
 
     /// Writes a snapshot to the front of `buffer`, of at least `snapshot_bytes()`. It takes the time of
     /// hundreds of ticks; one that learns meanwhile, in an interrupt, makes the result `changed`: for that
@@ -153,7 +159,9 @@ class Estimator {
     /// Cost of a tick's parts in multiply-adds, a constant expression for a firmware model.
     [[nodiscard]] static constexpr Cost cost(const typename Model::Sizes& sizes = {}) noexcept {
         Cost cost = Regression::cost(sizes);
-        cost.predict += std::int64_t{sizes.output_count} * output_cost + Extrapolation<Scalar>::cost;
+        cost.predict +=
+            std::int64_t{sizes.output_count} * output_cost + Extrapolation<Scalar>::cost + 1 + Gate::cost;
+        cost.variance += std::int64_t{sizes.output_count} * square_cost;
         return cost;
     }
 
@@ -170,6 +178,7 @@ class Estimator {
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         Regression::visit_state(self.regression_, visitor);
+        visitor.ranged(self.changed_, 0, 1);
     }
 
   private:
@@ -177,9 +186,12 @@ class Estimator {
     friend class SnapshotWriter;
 
     using Outputs = Storage<Scalar, Model::outputs>;
+    using Gate = InnovationGate<Scalar>;
 
     /// Multiply-adds that an output takes between the regression's units and its own.
     static constexpr int output_cost = function_cost + 8;
+    /// Multiply-adds of an output's part in `innovation_square`.
+    static constexpr int square_cost = 2;
 
     [[nodiscard]] Estimate unknown() const noexcept {
         Estimate estimate{Outputs::zeros(sizes_.output_count),
@@ -289,37 +301,43 @@ class Estimator {
     /// decide whether to learn at all, they take a pass of their own.
     void learn(const Sample& sample, Budget budget, Estimate& estimate) noexcept {
         Status& status = estimate.status;
-        Scalar error_square = status.learning == Reason::ok ? normalise(sample, estimate) : Scalar(0);
+        Scalar error_square =
+            status.learning == Reason::ok ? normalise(sample, estimate.prediction) : Scalar(0);
         if (!std::isfinite(error_square)) {
             status.learning = Reason::output_out_of_range;
             error_square = 0;
         }
         const bool measured = status.learning == Reason::ok;
-        const bool doubtful = error_square > constants_->innovation_limit;
-        const bool at_once =
-            measured && !doubtful && !held_ && regression_.idle() && budget.affords(learn_cost_);
-        Scalar feature_variance = 0;
+        const bool doubtful =
+            measured && !(error_square <= Scalar(Gate::ordinary) * constants_->innovation_limit);
+        const bool at_once = measured && !doubtful && !held_ && !gate_.change_pending() &&
+                             regression_.idle() && budget.affords(learn_cost_);
         if (!at_once) {
-            feature_variance = regression_.variances(ratio_.data());
+            extrapolate(regression_.variances(ratio_.data()), estimate);
         }
-        Scalar& square = estimate.normalised_innovation_squared;
-        square = doubtful ? innovation_square(estimate.innovation) : error_square;
-        if (measured && !plausible(square)) {
-            status.learning = Reason::innovation_too_large;
+        Scalar noise_variance = 0;
+        if (measured) {
+            noise_variance = gate_.judge(doubtful ? innovation_square(estimate.prediction) : Scalar(0));
+            status.learning = noise_variance > 0 ? Reason::ok : Reason::innovation_too_large;
         }
-        fold(budget, status);
+        fold(budget, noise_variance, status);
         if (at_once) {
-            feature_variance = regression_.last_ratios(ratio_.data());
+            extrapolate(regression_.last_ratios(ratio_.data()), estimate);
         }
-        if (measured && !doubtful) {
-            square = innovation_square(estimate.innovation);
+        if (measured) {
+            estimate.normalised_innovation_squared = innovation_square(estimate.prediction);
         }
-        complete(sample, measured, feature_variance, estimate);
+        complete(sample, measured, estimate);
     }
 
     /// Goes on with an earlier sample, then with this one unless it was refused.
-    void fold(Budget& budget, Status& status) noexcept {
-        const bool idle = work(budget);
+    void fold(Budget& budget, Scalar noise_variance, Status& status) noexcept {
+        bool idle = work(budget);
+        if (idle && !held_ && budget.operations > 0 && gate_.take_change()) {
+            regression_.reset_covariance();
+            changed_ = 1;
+            idle = work(budget);
+        }
         if (status.learning != Reason::ok) {
             return;
         }
@@ -330,21 +348,10 @@ class Estimator {
         } else if (budget.operations <= 0) {
             status.learning = Reason::no_budget;
         } else {
-            regression_.begin(target_.data());
+            regression_.begin(target_.data(), noise_variance);
             work(budget);
             status.learning = regression_.sample_pending() ? Reason::learning_in_progress : Reason::ok;
         }
-    }
-
-    /// Whether to learn a sample with this normalised innovation: not if it is too large, unless that goes
-    /// on.
-    bool plausible(Scalar normalised_innovation_squared) noexcept {
-        if (normalised_innovation_squared <= constants_->innovation_limit) {
-            implausible_samples_ = 0;
-        } else if (implausible_samples_ <= constants_->innovation_patience) {
-            ++implausible_samples_;
-        }
-        return implausible_samples_ == 0 || implausible_samples_ > constants_->innovation_patience;
     }
 
     /// Goes on with what the learner has in hand; true when it has nothing left.
@@ -358,47 +365,70 @@ class Estimator {
         return idle;
     }
 
-    /// The measured outputs in units of their noise about their offset, as the regression sees them, and
-    /// their differences from the prediction; returns the sum of the squares.
-    Scalar normalise(const Sample& sample, Estimate& estimate) noexcept {
+    /// The measured outputs in units of their noise about their offset, as the regression sees them; returns
+    /// the sum of the squares of their differences from the prediction.
+    Scalar normalise(const Sample& sample, const Outputs& prediction) noexcept {
         Scalar error_square = 0;
         for (int k = 0; k < sizes_.output_count; ++k) {
             target_[k] = (sample.output[k] - constants_->output_offset[k]) / constants_->output_noise_std[k];
-            const Scalar error = target_[k] - estimate.prediction[k];
-            estimate.innovation[k] = error;
+            const Scalar error = target_[k] - prediction[k];
             error_square += error * error;
         }
         return error_square;
     }
 
-    /// Of innovations in units of the noise. Where outputs share parameters, how their errors correlate is
-    /// not looked at.
-    [[nodiscard]] Scalar innovation_square(const Outputs& innovation) const noexcept {
-        Scalar total = 0;
-        for (int k = 0; k < sizes_.output_count; ++k) {
-            total += innovation[k] * innovation[k] / ratio_[k];
-        }
-        return total;
-    }
-
-    /// From the regression's units to the output's, without what features say too far from their data.
-    void complete(const Sample& sample, bool measured, Scalar feature_variance,
-                  Estimate& estimate) const noexcept {
+    /// Takes off the prediction, in units of the noise, what features say too far from their data, and makes
+    /// of `ratio_` the variances of measurements about it. Since the arm has changed, P tells what has been
+    /// seen after that, but the weights still hold the best guess of the rest: nothing is taken off.
+    void extrapolate(Scalar feature_variance, Estimate& estimate) noexcept {
         const auto& known = constants_->extrapolation;
         const Extrapolation<Scalar> beyond(feature_variance, known.inverse_far_variance);
         const bool given = known.inverse_far_variance > 0;
+        const Scalar doubt = changed_ == 0 ? beyond.doubt() : Scalar(0);
+        for (int k = 0; k < sizes_.output_count; ++k) {
+            estimate.prediction[k] -= doubt * (estimate.prediction[k] - without_features_[k]);
+            ratio_[k] = beyond.variance(ratio_[k], feature_variance, given ? known.extra_noise[k] : Scalar(0),
+                                        given ? known.prior_variance[k] : Scalar(0));
+        }
+    }
+
+    /// Of the targets about a prediction in units of the noise, after `extrapolate`. Where outputs share
+    /// parameters, how their errors correlate is not looked at.
+    [[nodiscard]] Scalar innovation_square(const Outputs& prediction) const noexcept {
+        Scalar total = 0;
+        for (int k = 0; k < sizes_.output_count; ++k) {
+            const Scalar innovation = target_[k] - prediction[k];
+            total += innovation * innovation / ratio_[k];
+        }
+        return std::min(total, std::numeric_limits<Scalar>::max());
+    }
+
+    /// From the regression's units to the output's, and within the limits of the predictions.
+    void complete(const Sample& sample, bool measured, Estimate& estimate) const noexcept {
         for (int k = 0; k < sizes_.output_count; ++k) {
             const Scalar noise = constants_->output_noise_std[k];
-            const Scalar mean =
-                estimate.prediction[k] - beyond.doubt() * (estimate.prediction[k] - without_features_[k]);
-            estimate.prediction[k] = constants_->output_offset[k] + noise * mean;
+            estimate.prediction[k] = constants_->output_offset[k] + noise * estimate.prediction[k];
             using std::sqrt;
-            estimate.standard_deviation[k] =
-                noise *
-                sqrt(beyond.variance(ratio_[k], feature_variance, given ? known.extra_noise[k] : Scalar(0),
-                                     given ? known.prior_variance[k] : Scalar(0)));
+            estimate.standard_deviation[k] = noise * sqrt(ratio_[k]);
+            if (k < constants_->prediction_limit.size()) { // sizes of run time: it may be absent
+                bound(constants_->prediction_limit[k], k, estimate);
+            }
             estimate.innovation[k] = measured ? sample.output[k] - estimate.prediction[k] : Scalar(0);
         }
+    }
+
+    /// Takes the prediction of output k back to ±`limit`, if there is one.
+    static void bound(Scalar limit, int k, Estimate& estimate) noexcept {
+        const Scalar own = estimate.prediction[k];
+        if (!(limit > 0) || (own <= limit && own >= -limit)) {
+            return;
+        }
+        const Scalar bounded = own > 0 ? limit : -limit;
+        estimate.prediction[k] = bounded;
+        const Scalar moved = own > 0 ? own - limit : -limit - own;
+        Scalar& deviation = estimate.standard_deviation[k];
+        deviation = std::max(deviation, moved);
+        estimate.status.prediction = Reason::prediction_bounded;
     }
 
     void end_change() noexcept {
@@ -437,7 +467,7 @@ class Estimator {
     Regression regression_;
     SampleClock clock_;
     Outputs target_;
-    Outputs ratio_;            ///< 1 + the variance of each predicted mean, in units of the noise's
+    Outputs ratio_;            ///< the variance of a measurement about each prediction, in the noise's units
     Outputs without_features_; ///< what the physics alone predicts, in the regression's units
     Counters counters_;
     StateSequence sequence_;
@@ -445,7 +475,8 @@ class Estimator {
     std::int64_t last_time_ns_ = 0;
     bool has_time_ = false;
     int past_samples_ = 0;
-    std::int32_t implausible_samples_ = 0; ///< in a row
+    Gate gate_;
+    int changed_ = 0; ///< 1: the arm was found to have changed since the start
 };
 
 } // namespace dfdyn

@@ -80,8 +80,12 @@ struct Model {
         Storage<Scalar, outputs> output_noise_std; ///< > 0, in the output's unit
         Storage<Scalar, joints> position_limit;    ///< |q_i| beyond it is refused (rad)
         Storage<Scalar, outputs> output_limit;     ///< |y_k| beyond it is not learned
-        Scalar innovation_limit; ///< samples with a larger normalised innovation squared are not learned; > 0
-        std::int32_t innovation_patience; ///< but after so many of them in a row they are; ≥ 0
+        /// Normalised innovation squared beyond which a sample contradicts the model (see `InnovationGate`);
+        /// > 0.
+        Scalar innovation_limit;
+        std::int32_t innovation_patience; ///< samples of contradiction that make a changed arm; ≥ 0
+        /// No prediction leaves the range ±`prediction_limit` (the output's unit); 0, also absent: no limit.
+        Storage<Scalar, outputs> prediction_limit{};
         StructureConstants learner;
         ExtrapolationConstants<Scalar, outputs> extrapolation{}; ///< of models with features
     };

@@ -34,6 +34,11 @@ enum class Reason : std::uint8_t {
     /// A snapshot is being copied: predicted, not learned, until it is finished (`SnapshotWriter`).
     learning_held = 8,
 
+    /// The model predicted beyond its `prediction_limit`: the estimate holds the limit instead, and its
+    /// standard deviation is at least the distance to the model's own prediction. Learning goes on. Do not
+    /// feed it forward. Cure: the model does not know this motion; train on a recording of it.
+    prediction_bounded = 9,
+
     /// A position is NaN or infinite.
     position_not_finite = 32,
     /// A position is beyond the model's limit. Cure: check the encoder and its unit (radians).
@@ -49,8 +54,8 @@ enum class Reason : std::uint8_t {
     /// range and unit.
     output_out_of_range = 37,
     /// The measurement contradicts the model far beyond the noise: a contact or a fault, not dynamics to
-    /// learn. Predicted, not learned, for as many samples in a row as the model's patience; then the arm is
-    /// taken to have changed.
+    /// learn. Predicted, not learned, until contradictions outnumber plausible samples by the model's
+    /// patience; then the arm is taken to have changed (see `InnovationGate`).
     innovation_too_large = 38,
     /// What has been learned is not finite, or overflows: constants or a snapshot with absurd numbers.
     /// Nothing is predicted or learned. Cure: `reset()`, or restore a sound snapshot.
@@ -81,6 +86,8 @@ constexpr const char* name(Reason reason) noexcept {
         return "no_budget";
     case Reason::learning_held:
         return "learning_held";
+    case Reason::prediction_bounded:
+        return "prediction_bounded";
     case Reason::position_not_finite:
         return "position_not_finite";
     case Reason::position_out_of_range:
@@ -105,11 +112,16 @@ constexpr bool is_fault(Reason reason) noexcept { return static_cast<std::uint8_
 
 /// What became of one tick.
 struct Status {
-    Reason prediction = Reason::ok; ///< ok: the prediction is valid
-    Reason learning = Reason::ok;   ///< ok: the sample has been learned
+    /// ok: the prediction is the model's own; prediction_bounded: a limit; else there is none.
+    Reason prediction = Reason::ok;
+    Reason learning = Reason::ok; ///< ok: the sample has been learned
 
     [[nodiscard]] constexpr bool predicted() const noexcept { return prediction == Reason::ok; }
-    [[nodiscard]] constexpr bool learned() const noexcept { return predicted() && learning == Reason::ok; }
+    /// Whether the estimate holds a value: the model's own prediction, or its limit.
+    [[nodiscard]] constexpr bool estimated() const noexcept {
+        return predicted() || prediction == Reason::prediction_bounded;
+    }
+    [[nodiscard]] constexpr bool learned() const noexcept { return estimated() && learning == Reason::ok; }
     /// The one reason worth reporting.
     [[nodiscard]] constexpr Reason reason() const noexcept { return predicted() ? learning : prediction; }
 };

@@ -121,6 +121,18 @@ TEST_CASE("what a model knows away from its data reads back; a model without it 
     CHECK(refusal(model_to_json(model)).has_value());
 }
 
+TEST_CASE("a bound of the predictions reads back, and a model without one stays as it was") {
+    std::mt19937_64 engine(1);
+    TrainedModel model = small_model(engine, InputKind::DFR);
+    const auto without = model_identity(model);
+    CHECK(model_to_json(model).find("\"prediction\"") == std::string::npos);
+    CHECK(model_from_json(model_to_json(model), "m.json").limits.prediction.empty());
+    model.limits.prediction.assign(model.outputs.names.size(), 7.5);
+    CHECK(model_from_json(model_to_json(model), "m.json").limits.prediction == model.limits.prediction);
+    CHECK(model_identity(model) != without);
+    CHECK(refusal_with("/limits/prediction", {1, -1}).has_value());
+}
+
 TEST_CASE("models that differ in one number differ in identity") {
     std::mt19937_64 engine(1);
     TrainedModel model = small_model(engine, InputKind::DFR);

@@ -58,7 +58,10 @@ struct Nonparametric {
 
         [[nodiscard]] bool idle() const noexcept { return learner_.idle(); }
         [[nodiscard]] bool sample_pending() const noexcept { return learner_.sample_pending(); }
-        void begin(const Scalar* targets) noexcept { learner_.begin(columns_.data(), targets); }
+        void begin(const Scalar* targets, Scalar noise_variance) noexcept {
+            learner_.begin(columns_.data(), targets, noise_variance);
+        }
+        void reset_covariance() noexcept { learner_.reset_covariance(); }
         bool advance(Budget& budget) noexcept { return learner_.advance(budget); }
 
         [[nodiscard]] const Learner& learner() const noexcept { return learner_; }

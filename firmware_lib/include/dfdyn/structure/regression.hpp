@@ -14,7 +14,12 @@ namespace dfdyn {
 ///  - `predict(means)` at the present columns, m values; `predict_without_features(means)`: the physics'
 ///  part.
 ///  - `variances(ratios)`: 1 + the variance of each mean; returns φ'Pφ, what the features have in it.
-///  - `begin(targets)`: takes the present columns in, after `predict`, when `idle()`.
+///  - `begin(targets, noise_variance)`: takes the present columns in, after `predict`, when `idle()`, with
+///    targets measured with `noise_variance` in units of their noise variance.
+///  - `reset_covariance()`: begins, when `idle()`, to take the covariance back to the prior's, while the
+///  means
+///    stay as they are (covariance resetting: G. C. Goodwin, K. S. Sin, "Adaptive Filtering, Prediction and
+///    Control", 1984).
 ///  - `advance(budget)`: works on them, and says whether nothing is left to do.
 ///  - `sample_pending()`: they are not learned yet; `last_ratios(ratios)`: `variances` before the last sample
 ///    that was.
@@ -35,7 +40,8 @@ concept RegressionOf = requires(R regression, const R& constant, Scalar* values,
     { constant.last_ratios(values) } -> std::same_as<Scalar>;
     { constant.idle() } -> std::same_as<bool>;
     { constant.sample_pending() } -> std::same_as<bool>;
-    regression.begin(numbers);
+    regression.begin(numbers, *numbers);
+    regression.reset_covariance();
     { regression.advance(budget) } -> std::same_as<bool>;
     { constant.weight_count() } -> std::same_as<int>;
     constant.copy_weights(values);

@@ -74,11 +74,11 @@ struct SemiparametricMean {
             Residual::predict_with(weights, means);
             add_mean(means);
         }
-        void begin(const Scalar* targets) noexcept {
+        void begin(const Scalar* targets, Scalar noise_variance) noexcept {
             for (int k = 0; k < constants_->sizes.output_count; ++k) {
                 target_[k] = targets[k] - mean_[k];
             }
-            Residual::begin(target_.data());
+            Residual::begin(target_.data(), noise_variance);
         }
 
         /// ψ of the last tick that predicted, m × p.

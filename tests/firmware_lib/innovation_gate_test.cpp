@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the gate makes of pushes, changes and models that are never right.
+#include "dfdyn/innovation_gate.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace innovation_gate_test {
+
+using namespace dfdyn;
+
+constexpr float limit = 25;
+constexpr int patience = 100;
+constexpr float pushed = 100 * limit;
+constexpr float plausible = 1;
+
+using Gate = InnovationGate<float>;
+
+TEST_CASE("the further a sample is beyond the limit, the less it teaches, and far beyond nothing") {
+    Gate gate(limit, patience);
+    CHECK(gate.judge(0) == 1);
+    CHECK(gate.judge(limit) == 1);
+    CHECK(gate.judge(2 * limit) == Approx(16));
+    CHECK(gate.judge(5 * limit) == Approx(625));
+    CHECK(gate.judge(11 * limit) == 0);
+    CHECK(gate.judge(std::numeric_limits<float>::infinity()) == 0);
+}
+
+TEST_CASE("pushes shorter than the patience teach nothing, as long as there is as much time between them") {
+    Gate gate(limit, patience);
+    for (int push = 0; push < 20; ++push) {
+        for (int t = 0; t < patience; ++t) {
+            REQUIRE(gate.judge(pushed) == 0);
+        }
+        for (int t = 0; t < patience; ++t) {
+            REQUIRE(gate.judge(plausible) == 1);
+        }
+    }
+    CHECK_FALSE(gate.change_pending());
+}
+
+TEST_CASE("an arm that has changed is reported once and learned until plausible samples have settled it") {
+    Gate gate(limit, patience);
+    for (int t = 0; t < patience; ++t) {
+        CHECK(gate.judge(pushed) == 0);
+    }
+    CHECK_FALSE(gate.take_change());
+    CHECK(gate.judge(pushed) == 1);
+    CHECK(gate.change_pending());
+    CHECK(gate.take_change());
+    CHECK_FALSE(gate.take_change());
+    for (int t = 0; t + 1 < Gate::settling * patience; ++t) {
+        REQUIRE(gate.judge(t % 2 == 0 ? pushed : plausible) == 1); // they do not outnumber each other
+    }
+    for (int t = 0; t < Gate::settling * patience; ++t) {
+        REQUIRE(gate.judge(plausible) == 1);
+    }
+    CHECK(gate.judge(1e6F * pushed) == 0);
+}
+
+TEST_CASE("plausible samples at reversals delay a change by their number and do not begin the wait anew") {
+    Gate gate(limit, patience);
+    int refused = 0;
+    int samples = 0;
+    while (!gate.take_change()) {
+        REQUIRE(++samples < 1000);
+        const bool reversal = samples % 4 == 0;
+        refused += gate.judge(reversal ? plausible : pushed) == 0 ? 1 : 0;
+    }
+    CHECK(samples == Approx(2 * patience).margin(4)); // each reversal costs itself and one more
+    CHECK(refused == Approx(1.5 * patience).margin(4));
+}
+
+TEST_CASE("a model that is never right is not found to have changed again and again") {
+    DFDYN_SEEDED_ENGINE(engine);
+    std::exponential_distribution<float> innovation(1 / (3 * limit));
+    Gate gate(limit, patience);
+    int changes = 0;
+    int refused_late = 0;
+    constexpr int samples = 1'000'000;
+    for (int t = 0; t < samples; ++t) {
+        const float noise_variance = gate.judge(innovation(engine));
+        changes += gate.take_change() ? 1 : 0;
+        refused_late += t > samples / 10 && noise_variance == 0 ? 1 : 0;
+    }
+    CHECK(changes >= 1);
+    CHECK(changes < 30);
+    CHECK(refused_late < samples / 1000);
+}
+
+TEST_CASE("a new motion begins with an empty count") {
+    Gate gate(limit, patience);
+    for (int t = 0; t < patience; ++t) {
+        REQUIRE(gate.judge(pushed) == 0);
+    }
+    gate.restart();
+    for (int t = 0; t < patience; ++t) {
+        REQUIRE(gate.judge(pushed) == 0);
+    }
+    CHECK(gate.judge(pushed) == 1);
+}
+
+TEST_CASE("the largest patience never ends, and none or a negative one learns everything") {
+    Gate patient(limit, std::numeric_limits<std::int32_t>::max());
+    for (int t = 0; t < 100'000; ++t) {
+        REQUIRE(patient.judge(pushed) == 0);
+    }
+    for (const std::int32_t none : {0, -1, std::numeric_limits<std::int32_t>::min()}) {
+        Gate gate(limit, none);
+        CHECK(gate.judge(pushed) == 1);
+        CHECK_FALSE(gate.change_pending());
+    }
+}
+
+TEST_CASE("a limit that is none makes every sample a contradiction") {
+    for (const float none : {0.F, -1.F, -std::numeric_limits<float>::infinity(), std::nanf("")}) {
+        Gate gate(none, patience);
+        for (int t = 0; t < patience; ++t) {
+            REQUIRE(gate.judge(0) == 0);
+        }
+        CHECK(gate.judge(0) == 1);
+    }
+}
+
+} // namespace innovation_gate_test
