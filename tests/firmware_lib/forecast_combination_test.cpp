@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dfdyn/forecast_combination.hpp"
 
+#include "tests/firmware_lib/support/counted.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -262,6 +264,41 @@ TEST_CASE("a combination goes on from its snapshot, and takes no other") {
     CHECK(turned.restore(bytes) == SnapshotResult::wrong_model);
     bytes.back() ^= std::byte{1};
     CHECK(other.restore(bytes) == SnapshotResult::corrupted);
+}
+
+/// Multiply-adds of a call.
+template <class Call>
+std::int64_t count(const Call& call) {
+    dfdyn::tests::counted_operations = 0;
+    call();
+    return dfdyn::tests::counted_operations;
+}
+
+TEMPLATE_TEST_CASE_SIG("a combination costs what its cost says", "", ((int c, int m), c, m), (1, 1), (2, 6),
+                       (5, 3)) {
+    DFDYN_SEEDED_ENGINE(engine);
+    using Number = dfdyn::tests::Counted<double>;
+    using Counting = dfdyn::ForecastCombination<Number, c, m>;
+    constexpr dfdyn::Cost cost = Counting::cost({}, {});
+    std::lognormal_distribution<double> positive;
+    std::array<Number, std::size_t{c} * m> from{}, ahead{}, deviations{};
+    std::array<Number, m> measured{}, to{};
+    Counting combined({}, {}, Number(20), from.data());
+    std::int64_t most = 0;
+    for (int t = 0; t < 100; ++t) {
+        for (auto* const table : {&from, &ahead, &deviations}) {
+            std::ranges::generate(*table, [&] { return Number(positive(engine)); });
+        }
+        REQUIRE(count([&] {
+                    combined.weigh(deviations.data());
+                    combined.combine(from.data(), to.data());
+                    combined.combine(deviations.data(), to.data());
+                }) == cost.predict);
+        most = std::max(most, count([&] { combined.learn(from.data(), ahead.data(), measured.data()); }));
+        most = std::max(most, count([&] { combined.skip(); }));
+    }
+    CHECK(most <= cost.learn);
+    CHECK(most > cost.learn - c * m);
 }
 
 TEST_CASE("a combination does not allocate") {

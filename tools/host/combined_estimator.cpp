@@ -142,8 +142,8 @@ class CombinedEstimator final : public HostEstimator {
 
     /// With what the members predict by held weights.
     Cost cost() const override {
-        const auto table = static_cast<std::int64_t>(predictions_.size());
-        Cost cost{.predict = 10 * table, .variance = 0, .learn = 12 * table, .forget = 0, .largest_step = 0};
+        Cost cost = decltype(combination_)::cost(Extent<dynamic>{static_cast<int>(members_.size())},
+                                                 Extent<dynamic>{static_cast<int>(outputs_)});
         for (const CombinationMember& member : members_) {
             const Cost one = member.estimator->cost();
             cost.predict += 2 * one.predict;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/budget.hpp"
 #include "dfdyn/snapshot.hpp"
 #include "dfdyn/storage.hpp"
 
@@ -35,8 +36,7 @@ namespace dfdyn {
 ///     if the sample was not refused: combination.learn(predictions, ahead, sample.output.data());
 ///     else: combination.skip();
 ///
-/// Cost in multiply-adds for c members: weigh 8 c m, combine c m, learn 12 c m; 3 c m + 3 scalars. Never
-/// allocates.
+/// Cost: `cost()`; 3 c m + 3 scalars for c members. Never allocates.
 template <class Scalar, int members, int m>
 class ForecastCombination {
   public:
@@ -48,7 +48,7 @@ class ForecastCombination {
     /// not known; members count alike until they have been seen to predict.
     constexpr ForecastCombination(Extent<members> member_count, Extent<m> output_count, Scalar memory,
                                   const Scalar* noise_std = nullptr) noexcept
-        : members_(member_count), outputs_(output_count), memory_(memory > 1 ? memory : 1),
+        : members_(member_count), outputs_(output_count), memory_(memory > 1 ? memory : Scalar(1)),
           noise_square_(Table::zeros(extent<size>(member_count * output_count))), mean_square_(noise_square_),
           weights_(noise_square_) {
         for (int i = 0; i < count() && noise_std != nullptr; ++i) {
@@ -135,6 +135,17 @@ class ForecastCombination {
     /// `learn` by the errors of the predictions alone.
     constexpr void learn(const Scalar* predictions, const Scalar* measured) noexcept {
         learn(predictions, predictions, measured);
+    }
+
+    /// Multiply-adds, at most. `predict`: of `weigh` (8 c m for c members) and two calls of `combine` (c m
+    /// each), for predictions and deviations. `learn`: of `learn` or `skip`.
+    [[nodiscard]] static constexpr Cost cost(Extent<members> member_count, Extent<m> output_count) noexcept {
+        const std::int64_t table = std::int64_t{member_count} * output_count;
+        return {.predict = 10 * table,
+                .variance = 0,
+                .learn = 11 * table,
+                .forget = 0,
+                .largest_step = 11 * table};
     }
 
     /// Of each member for each output, member by member.
