@@ -4,6 +4,7 @@
 #include "tools/evaluation/evaluation_page.hpp"
 #include "tools/evaluation/plan.hpp"
 #include "tools/evaluation/plan_data.hpp"
+#include "tools/evaluation/plan_opponents.hpp"
 #include "tools/evaluation/run_plan.hpp"
 
 #include <iostream>
@@ -28,7 +29,8 @@ EvaluationResults run_with_progress(const Plan& plan, const PlanData& data, cons
 int run(const EvaluateOptions& options) {
     const Plan plan = options.quick ? quick_plan(read_plan(options.plan)) : read_plan(options.plan);
     const PlanData data = load_plan_data(plan);
-    const EvaluationResults results = run_with_progress(plan, data, options.run);
+    EvaluationResults results = run_with_progress(plan, data, options.run);
+    results.opponents = plan_opponents(plan, data);
     write_evaluation(options.run.folder, plan, data, results);
     for (const FailedUnit& unit : results.failed) {
         std::cerr << unit.case_name << ", draw " << unit.seed << ": " << unit.reason << '\n';

@@ -13,6 +13,7 @@
 #include "tools/evaluation/replay_interface.hpp"
 #include "tools/evaluation/replay_report.hpp"
 #include "tools/evaluation/replay_summary.hpp"
+#include "tools/evaluation/rigid_body.hpp"
 #include "tools/host/frozen_estimator.hpp"
 #include "tools/model/model_file.hpp"
 #include "tools/report/report.hpp"
@@ -115,12 +116,19 @@ std::vector<ReplayedRecording> replay_all(const ReplayOptions& options, std::spa
     ReadOptions columns;
     columns.joint_count = joints;
     columns.outputs = kind_of_outputs(models.front().outputs.names, joints);
-    columns.velocity = columns.acceleration = std::ranges::any_of(models, needs_derivatives);
+    const PhysicsModel* const physics = rigid_body_of(models);
+    columns.velocity = columns.acceleration =
+        physics != nullptr || std::ranges::any_of(models, needs_derivatives);
     std::vector<ReplayedRecording> replayed;
     for (const Recording& recording : options.recordings.read(columns)) {
         Progress progress("replaying " + recording.source, recording.row_count());
         replayed.push_back(replay(*replaying.estimator, models, recording, options.chosen_horizon(),
                                   [&progress](std::size_t done) { progress.update(done); }));
+        if (physics != nullptr) {
+            for (const RigidBodyFit& fit : physics->rigid_body) {
+                replayed.back().rigid_body.push_back(rigid_body_forecasts(fit, physics->chain, recording));
+            }
+        }
         replaying.collect(replayed.back());
     }
     return replayed;

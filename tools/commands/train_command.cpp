@@ -10,6 +10,7 @@
 #include "tools/common/progress.hpp"
 #include "tools/common/text.hpp"
 #include "tools/evaluation/contradiction.hpp"
+#include "tools/evaluation/rigid_body.hpp"
 #include "tools/model/model_file.hpp"
 #include "tools/model/model_header.hpp"
 #include "tools/physics/model_training.hpp"
@@ -191,6 +192,18 @@ FreeSizes free_sizes(const TrainOptions& options) {
             !clock.forgetting_factor && !clock.memory_s};
 }
 
+/// Of a model with physics: the rigid body with friction that `replay` compares it with. Here, because only
+/// the training's recordings may decide its coefficients.
+void fit_rigid_body_of(TrainedModel& model, const ModelTraining& training,
+                       std::span<const Recording> recordings) {
+    if (model.physics) {
+        const Activity activity("fitting a rigid body with friction to compare with");
+        model.physics->rigid_body =
+            fit_rigid_body(training.physics->robot, model.physics->chain, model.physics->output_gain,
+                           training.physics->sign_velocity, recordings);
+    }
+}
+
 int run(const TrainOptions& options) {
     check_outputs({options.model, options.header}, options.recordings.logs);
     const OutputKind outputs = parse_output_kind(options.outputs);
@@ -198,8 +211,9 @@ int run(const TrainOptions& options) {
     note_ignored(options, outputs);
     ReadOptions columns;
     columns.outputs = outputs;
-    columns.velocity = columns.acceleration =
-        sees_derivatives(training) && training.derivatives != DerivativeSource::estimated;
+    columns.velocity = columns.acceleration = // of the features, and of the opponents of physics
+        training.physics ||
+        (sees_derivatives(training) && training.derivatives != DerivativeSource::estimated);
     const std::vector<Recording> recordings = options.recordings.read(columns);
     const double period_s = sample_period_s(recordings);
     options.clock.apply(training.options, period_s);
@@ -215,6 +229,7 @@ int run(const TrainOptions& options) {
         const Activity activity("calibrating the innovation limit");
         calibrate_innovation_limit(model, recordings);
     }
+    fit_rigid_body_of(model, training, recordings);
     const std::string json = model_to_json(model);
     model_from_json(json, shown(options.model)); // nothing is written that `replay` would refuse
     write_file(options.model, json);

@@ -9,14 +9,6 @@ namespace dfdyn::tools {
 
 namespace {
 
-std::size_t most_lags(const Plan& plan) {
-    int most = 0;
-    for (const Case& one : plan.cases) {
-        most = std::max(most, one.lags);
-    }
-    return static_cast<std::size_t>(most);
-}
-
 /// Whether `output` is 0 in the rows first … last - 1.
 bool rests_at_zero(const Recording& recording, std::size_t output, std::size_t first, std::size_t last) {
     for (std::size_t row = first; row < last; ++row) {
@@ -39,10 +31,18 @@ void keep(const std::vector<bool>& common, std::vector<double>& error) {
 
 } // namespace
 
+std::size_t largest_window(const Plan& plan) {
+    int most = 0;
+    for (const Case& one : plan.cases) {
+        most = std::max(most, one.lags);
+    }
+    return static_cast<std::size_t>(most);
+}
+
 std::vector<bool> common_ticks(const Plan& plan, const PlanData& data, std::size_t group,
                                std::size_t subset) {
     const Recording& recording = data.subsets[subset];
-    const std::size_t lags = most_lags(plan);
+    const std::size_t lags = largest_window(plan);
     std::vector<bool> common(recording.row_count(), false);
     std::size_t start = 0; // of the rows without a gap up to the horizon's end
     for (std::size_t end = 0; end < recording.row_count(); ++end) {

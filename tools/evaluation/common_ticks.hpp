@@ -10,6 +10,9 @@
 
 namespace dfdyn::tools {
 
+/// The largest window of any case of the plan, in rows before a tick.
+std::size_t largest_window(const Plan& plan);
+
 /// Ticks of a subset that a group of outputs is scored at: those that every case of the plan can have. Since
 /// the subset's start, and since the last gap in it, there are the rows of the largest window of any case;
 /// the `horizon` samples that follow are there without a gap; and, where they are the scale of ε, no output

@@ -150,7 +150,7 @@ class EvaluationPage {
         for (std::size_t group = 0; group < plan_.groups.size(); ++group) {
             tables.push_back(error_table(plan_, results_.units, group));
         }
-        tables.push_back(step_error_table(plan_, results_.units, outputs()));
+        tables.push_back(step_error_table(plan_, results_.units, results_.opponents, outputs()));
         tables.push_back(cost_table(plan_, results_.units));
         return tables;
     }
@@ -206,7 +206,7 @@ void write_evaluation(const std::filesystem::path& folder, const Plan& plan, con
     const EvaluationPage evaluation(plan, data, results);
     const FigurePage page = evaluation.page();
     std::ostringstream csv;
-    write_results_csv(csv, plan, results.units, data.start.output.names);
+    write_results_csv(csv, plan, results.units, results.opponents, data.start.output.names);
     write_file(folder / "results.csv", csv.str());
     write_file(folder / "tables.md", evaluation.tables_markdown());
     write_file(folder / "report.html", render_figure_page(page));

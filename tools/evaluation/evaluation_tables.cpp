@@ -159,7 +159,7 @@ ReportTable error_table(const Plan& plan, std::span<const UnitResult> units, std
 }
 
 ReportTable step_error_table(const Plan& plan, std::span<const UnitResult> units,
-                             const std::vector<std::string>& outputs) {
+                             const PlanOpponents& opponents, const std::vector<std::string>& outputs) {
     ReportTable table;
     table.caption = "nRMSE, one step";
     table.columns = {"case"};
@@ -175,6 +175,17 @@ ReportTable step_error_table(const Plan& plan, std::span<const UnitResult> units
     table.note =
         "rms(measured − predicted) / std(measured) over all subsets, predicted one sample ahead where "
         "there is a prediction; the median over the draws.";
+    for (const OpponentErrors& opponent : opponents.errors) {
+        table.rows.push_back({opponent.label});
+        std::ranges::copy(opponent.normalised_error, std::back_inserter(table.rows.back()));
+    }
+    if (!opponents.errors.empty()) {
+        table.note += " Persistence and AR(2) see the measured outputs before each sample, the rigid bodies "
+                      "with friction its motion alone.";
+    }
+    if (!opponents.no_rigid_body.empty()) {
+        table.note += " No rigid body: " + opponents.no_rigid_body + ".";
+    }
     return table;
 }
 
@@ -233,8 +244,28 @@ ReportTable finding_table(std::span<const FindingOutcome> findings) {
     return table;
 }
 
+namespace {
+
+/// An opponent has no draw, no group, no ε and no cost.
+void write_opponent(std::ostream& out, const OpponentErrors& opponent) {
+    const auto nothing = [&out](int columns) {
+        for (int column = 0; column < columns; ++column) {
+            out << ",nan";
+        }
+    };
+    out << opponent.label << ",0,";
+    nothing(12);
+    for (const double error : opponent.normalised_error) {
+        out << ',' << number_text(error);
+    }
+    nothing(5);
+    out << '\n';
+}
+
+} // namespace
+
 void write_results_csv(std::ostream& out, const Plan& plan, std::span<const UnitResult> units,
-                       const std::vector<std::string>& outputs) {
+                       const PlanOpponents& opponents, const std::vector<std::string>& outputs) {
     out << "case,seed,group";
     for (const std::string phase : {"transient", "steady"}) {
         for (const std::string figure : {"mean", "median", "q25", "q75", "q05", "q95"}) {
@@ -257,6 +288,9 @@ void write_results_csv(std::ostream& out, const Plan& plan, std::span<const Unit
             out << ',' << number_text(lost_share({&draw, 1}, group)) << ',' << number_text(unit.median_us)
                 << ',' << unit.operations << ',' << unit.state_bytes << ',' << unit.columns << '\n';
         }
+    }
+    for (const OpponentErrors& opponent : opponents.errors) {
+        write_opponent(out, opponent);
     }
 }
 

@@ -19,9 +19,9 @@ std::vector<const UnitResult*> draws_of(std::span<const UnitResult> units, const
 /// The distribution of one group's ε over all draws, subsets and times: a row per case.
 ReportTable error_table(const Plan& plan, std::span<const UnitResult> units, std::size_t group);
 
-/// The one-step nRMSE of each output, a row per case; medians over the draws.
+/// The one-step nRMSE of each output, a row per case (medians over the draws), then one per opponent.
 ReportTable step_error_table(const Plan& plan, std::span<const UnitResult> units,
-                             const std::vector<std::string>& outputs);
+                             const PlanOpponents& opponents, const std::vector<std::string>& outputs);
 
 /// What each case costs, a row per case.
 ReportTable cost_table(const Plan& plan, std::span<const UnitResult> units);
@@ -31,8 +31,8 @@ ReportTable comparison_table(const std::string& caption, std::span<const Compari
 /// Statement and verdict, a row per finding.
 ReportTable finding_table(std::span<const FindingOutcome> findings);
 
-/// One row per case, draw and group: see docs/evaluation.md for the columns.
+/// One row per case, draw and group, then one per opponent: see docs/evaluation.md for the columns.
 void write_results_csv(std::ostream& out, const Plan& plan, std::span<const UnitResult> units,
-                       const std::vector<std::string>& outputs);
+                       const PlanOpponents& opponents, const std::vector<std::string>& outputs);
 
 } // namespace dfdyn::tools

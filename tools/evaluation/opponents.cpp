@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace dfdyn::tools {
 
@@ -14,24 +15,28 @@ namespace {
 /// nRMSE of one output's forecasts over the ticks that the model predicted and that were measured.
 double normalised_error_of(const Forecasts& forecasts, const ReplayedRecording& replayed, std::size_t outputs,
                            std::size_t output) {
-    double count = 0;
-    double mean = 0;
-    double variation = 0;
-    double error_square = 0;
+    OutputError error;
     for (std::size_t element = output; element < forecasts.size(); element += outputs) {
-        const double measured = replayed.measured[element];
-        if (std::isfinite(measured) && std::isfinite(replayed.predicted[element])) {
-            count += 1;
-            const double difference = measured - mean;
-            mean += difference / count;
-            variation += difference * (measured - mean);
-            error_square += (measured - forecasts[element]) * (measured - forecasts[element]);
+        if (std::isfinite(replayed.predicted[element])) {
+            error.add(replayed.measured[element], forecasts[element]);
         }
     }
-    return std::sqrt(error_square / variation);
+    return error.normalised();
 }
 
 } // namespace
+
+void OutputError::add(double measured, double forecast) {
+    if (std::isfinite(measured) && std::isfinite(forecast)) {
+        count_ += 1;
+        const double difference = measured - mean_;
+        mean_ += difference / count_;
+        variation_ += difference * (measured - mean_);
+        error_square_ += (measured - forecast) * (measured - forecast);
+    }
+}
+
+double OutputError::normalised() const { return std::sqrt(error_square_ / variation_); }
 
 Forecasts with_residual_state(const ReplayedRecording& replayed, const TrainedModel& model) {
     const std::size_t outputs = model.outputs.names.size();
@@ -58,12 +63,22 @@ Forecasts with_residual_state(const ReplayedRecording& replayed, const TrainedMo
     return forecasts;
 }
 
+const char* rigid_body_label(bool identified) {
+    return identified ? "identified rigid body" : "rigid body of robot file";
+}
+
 std::vector<OpponentErrors> opponent_errors(const ReplayedRecording& replayed, const TrainedModel& model) {
     const std::size_t outputs = model.outputs.names.size();
+    Forecasts none(replayed.measured.size(), std::numeric_limits<double>::quiet_NaN());
+    const auto rigid_body = [&](std::size_t index) {
+        return index < replayed.rigid_body.size() ? replayed.rigid_body[index] : none;
+    };
     const std::pair<const char*, Forecasts> all[] = {
         {"with residual state", with_residual_state(replayed, model)},
         {"persistence, y(t-1)", persistence(replayed, outputs)},
         {"AR(2), learned online", autoregression(replayed, outputs)},
+        {rigid_body_label(false), rigid_body(0)},
+        {rigid_body_label(true), rigid_body(1)},
     };
     std::vector<OpponentErrors> errors;
     for (const auto& [label, forecasts] : all) {

@@ -30,6 +30,21 @@ Forecasts with_residual_state(const ReplayedRecording& replayed, const TrainedMo
 /// keeps enough samples for four coefficients at 50 Hz.
 inline constexpr double residual_memory_s = 0.8;
 
+/// The errors of one output's forecasts, gathered value by value.
+class OutputError {
+  public:
+    /// Pairs with a value that is not finite do not count.
+    void add(double measured, double forecast);
+    /// rms(measured - forecast) / std(measured); NaN without values.
+    double normalised() const;
+
+  private:
+    double count_ = 0;
+    double mean_ = 0;         ///< of the measured values
+    double variation_ = 0;    ///< sum of their squared differences from the mean
+    double error_square_ = 0; ///< sum
+};
+
 /// What stands beside a model's own one-step errors: a label and the nRMSE of each output, over exactly the
 /// ticks that the model predicted and that were measured; NaN if there are none.
 struct OpponentErrors {
@@ -37,7 +52,11 @@ struct OpponentErrors {
     std::vector<double> normalised_error;
 };
 
-/// The errors of the model with its residual state, then of each opponent.
+/// What the two rigid bodies with friction are called: with the robot file's inertia, or an identified one.
+const char* rigid_body_label(bool identified);
+
+/// The errors of the model with its residual state, then of each opponent: persistence, AR(2), and two rigid
+/// bodies with friction (NaN where the replay has none; where they have no forecast a tick does not count).
 std::vector<OpponentErrors> opponent_errors(const ReplayedRecording& replayed, const TrainedModel& model);
 
 } // namespace dfdyn::tools

@@ -29,6 +29,9 @@ struct ReplayedRecording {
     std::vector<hal::Reason> bus_reason; ///< why a bus has no sample, or no output in it; else empty
     std::vector<double> duration_us;     ///< of each tick, on this machine
     std::vector<HorizonIndex> horizon;
+    /// Of the models' rigid bodies with friction: the robot file's inertia, then identified inertia; ticks ×
+    /// m each, NaN where the motion is not known. Empty: there are none.
+    std::vector<std::vector<double>> rigid_body;
 };
 
 /// The one reason worth reporting of a tick ("ok" for none): the bus' if there is one, else the estimator's.

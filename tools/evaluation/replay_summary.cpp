@@ -4,6 +4,7 @@
 #include "tools/build_flags.hpp"
 #include "tools/common/number.hpp"
 #include "tools/common/quantile.hpp"
+#include "tools/evaluation/rigid_body.hpp"
 #include "tools/model/model_file.hpp"
 
 #include <algorithm>
@@ -74,6 +75,17 @@ std::vector<double> durations_of(std::span<const ReplayedRecording> replayed, bo
     return durations;
 }
 
+/// Why no recording was compared with a rigid body; empty if one was.
+std::string reason_without_rigid_body(std::span<const TrainedModel> models,
+                                      std::span<const ReplayedRecording> replayed) {
+    if (std::ranges::any_of(replayed, [](const ReplayedRecording& one) { return !one.rigid_body.empty(); })) {
+        return "";
+    }
+    return rigid_body_of(models) == nullptr
+               ? "no model has one: dfdyn train fits it for models with --robot (P, SP, SP2, SPK)"
+               : "only CSV recordings are compared with it";
+}
+
 /// As `formatted`; a dash for what there is none of.
 std::string formatted_or_dash(const char* format, double value) {
     return std::isnan(value) ? "-" : formatted(format, value);
@@ -111,6 +123,7 @@ ReplaySummary summarise(std::span<const TrainedModel> models, const HostEstimato
         summary.recordings.push_back(figures_of(recording, models.front()));
         summary.learned = summary.learned || summary.recordings.back().learned > 0;
     }
+    summary.no_rigid_body = reason_without_rigid_body(models, replayed);
     const std::vector<double> durations = durations_of(replayed, summary.learned);
     if (!durations.empty()) {
         summary.median_us = median(durations);
@@ -145,6 +158,9 @@ void print_summary(std::ostream& out, const ReplaySummary& summary) {
             print_values(out, index + ", first 30 s", recording.horizon_transient);
             print_values(out, index + ", after", recording.horizon_steady);
         }
+    }
+    if (!summary.no_rigid_body.empty()) {
+        out << "rigid body: -: " << summary.no_rigid_body << '\n';
     }
     out << "time of a tick that " << (summary.learned ? "learns" : "predicts") << ", on this machine: median "
         << formatted("%.1f", summary.median_us) << " us, 99 % " << formatted("%.1f", summary.p99_us)

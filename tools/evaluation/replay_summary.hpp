@@ -29,7 +29,8 @@ struct ReplaySummary {
     std::vector<std::string> outputs;
     std::vector<RecordingFigures> recordings;
     std::size_t horizon = 0;
-    std::string model; ///< one line: structure, input, features, of each that is combined
+    std::string model;         ///< one line: structure, input, features, of each that is combined
+    std::string no_rigid_body; ///< why there is no rigid body to compare with; empty: there is one
     std::size_t state_bytes = 0;
     std::int64_t operations = 0; ///< multiply-adds per tick that learns; if none did, per tick
     bool learned = false;        ///< whether any tick learned

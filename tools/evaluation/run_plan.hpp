@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tools/evaluation/plan_data.hpp"
+#include "tools/evaluation/plan_opponents.hpp"
 #include "tools/evaluation/unit_result.hpp"
 
 #include <filesystem>
@@ -22,7 +23,8 @@ struct EvaluationResults {
     /// In the plan's order: case by case, draw by draw; with errors as `keep_common_ticks` leaves them.
     std::vector<UnitResult> units;
     std::vector<FailedUnit> failed;
-    std::size_t reused = 0; ///< of the units, found in the folder
+    std::size_t reused = 0;  ///< of the units, found in the folder
+    PlanOpponents opponents; ///< what the units are compared with; `run_plan` leaves it empty
 };
 
 struct RunOptions {

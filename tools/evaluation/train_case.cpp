@@ -17,15 +17,6 @@ namespace {
 /// Of the starts of the searches: the same for all draws, so that it does not matter which comes first.
 constexpr std::uint64_t search_seed = 1;
 
-Robot robot_of(const RobotChoice& choice) {
-    ReadRobotOptions options;
-    options.base = choice.base;
-    options.tip = choice.tip;
-    options.gravity = Eigen::Vector3d(choice.gravity.data());
-    options.ft_joint = choice.ft_joint;
-    return read_robot(choice.urdf, options);
-}
-
 ModelTraining training_of(const Case& one, const RobotChoice& robot, int threads) {
     ModelTraining training;
     TrainingOptions& options = training.options;
@@ -70,6 +61,15 @@ TrainedModel tune(const CaseContext& context, const ModelTraining& training, con
 }
 
 } // namespace
+
+Robot robot_of(const RobotChoice& choice) {
+    ReadRobotOptions options;
+    options.base = choice.base;
+    options.tip = choice.tip;
+    options.gravity = Eigen::Vector3d(choice.gravity.data());
+    options.ft_joint = choice.ft_joint;
+    return read_robot(choice.urdf, options);
+}
 
 TrainedModel train_case(const Case& one, const CaseContext& context, std::uint64_t seed, CaseMemory& memory,
                         const std::function<void(double)>& progress) {

@@ -3,6 +3,7 @@
 
 #include "tools/evaluation/plan.hpp"
 #include "tools/recording/recording.hpp"
+#include "tools/robot/robot.hpp"
 
 #include <functional>
 #include <map>
@@ -27,6 +28,9 @@ struct CaseContext {
     const Recording& start; ///< hyperparameters and start come from it
     int threads = 1;        ///< >= 1, of each training; does not change its result
 };
+
+/// Reads the plan's robot; throws InputError when it cannot.
+Robot robot_of(const RobotChoice& choice);
 
 /// Trains `one` for the draw of random features `seed`: hyperparameters from `context.start`, unless `memory`
 /// has them already, then the batch solution over it as the start. No sample is refused for its

@@ -112,6 +112,17 @@ struct EffectModel {
     double phase = 0;             ///< torque_ripple (rad)
 };
 
+/// A rigid body with friction, fitted to the training's recordings by least squares: what the learned models
+/// are compared with. Output k is output_gain[k] times the rigid body's torque, plus its friction terms.
+struct RigidBodyFit {
+    bool identified = false;         ///< inertia: fitted; otherwise the robot file's
+    double sign_velocity = 0;        ///< v of dry friction's tanh(qd / v), rad/s
+    std::vector<double> output_gain; ///< m: output per N·m (N)
+    std::vector<double> inertia; ///< ten per body: kg, kg·m, kg·m²; 0 where the training determines none
+    /// m × 3, in the outputs' units: per rad/s, times tanh(qd / v), constant. Wrench: the constants only.
+    std::vector<double> friction;
+};
+
 /// The physics of P, SP, SP2 and SPK: y = psi pi + …, psi of all columns - ten per body, base to tip, then
 /// the effects - of which some are selected.
 struct PhysicsModel {
@@ -126,6 +137,7 @@ struct PhysicsModel {
     double prior_variance = 0;                ///< of each pi in units of the noise; 0: pi is fixed (SP, SP2)
     StartModel start;                         ///< pi and the factor of its covariance; fixed: no factor
     std::vector<double> coupling;             ///< SPK: of each output, of each column of psi, its 2d weights
+    std::vector<RigidBodyFit> rigid_body;     ///< on the same chain; may be empty; no estimator reads it
 };
 
 /// Where the constants came from.

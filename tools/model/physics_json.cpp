@@ -155,6 +155,23 @@ std::vector<int> read_selected(const JsonReader& reader, int count) {
     return selected;
 }
 
+// Coefficients of least squares may cancel each other: in double.
+
+ordered_json rigid_body_to_json(const RigidBodyFit& fit) {
+    return {{"identified", fit.identified},
+            {"sign_velocity", fit.sign_velocity},
+            {"output_gain", fit.output_gain},
+            {"inertia", fit.inertia},
+            {"friction", fit.friction}};
+}
+
+RigidBodyFit read_rigid_body(const JsonReader& reader, const ChainModel& chain, int outputs) {
+    return {reader.flag("identified"), reader.positive_number("sign_velocity"),
+            reader.numbers("output_gain", outputs),
+            reader.numbers("inertia", inertial_parameters * body_count(chain)),
+            reader.numbers("friction", 3 * outputs)};
+}
+
 } // namespace
 
 ordered_json physics_to_json(const PhysicsModel& physics) {
@@ -174,6 +191,9 @@ ordered_json physics_to_json(const PhysicsModel& physics) {
     }
     if (!physics.coupling.empty()) {
         json["coupling"] = singles(physics.coupling);
+    }
+    for (const RigidBodyFit& fit : physics.rigid_body) {
+        json["rigid_body"].push_back(rigid_body_to_json(fit));
     }
     return json;
 }
@@ -206,6 +226,11 @@ PhysicsModel read_physics(const JsonReader& reader, const TrainedModel& model) {
     }
     if (model.structure == "SPK") {
         physics.coupling = reader.numbers("coupling", outputs * columns * 2 * model.features.count);
+    }
+    if (reader.has("rigid_body")) {
+        for (const JsonReader& fit : reader.objects("rigid_body", 1, 2)) {
+            physics.rigid_body.push_back(read_rigid_body(fit, physics.chain, outputs));
+        }
     }
     return physics;
 }

@@ -37,8 +37,11 @@ Eigen::MatrixXd polynomial_weights(const Recording& recording, std::size_t begin
             power *= t;
         }
     }
+    const Eigen::Index terms = powers.cols();
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(powers);
+    const Eigen::MatrixXd orthogonal = qr.householderQ() * Eigen::MatrixXd::Identity(count, terms);
     Eigen::MatrixXd weights =
-        powers.householderQr().solve(Eigen::MatrixXd::Identity(count, count)).topRows(3);
+        qr.matrixQR().topRows(terms).triangularView<Eigen::Upper>().solve(orthogonal.transpose()).topRows(3);
     weights.row(1) /= span;
     weights.row(2) *= 2 / (span * span);
     return weights;

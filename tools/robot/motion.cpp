@@ -17,34 +17,6 @@ double uniform(std::mt19937_64& engine, double low, double high) {
     return low + (high - low) * 0x1p-53 * static_cast<double>(engine() >> 11U);
 }
 
-struct States {
-    RecordedMotion all;
-    std::vector<std::uint8_t> valid;
-};
-
-States states_of(const Recording& recording, const ZeroPhaseWindow& window) {
-    States states;
-    RobotMotion& motion = states.all.motion;
-    motion.position = columns_matrix(recording.position);
-    states.all.outputs = columns_matrix(recording.output);
-    if (recording.velocity.present() && recording.acceleration.present()) {
-        motion.velocity = columns_matrix(recording.velocity);
-        motion.acceleration = columns_matrix(recording.acceleration);
-        states.valid.assign(recording.row_count(), 1);
-    } else if (recording.velocity.present()) {
-        SampledDerivatives derivatives = zero_phase_derivatives(recording, recording.velocity, window);
-        motion.velocity = columns_matrix(recording.velocity);
-        motion.acceleration = std::move(derivatives.first);
-        states.valid = std::move(derivatives.valid);
-    } else {
-        SampledDerivatives derivatives = zero_phase_derivatives(recording, recording.position, window);
-        motion.velocity = std::move(derivatives.first);
-        motion.acceleration = std::move(derivatives.second);
-        states.valid = std::move(derivatives.valid);
-    }
-    return states;
-}
-
 void append(Eigen::MatrixXd& to, const Eigen::MatrixXd& from, const std::vector<Eigen::Index>& rows) {
     Eigen::MatrixXd joined(to.rows() + static_cast<Eigen::Index>(rows.size()), from.cols());
     joined << to, from(rows, Eigen::all);
@@ -80,10 +52,33 @@ RobotMotion random_motion(const Robot& robot, Eigen::Index rows, std::uint64_t s
     return motion;
 }
 
+SampledMotion sampled_motion(const Recording& recording, const ZeroPhaseWindow& window) {
+    SampledMotion states;
+    RobotMotion& motion = states.all.motion;
+    motion.position = columns_matrix(recording.position);
+    states.all.outputs = columns_matrix(recording.output);
+    if (recording.velocity.present() && recording.acceleration.present()) {
+        motion.velocity = columns_matrix(recording.velocity);
+        motion.acceleration = columns_matrix(recording.acceleration);
+        states.valid.assign(recording.row_count(), 1);
+    } else if (recording.velocity.present()) {
+        SampledDerivatives derivatives = zero_phase_derivatives(recording, recording.velocity, window);
+        motion.velocity = columns_matrix(recording.velocity);
+        motion.acceleration = std::move(derivatives.first);
+        states.valid = std::move(derivatives.valid);
+    } else {
+        SampledDerivatives derivatives = zero_phase_derivatives(recording, recording.position, window);
+        motion.velocity = std::move(derivatives.first);
+        motion.acceleration = std::move(derivatives.second);
+        states.valid = std::move(derivatives.valid);
+    }
+    return states;
+}
+
 RecordedMotion recorded_motion(std::span<const Recording> recordings, const ZeroPhaseWindow& window) {
     RecordedMotion result;
     for (const Recording& recording : recordings) {
-        const States states = states_of(recording, window);
+        const SampledMotion states = sampled_motion(recording, window);
         if (&recording == recordings.data()) {
             start_with_columns(result, states.all);
         }

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace dfdyn::tools {
 
@@ -28,6 +29,15 @@ struct RecordedMotion {
     RobotMotion motion;
     Eigen::MatrixXd outputs; ///< T x m
 };
+
+/// What a recording says of motion and outputs, row by row.
+struct SampledMotion {
+    RecordedMotion all;              ///< as many rows as the recording
+    std::vector<std::uint8_t> valid; ///< 1 where velocities and accelerations are known
+};
+
+/// As `recorded_motion`, with a row for each of the recording's. `recording` has outputs.
+SampledMotion sampled_motion(const Recording& recording, const ZeroPhaseWindow& window);
 
 /// Velocities and accelerations are the recordings' own, and otherwise derivatives of what they have
 /// (`zero_phase_derivatives`); rows without a full window are left out then. Throws InputError when no row is

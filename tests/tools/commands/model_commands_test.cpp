@@ -143,6 +143,28 @@ TEST_CASE("models with a robot are trained and replayed from one command each") 
     }
 }
 
+TEST_CASE("a replay compares a model with a rigid body where one was trained, and says once where none was") {
+    const Bench bench;
+    const std::string rows = "--rows 300: --frozen";
+    REQUIRE(bench.train(robot + "--outputs tau --model P --effects viscous_friction").status == 0);
+    const std::string with_robot = bench.replay(bench.path("run.csv"), rows).out;
+    CAPTURE(with_robot);
+    for (const std::string label : {"rigid body of robot file", "identified rigid body"}) {
+        const double error = largest_figure(with_robot, label);
+        CHECK(error > 0);
+        CHECK(error < 0.5);
+    }
+    CHECK_THAT(with_robot, !ContainsSubstring("rigid body: -"));
+    CHECK_THAT(bench.replay(bench.path("positions.csv"), rows).out, !ContainsSubstring("rigid body: -"));
+    REQUIRE(bench.train("--outputs tau").status == 0);
+    const std::string logs = bench.path("run.csv") + "," + bench.path("positions.csv");
+    const std::string without = bench.replay(logs, rows).out;
+    CAPTURE(without);
+    CHECK(largest_figure(without, "identified rigid body") == -1);
+    CHECK_THAT(without, ContainsSubstring("rigid body: -: no model has one"));
+    CHECK(without.find("rigid body: -") == without.rfind("rigid body: -"));
+}
+
 TEST_CASE("the same model is trained from a robot twice with the same bytes") {
     const Bench bench;
     const std::string arguments = robot + "--outputs tau --model SPK --own-motion --effects viscous_friction";

@@ -93,6 +93,27 @@ TEST_CASE("the results have one row per case, draw and group") {
     CHECK_THAT(csv, ContainsSubstring("\nB,6,torque,"));
 }
 
+TEST_CASE("opponents stand below the cases in the table and in the results") {
+    Evaluation one = evaluation();
+    const TemporaryDirectory directory;
+    write(directory, one);
+    CHECK_THAT(file_content(directory.path() / "tables.md"), !ContainsSubstring("Persistence"));
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    one.results.opponents = {{{"persistence", {0.25, 0.5}}, {"identified rigid body", {none, none}}},
+                             "the plan has no robot"};
+    write(directory, one);
+    const std::string tables = file_content(directory.path() / "tables.md");
+    CHECK_THAT(tables, ContainsSubstring("| persistence | 0.25"));
+    CHECK_THAT(tables, ContainsSubstring("| identified rigid body | – | – |"));
+    CHECK(tables.find("No rigid body: the plan has no robot.") == tables.rfind("No rigid body"));
+    const std::string csv = file_content(directory.path() / "results.csv");
+    CHECK(std::ranges::count(csv, '\n') == 1 + 2 * 6 * 2 + 2);
+    const auto commas = std::ranges::count(csv.substr(0, csv.find('\n')), ',');
+    CHECK(std::ranges::count(csv, ',') == commas * 27);
+    CHECK_THAT(csv, ContainsSubstring("\npersistence,0,,nan,"));
+    CHECK_THAT(csv, ContainsSubstring(",nan,0.25,0.5,nan,"));
+}
+
 TEST_CASE("lost ticks and cases without draws are said beside the table") {
     Evaluation one = evaluation();
     const TemporaryDirectory directory;

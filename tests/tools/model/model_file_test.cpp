@@ -14,6 +14,7 @@
 namespace {
 
 using namespace dfdyn::tools;
+using dfdyn::tests::numbers;
 using dfdyn::tests::small_model;
 using dfdyn::tests::small_physics_model;
 
@@ -51,6 +52,26 @@ TEST_CASE("a model with physics reads back, whatever its structure") {
             }
         }
     }
+}
+
+TEST_CASE("a model keeps the rigid bodies that it is compared with, and older files have none") {
+    DFDYN_SEEDED_ENGINE(engine);
+    TrainedModel model = small_physics_model(engine, "P", InputKind::DFR, false);
+    CHECK(model_from_json(model_to_json(model), "m.json").physics->rigid_body.empty());
+    std::normal_distribution<double> normal;
+    for (const bool identified : {false, true}) {
+        model.physics->rigid_body.push_back({identified, 0.05, numbers(engine, 2, normal),
+                                             numbers(engine, 20, normal), numbers(engine, 6, normal)});
+    }
+    const std::string text = model_to_json(model);
+    const TrainedModel read = model_from_json(text, "m.json");
+    REQUIRE(read.physics->rigid_body.size() == 2);
+    CHECK(read.physics->rigid_body[1].identified);
+    CHECK(read.physics->rigid_body[1].inertia == model.physics->rigid_body[1].inertia); // in double
+    CHECK(model_to_json(read) == text);
+    nlohmann::json wrong = nlohmann::json::parse(text);
+    wrong["physics"]["rigid_body"][0]["friction"].erase(0);
+    CHECK_THAT(refusal(wrong.dump()).value(), StartsWith("m.json: physics.rigid_body[0].friction: expected"));
 }
 
 TEST_CASE("a model with physics that cannot be is refused") {
