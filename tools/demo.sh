@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # demo.sh: installs what is missing, builds dfdyn, lets it learn a UR5's motor currents from joint positions in one recording,
-# and replays further recordings through the estimator that would run on the robot. Writes into build/demo.
+# and replays further recordings through the estimator that would run on the robot. Then trains on one part of two recordings that
+# chose no setting of the program, and prints how well the rest is predicted, beside simple opponents. Writes into build/demo.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 dfdyn=build/release/tools/dfdyn
 out=build/demo
-step_count=3
+step_count=4
 
 step() {
     echo
@@ -29,10 +30,15 @@ step 2 "build"
 build_program
 step 3 "learn from a recording, then replay recordings tick by tick"
 tools/ur5_demo.sh "$dfdyn" "$out"
+step 4 "two robots that chose no setting: learn one part, predict the rest"
+# Fewer rows and starts than by default, for time alone.
+tools/measure_unseen.sh --quick "$dfdyn" "$out/unseen" --likelihood-rows 300 --starts 2 --refinement 20 |
+    tee "$out/unseen.md"
 
 echo
 echo "Done in $SECONDS s:"
 echo "  $out/report.html  open it in a browser"
 echo "  $out/replay.csv   measured, predicted and standard deviation per tick (PlotJuggler, pandas)"
+echo "  $out/unseen.md    the table above"
 echo "  $out/model.json   what was learned"
 echo "  $out/model.hpp    the same for the firmware"

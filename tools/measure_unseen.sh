@@ -1,17 +1,19 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# measure_unseen.sh [--quick] DFDYN OUT [TRAINING OPTION...]: how well a model that learned one motion predicts another of the same arm, which it has not seen
-# and does not learn. Trains NP, P and SPK on recording A, replays recording B frozen with each and with their combination, and
-# prints a table of the normalised errors and of the shares within two standard deviations. Writes models and replays into OUT.
+# measure_unseen.sh [--quick] DFDYN OUT [TRAINING OPTION...]: how well a model that learned one motion predicts another of the same arm, which it has not seen.
+# Trains NP, P and SPK on recording A, then replays recording B with each and with their combination: frozen, so that nothing of B
+# reaches them, and learning. Prints one table (Markdown) of normalised errors and of shares within two standard deviations, with
+# persistence, AR(2), rigid bodies with friction and a constant. Writes models and replays into OUT.
 # --quick: only the two recordings that chose no setting of the program.
 set -euo pipefail
+usage='usage: measure_unseen.sh [--quick] DFDYN OUT [TRAINING OPTION...]'
 quick=no
 if [[ ${1:-} == --quick ]]; then
     quick=yes
     shift
 fi
-dfdyn=${1:?usage: measure_unseen.sh [--quick] DFDYN OUT [TRAINING OPTION...]}
-out=${2:?usage: measure_unseen.sh [--quick] DFDYN OUT [TRAINING OPTION...]}
+dfdyn=${1:?$usage}
+out=${2:?$usage}
 shift 2
 training=("$@")
 data=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)/tests/data
@@ -21,49 +23,95 @@ effects=viscous_friction,coulomb_friction,torque_offset
 ur5=(--robot "$data/robots/ur5/ur5_robot.urdf" --tip ee_link --outputs i)
 tx40=(--robot "$data/robots/tx40/tx40.urdf" --tip tool0 --outputs tau)
 
-# figures REPLAY LABEL: a line of the table from what `dfdyn replay` printed of its last recording.
+# line LABEL ERRORS SHARES: a row of the table, from figures with spaces between them.
+line() {
+    local figure
+    printf '| %-35s |' "$1"
+    for figure in $2 $3; do
+        printf ' %7s |' "$figure"
+    done
+    printf '\n'
+}
+
+# heading TEXT: a row with a text only.
+heading() {
+    printf '| %-35s |%s\n' "$1" " | | | | | | | | | | | |"
+}
+
+# figures REPLAY LABEL: what `dfdyn replay` printed behind LABEL of its last recording.
 figures() {
-    awk -v label="$2" '
-        /nRMSE, one step/ { sub(/.*one step */, ""); error = $0 }
-        /share within 2 sigma/ { sub(/.*sigma */, ""); share = $0 }
-        END {
-            gsub(/ +/, " | ", error)
-            gsub(/ +/, " | ", share)
-            printf "| %s | %s | %s |\n", label, error, share
-        }' "$1"
+    awk -v label="$2" 'index($0, "  " label) == 1 { found = substr($0, length(label) + 3) } END { print found }' "$1"
+}
+
+# model REPLAY NAME: the row of a model's own predictions.
+model() {
+    line "$2" "$(figures "$1" "nRMSE, one step")" "$(figures "$1" "share within 2 sigma")"
+}
+
+# opponent REPLAY LABEL NAME: the row of an opponent, which has no standard deviations.
+opponent() {
+    line "$3" "$(figures "$1" "  $2")" "- - - - - -"
+}
+
+# logged FILE COMMAND...: runs a command with its output in FILE; shows the end of it when the command fails.
+logged() {
+    local file=$1
+    shift
+    "$@" >"$file" 2>&1 || {
+        tail -n 3 "$file" >&2
+        return 1
+    }
+}
+
+# train_and_replay NAME A ROWS_A B ROWS_B ROBOT...: a model of each structure, and its replays.
+train_and_replay() {
+    local name=$1 a=$2 rows_a=$3 b=$4 rows_b=$5 structure models=()
+    shift 5
+    for structure in NP P SPK; do
+        local physics=("$@" --effects "$effects")
+        [[ $structure != NP ]] || physics=("${@:5}")
+        logged "$out/$name.$structure.train" "$dfdyn" train --log "$a" --rows "$rows_a" --model "$structure" \
+            "${physics[@]}" "${training[@]}" -o "$out/$name.$structure.json"
+        models+=("$out/$name.$structure.json")
+    done
+    models+=("${models[0]},${models[1]},${models[2]}")
+    for structure in NP P SPK combination; do
+        local replay=("$dfdyn" replay --model "${models[0]}" --log "$b" --rows "$rows_b" --horizon 0)
+        models=("${models[@]:1}")
+        logged "$out/$name.$structure.frozen" "${replay[@]}" --frozen
+        logged "$out/$name.$structure.learning" "${replay[@]}"
+    done
 }
 
 # pair NAME TITLE A ROWS_A B ROWS_B ROBOT...: trains on the rows of A, judges on those of B.
 pair() {
-    local name=$1 title=$2 a=$3 rows_a=$4 b=$5 rows_b=$6 model
-    shift 6
-    echo
-    echo "$title"
-    echo
-    echo "| | nRMSE, output 1 | 2 | 3 | 4 | 5 | 6 | within 2σ, output 1 | 2 | 3 | 4 | 5 | 6 |"
-    echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
-    for model in NP P SPK; do
-        local physics=("$@")
-        if [[ $model == NP ]]; then
-            physics=("${@:5}")
-        else
-            physics+=(--effects "$effects")
-        fi
-        "$dfdyn" train --log "$a" --rows "$rows_a" --model "$model" "${physics[@]}" "${training[@]}" \
-            -o "$out/$name.$model.json" >"$out/$name.$model.train" 2>&1
-        "$dfdyn" replay --frozen --model "$out/$name.$model.json" --log "$b" --rows "$rows_b" --horizon 0 \
-            >"$out/$name.$model.replay" 2>&1
-        figures "$out/$name.$model.replay" "$model"
+    local name=$1 title=$2 structure
+    shift 2
+    train_and_replay "$name" "$@"
+    local all=$out/$name.combination
+    heading "**$title**"
+    heading "*frozen*"
+    for structure in NP P SPK combination; do
+        model "$out/$name.$structure.frozen" "$structure"
     done
-    "$dfdyn" replay --frozen --model "$out/$name.NP.json,$out/$name.P.json,$out/$name.SPK.json" --log "$b" --rows "$rows_b" \
-        --horizon 0 >"$out/$name.combination.replay" 2>&1
-    figures "$out/$name.combination.replay" "combination"
+    opponent "$all.frozen" "rigid body of the URDF" "rigid body of the URDF + friction"
+    opponent "$all.frozen" "identified rigid body" "identified rigid body + friction"
+    line "best constant (by definition)" "1 1 1 1 1 1" "- - - - - -"
+    heading "*learning, one step ahead*"
+    for structure in NP P SPK combination; do
+        model "$out/$name.$structure.learning" "$structure"
+    done
+    opponent "$all.learning" "with residual state" "combination + residual state"
+    opponent "$all.learning" "persistence, y(t-1)" "persistence"
+    opponent "$all.learning" "AR(2), learned online" "AR(2)"
 }
 
+line "nRMSE, then share within 2σ; output" "1 2 3 4 5 6" "2σ:1 2σ:2 2σ:3 2σ:4 2σ:5 2σ:6"
+line "---" "---: ---: ---: ---: ---: ---:" "---: ---: ---: ---: ---: ---:"
 nist=$data/ur5_nist/halfspeed_payload_0p726kg.csv
 tx40_log=$data/tx40_figaroh/tx40_5kHz.csv
-pair nist "UR5 of another laboratory, its first 42 s, then its last 21 s" "$nist" :5270 "$nist" 5270: "${ur5[@]}"
-pair tx40 "TX40 at 5 kHz, its first 5 s, then the rest" "$tx40_log" :25000 "$tx40_log" 25000: "${tx40[@]}"
+pair nist "UR5 at NIST, 42 s, then 21 s" "$nist" :5270 "$nist" 5270: "${ur5[@]}"
+pair tx40 "TX40 at 5 kHz, 5 s, then 2.5 s" "$tx40_log" :25000 "$tx40_log" 25000: "${tx40[@]}"
 [[ $quick == no ]] || exit 0
 
 kufieta=$data/ur5_kufieta

@@ -64,7 +64,7 @@ Forecasts with_residual_state(const ReplayedRecording& replayed, const TrainedMo
 }
 
 const char* rigid_body_label(bool identified) {
-    return identified ? "identified rigid body" : "rigid body of robot file";
+    return identified ? "identified rigid body" : "rigid body of the URDF";
 }
 
 std::vector<OpponentErrors> opponent_errors(const ReplayedRecording& replayed, const TrainedModel& model) {

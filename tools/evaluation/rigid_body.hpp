@@ -17,9 +17,8 @@ namespace dfdyn::tools {
 /// Returns two fits:
 /// 1. The robot file's inertia. A gain and three friction terms of each output, output by output: four
 ///    coefficients, which any motion determines.
-/// 2. Identified inertia. All parameters that the recordings determine (`select_columns` with the threshold
-/// of
-///    training and the sizes of a machine), together with the friction terms; outputs weighed by what an
+/// 2. Identified inertia. All parameters that the recordings determine (`select_columns` with training's
+///    threshold and a machine's sizes), together with the friction terms; outputs weighed by what an
 ///    unweighted fit leaves of each. A poor motion determines them poorly: then the first predicts another
 ///    motion better.
 ///
@@ -41,8 +40,9 @@ ZeroPhaseWindow rigid_body_window(std::span<const Recording> recordings);
 /// The physics of the first model that has fits; nullptr if none has.
 const PhysicsModel* rigid_body_of(std::span<const TrainedModel> models);
 
-/// Half of the window that derivatives are taken over (s); at least three samples. On the UR5 recordings No3,
-/// No5 and No6, 24 ms, 40 ms and 80 ms made no difference.
+/// Half of the window that derivatives are taken over (s); at least three samples. Between the UR5 recordings
+/// No3, No5 and No6, 24 ms and 80 ms changed the error of the robot file's inertia, and of the inertia
+/// identified on No6, by less than 5 % (geometric mean over the outputs).
 inline constexpr double rigid_body_window_s = 0.04;
 
 } // namespace dfdyn::tools

@@ -149,7 +149,7 @@ TEST_CASE("a replay compares a model with a rigid body where one was trained, an
     REQUIRE(bench.train(robot + "--outputs tau --model P --effects viscous_friction").status == 0);
     const std::string with_robot = bench.replay(bench.path("run.csv"), rows).out;
     CAPTURE(with_robot);
-    for (const std::string label : {"rigid body of robot file", "identified rigid body"}) {
+    for (const std::string label : {"rigid body of the URDF", "identified rigid body"}) {
         const double error = largest_figure(with_robot, label);
         CHECK(error > 0);
         CHECK(error < 0.5);

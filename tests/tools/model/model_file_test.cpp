@@ -71,7 +71,8 @@ TEST_CASE("a model keeps the rigid bodies that it is compared with, and older fi
     CHECK(model_to_json(read) == text);
     nlohmann::json wrong = nlohmann::json::parse(text);
     wrong["physics"]["rigid_body"][0]["friction"].erase(0);
-    CHECK_THAT(refusal(wrong.dump()).value(), StartsWith("m.json: physics.rigid_body[0].friction: expected"));
+    CHECK_THAT(refusal(wrong.dump()).value(),
+               Catch::Matchers::StartsWith("m.json: physics.rigid_body[0].friction: expected"));
 }
 
 TEST_CASE("a model with physics that cannot be is refused") {
