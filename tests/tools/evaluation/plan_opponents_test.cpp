@@ -57,7 +57,8 @@ TEST_CASE("a plan without a robot has no rigid body, and says why") {
     json plan = small_plan();
     plan["robot"] = {{"urdf", "nowhere.urdf"}};
     CHECK_THAT(opponents_of(directory, plan).no_rigid_body, ContainsSubstring("nowhere.urdf"));
-    plan["robot"] = {{"urdf", DFDYN_TEST_DATA_DIR "/robots/three_joint_arm/three_joint_arm.urdf"}};
+    plan["robot"] = {{"urdf", DFDYN_TEST_DATA_DIR "/robots/three_joint_arm/three_joint_arm.urdf"},
+                     {"tip", "tool"}};
     CHECK_THAT(opponents_of(directory, plan).no_rigid_body, ContainsSubstring("expected joints"));
 }
 
