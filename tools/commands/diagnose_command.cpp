@@ -32,6 +32,7 @@ struct DiagnoseOptions {
     std::filesystem::path folder;
     std::filesystem::path header;
     bool quick = false;
+    bool no_setup_check = false;
 
     std::filesystem::path json() const { return folder / "diagnosis.json"; }
     std::filesystem::path page() const { return folder / "report.html"; }
@@ -64,6 +65,7 @@ DiagnosisWork run_diagnosis(const Robot& robot, const std::vector<Recording>& re
     how.outputs = outputs;
     how.torque_constants = options.torque_constants;
     how.measure = !options.quick;
+    how.check_setup = !options.no_setup_check;
     how.progress = [&](int) { progress.update(++rounds); };
     return diagnose(robot, joined_recording(recordings), how);
 }
@@ -153,6 +155,8 @@ void add_diagnose_command(CLI::App& app, Command& chosen) {
         ->type_name("M.hpp");
     command->add_flag("--no-held-out", options->quick,
                       "Leave out the error on held-out time, which takes half of the run");
+    command->add_flag("--no-setup-check", options->no_setup_check,
+                      "Go on although units, clock, columns or signs of a recording look wrong");
     command->footer(
         "Example:\n  dfdyn diagnose --robot arm.urdf --tip tool0 --log run.csv --outputs tau -o diagnosis\n"
         "  dfdyn replay --model diagnosis/extended_model.json --log other.csv\n"

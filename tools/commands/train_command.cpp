@@ -3,6 +3,7 @@
 #include "tools/commands/command.hpp"
 #include "tools/commands/options.hpp"
 #include "tools/commands/robot_options.hpp"
+#include "tools/commands/setup_options.hpp"
 #include "tools/commands/size_options.hpp"
 #include "tools/commands/train_outcome.hpp"
 #include "tools/common/atomic_file.hpp"
@@ -21,6 +22,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <optional>
 
 namespace dfdyn::tools {
 
@@ -43,6 +45,7 @@ struct TrainOptions {
     std::vector<double> torque_constants;
     ClockOptions clock;
     SizeOptions sizes;
+    SetupOptions setup;
     TrainingOptions training;
 };
 
@@ -171,7 +174,8 @@ void note_ignored(const TrainOptions& options, OutputKind outputs) {
             }
         }
     };
-    note(!physics, {"--robot", "--effects", "--sign-velocity", "--own-motion"}, model);
+    note(!physics, {"--effects", "--sign-velocity", "--own-motion"}, model);
+    note(!physics && options.setup.unchecked, {"--robot"}, model);
     note(!has_features(options.structure), {"--shrinkage"}, model);
     note(!learned, {"--prior"}, model);
     note(!physics, {"--torque-constants"}, model);
@@ -182,6 +186,18 @@ void note_ignored(const TrainOptions& options, OutputKind outputs) {
     note(options.input == "STD" && options.structure == "P", {"--relevance"}, model);
     note(options.input == "STD" && cross_validation, {"--relevance"}, "--hyper CV");
     note(options.structure != "NP", {"--centred"}, model);
+}
+
+/// Checks the set-up behind the recordings. A model without physics reads its robot for this alone.
+bool accept_setup(const TrainOptions& options, const std::vector<Recording>& recordings, OutputKind outputs,
+                  const ModelTraining& training) {
+    std::optional<Robot> robot;
+    if (training.physics) {
+        robot = training.physics->robot;
+    } else if (!options.robot.urdf.empty() && !options.setup.unchecked) {
+        robot = options.robot.read(outputs);
+    }
+    return options.setup.accept(recordings, {outputs, robot ? &*robot : nullptr, options.torque_constants});
 }
 
 /// The sizes that no option gives.
@@ -215,6 +231,9 @@ int run(const TrainOptions& options) {
         training.physics ||
         (sees_derivatives(training) && training.derivatives != DerivativeSource::estimated);
     const std::vector<Recording> recordings = options.recordings.read(columns);
+    if (!accept_setup(options, recordings, outputs, training)) {
+        return 1;
+    }
     const double period_s = sample_period_s(recordings);
     options.clock.apply(training.options, period_s);
     const ProgressCallback progress = progress_line(training.options.hyper);
@@ -277,13 +296,15 @@ void add_train_command(CLI::App& app, Command& chosen) {
         ->capture_default_str();
     options->clock.add_to(*command);
     options->sizes.add_to(*command);
+    options->setup.add_to(*command);
     add_training_options(*command, options->training);
     add_physics_options(*command, *options);
     command->footer(
         "Example:\n  dfdyn train --log run.csv --rows :3400 --outputs i --input DFR -o model.json\n"
         "  dfdyn train --log run.csv --outputs tau --model SPK --robot arm.urdf --tip tool0 --own-motion"
         " --effects viscous_friction,coulomb_friction -o model.json\n"
-        "Exit status: 0 done, 2 bad usage or input.");
+        "Exit status: 0 done, 1 a mistake in the set-up of a recording (nothing is trained), 2 bad usage or "
+        "input.");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }
 

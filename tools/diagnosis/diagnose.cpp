@@ -7,7 +7,10 @@
 #include "tools/diagnosis/plausibility.hpp"
 #include "tools/diagnosis/unexplained.hpp"
 #include "tools/physics/torque_constants.hpp"
+#include "tools/setup_check/setup_check.hpp"
 
+#include <algorithm>
+#include <functional>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -37,13 +40,28 @@ Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOpt
     return gains;
 }
 
+/// Adds what is wrong with the set-up, mistakes first. Returns whether there is a mistake.
+bool suspect_setup(const Robot& robot, const Recording& recording, const DiagnosisOptions& options,
+                   std::vector<std::string>& suspicions) {
+    SetupFindings findings = check_setup(recording, {options.outputs, &robot, options.torque_constants});
+    std::ranges::stable_sort(findings, std::ranges::greater(), &SetupFinding::severity);
+    for (const SetupFinding& finding : findings) {
+        suspicions.push_back(finding.text);
+    }
+    return any_mistake(findings);
+}
+
 } // namespace
 
 DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const DiagnosisOptions& options) {
     DiagnosisWork work;
     work.diagnosis.output_names = recording.output.names;
-    Suspicions suspicions = suspicions_of_file(robot, recording);
-    work.diagnosis.suspicions = std::move(suspicions.sentences);
+    if (options.check_setup && suspect_setup(robot, recording, options, work.diagnosis.suspicions)) {
+        return work;
+    }
+    Suspicions suspicions = suspicions_of_file(recording);
+    work.diagnosis.suspicions.insert(work.diagnosis.suspicions.end(), suspicions.sentences.begin(),
+                                     suspicions.sentences.end());
     if (suspicions.fatal) {
         return work;
     }
@@ -54,7 +72,7 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     work.measured = signals->measured.outputs * work.torque_gains.cwiseInverse().asDiagonal();
     const bool gains_known =
         options.outputs != OutputKind::motor_current || !options.torque_constants.empty();
-    suspicions = suspicions_of_motion(*signals, work.measured, gains_known);
+    suspicions = suspicions_of_motion(*signals, work.measured);
     work.diagnosis.suspicions.insert(work.diagnosis.suspicions.end(), suspicions.sentences.begin(),
                                      suspicions.sentences.end());
     if (suspicions.fatal) {

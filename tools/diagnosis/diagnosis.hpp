@@ -83,8 +83,9 @@ struct Diagnosis {
 struct DiagnosisOptions {
     OutputKind outputs = OutputKind::joint_torque;
     std::vector<double>
-        torque_constants; ///< N·m/A per joint; empty: unknown, each joint has a factor of its own
-    bool measure = true;  ///< whether the held-out error is measured, which takes as long again
+        torque_constants;    ///< N·m/A per joint; empty: unknown, each joint has a factor of its own
+    bool measure = true;     ///< whether the held-out error is measured, which takes as long again
+    bool check_setup = true; ///< false: goes on although units, clock, columns or signs look wrong
     std::function<void(int round)> progress = {};
 };
 

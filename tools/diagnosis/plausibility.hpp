@@ -8,20 +8,17 @@
 
 namespace dfdyn::tools {
 
-/// Why a recording cannot answer which effects are there: positions or outputs in another unit, a clock in
-/// milliseconds, columns exchanged, another robot, an arm that hardly moves, too short a time. A sentence
-/// each, the gravest first; none of them when the recording may be asked. `measured`: T x m as recorded;
-/// `gains_known` as of the candidates.
+/// Why a recording of a right set-up cannot answer which effects are there: an arm that hardly moves, another
+/// robot, too short a time. Mistakes in the set-up: tools/setup_check. A sentence each, the gravest first.
 struct Suspicions {
     std::vector<std::string> sentences;
     bool fatal = false; ///< what would be named is not to be believed
 };
 
-/// Of what the file holds, before any motion is made of it.
-Suspicions suspicions_of_file(const Robot& robot, const Recording& recording);
+/// What the file shows, before any motion is made of it.
+Suspicions suspicions_of_file(const Recording& recording);
 
-/// Of the motion and the rigid body's outputs along it.
-Suspicions suspicions_of_motion(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
-                                bool gains_known);
+/// What the motion shows, and the rigid body's outputs along it. `measured`: T x m, as torques.
+Suspicions suspicions_of_motion(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured);
 
 } // namespace dfdyn::tools

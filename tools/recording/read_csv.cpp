@@ -134,7 +134,8 @@ class Reader {
         const double time_s = values_[0];
         if (std::abs(time_s) > longest_s) {
             return RowFault{&SkippedRows::out_of_range,
-                            "column t: expected a time within 9.2e9 s of 0, found " + number_text(time_s)};
+                            "column t: expected a time within 9.2e9 s of 0, found " + number_text(time_s) +
+                                " (nanoseconds? divide by 1e9)"};
         }
         time_ns_ = std::llround(time_s * 1e9);
         if (recording_.row_count() > 0 && time_ns_ <= recording_.time_ns.back()) {

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// Classic mistakes from the command line: named before the work starts, nothing written, exit status 1.
+#include "tests/support/catch.hpp"
+#include "tests/tools/commands/run_program.hpp"
+#include "tests/tools/setup_check/mistakes.hpp"
+#include "tools/common/number.hpp"
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace setup_command_test {
+
+using namespace dfdyn::tests;
+using Catch::Matchers::ContainsSubstring;
+using Catch::Matchers::StartsWith;
+using dfdyn::tools::number_text;
+using dfdyn::tools::OutputKind;
+using dfdyn::tools::Recording;
+
+const std::string robot =
+    " --robot " DFDYN_TEST_DATA_DIR "/robots/ur5/ur5_robot.urdf --base base_link --tip ee_link ";
+const std::string quick = " --features 12 --starts 1 --likelihood-rows 60 --refinement 0 ";
+
+Recording right_recording() {
+    return dfdyn::tools::read_recording(DFDYN_TEST_DATA_DIR "/ur5_kufieta/Movement_No3_Acc.csv",
+                                        {.joint_count = 6, .outputs = OutputKind::motor_current});
+}
+
+std::string csv(const Recording& recording) {
+    std::string text = "t";
+    for (const auto* columns : {&recording.position, &recording.output}) {
+        for (const std::string& name : columns->names) {
+            text.append(",").append(name);
+        }
+    }
+    for (std::size_t row = 0; row < recording.row_count(); ++row) {
+        text.append("\n").append(number_text(recording.time_s[row]));
+        for (const auto* columns : {&recording.position, &recording.output}) {
+            for (const double value : columns->row(row)) {
+                text.append(",").append(number_text(value));
+            }
+        }
+    }
+    return text + "\n";
+}
+
+/// A folder with a recording that has a mistake ("" for none), and calls of the program.
+class Bench {
+  public:
+    explicit Bench(const std::string& mistake) {
+        Recording recording = right_recording();
+        for (const Mistake& one : classic_mistakes(6, OutputKind::motor_current)) {
+            if (one.name == mistake) {
+                one.make(recording);
+            }
+        }
+        directory_.write("run.csv", csv(recording));
+    }
+
+    std::string path(const std::string& name) const { return directory_.path() / name; }
+
+    Outcome train(const std::string& arguments) const {
+        return run_program(directory_, "train --outputs i --log " + path("run.csv") + quick + " -o " +
+                                           path("model.json") + " " + arguments);
+    }
+
+    Outcome call(const std::string& arguments) const { return run_program(directory_, arguments); }
+
+    bool trained() const { return std::filesystem::exists(path("model.json")); }
+
+  private:
+    TemporaryDirectory directory_;
+};
+
+void check_refused(const Bench& bench, const std::string& arguments, const std::string& words) {
+    CAPTURE(arguments);
+    const Outcome outcome = bench.train(arguments);
+    CAPTURE(outcome.error);
+    CHECK(outcome.status == 1);
+    CHECK(outcome.out.empty());
+    CHECK_THAT(outcome.error, ContainsSubstring("dfdyn: " + bench.path("run.csv") + ": ") &&
+                                  ContainsSubstring(words) && ContainsSubstring("--no-setup-check"));
+    CHECK_FALSE(bench.trained());
+}
+
+TEST_CASE("train refuses what the recording alone shows, before it works, with what to do") {
+    const auto [mistake, words] = GENERATE(table<std::string, std::string>({
+        {"positions in degrees", "looks like degrees; multiply by pi/180"},
+        {"time in ms", "column t: expected seconds, found rows"},
+        {"time in µs", "microseconds; divide t by 1e6"},
+        {"time in ns", "nanoseconds; divide t by 1e9"},
+        {"outputs in mA", "columns i1, i2, i3, i4, i5, i6: expected A, found up to"},
+        {"one output dead", "column i2: expected values that vary, found 0 in every row"},
+        {"one position wrapped", "column q2: expected a continuous angle"},
+    }));
+    CAPTURE(mistake);
+    check_refused(Bench(mistake), "", words);
+}
+
+TEST_CASE("train refuses exchanged columns and wrong signs that the robot shows, whatever the model") {
+    const auto [mistake, words] = GENERATE(table<std::string, std::string>({
+        {"outputs 2 and 3 exchanged", "columns i2 and i3"},
+        {"sign of one output", "i2: expected the sign of the robot's model"},
+        {"positions in degrees", "looks like degrees"},
+    }));
+    CAPTURE(mistake);
+    const Bench bench(mistake);
+    check_refused(bench, robot + "--model P --effects coulomb_friction", words);
+    check_refused(bench, robot + "--model NP", words);
+}
+
+TEST_CASE("nanoseconds beyond the range of the clock are named, too") {
+    TemporaryDirectory directory;
+    Recording recording = right_recording();
+    std::string text = csv(recording);
+    const std::string log =
+        directory.write("run.csv", "t,q1,i1\n0,0,0\n8e6,0,0\n" + number_text(9.3e9) + ",0,0\n");
+    const Outcome outcome =
+        run_program(directory, "train --outputs i --log " + log + " -o " + (directory.path() / "m").string());
+    CHECK(outcome.status == 2);
+    CHECK_THAT(outcome.error, ContainsSubstring("run.csv:4: column t: ") &&
+                                  ContainsSubstring("(nanoseconds? divide by 1e9)"));
+}
+
+TEST_CASE("--no-setup-check trains all the same, and a right recording needs no option") {
+    const Bench wrong("outputs in mA");
+    const Outcome unchecked = wrong.train("--no-setup-check");
+    CAPTURE(unchecked.error);
+    CHECK(unchecked.status == 0);
+    CHECK_THAT(unchecked.error, !ContainsSubstring("looks like"));
+    CHECK(wrong.trained());
+    const Bench right("");
+    const Outcome checked = right.train("");
+    CAPTURE(checked.error);
+    CHECK(checked.status == 0);
+    CHECK_THAT(checked.error, !ContainsSubstring("warning: "));
+    CHECK_THAT(right.call("train --help").out, ContainsSubstring("--no-setup-check"));
+}
+
+TEST_CASE("diagnose has the same check, and the same option goes on without it") {
+    const Bench bench("time in ms");
+    const auto diagnose = [&bench](const std::string& option) {
+        const Outcome outcome = bench.call("diagnose" + robot + "--outputs i --no-held-out --log " +
+                                           bench.path("run.csv") + " -o " + bench.path("out") + " " + option);
+        CAPTURE(outcome.error);
+        return std::pair(outcome, nlohmann::json::parse(file_content(bench.path("out/diagnosis.json"))));
+    };
+    const auto [checked, refused] = diagnose("");
+    CHECK_THAT(checked.out, StartsWith("! column t: expected seconds") && ContainsSubstring("milliseconds"));
+    CHECK(refused["findings"].empty());
+    CHECK_FALSE(std::filesystem::exists(bench.path("out/extended_model.json")));
+    const auto [unchecked, answered] = diagnose("--no-setup-check");
+    CHECK(unchecked.status == 0);
+    CHECK_THAT(unchecked.out, !ContainsSubstring("milliseconds"));
+    CHECK(std::filesystem::exists(bench.path("out/extended_model.json")));
+}
+
+TEST_CASE("an output that cannot be written is refused before the recording is read") {
+    const Bench bench("");
+    const std::string nowhere = bench.path("no_such_folder/out");
+    for (const std::string& arguments :
+         {"train --outputs i --log none.csv -o " + nowhere,
+          "train --outputs i --log none.csv -o " + bench.path("m.json") + " --header " + nowhere,
+          "replay --model none.json --log none.csv -o " + nowhere,
+          "replay --model none.json --log none.csv --report " + nowhere}) {
+        CAPTURE(arguments);
+        const Outcome outcome = bench.call(arguments);
+        CHECK(outcome.status == 2);
+        CHECK_THAT(outcome.error, ContainsSubstring(nowhere) && !ContainsSubstring("none"));
+    }
+    CHECK_FALSE(std::filesystem::exists(bench.path("m.json")));
+}
+
+TEST_CASE("a replay that predicts nothing ends with status 1 and the reason") {
+    const Bench bench("");
+    REQUIRE(bench.train("").status == 0);
+    Recording recording = right_recording();
+    scale_clock(recording, 1000);
+    const TemporaryDirectory directory;
+    const std::string wrong = directory.write("ms.csv", csv(recording));
+    const std::string replay = "replay --model " + bench.path("model.json") + " --log ";
+    const Outcome nothing = bench.call(replay + wrong);
+    CAPTURE(nothing.out, nothing.error);
+    CHECK(nothing.status == 1);
+    CHECK_THAT(nothing.error, ContainsSubstring(wrong + ": nothing was predicted: ") &&
+                                  ContainsSubstring("check that units, sample period and columns"));
+    CHECK(bench.call(replay + bench.path("run.csv")).status == 0);
+    CHECK(bench.call(replay + bench.path("run.csv") + "," + wrong).status == 0); // one of two predicted
+}
+
+} // namespace setup_command_test

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/tools/setup_check/simulated_runs.hpp"
+
+#include "tools/robot/firmware_chain.hpp"
+#include "tools/robot/inertia.hpp"
+#include "tools/robot/motion.hpp"
+#include "tools/robot/regressor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+namespace dfdyn::tests {
+
+using tools::OutputKind;
+using tools::Recording;
+using tools::Robot;
+using tools::RobotMotion;
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+double uniform(std::mt19937_64& engine, double low, double high) {
+    return low + (high - low) * 0x1p-53 * static_cast<double>(engine() >> 11U);
+}
+
+bool chance(std::mt19937_64& engine, double probability) { return uniform(engine, 0, 1) < probability; }
+
+/// Three tones per joint, their speeds about `speed` in sum.
+RobotMotion multisine(Index joints, const RunKind& kind, std::mt19937_64& engine) {
+    const auto rows = static_cast<Index>(kind.duration_s * kind.rate_hz);
+    const Eigen::ArrayXd time = VectorXd::LinSpaced(rows, 0, static_cast<double>(rows - 1) / kind.rate_hz);
+    RobotMotion motion;
+    motion.position = motion.velocity = motion.acceleration = MatrixXd::Zero(rows, joints);
+    for (Index joint = 0; joint < joints; ++joint) {
+        motion.position.col(joint).setConstant(uniform(engine, -1.5, 1.5));
+        const bool moves = kind.moving.empty() || kind.moving[static_cast<std::size_t>(joint)];
+        for (int tone = 0; moves && tone < 3; ++tone) {
+            const double omega = kind.speed * uniform(engine, 0.5, 2.5);
+            const double amplitude = uniform(engine, 0.1, 0.5);
+            const Eigen::ArrayXd phase = omega * time + uniform(engine, 0, 2 * std::numbers::pi);
+            motion.position.col(joint).array() += amplitude * phase.sin();
+            motion.velocity.col(joint).array() += amplitude * omega * phase.cos();
+            motion.acceleration.col(joint).array() -= amplitude * omega * omega * phase.sin();
+        }
+    }
+    return motion;
+}
+
+Robot loaded(Robot robot, double payload_kg, std::mt19937_64& engine) {
+    const Eigen::Vector3d centre =
+        robot.tip_placement *
+        Eigen::Vector3d(uniform(engine, -0.2, 0.2), uniform(engine, -0.2, 0.2), uniform(engine, -0.2, 0.2));
+    robot.joints.back().inertia +=
+        tools::body_parameters(payload_kg, centre, 0.002 * payload_kg * Eigen::Matrix3d::Identity());
+    return robot;
+}
+
+void add_friction(MatrixXd& torque, const RobotMotion& motion, double share, std::mt19937_64& engine) {
+    for (Index joint = 0; joint < torque.cols(); ++joint) {
+        const double level =
+            share * std::max(0.1, torque.col(joint).cwiseAbs().maxCoeff()) * uniform(engine, 0.5, 1.5);
+        const auto velocity = motion.velocity.col(joint).array();
+        torque.col(joint).array() += level * (velocity / 0.01).tanh() + 0.3 * level * velocity;
+    }
+}
+
+void add_noise(MatrixXd& values, const VectorXd& deviation, std::mt19937_64& engine) {
+    std::normal_distribution<double> normal;
+    for (Index column = 0; column < values.cols(); ++column) {
+        for (Index row = 0; row < values.rows(); ++row) {
+            values(row, column) += deviation[column] * normal(engine);
+        }
+    }
+}
+
+VectorXd deviations(const MatrixXd& values) {
+    const MatrixXd centred = values.rowwise() - values.colwise().mean();
+    return centred.colwise().norm().transpose() / std::sqrt(static_cast<double>(values.rows()));
+}
+
+} // namespace
+
+std::string RunKind::describe() const {
+    std::ostringstream text;
+    text << (outputs == OutputKind::wrench         ? "wrench"
+             : outputs == OutputKind::joint_torque ? "torques"
+                                                   : "currents")
+         << ", speed " << speed << ", " << rate_hz << " Hz, " << duration_s << " s, payload " << payload_kg
+         << " kg, friction " << friction << ", noise " << noise << ", moving";
+    for (const bool moves : moving) {
+        text << ' ' << moves;
+    }
+    return text.str();
+}
+
+Recording simulated_run(const Robot& robot, const RunKind& kind, std::mt19937_64& engine) {
+    const auto joints = static_cast<Index>(robot.joints.size());
+    const RobotMotion motion = multisine(joints, kind, engine);
+    const Robot truth = loaded(robot, kind.payload_kg, engine);
+    const VectorXd stacked = tools::stacked_regressor(truth, kind.outputs, motion) *
+                             tools::nominal_parameters(truth, kind.outputs);
+    MatrixXd outputs = tools::unstacked(stacked, stacked.size() / motion.rows());
+    if (kind.outputs != OutputKind::wrench) {
+        add_friction(outputs, motion, kind.friction, engine);
+    }
+    if (kind.outputs == OutputKind::motor_current) {
+        for (Index joint = 0; joint < joints; ++joint) {
+            outputs.col(joint) /= 0.5 * std::pow(40, uniform(engine, 0, 1));
+        }
+    }
+    add_noise(outputs, kind.noise * deviations(outputs), engine);
+    MatrixXd position = motion.position;
+    add_noise(position, VectorXd::Constant(joints, kind.position_noise), engine);
+    Recording recording;
+    recording.source = "simulated.csv";
+    recording.position.names = tools::joint_names("q", robot.joints.size());
+    recording.output.names = tools::output_names(kind.outputs, robot.joints.size());
+    for (Index row = 0; row < motion.rows(); ++row) {
+        recording.time_s.push_back(static_cast<double>(row) / kind.rate_hz);
+        recording.time_ns.push_back(std::llround(1e9 * recording.time_s.back()));
+        recording.gap_before.push_back(row == 0 ? 1 : 0);
+        for (Index joint = 0; joint < joints; ++joint) {
+            recording.position.values.push_back(position(row, joint));
+        }
+        for (Index output = 0; output < outputs.cols(); ++output) {
+            recording.output.values.push_back(outputs(row, output));
+        }
+    }
+    return recording;
+}
+
+RunKind random_kind(const Robot& robot, OutputKind outputs, std::mt19937_64& engine) {
+    RunKind kind;
+    kind.outputs = outputs;
+    kind.speed = 0.05 * std::pow(60, uniform(engine, 0, 1));
+    kind.rate_hz = 40 * std::pow(25, uniform(engine, 0, 1));
+    kind.duration_s = uniform(engine, 8, 40);
+    kind.payload_kg = chance(engine, 0.5) ? uniform(engine, 0, 6) : 0;
+    kind.friction = chance(engine, 0.5) ? uniform(engine, 0, 1) : 0;
+    kind.noise = chance(engine, 0.5) ? uniform(engine, 0, 0.3) : 0;
+    kind.position_noise = chance(engine, 0.5) ? 0 : 1e-4 * uniform(engine, 0, 1);
+    if (chance(engine, 0.5)) {
+        for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
+            kind.moving.push_back(chance(engine, 0.5));
+        }
+        kind.moving[engine() % kind.moving.size()] = true;
+    }
+    return kind;
+}
+
+} // namespace dfdyn::tests

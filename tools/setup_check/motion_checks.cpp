@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/setup_check/motion_checks.hpp"
+
+#include "tools/common/number.hpp"
+#include "tools/common/text.hpp"
+#include "tools/setup_check/rigid_comparison.hpp"
+#include "tools/setup_check/signed_fit.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Sines and cosines of the angles, their sum and difference, beside accelerations and friction.
+MatrixXd gravity_columns(const RobotMotion& motion, double radians_per_unit) {
+    const MatrixXd angle = radians_per_unit * motion.position;
+    std::vector<VectorXd> angles;
+    for (Index joint = 0; joint < angle.cols(); ++joint) {
+        angles.emplace_back(angle.col(joint));
+    }
+    if (angle.cols() == 2) {
+        angles.emplace_back(angle.col(0) + angle.col(1));
+        angles.emplace_back(angle.col(0) - angle.col(1));
+    }
+    const Index joints = angle.cols();
+    MatrixXd columns(motion.rows(), 2 * static_cast<Index>(angles.size()) + 3 * joints);
+    Index next = 0;
+    for (const VectorXd& one : angles) {
+        columns.col(next++) = one.array().sin();
+        columns.col(next++) = one.array().cos();
+    }
+    for (Index joint = 0; joint < joints; ++joint) {
+        columns.col(next++) = motion.acceleration.col(joint);
+        columns.col(next++) = motion.velocity.col(joint);
+        columns.col(next++) = friction_direction(motion.velocity.col(joint));
+    }
+    return columns;
+}
+
+double mean_left(const RecordedMotion& recorded, const MatrixXd& columns) {
+    double left = 0;
+    for (Index output = 0; output < recorded.outputs.cols(); ++output) {
+        left += fit_signed(recorded.outputs.col(output), columns, MatrixXd(columns.rows(), 0)).left;
+    }
+    return left / static_cast<double>(recorded.outputs.cols());
+}
+
+} // namespace
+
+SetupFindings check_friction_sign(const Recording& recording, const RecordedMotion& recorded) {
+    SetupFindings findings;
+    if (recorded.outputs.cols() != recorded.motion.position.cols()) {
+        return findings; // a wrench
+    }
+    for (Index joint = 0; joint < recorded.outputs.cols(); ++joint) {
+        if (friction_sign(recorded, joint) == FrictionSign::drives) {
+            const auto index = static_cast<std::size_t>(joint);
+            findings.push_back(
+                {SetupFault::torque_sign, Severity::mistake,
+                 "columns " + recording.position.names[index] + " and " + recording.output.names[index] +
+                     ": expected an output that overcomes the joint's friction, found one that "
+                     "falls when the joint begins to move: multiply one of the two by -1, or "
+                     "see whether they are columns of two joints"});
+        }
+    }
+    return findings;
+}
+
+SetupFindings check_degrees_by_gravity(const Recording& recording, const RecordedMotion& recorded) {
+    const MatrixXd& position = recorded.motion.position;
+    if (position.cols() > 2 || !(position.cwiseAbs().maxCoeff() > 4 * std::numbers::pi)) {
+        return {};
+    }
+    const double radians = mean_left(recorded, gravity_columns(recorded.motion, 1));
+    const double degrees = mean_left(recorded, gravity_columns(recorded.motion, std::numbers::pi / 180));
+    if (!(degrees < 0.5 * radians)) {
+        return {};
+    }
+    return {{SetupFault::position_unit, Severity::mistake,
+             "columns " + listed(recording.position.names) + ": expected rad, found up to " +
+                 rounded_text(position.cwiseAbs().maxCoeff()) + ": looks like degrees (" + percent(degrees) +
+                 " of the outputs' variance left instead of " + percent(radians) + "); multiply by pi/180"}};
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/setup_check/output_size.hpp"
+
+#include "tools/common/number.hpp"
+#include "tools/common/quantile.hpp"
+#include "tools/common/text.hpp"
+#include "tools/setup_check/signed_fit.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// The factor between an output and the rigid body's, whatever its sign; none where that explains too little.
+std::optional<double> size_of(const ArmRecording& arm, const RigidParts& parts, Index k) {
+    constexpr double clearly = 0.5;
+    const VectorXd output = arm.output(k);
+    const MatrixXd friction =
+        arm.wrench() ? MatrixXd(output.size(), 0) : friction_columns(arm.recorded.motion, k);
+    const double without = fit_signed(output, friction, MatrixXd(output.size(), 0)).left;
+    for (const double sign : {1.0, -1.0}) {
+        const SignedFit fit = fit_signed(output, friction, sign * parts.sum(k));
+        if (fit.left < clearly * without) {
+            return fit.coefficients[0];
+        }
+    }
+    return std::nullopt;
+}
+
+std::string unit_text(const ArmRecording& arm, double factor) {
+    const std::string found = "columns " + listed(arm.recording.output.names) + ": expected " +
+                              (!arm.gains_known ? "A"
+                               : arm.wrench()   ? "N and N·m"
+                                                : "N·m") +
+                              ", found " + rounded_text(factor);
+    if (!arm.gains_known) {
+        return found + " A per N·m of the robot's model: looks like mA; divide by 1000";
+    }
+    return found + " times the robot model's outputs with the same course: another unit, such as " +
+           (arm.kind == OutputKind::motor_current ? "mA, or torque constants of the motor, not of the joint"
+            : arm.wrench()                        ? "mN"
+                                                  : "mN·m or N·cm") +
+           "; convert it";
+}
+
+} // namespace
+
+SetupFindings check_output_size(const ArmRecording& arm) {
+    const RigidParts parts = rigid_parts(arm.robot, arm.kind, arm.recorded.motion);
+    std::vector<double> sizes;
+    for (Index k = 0; k < arm.counted(); ++k) {
+        if (const auto size = size_of(arm, parts, k)) {
+            sizes.push_back(*size);
+        }
+    }
+    if (sizes.empty()) {
+        return {};
+    }
+    const auto [least, largest] = std::ranges::minmax(sizes);
+    const bool several = sizes.size() > 1 && largest < 10 * least && !arm.wrench();
+    const double factor = median(std::move(sizes));
+    const bool mistake = arm.gains_known
+                             ? factor > (several ? 50.0 : 300.0) || factor < 1 / (several ? 50.0 : 300.0)
+                             : factor > (several ? 50.0 : 200.0);
+    if (!mistake) {
+        return {};
+    }
+    const bool certain = several || arm.wrench() || arm.counted() == 1; // a payload can rule one joint
+    return {
+        {SetupFault::output_unit, certain ? Severity::mistake : Severity::warning, unit_text(arm, factor)}};
+}
+
+} // namespace dfdyn::tools

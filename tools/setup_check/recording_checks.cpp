@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/setup_check/recording_checks.hpp"
+
+#include "tools/common/number.hpp"
+#include "tools/common/quantile.hpp"
+#include "tools/common/text.hpp"
+#include "tools/recording/stretches.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr double degrees_per_radian = 180 / std::numbers::pi;
+constexpr double two_turns = 4 * std::numbers::pi;
+
+// Clock: recordings of 50 Hz to 5 kHz are expected; milliseconds make their steps 0.2 to 20.
+constexpr double suspicious_step_s = 0.19;
+constexpr double hopeless_step_s = 2;
+constexpr double shortest_step_s = 2e-5;
+constexpr double slowest_joint = 0.03; ///< rad/s: 30 rad/s in milliseconds
+constexpr double fastest_joint = 60;   ///< rad/s
+
+constexpr double most_ampere = 1000;
+constexpr double most_whole_ampere = 200;
+constexpr double most_torque = 2e4; ///< N·m
+
+double value(const Columns& columns, std::size_t row, std::size_t index) {
+    return columns.values[row * columns.names.size() + index];
+}
+
+double duration_s(const Recording& recording, std::size_t row) {
+    return 1e-9 * static_cast<double>(recording.time_ns[row] - recording.time_ns[row - 1]);
+}
+
+/// The 99 % quantile of a joint's speed, per second; 0 for too few rows.
+double usual_speed(const Recording& recording, std::size_t joint) {
+    std::vector<double> speeds;
+    for (std::size_t row = 1; row < recording.row_count(); ++row) {
+        if (recording.gap_before[row] == 0) {
+            const double step =
+                value(recording.position, row, joint) - value(recording.position, row - 1, joint);
+            speeds.push_back(std::abs(step) / duration_s(recording, row));
+        }
+    }
+    return speeds.empty() ? 0 : quantile(std::move(speeds), 0.99);
+}
+
+double speed_of_fastest(const Recording& recording) {
+    double fastest = 0;
+    for (std::size_t joint = 0; joint < recording.joint_count(); ++joint) {
+        fastest = std::max(fastest, usual_speed(recording, joint));
+    }
+    return fastest;
+}
+
+double largest_travel(const Recording& recording) {
+    double largest = 0;
+    for (std::size_t joint = 0; joint < recording.joint_count(); ++joint) {
+        largest = std::max(largest, travel(recording.position, joint));
+    }
+    return largest;
+}
+
+/// Which unit makes steps of that length 150 ms at most.
+std::string clock_unit(double step) {
+    return step < 150     ? "milliseconds; divide t by 1000"
+           : step < 1.5e5 ? "microseconds; divide t by 1e6"
+                          : "nanoseconds; divide t by 1e9";
+}
+
+/// Rows at which a joint jumps by `turn`, to 3 %.
+std::vector<std::size_t> jumps(const Recording& recording, std::size_t joint, double turn, double longest_s) {
+    std::vector<std::size_t> rows;
+    const auto step = [&](std::size_t row) {
+        return std::abs(value(recording.position, row, joint) - value(recording.position, row - 1, joint));
+    };
+    const auto joined = [&](std::size_t row) {
+        return recording.gap_before[row] == 0 && duration_s(recording, row) < longest_s;
+    };
+    const auto jump = [&](std::size_t row) { return std::abs(step(row) - turn) < 0.03 * turn; };
+    const auto quiet = [&](std::size_t row) { return step(row) < 0.1 * turn || jump(row); };
+    for (std::size_t row = 2; row + 1 < recording.row_count(); ++row) {
+        if (jump(row) && joined(row - 1) && joined(row) && joined(row + 1) && quiet(row - 1) &&
+            quiet(row + 1)) {
+            rows.push_back(row);
+        }
+    }
+    return rows;
+}
+
+bool constant(const Columns& columns, std::size_t index) { return !(travel(columns, index) > 0); }
+
+/// Whether the robot's file gives the links that joint `joint` moves any inertia; true without a robot.
+bool moves_mass(const Robot* robot, std::size_t joint) {
+    if (robot == nullptr || joint >= robot->joints.size()) {
+        return true;
+    }
+    return std::any_of(robot->joints.begin() + static_cast<std::ptrdiff_t>(joint), robot->joints.end(),
+                       [](const RobotJoint& one) { return !one.inertia.isZero(0); });
+}
+
+std::string joint_list(const std::vector<std::size_t>& joints) {
+    std::string text;
+    for (const std::size_t joint : joints) {
+        text += (text.empty() ? "" : ", ") + std::to_string(joint + 1);
+    }
+    return text;
+}
+
+struct BeyondLimits {
+    std::vector<std::size_t> joints;
+    double factor = 0; ///< largest
+    bool certain = false;
+};
+
+/// Placeholder limits (0 to 0) and continuous joints count as none.
+BeyondLimits beyond_limits(const Recording& recording, const Robot& robot) {
+    constexpr double play = 1.2;
+    constexpr double another_unit = 5; // the zero of an encoder is off by less
+    BeyondLimits result;
+    for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
+        const RobotJoint& one = robot.joints[joint];
+        const double limit = one.lower ? std::max(std::abs(*one.lower), std::abs(*one.upper)) : 0;
+        const double largest = largest_magnitude(recording.position, joint);
+        const double ratio = limit > 0 ? largest / (play * limit) : 0;
+        if (ratio > 1) {
+            result.joints.push_back(joint);
+            result.factor = std::max(result.factor, ratio);
+            const bool far = largest > (one.prismatic ? 5 : two_turns);
+            result.certain = result.certain || (ratio > another_unit && far);
+        }
+    }
+    return result;
+}
+
+SetupFindings check_limits(const Recording& recording, const Robot& robot) {
+    const BeyondLimits beyond = beyond_limits(recording, robot);
+    if (beyond.joints.empty()) {
+        return {};
+    }
+    std::string text = "positions of joint " + joint_list(beyond.joints) + " are up to " +
+                       rounded_text(beyond.factor) + " times beyond the joints' limits: ";
+    text += !beyond.certain ? "another zero, other limits or another robot"
+            : beyond.factor > 2 * degrees_per_radian
+                ? "expected rad (m), found what looks like thousandths (mrad, mm); divide by 1000"
+                : "expected rad, found what looks like degrees; multiply by pi/180";
+    return {
+        {SetupFault::position_unit, beyond.certain ? Severity::mistake : Severity::warning, std::move(text)}};
+}
+
+} // namespace
+
+double travel(const Columns& columns, std::size_t index) {
+    double least = columns.values.empty() ? 0 : columns.values[index];
+    double largest = least;
+    for (std::size_t i = index; i < columns.values.size(); i += columns.names.size()) {
+        least = std::min(least, columns.values[i]);
+        largest = std::max(largest, columns.values[i]);
+    }
+    return largest - least;
+}
+
+double largest_magnitude(const Columns& columns, std::size_t index) {
+    double result = 0;
+    for (std::size_t i = index; i < columns.values.size(); i += columns.names.size()) {
+        result = std::max(result, std::abs(columns.values[i]));
+    }
+    return result;
+}
+
+SetupFindings check_clock(const Recording& recording) {
+    const double step = recording.row_count() < 2 ? 1e-3 : median_step_s(recording);
+    const auto finding = [](bool mistake, std::string text) {
+        return SetupFindings{
+            {SetupFault::time_unit, mistake ? Severity::mistake : Severity::warning, std::move(text)}};
+    };
+    if (step >= suspicious_step_s) {
+        const bool creeping = largest_travel(recording) > 0 && speed_of_fastest(recording) < slowest_joint;
+        return finding(step >= hopeless_step_s || creeping, "column t: expected seconds, found rows " +
+                                                                rounded_text(step) + " s apart: looks like " +
+                                                                clock_unit(step));
+    }
+    if (step < shortest_step_s) {
+        return finding(speed_of_fastest(recording) > fastest_joint,
+                       "column t: expected seconds, found rows " + rounded_text(1e6 * step) +
+                           " µs apart: does not look like seconds; convert t to seconds");
+    }
+    return {};
+}
+
+SetupFindings check_wrapping(const Recording& recording) {
+    SetupFindings findings;
+    if (recording.row_count() < 4) {
+        return findings;
+    }
+    const double longest_s = 3 * median_step_s(recording);
+    for (std::size_t joint = 0; joint < recording.joint_count(); ++joint) {
+        for (const double turn : {2 * std::numbers::pi, 360.0}) {
+            const std::vector<std::size_t> rows = jumps(recording, joint, turn, longest_s);
+            if (!rows.empty()) {
+                findings.push_back(
+                    {SetupFault::wrapped_position, Severity::mistake,
+                     "column " + recording.position.names[joint] + ": expected a continuous angle, found " +
+                         std::to_string(rows.size()) + (rows.size() == 1 ? " jump" : " jumps") +
+                         " of one turn (" + (turn > two_turns ? "360" : "2 pi") +
+                         "), the first at t = " + number_text(recording.time_s[rows.front()]) +
+                         ": wrapped; unwrap it (numpy.unwrap, MATLAB unwrap)"});
+                break;
+            }
+        }
+    }
+    return findings;
+}
+
+SetupFindings check_dead_outputs(const Recording& recording, OutputKind outputs, const Robot* robot) {
+    constexpr std::size_t fewest_rows = 20;
+    constexpr double least_travel = 0.1; // rad (m)
+    SetupFindings findings;
+    if (recording.row_count() < fewest_rows || !(largest_travel(recording) > least_travel)) {
+        return findings;
+    }
+    const Columns& columns = recording.output;
+    std::vector<std::size_t> dead;
+    for (std::size_t output = 0; output < columns.names.size(); ++output) {
+        if (constant(columns, output)) {
+            dead.push_back(output);
+        }
+    }
+    for (const std::size_t output : dead) {
+        const bool wrench = outputs == OutputKind::wrench;
+        if (!wrench && !moves_mass(robot, output)) {
+            continue;
+        }
+        const bool certain = !wrench && dead.size() < columns.names.size() &&
+                             travel(recording.position, output) > least_travel;
+        findings.push_back({SetupFault::dead_output, certain ? Severity::mistake : Severity::warning,
+                            "column " + columns.names[output] + ": expected values that vary, found " +
+                                number_text(value(columns, 0, output)) +
+                                " in every row: a dead channel; check its sensor and its name"});
+    }
+    return findings;
+}
+
+SetupFindings check_output_unit(const Recording& recording, OutputKind outputs) {
+    const std::vector<double>& values = recording.output.values;
+    if (values.empty() || outputs == OutputKind::wrench) {
+        return {};
+    }
+    std::vector<double> magnitudes;
+    bool whole = true;
+    for (const double one : values) {
+        magnitudes.push_back(std::abs(one));
+        whole = whole && one == std::round(one);
+    }
+    const double largest = quantile(std::move(magnitudes), 0.999);
+    const bool current = outputs == OutputKind::motor_current;
+    const bool certain = largest > (current ? most_ampere : most_torque);
+    if (!certain && !(current && whole && largest > most_whole_ampere)) {
+        return {};
+    }
+    return {{SetupFault::output_unit, certain ? Severity::mistake : Severity::warning,
+             "columns " + listed(recording.output.names) + ": expected " + (current ? "A" : "N·m") +
+                 ", found up to " + rounded_text(largest) + ": looks like " + (current ? "mA" : "mN·m") +
+                 "; divide by 1000"}};
+}
+
+SetupFindings check_position_unit(const Recording& recording, const Robot* robot) {
+    SetupFindings findings;
+    if (robot != nullptr && robot->joints.size() == recording.joint_count()) {
+        findings = check_limits(recording, *robot);
+    }
+    std::vector<std::string> beyond;
+    double largest = 0;
+    for (std::size_t joint = 0; joint < recording.joint_count(); ++joint) {
+        const double magnitude = largest_magnitude(recording.position, joint);
+        if (magnitude > two_turns) {
+            beyond.push_back(recording.position.names[joint]);
+            largest = std::max(largest, magnitude);
+        }
+    }
+    if (any_mistake(findings) || beyond.size() < 3 || 2 * beyond.size() < recording.joint_count()) {
+        return findings;
+    }
+    return {{SetupFault::position_unit, Severity::mistake,
+             "columns " + listed(beyond) + ": expected rad, found up to " + rounded_text(largest) +
+                 ": looks like degrees; multiply by pi/180"}};
+}
+
+} // namespace dfdyn::tools

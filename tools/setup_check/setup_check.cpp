@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/setup_check/setup_check.hpp"
+
+#include "tools/setup_check/motion_checks.hpp"
+#include "tools/setup_check/output_size.hpp"
+#include "tools/setup_check/readings.hpp"
+#include "tools/setup_check/recording_checks.hpp"
+#include "tools/setup_check/rigid_comparison.hpp"
+
+#include <Eigen/Core>
+
+#include <iterator>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+void append(SetupFindings& findings, SetupFindings&& more) {
+    findings.insert(findings.end(), std::make_move_iterator(more.begin()),
+                    std::make_move_iterator(more.end()));
+}
+
+/// The first check that finds something wins: a second one would see the same mistake as another.
+SetupFindings check_by_robot(const Recording& recording, const SetupQuestion& question,
+                             RecordedMotion recorded) {
+    const bool current = question.outputs == OutputKind::motor_current;
+    const bool gains_known = !current || !question.torque_constants.empty();
+    if (current && gains_known) {
+        recorded.outputs *=
+            Eigen::Map<const Eigen::VectorXd>(question.torque_constants.data(), recorded.outputs.cols())
+                .asDiagonal();
+    }
+    const ArmRecording arm{*question.robot, recording, question.outputs, std::move(recorded), gains_known};
+    SetupFindings findings = check_output_size(arm);
+    if (findings.empty()) {
+        append(findings, check_readings(arm));
+    }
+    return findings;
+}
+
+/// Whether the question's parts fit each other.
+bool robot_fits(const Recording& recording, const SetupQuestion& question) {
+    const std::size_t joints = recording.joint_count();
+    const std::vector<double>& constants = question.torque_constants;
+    return question.robot != nullptr && question.robot->joints.size() == joints &&
+           (question.outputs != OutputKind::motor_current || constants.empty() ||
+            (constants.size() == joints && std::ranges::all_of(constants, [](double k) { return k > 0; })));
+}
+
+} // namespace
+
+SetupFindings check_setup(const Recording& recording, const SetupQuestion& question) {
+    SetupFindings findings = check_clock(recording);
+    append(findings, check_wrapping(recording));
+    append(findings, check_position_unit(recording, question.robot));
+    append(findings, check_dead_outputs(recording, question.outputs, question.robot));
+    append(findings, check_output_unit(recording, question.outputs));
+    if (any_mistake(findings)) {
+        return findings;
+    }
+    const auto recorded = checked_motion(recording);
+    if (!recorded) {
+        return findings;
+    }
+    append(findings, check_degrees_by_gravity(recording, *recorded));
+    if (!any_mistake(findings) && robot_fits(recording, question)) {
+        append(findings, check_by_robot(recording, question, *recorded));
+    }
+    if (!any_mistake(findings)) {
+        append(findings, check_friction_sign(recording, *recorded));
+    }
+    return findings;
+}
+
+} // namespace dfdyn::tools
