@@ -2,6 +2,7 @@
 #include "tools/diagnosis/plausibility.hpp"
 
 #include "tools/common/number.hpp"
+#include "tools/recording/stretches.hpp"
 
 #include <Eigen/QR>
 
@@ -20,6 +21,19 @@ std::string joint_list(const std::vector<std::size_t>& joints) {
         text += (text.empty() ? "" : ", ") + std::to_string(joint + 1);
     }
     return text;
+}
+
+/// The diagnosis filters at a few Hz, and cannot below that.
+void suspect_rate(const Recording& recording, Suspicions& result) {
+    constexpr double longest_step_s = 0.2;
+    constexpr double shortest_step_s = 2e-5;
+    const double step = recording.row_count() < 2 ? longest_step_s : median_step_s(recording);
+    if (step > longest_step_s || step < shortest_step_s) {
+        result.fatal = true;
+        result.sentences.push_back("rows are " + rounded_text(step) + " s apart: causes need " +
+                                   rounded_text(shortest_step_s) + " to " + rounded_text(longest_step_s) +
+                                   " s");
+    }
 }
 
 void suspect_duration(const Recording& recording, Suspicions& result) {
@@ -90,6 +104,7 @@ void suspect_robot(const DiagnosisSignals& signals, const Eigen::MatrixXd& measu
 
 Suspicions suspicions_of_file(const Recording& recording) {
     Suspicions result;
+    suspect_rate(recording, result);
     suspect_duration(recording, result);
     return result;
 }

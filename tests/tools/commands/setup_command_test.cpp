@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 namespace setup_command_test {
 
@@ -23,7 +24,8 @@ const std::string robot =
 const std::string quick = " --features 12 --starts 1 --likelihood-rows 60 --refinement 0 ";
 
 Recording right_recording() {
-    return dfdyn::tools::read_recording(DFDYN_TEST_DATA_DIR "/ur5_kufieta/Movement_No3_Acc.csv",
+    return dfdyn::tools::read_recording(DFDYN_TEST_DATA_DIR
+                                        "/ur5_kufieta/Movement_No5_Acc_slow_no_disturbance.csv",
                                         {.joint_count = 6, .outputs = OutputKind::motor_current});
 }
 
@@ -138,22 +140,31 @@ TEST_CASE("--no-setup-check trains all the same, and a right recording needs no 
     CHECK_THAT(right.call("train --help").out, ContainsSubstring("--no-setup-check"));
 }
 
+/// What `dfdyn diagnose` prints and writes about the bench's recording.
+std::pair<Outcome, nlohmann::json> diagnose(const Bench& bench, const std::string& option) {
+    Outcome outcome = bench.call("diagnose" + robot + "--outputs i --no-held-out --log " +
+                                 bench.path("run.csv") + " -o " + bench.path("out") + " " + option);
+    INFO(outcome.error);
+    REQUIRE(outcome.status == 0);
+    return {std::move(outcome), nlohmann::json::parse(file_content(bench.path("out/diagnosis.json")))};
+}
+
 TEST_CASE("diagnose has the same check, and the same option goes on without it") {
-    const Bench bench("time in ms");
-    const auto diagnose = [&bench](const std::string& option) {
-        const Outcome outcome = bench.call("diagnose" + robot + "--outputs i --no-held-out --log " +
-                                           bench.path("run.csv") + " -o " + bench.path("out") + " " + option);
-        CAPTURE(outcome.error);
-        return std::pair(outcome, nlohmann::json::parse(file_content(bench.path("out/diagnosis.json"))));
-    };
-    const auto [checked, refused] = diagnose("");
-    CHECK_THAT(checked.out, StartsWith("! column t: expected seconds") && ContainsSubstring("milliseconds"));
+    const Bench bench("outputs in mA");
+    const auto [checked, refused] = diagnose(bench, "");
+    CHECK_THAT(checked.out, StartsWith("! columns i1, i2, i3, i4, i5, i6: expected A") &&
+                                ContainsSubstring("looks like mA"));
     CHECK(refused["findings"].empty());
     CHECK_FALSE(std::filesystem::exists(bench.path("out/extended_model.json")));
-    const auto [unchecked, answered] = diagnose("--no-setup-check");
-    CHECK(unchecked.status == 0);
-    CHECK_THAT(unchecked.out, !ContainsSubstring("milliseconds"));
+    const auto [unchecked, answered] = diagnose(bench, "--no-setup-check");
+    CHECK_THAT(unchecked.out, !ContainsSubstring("looks like mA"));
     CHECK(std::filesystem::exists(bench.path("out/extended_model.json")));
+}
+
+TEST_CASE("diagnose names a clock that it cannot work with, also without the check") {
+    const Bench bench("time in ms");
+    CHECK_THAT(diagnose(bench, "").first.out, StartsWith("! column t: expected seconds"));
+    CHECK_THAT(diagnose(bench, "--no-setup-check").first.out, StartsWith("! rows are 8 s apart"));
 }
 
 TEST_CASE("an output that cannot be written is refused before the recording is read") {
