@@ -115,7 +115,7 @@ ExtrapolationModel read_extrapolation(const JsonReader& reader, int outputs) {
     extrapolation.extra_noise = reader.numbers("extra_noise", outputs);
     for (const double value : extrapolation.extra_noise) {
         if (value < 0) {
-            throw reader.error("extra_noise", "numbers of at least 0", number_text(value));
+            throw reader.error("extra_noise", "numbers of at least 0", in_quotes(number_text(value)));
         }
     }
     extrapolation.prior_variance = reader.positive_numbers("prior_variance", outputs);
