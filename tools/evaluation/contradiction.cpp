@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace dfdyn::tools {
 
@@ -14,6 +13,7 @@ constexpr double merged_below_s = 0.25;
 constexpr double margin = 3;
 constexpr double ordinary_share = 0.999;
 constexpr double patience_s = 1.5; // a push of 1 s, and what else contradicted shortly before
+constexpr double no_limit = 1e30;
 
 /// Learns the rows from `first` to `last` of all recordings, counted through, and returns their innovations.
 std::vector<double> learn_rows(HostEstimator& estimator, std::span<const Recording> recordings,
@@ -77,11 +77,11 @@ std::vector<Contradiction> find_contradictions(const ReplayedRecording& replayed
 }
 
 void calibrate_innovation_limit(TrainedModel& model, std::span<const Recording> recordings, bool from_prior) {
-    model.limits.innovation = std::numeric_limits<float>::max();
+    model.limits.innovation = no_limit;
     model.limits.innovation_patience = static_cast<int>(std::ceil(patience_s / model.sample_period_s));
     const std::vector<double> innovations = innovations_by_halves(model, recordings, from_prior);
     if (!innovations.empty()) {
-        model.limits.innovation = margin * quantile(innovations, ordinary_share);
+        model.limits.innovation = std::min(margin * quantile(innovations, ordinary_share), no_limit);
     }
 }
 
