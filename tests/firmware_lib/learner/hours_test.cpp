@@ -229,4 +229,55 @@ TEST_CASE("an arm that moves for a day without forgetting is learned as well as 
     }
 }
 
+/// How an arm spends its time.
+enum class Day { moving, coming_and_going, standing };
+
+template <class Arm>
+void spend(Arm& arm, Day day, std::int64_t samples) {
+    constexpr std::int64_t moving = 10'000;
+    constexpr std::int64_t standing = 100'000;
+    if (day == Day::coming_and_going) {
+        for (std::int64_t t = 0; t < samples; t += moving + standing) {
+            arm.move(moving);
+            arm.stand(standing);
+        }
+        return;
+    }
+    arm.move(day == Day::moving ? samples : standing);
+    arm.stand(day == Day::moving ? 0 : samples - standing);
+}
+
+/// At a signal to noise ratio of 10⁴.
+template <int columns>
+void check_day(std::mt19937_64& engine, std::int64_t samples) {
+    for (const double forgetting_factor : {1.0, 0.9999}) {
+        for (const Day day : {Day::moving, Day::coming_and_going, Day::standing}) {
+            CAPTURE(columns, forgetting_factor, static_cast<int>(day));
+            auto same = engine;
+            Arm<float, columns> arm(engine, 1e8, forgetting_factor);
+            Arm<double, columns> exact(same, 1e8, forgetting_factor);
+            arm.move(20'000);
+            exact.move(20'000);
+            static_cast<void>(arm.normalised_innovation());
+            spend(arm, day, samples);
+            spend(exact, day, samples);
+            const double innovation = arm.normalised_innovation();
+            CHECK(arm.error() < 2 * exact.error());
+            CHECK(innovation > 0.8);
+            CHECK(innovation < 1.25);
+        }
+    }
+}
+
+TEST_CASE("minutes of moving, coming and going, and standing are in float as in double") {
+    DFDYN_SEEDED_ENGINE(engine);
+    check_day<32>(engine, slow_build ? 120'000 : 600'000);
+}
+
+TEST_CASE("a day of moving, coming and going, and standing is in float as in double", "[.long]") {
+    DFDYN_SEEDED_ENGINE(engine);
+    check_day<32>(engine, 100'000'000);
+    check_day<100>(engine, 10'000'000);
+}
+
 } // namespace hours_test
