@@ -264,8 +264,8 @@ SetupFindings check_output_unit(const Recording& recording, OutputKind outputs) 
     }
     return {{SetupFault::output_unit, certain ? Severity::mistake : Severity::warning,
              "columns " + listed(recording.output.names) + ": expected " + (current ? "A" : "N·m") +
-                 ", found up to " + rounded_text(largest) + ": looks like " + (current ? "mA" : "mN·m") +
-                 "; divide by 1000"}};
+                 ", found up to " + rounded_text(largest) + ": " +
+                 (current ? "looks like mA" : "another unit, looks like mN·m") + "; divide by 1000"}};
 }
 
 SetupFindings check_position_unit(const Recording& recording, const Robot* robot) {
