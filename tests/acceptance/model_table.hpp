@@ -101,6 +101,7 @@ inline tools::ModelTraining training_of(const Combination& one, tools::OutputKin
     options.evaluations_per_start = 30;
     options.refinement_evaluations = 0;
     options.threads = 1;
+    options.shrinkage = false; // the paper's prior and deviations are what the table compares with
     training.physics = tools::RobotPhysics{robot, {"ft_bias"}, 0.1, {}};
     if (outputs == tools::OutputKind::joint_torque) {
         training.physics->effects = {"viscous_friction", "coulomb_friction", "torque_offset"};

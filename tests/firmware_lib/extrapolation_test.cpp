@@ -6,6 +6,7 @@
 #include "tests/support/seed.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace extrapolation_test {
 
@@ -15,6 +16,7 @@ using namespace dfdyn::tests;
 using Features = TestModel<float, DerivativeFreeReduced<6, 3>, 60>;
 using Mean = TestMean<float, DerivativeFreeReduced<6, 3>, 60>;
 using Kernel = TestKernel<float, DerivativeFreeReduced<6, 3>, 60>;
+using Physics = TestParametric<float, DerivativeFreeReduced<6, 3>>;
 
 /// 1 / (trace(P) / 2d) of the features' learner.
 template <class Model>
@@ -98,6 +100,68 @@ TEST_CASE("without the constants predictions and standard deviations are the pap
     const Extrapolation<float> paper(123.4F, 0);
     CHECK(paper.doubt() == 0);
     CHECK(paper.variance(124.4F, 123.4F, 0, 0) == 124.4F);
+}
+
+TEST_CASE(
+    "doubt of the physics rises with what its parameters leave open, and its variance is the output's") {
+    const Extrapolation<float> beyond(0, 0, 20);
+    float last = 0;
+    for (const float of_parameters : {0.0F, 0.01F, 1.0F, 5.0F, 40.0F, 1e10F, 1e30F}) {
+        CAPTURE(of_parameters);
+        const float doubt = beyond.parameter_doubt(1 + of_parameters, 0, 100);
+        CHECK(doubt >= last);
+        CHECK(doubt <= 1);
+        CHECK(beyond.variance(1 + of_parameters, 0, 0.5F, 0, 100) <= 101.5F);
+        CHECK(beyond.parameter_doubt(1 + of_parameters, 0, 0) == 0); // nothing is known of the output
+        last = doubt;
+    }
+    CHECK(last > 0.999F);
+    CHECK(beyond.parameter_doubt(1 + 15, 0, 100) == 0.5F); // 20 times 15 is the square of the range
+    CHECK(beyond.variance(3, 0, 0.5F, 0, 100) == 41.5F);
+    CHECK(beyond.variance(1e10F, 0, 0.5F, 0, 100) == 101.5F);
+    CHECK(Extrapolation<float>(2, 0.1F, 20).variance(6, 2, 0.5F, 0, 100) == 61.5F); // 3 of the parameters
+}
+
+TEST_CASE("a variance that is not finite stays so") {
+    for (const float ratio : {std::numeric_limits<float>::infinity(), std::nanf("")}) {
+        CHECK_FALSE(std::isfinite(Extrapolation<float>(ratio, 1).variance(ratio, ratio, 1, 1)));
+        CHECK_FALSE(std::isfinite(Extrapolation<float>(0, 0, 20).variance(ratio, 0, 1, 0, 100)));
+    }
+}
+
+TEST_CASE("without knowledge of the outputs, what the physics' parameters leave open counts once") {
+    DFDYN_SEEDED_ENGINE(engine);
+    RunningArm<Physics> arm(engine, make_constants<Physics>(engine));
+    const auto estimate_at_rest = [&] {
+        arm.now = 200;
+        arm.estimator.restart_window();
+        typename Estimator<Physics>::Estimate estimate{};
+        do {
+            estimate = arm.estimator.tick(arm.due(), Budget::predict_only());
+        } while (!estimate.status.predicted());
+        return estimate;
+    };
+    const auto paper = estimate_at_rest();
+    arm.constants.extrapolation.parameter_variance_factor = 1;
+    arm.constants.extrapolation.output_variance = {{1e20F, 1e20F}};
+    const auto once = estimate_at_rest();
+    arm.constants.extrapolation.parameter_variance_factor = 1e6F;
+    arm.constants.extrapolation.extra_noise = {{3, 3}};
+    const auto often = estimate_at_rest();
+    arm.constants.extrapolation.output_variance = {{1e-3F, 1e20F}};
+    const auto open = estimate_at_rest();
+    for (int k = 0; k < 2; ++k) {
+        const float noise = arm.constants.output_noise_std[k];
+        const auto variance = [&](const auto& estimate) {
+            return estimate.standard_deviation[k] * estimate.standard_deviation[k] / (noise * noise) - 1;
+        };
+        CHECK(once.prediction[k] == paper.prediction[k]);
+        CHECK(once.standard_deviation[k] == Approx(paper.standard_deviation[k]));
+        CHECK(variance(often) == Approx(3 + 1e6F * variance(paper)).epsilon(0.05));
+    }
+    CHECK(std::abs(open.prediction[0] - arm.constants.output_offset[0]) <
+          0.01F * std::abs(paper.prediction[0] - arm.constants.output_offset[0]));
+    CHECK(open.prediction[1] == often.prediction[1]);
 }
 
 TEMPLATE_TEST_CASE("far from the data the physics predicts, or the mean, and the deviation is the output's",

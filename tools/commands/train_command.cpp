@@ -96,9 +96,9 @@ void add_training_options(CLI::App& command, TrainingOptions& training) {
         "Model NP: outputs less their mean (default), or, as in the paper, a prior of mean zero");
     command.add_flag(
         "--shrinkage,!--no-shrinkage", training.shrinkage,
-        "Away from the data, predictions go back to the mean (NP) or the physics (SP, SP2, SPK), "
-        "and standard deviations grow to what the outputs span (default), or, as in the paper, "
-        "neither");
+        "Physics starts near the robot's own parameters; away from the data, predictions go back to the "
+        "mean (NP), the physics (SP, SP2, SPK) or zero (P), and standard deviations grow to what the "
+        "outputs span (default), or, as in the paper, none of it");
     command.add_option("--likelihood-rows", training.likelihood_rows, "Samples in the exact kernel, at most")
         ->check(CLI::Range(20, 20000))
         ->capture_default_str();
@@ -176,7 +176,6 @@ void note_ignored(const TrainOptions& options, OutputKind outputs) {
     };
     note(!physics, {"--effects", "--sign-velocity", "--own-motion"}, model);
     note(!physics && options.setup.unchecked, {"--robot"}, model);
-    note(!has_features(options.structure), {"--shrinkage"}, model);
     note(!learned, {"--prior"}, model);
     note(!physics, {"--torque-constants"}, model);
     note(physics && outputs != OutputKind::motor_current, {"--torque-constants"},

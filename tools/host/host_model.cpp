@@ -184,11 +184,14 @@ void set_columns(typename Model::Constants& constants, const TrainedModel& model
 template <class Model>
 void set_extrapolation(typename Model::Constants& constants, const TrainedModel& model) {
     const std::vector<double> zeros(model.outputs.names.size(), 0);
-    const bool given = model.extrapolation.has_value();
+    const ExtrapolationModel none{0, zeros, zeros, {}, 1};
+    const ExtrapolationModel& known = model.extrapolation ? *model.extrapolation : none;
+    const bool of_parameters = !known.output_variance.empty();
     constants.extrapolation = {
-        given ? static_cast<float>(model.extrapolation->inverse_far_variance) : 0.0F,
-        converted<float, Model::outputs>(given ? model.extrapolation->extra_noise : zeros),
-        converted<float, Model::outputs>(given ? model.extrapolation->prior_variance : zeros)};
+        static_cast<float>(known.inverse_far_variance), converted<float, Model::outputs>(known.extra_noise),
+        converted<float, Model::outputs>(known.prior_variance),
+        of_parameters ? static_cast<float>(known.parameter_variance_factor) : 0.0F,
+        converted<float, Model::outputs>(of_parameters ? known.output_variance : zeros)};
 }
 
 } // namespace

@@ -62,12 +62,17 @@ struct LimitModel {
     std::vector<double> prediction{}; ///< |prediction| at most, > 0; empty: no bound
 };
 
-/// What a model with features knows of the outputs away from its data (see dfdyn::Extrapolation). Empty: the
-/// paper's predictions and standard deviations. Variances in units of noise_std squared.
+/// What a model knows of the outputs away from its data (see dfdyn::Extrapolation). Empty: the paper's
+/// predictions and standard deviations. Variances in units of noise_std squared.
 struct ExtrapolationModel {
-    double inverse_far_variance = 0;    ///< 1 / φ'Pφ at a φ that has nothing in common with the data; > 0
+    double inverse_far_variance = 0;    ///< 1 / φ'Pφ at a φ that has nothing in common with the data; P: 0
     std::vector<double> extra_noise;    ///< m: variance near the data beyond the noise's; >= 0
-    std::vector<double> prior_variance; ///< m: of what the features add, where nothing is known
+    std::vector<double> prior_variance; ///< m: of what the features add, where nothing is known; P: zeros
+    /// P, SPK of a known robot, m, > 0: of an output about its offset where nothing is known. Empty: the
+    /// variance of the physics' parameters is the paper's.
+    std::vector<double> output_variance;
+    double parameter_variance_factor =
+        1; ///< times that this variance counts; >= 1; read with output_variance
 };
 
 /// Where learning starts: weights of each output and the unit-upper-triangular / diagonal factor of the

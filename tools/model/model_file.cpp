@@ -28,6 +28,7 @@ constexpr const char* schema = "dfdyn.model/1";
 constexpr int largest_joint_count = 64;
 constexpr int largest_feature_count = 5000;
 constexpr int largest_output_count = 64;
+constexpr double largest_parameter_variance_factor = 1e9;
 
 constexpr std::array<std::string_view, 5> structures{"NP", "P", "SP", "SP2", "SPK"};
 
@@ -39,10 +40,17 @@ ordered_json features_to_json(const FeatureModel& features) {
             {"omega", singles(features.omega)}};
 }
 
-ordered_json extrapolation_to_json(const ExtrapolationModel& extrapolation) {
-    return {{"inverse_far_variance", single(extrapolation.inverse_far_variance)},
-            {"extra_noise", singles(extrapolation.extra_noise)},
-            {"prior_variance", singles(extrapolation.prior_variance)}};
+ordered_json extrapolation_to_json(const ExtrapolationModel& extrapolation, const std::string& structure) {
+    ordered_json json{{"extra_noise", singles(extrapolation.extra_noise)}};
+    if (has_features(structure)) {
+        json["inverse_far_variance"] = single(extrapolation.inverse_far_variance);
+        json["prior_variance"] = singles(extrapolation.prior_variance);
+    }
+    if (!extrapolation.output_variance.empty()) {
+        json["parameter_variance_factor"] = single(extrapolation.parameter_variance_factor);
+        json["output_variance"] = singles(extrapolation.output_variance);
+    }
+    return json;
 }
 
 ordered_json training_to_json(const TrainingRecord& record) {
@@ -80,7 +88,7 @@ ordered_json model_json(const TrainedModel& model) {
         json["limits"]["prediction"] = singles(model.limits.prediction);
     }
     if (model.extrapolation) {
-        json["extrapolation"] = extrapolation_to_json(*model.extrapolation);
+        json["extrapolation"] = extrapolation_to_json(*model.extrapolation, model.structure);
     }
     if (has_features(model.structure)) {
         json["start"] = start_to_json(model.start);
@@ -109,16 +117,26 @@ OutputModel read_outputs(const JsonReader& reader) {
     return outputs;
 }
 
-ExtrapolationModel read_extrapolation(const JsonReader& reader, int outputs) {
+ExtrapolationModel read_extrapolation(const JsonReader& reader, int outputs, const std::string& structure) {
     ExtrapolationModel extrapolation;
-    extrapolation.inverse_far_variance = reader.positive_number("inverse_far_variance");
+    if (has_features(structure)) {
+        extrapolation.inverse_far_variance = reader.positive_number("inverse_far_variance");
+    }
     extrapolation.extra_noise = reader.numbers("extra_noise", outputs);
     for (const double value : extrapolation.extra_noise) {
         if (value < 0) {
             throw reader.error("extra_noise", "numbers of at least 0", in_quotes(number_text(value)));
         }
     }
-    extrapolation.prior_variance = reader.positive_numbers("prior_variance", outputs);
+    extrapolation.prior_variance.assign(static_cast<std::size_t>(outputs), 0);
+    if (has_features(structure)) {
+        extrapolation.prior_variance = reader.positive_numbers("prior_variance", outputs);
+    }
+    if (learns_parameters(structure) && reader.has("parameter_variance_factor")) {
+        extrapolation.parameter_variance_factor =
+            reader.number_within("parameter_variance_factor", 1, largest_parameter_variance_factor);
+        extrapolation.output_variance = reader.positive_numbers("output_variance", outputs);
+    }
     return extrapolation;
 }
 
@@ -169,9 +187,9 @@ TrainedModel read_fields(const JsonReader& reader) {
     if (has_features(model.structure)) {
         model.start = read_start(reader.object("start"), 2 * model.features.count, outputs);
         least = least_forgetting_factor(model.features.count);
-        if (reader.has("extrapolation")) {
-            model.extrapolation = read_extrapolation(reader.object("extrapolation"), outputs);
-        }
+    }
+    if (reader.has("extrapolation")) {
+        model.extrapolation = read_extrapolation(reader.object("extrapolation"), outputs, model.structure);
     }
     if (has_physics(model.structure)) {
         model.physics = read_physics(reader.object("physics"), model);
@@ -188,6 +206,7 @@ double least_forgetting_factor(int feature_count) { return 1 - 1 / (2.0 * featur
 
 bool has_features(const std::string& structure) { return structure != "P"; }
 bool has_physics(const std::string& structure) { return structure != "NP"; }
+bool learns_parameters(const std::string& structure) { return structure == "P" || structure == "SPK"; }
 
 std::string model_to_json(const TrainedModel& model) { return model_json(model).dump() + "\n"; }
 

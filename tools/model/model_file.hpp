@@ -22,6 +22,8 @@ double least_forgetting_factor(int feature_count);
 /// Whether a structure (NP, P, SP, SP2, SPK) has random features, and whether it has physics.
 bool has_features(const std::string& structure);
 bool has_physics(const std::string& structure);
+/// Whether the physics' parameters are learned: P, SPK.
+bool learns_parameters(const std::string& structure);
 
 /// The text of a model.json (schema dfdyn.model/1). Numbers are those of single precision, which is what the
 /// firmware runs with; reading the text back gives them bit for bit.

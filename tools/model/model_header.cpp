@@ -114,10 +114,16 @@ std::string extrapolation_constants(const TrainedModel& model) {
     if (!model.extrapolation) {
         return "";
     }
-    return ",\n    .extrapolation = {.inverse_far_variance = " +
-           literal(model.extrapolation->inverse_far_variance) +
-           ",\n        .extra_noise = " + braced(model.extrapolation->extra_noise) +
-           ",\n        .prior_variance = " + braced(model.extrapolation->prior_variance) + "}";
+    const ExtrapolationModel& known = *model.extrapolation;
+    std::string text =
+        ",\n    .extrapolation = {.inverse_far_variance = " + literal(known.inverse_far_variance) +
+        ",\n        .extra_noise = " + braced(known.extra_noise) +
+        ",\n        .prior_variance = " + braced(known.prior_variance);
+    if (!known.output_variance.empty()) {
+        text += ",\n        .parameter_variance_factor = " + literal(known.parameter_variance_factor) +
+                ",\n        .output_variance = " + braced(known.output_variance);
+    }
+    return text + "}";
 }
 
 } // namespace

@@ -28,24 +28,26 @@ double centre_distance(const RobotJoint& joint) {
     return mass > 0 ? joint.inertia.segment<3>(1).norm() / mass : 0;
 }
 
-double reach_of(const Robot& robot) {
+/// From joint `first` to the tip or the farthest centre of mass.
+double reach_of(const Robot& robot, std::size_t first) {
     double to_joint = 0;
     double reach = shortest_reach;
-    for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    for (std::size_t i = first; i < robot.joints.size(); ++i) {
         const RobotJoint& joint = robot.joints[i];
         to_joint +=
-            travel(joint) + (i > 0 ? joint.placement.translation().norm() : 0); // not the base's height
+            travel(joint) + (i > first ? joint.placement.translation().norm() : 0); // not the base's height
         reach = std::max(reach, to_joint + centre_distance(joint));
     }
     return std::max(reach, to_joint + robot.tip_placement.translation().norm());
 }
 
-double mass_of(const Robot& robot, double reach) {
+/// Of joint `first` and all beyond it.
+double mass_of(const Robot& robot, std::size_t first, double reach) {
     double mass = 0;
     double effort = 0;
-    for (const RobotJoint& joint : robot.joints) {
-        mass += std::max(joint.inertia[0], 0.0);
-        effort = std::max(effort, joint.effort.value_or(0));
+    for (std::size_t i = first; i < robot.joints.size(); ++i) {
+        mass += std::max(robot.joints[i].inertia[0], 0.0);
+        effort = std::max(effort, robot.joints[i].effort.value_or(0));
     }
     if (mass > 0) {
         return mass;
@@ -53,11 +55,19 @@ double mass_of(const Robot& robot, double reach) {
     return effort > 0 ? effort / (gravity * reach) : unknown_mass;
 }
 
-/// Mass and reach of a robot, and what follows from them.
+/// Mass and reach of a robot from one of its joints on, and what follows from them.
 struct MachineSize {
     double reach, mass;
 
-    explicit MachineSize(const Robot& robot) : reach(reach_of(robot)), mass(mass_of(robot, reach)) {}
+    explicit MachineSize(const Robot& robot, std::size_t first = 0)
+        : reach(reach_of(robot, first)), mass(mass_of(robot, first, reach)) {}
+
+    InertialParameters body() const {
+        InertialParameters sizes;
+        sizes << mass, Eigen::Vector3d::Constant(mass * reach),
+            Eigen::Matrix<double, 6, 1>::Constant(mass * reach * reach);
+        return sizes;
+    }
 
     double weight() const { return mass * gravity; }
 
@@ -84,22 +94,45 @@ struct MachineSize {
     }
 };
 
+OutputKind outputs_of(const ChainModel& chain) {
+    return chain.sensor ? OutputKind::wrench : OutputKind::joint_torque;
+}
+
 } // namespace
 
 Eigen::VectorXd parameter_sizes(const Robot& robot, const ChainModel& chain,
                                 const std::vector<EffectModel>& effects) {
     const MachineSize machine(robot);
-    const int bodies = body_count(robot, chain.sensor ? OutputKind::wrench : OutputKind::joint_torque);
+    const int bodies = body_count(robot, outputs_of(chain));
     Eigen::VectorXd sizes(inertial_parameters * bodies + static_cast<Eigen::Index>(effects.size()));
-    InertialParameters body;
-    body << machine.mass, Eigen::Vector3d::Constant(machine.mass * machine.reach),
-        Eigen::Matrix<double, 6, 1>::Constant(machine.mass * machine.reach * machine.reach);
-    sizes.head(inertial_parameters * bodies) = body.replicate(bodies, 1);
+    sizes.head(inertial_parameters * bodies) = machine.body().replicate(bodies, 1);
     for (std::size_t i = 0; i < effects.size(); ++i) {
         sizes[inertial_parameters * bodies + static_cast<Eigen::Index>(i)] =
             machine.effect(effects[i], robot);
     }
     return sizes;
+}
+
+Eigen::VectorXd expected_parameters(const Robot& robot, const ChainModel& chain,
+                                    const std::vector<EffectModel>& effects) {
+    const Eigen::VectorXd nominal = nominal_parameters(robot, outputs_of(chain));
+    Eigen::VectorXd expected =
+        Eigen::VectorXd::Zero(nominal.size() + static_cast<Eigen::Index>(effects.size()));
+    expected.head(nominal.size()) = nominal;
+    return expected;
+}
+
+Eigen::VectorXd parameter_deviations(const Robot& robot, const ChainModel& chain,
+                                     const std::vector<EffectModel>& effects) {
+    Eigen::VectorXd deviations = parameter_sizes(robot, chain, effects);
+    const auto bodies = static_cast<std::size_t>(body_count(robot, outputs_of(chain)));
+    const std::size_t joints = robot.joints.size();
+    for (std::size_t body = 0; body < bodies; ++body) {
+        const std::size_t joint = joints - std::min(joints, bodies - body);
+        deviations.segment<inertial_parameters>(inertial_parameters * static_cast<Eigen::Index>(body)) =
+            MachineSize(robot, joint).body();
+    }
+    return deviations;
 }
 
 void check_parameters(const PhysicsModel& physics, const Eigen::VectorXd& sizes) {

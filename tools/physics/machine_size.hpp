@@ -31,6 +31,15 @@ inline constexpr double parameter_margin = 100;
 Eigen::VectorXd parameter_sizes(const Robot& robot, const ChainModel& chain,
                                 const std::vector<EffectModel>& effects);
 
+/// The robot's own parameters, and zero for each of `effects`: P entries.
+Eigen::VectorXd expected_parameters(const Robot& robot, const ChainModel& chain,
+                                    const std::vector<EffectModel>& effects);
+
+/// How far each parameter may be from expected_parameters(): P entries > 0. As parameter_sizes(), but of a
+/// body with only what hangs on its joint: mass and reach of the links from there to the tip.
+Eigen::VectorXd parameter_deviations(const Robot& robot, const ChainModel& chain,
+                                     const std::vector<EffectModel>& effects);
+
 /// Throws InputError with name, value and bound of the first parameter of `physics`, at the start of
 /// learning, that is beyond parameter_margin times its size. `sizes` as of parameter_sizes().
 void check_parameters(const PhysicsModel& physics, const Eigen::VectorXd& sizes);

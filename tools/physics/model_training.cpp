@@ -155,11 +155,13 @@ MatrixXd columns_of(const PhysicsModel& physics, const TrainingData& data, const
 
 JointStart joint_start_of(const TrainedModel& model, const PhysicsProblem& problem) {
     const PhysicsModel& physics = *model.physics;
+    const ParameterPrior prior =
+        ParameterPrior::independent(static_cast<Index>(physics.selected.size()), physics.prior_variance);
     if (model.structure == "P") {
-        return parametric_start(problem, physics.prior_variance);
+        return parametric_start(problem, prior);
     }
     if (model.structure == "SPK") {
-        return joint_start(problem, physics.prior_variance);
+        return joint_start(problem, prior);
     }
     return residual_start(problem,
                           Eigen::Map<const VectorXd>(physics.start.weights.data(),
@@ -222,6 +224,8 @@ ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind out
     const auto regressor = robot_regressor(columns.chain, columns.effects, columns.output_gain);
     options.physics.regressor = regressor.get();
     options.physics.parameter_size = parameter_sizes(robot.robot, columns.chain, columns.effects);
+    options.physics.nominal = expected_parameters(robot.robot, columns.chain, columns.effects);
+    options.physics.nominal_deviation = parameter_deviations(robot.robot, columns.chain, columns.effects);
     TrainingResult result = train(prepared.data, options, progress);
     TrainedModel model = std::move(result.model);
     set_derivatives(model, prepared);

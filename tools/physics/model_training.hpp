@@ -63,7 +63,7 @@ ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind out
 
 /// Computes the start of `model` again, by batch least squares over all usable samples of `prepared`, with
 /// everything else as the model has it: its hyperparameters, motion, features. For another draw of features,
-/// or other data.
+/// or other data. Of a model trained without shrinkage: the robot's own parameters are not in the prior.
 void restart_model(TrainedModel& model, const PreparedTraining& prepared);
 
 } // namespace dfdyn::tools

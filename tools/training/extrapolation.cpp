@@ -166,7 +166,105 @@ double mean_variance(const StartModel& start) {
     return trace / static_cast<double>(start.diagonal.size());
 }
 
+/// The physics' part of one stretch of time.
+struct PhysicsBlock {
+    MatrixXd information;
+    VectorXd right_hand_side;
+    MatrixXd columns; ///< rows to predict, in units of noise_std: (rows m) x p
+    VectorXd targets;
+};
+
+PhysicsBlock physics_block(const PhysicsProblem& problem, Index first, Index last, Index stride) {
+    const auto outputs = static_cast<Index>(problem.model.outputs.noise_std.size());
+    const Index p = problem.columns.cols() / outputs;
+    const MatrixXd targets = scaled_outputs(problem.model.outputs, problem.data.outputs, problem.rows);
+    const auto picked = Eigen::seq(first, last - 1, stride);
+    PhysicsBlock block{MatrixXd::Zero(p, p), VectorXd::Zero(p), {}, {}};
+    const MatrixXd measured = targets(picked, Eigen::all);
+    block.columns.resize(measured.size(), p);
+    block.targets.resize(measured.size());
+    for (Index k = 0; k < outputs; ++k) {
+        const MatrixXd psi = problem.columns(picked, Eigen::seqN(k * p, p)) /
+                             problem.model.outputs.noise_std[static_cast<std::size_t>(k)];
+        block.columns.middleRows(k * measured.rows(), measured.rows()) = psi;
+        block.targets.segment(k * measured.rows(), measured.rows()) = measured.col(k);
+    }
+    const auto weight = static_cast<double>(stride);
+    block.information = weight * (block.columns.transpose() * block.columns);
+    block.right_hand_side = weight * (block.columns.transpose() * block.targets);
+    return block;
+}
+
+/// What two deviations, of the noise and of the parameters learned from the equations, leave of the squared
+/// errors on a block: added output by output.
+void predict_physics(const NormalEquations& equations, const ParameterPrior& prior, double factor,
+                     const PhysicsBlock& block, std::vector<std::vector<double>>& unexplained) {
+    const CovarianceFactor learned = information_factor(equations.information + prior.information, 1);
+    const VectorXd parameters =
+        learned.solve(equations.right_hand_side + prior.information * prior.mean).col(0);
+    const VectorXd errors = block.targets - block.columns * parameters;
+    const VectorXd variances = learned.lower()
+                                   .triangularView<Eigen::Lower>()
+                                   .solve(block.columns.transpose())
+                                   .colwise()
+                                   .squaredNorm()
+                                   .transpose();
+    const Index rows = errors.size() / static_cast<Index>(unexplained.size());
+    for (Index i = 0; i < errors.size(); ++i) {
+        unexplained[static_cast<std::size_t>(i / rows)].push_back(errors[i] * errors[i] / 4 -
+                                                                  factor * variances[i]);
+    }
+}
+
 } // namespace
+
+std::vector<double> output_variances(const TrainedModel& model, const TrainingData& data,
+                                     const RowList& rows) {
+    const MatrixXd outputs = scaled_outputs(model.outputs, data.outputs, rows);
+    std::vector<double> result;
+    for (Index k = 0; k < outputs.cols(); ++k) {
+        result.push_back(prior_variance(outputs, k, 0));
+    }
+    return result;
+}
+
+ExtrapolationModel measure_parametric_extrapolation(const PhysicsProblem& problem,
+                                                    const ParameterPrior& prior,
+                                                    double parameter_variance_factor) {
+    const auto count = static_cast<Index>(problem.rows.size());
+    const Index stride = (count + learned_rows - 1) / learned_rows;
+    std::vector<PhysicsBlock> blocks;
+    for (Index b = 0; b < block_count; ++b) {
+        blocks.push_back(
+            physics_block(problem, count * b / block_count, count * (b + 1) / block_count, stride));
+    }
+    NormalEquations all{MatrixXd::Zero(prior.mean.size(), prior.mean.size()),
+                        MatrixXd::Zero(prior.mean.size(), 1)};
+    for (const PhysicsBlock& block : blocks) {
+        all.information += block.information;
+        all.right_hand_side += block.right_hand_side;
+    }
+    std::vector<std::vector<double>> unexplained(problem.model.outputs.noise_std.size());
+    for (const PhysicsBlock& block : blocks) {
+        predict_physics({all.information - block.information, all.right_hand_side - block.right_hand_side},
+                        prior, parameter_variance_factor, block, unexplained);
+        for (const PhysicsBlock& other : blocks) {
+            if (&other != &block) {
+                predict_physics({block.information, block.right_hand_side}, prior, parameter_variance_factor,
+                                other, unexplained);
+            }
+        }
+    }
+    ExtrapolationModel result;
+    result.parameter_variance_factor = parameter_variance_factor;
+    result.prior_variance.assign(unexplained.size(), 0);
+    result.output_variance = output_variances(problem.model, problem.data, problem.rows);
+    for (std::vector<double>& of_output : unexplained) {
+        result.extra_noise.push_back(
+            std::max(quantile(std::move(of_output), within_two_deviations) - 1, 0.0));
+    }
+    return result;
+}
 
 ExtrapolationModel measure_extrapolation(const TrainedModel& model, const TrainingData& data,
                                          const RowList& rows, const MatrixXd& targets) {

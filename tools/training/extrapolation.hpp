@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tools/model/model.hpp"
+#include "tools/training/physics_start.hpp"
 #include "tools/training/row_selection.hpp"
 #include "tools/training/training_data.hpp"
 
@@ -24,5 +25,17 @@ namespace dfdyn::tools {
 /// (2d)^3) with n = 6000.
 ExtrapolationModel measure_extrapolation(const TrainedModel& model, const TrainingData& data,
                                          const RowList& rows, const Eigen::MatrixXd& targets);
+
+/// Of each output about its offset where nothing is known, in units of noise_std squared: it is taken to be
+/// uniform over plus and minus its 99 % quantile at `rows`.
+std::vector<double> output_variances(const TrainedModel& model, const TrainingData& data,
+                                     const RowList& rows);
+
+/// Likewise for P, whose start is the solution of `problem` under `prior`: extra_noise from the same blocks,
+/// where the variance of the parameters, times `parameter_variance_factor`, explains its part of the errors.
+/// O(n m p^2 + 10 p^3).
+ExtrapolationModel measure_parametric_extrapolation(const PhysicsProblem& problem,
+                                                    const ParameterPrior& prior,
+                                                    double parameter_variance_factor);
 
 } // namespace dfdyn::tools

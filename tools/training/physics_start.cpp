@@ -37,7 +37,7 @@ struct ScaledProblem {
 };
 
 /// Lambda pi = b of the physics alone, with its prior.
-NormalEquations physics_equations(const PhysicsProblem& problem, double prior_variance) {
+NormalEquations physics_equations(const PhysicsProblem& problem, const ParameterPrior& prior) {
     ScaledProblem scaled(problem);
     scaled.weigh(problem.model.forgetting_factor);
     NormalEquations equations{MatrixXd::Zero(scaled.p, scaled.p), MatrixXd::Zero(scaled.p, 1)};
@@ -45,13 +45,15 @@ NormalEquations physics_equations(const PhysicsProblem& problem, double prior_va
         equations.information.selfadjointView<Eigen::Lower>().rankUpdate(scaled.columns_of(k).transpose());
         equations.right_hand_side += scaled.columns_of(k).transpose() * scaled.outputs.col(k);
     }
-    equations.information.diagonal().array() +=
-        prior_weight(problem.model.forgetting_factor, scaled.outputs.rows()) / prior_variance;
+    const double weight = prior_weight(problem.model.forgetting_factor, scaled.outputs.rows());
+    equations.information += weight * prior.information;
+    equations.right_hand_side += weight * (prior.information * prior.mean);
     return equations;
 }
 
-PhysicsStart solved(NormalEquations equations, double prior_variance) {
-    const CovarianceFactor factor = information_factor(std::move(equations.information), prior_variance);
+PhysicsStart solved(NormalEquations equations, const ParameterPrior& prior) {
+    const CovarianceFactor factor =
+        information_factor(std::move(equations.information), 1 / prior.information.diagonal().minCoeff());
     PhysicsStart start;
     start.parameters = factor.solve(equations.right_hand_side).col(0);
     store_inverse(factor, start.unit_upper, start.diagonal);
@@ -68,8 +70,12 @@ MatrixXd targets_of(const PhysicsProblem& problem) {
 
 } // namespace
 
-JointStart parametric_start(const PhysicsProblem& problem, double prior_variance) {
-    return {{}, solved(physics_equations(problem, prior_variance), prior_variance)};
+ParameterPrior ParameterPrior::independent(Index p, double prior_variance) {
+    return {VectorXd::Zero(p), MatrixXd::Identity(p, p) / prior_variance};
+}
+
+JointStart parametric_start(const PhysicsProblem& problem, const ParameterPrior& prior) {
+    return {{}, solved(physics_equations(problem, prior), prior)};
 }
 
 JointStart residual_start(const PhysicsProblem& problem, const VectorXd& parameters) {
@@ -80,7 +86,7 @@ JointStart residual_start(const PhysicsProblem& problem, const VectorXd& paramet
     return {batch_start(problem.model, problem.data, problem.rows, scaled.outputs), {parameters, {}, {}, {}}};
 }
 
-JointStart joint_start(const PhysicsProblem& problem, double prior_variance) {
+JointStart joint_start(const PhysicsProblem& problem, const ParameterPrior& prior) {
     const auto samples = static_cast<Index>(problem.rows.size());
     const auto count = static_cast<Index>(problem.model.outputs.noise_std.size());
     const Index p = problem.columns.cols() / count;
@@ -90,7 +96,7 @@ JointStart joint_start(const PhysicsProblem& problem, double prior_variance) {
     const CovarianceFactor factor =
         information_factor(std::move(kernel.information), problem.model.outputs.prior_variance);
     const MatrixXd solution = factor.solve(kernel.right_hand_side); // [A_1 … A_m, G_1 … G_m]
-    NormalEquations schur = physics_equations(problem, prior_variance);
+    NormalEquations schur = physics_equations(problem, prior);
     std::vector<MatrixXd> couplings;
     for (Index k = 0; k < count; ++k) {
         const MatrixXd coupling = solution.middleCols(count + k * p, p);
@@ -99,7 +105,7 @@ JointStart joint_start(const PhysicsProblem& problem, double prior_variance) {
         schur.right_hand_side -= coupling.transpose() * kernel.right_hand_side.col(k);
         couplings.push_back(coupling);
     }
-    JointStart start{{}, solved(std::move(schur), prior_variance)};
+    JointStart start{{}, solved(std::move(schur), prior)};
     start.physics.coupling = std::move(couplings);
     start.kernel.weights.assign(solution.data(), solution.data() + solution.rows() * count);
     store_inverse(factor, start.kernel.unit_upper, start.kernel.diagonal);

@@ -37,16 +37,25 @@ struct PhysicsProblem {
     const Eigen::MatrixXd& columns; ///< psi column_scale at `rows`, N x (m p) as of PhysicsColumns
 };
 
-/// The regularised least-squares solution (eq:ReLS) of P: pi^ and its covariance, prior N(0, prior_variance
-/// I). The prior's weight under forgetting as of batch_start(). O(N m p^2 + p^3). Throws InputError where the
-/// information matrix cannot be factored.
-JointStart parametric_start(const PhysicsProblem& problem, double prior_variance);
+/// A Gaussian prior of pi, in the units of PhysicsStart::parameters.
+struct ParameterPrior {
+    Eigen::VectorXd mean;        ///< p
+    Eigen::MatrixXd information; ///< p x p, the inverse of the covariance
+
+    /// The paper's: N(0, prior_variance I).
+    static ParameterPrior independent(Eigen::Index p, double prior_variance);
+};
+
+/// The regularised least-squares solution (eq:ReLS) of P: pi^ and its covariance under the prior. The prior's
+/// weight under forgetting as of batch_start(). O(N m p^2 + p^3). Throws InputError where the information
+/// matrix cannot be factored.
+JointStart parametric_start(const PhysicsProblem& problem, const ParameterPrior& prior);
 
 /// SP, SP2: NP's start on what the fixed `parameters` leave of the outputs.
 JointStart residual_start(const PhysicsProblem& problem, const Eigen::VectorXd& parameters);
 
 /// SPK in block-arrow form: the factor of Lambda_phi, which all outputs share, and the Schur complement of
 /// pi. Equal to the solution for all unknowns at once. O(N (2d)^2 + N m 2d p + (2d)^3).
-JointStart joint_start(const PhysicsProblem& problem, double prior_variance);
+JointStart joint_start(const PhysicsProblem& problem, const ParameterPrior& prior);
 
 } // namespace dfdyn::tools

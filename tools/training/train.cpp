@@ -11,6 +11,7 @@
 #include "tools/training/limits.hpp"
 #include "tools/training/normal_equations.hpp"
 #include "tools/training/random_features.hpp"
+#include "tools/training/robot_prior.hpp"
 #include "tools/training/start_state.hpp"
 #include "tools/training/training_options.hpp"
 #include "tools/training/training_problem.hpp"
@@ -112,6 +113,23 @@ MatrixXd feature_targets(const TrainingSetup& setup, const OutputModel& outputs,
     return targets;
 }
 
+/// The prior that the robot's own parameters give; nothing where they are unknown or the paper's prior is
+/// wanted.
+std::optional<ParameterPrior> knowledge_of(const TrainingSetup& setup, const ColumnChoice& choice,
+                                           const VectorXd& motion) {
+    const PhysicsOptions& physics = setup.options.physics;
+    if (!setup.options.shrinkage || physics.nominal.size() == 0 || physics.given) {
+        return std::nullopt;
+    }
+    return robot_prior(setup, choice, motion);
+}
+
+/// SP: by generalised least squares under the kernel of the features; SP2: without features.
+VectorXd fixed_parameters(const PhysicsProblem& problem, ModelClass model, const ParameterPrior& prior) {
+    return (model == ModelClass::SP ? joint_start(problem, prior) : parametric_start(problem, prior))
+        .physics.parameters;
+}
+
 /// Fills the start of the model and what it says of the physics.
 TrainedPhysics start_physics(const TrainingSetup& setup, const PhysicsPart& part, TrainedModel& model) {
     TrainedPhysics physics = units_of(setup, part, model.outputs);
@@ -120,23 +138,37 @@ TrainedPhysics start_physics(const TrainingSetup& setup, const PhysicsPart& part
     const MatrixXd columns =
         setup.physics(setup.options.input, setup.rows.usable, choice)->evaluate(part.motion);
     const PhysicsProblem problem{model, setup.data, setup.rows.usable, columns};
-    const auto start = [&] {
+    const std::optional<ParameterPrior> robot = knowledge_of(setup, choice, part.motion);
+    const JointStart start = [&] {
+        const auto p = static_cast<Index>(choice.columns.size());
+        const ParameterPrior prior = robot ? *robot : ParameterPrior::independent(p, physics.prior_variance);
         switch (setup.options.model) {
         case ModelClass::P:
-            return parametric_start(problem, physics.prior_variance);
+            return parametric_start(problem, prior);
         case ModelClass::SPK:
-            return joint_start(problem, physics.prior_variance);
+            return joint_start(problem, prior);
         default:
-            return residual_start(
-                problem, part.fit.parameters.cwiseProduct(part.choice.scale.cwiseQuotient(choice.scale)));
+            return residual_start(problem, robot ? fixed_parameters(problem, setup.options.model, prior)
+                                                 : part.fit.parameters.cwiseProduct(
+                                                       part.choice.scale.cwiseQuotient(choice.scale)));
         }
     }();
     model.start = start.kernel;
     physics.start = start.physics;
-    if (setup.options.shrinkage && setup.options.model != ModelClass::P) {
+    if (!setup.options.shrinkage) {
+        return physics;
+    }
+    if (setup.options.model != ModelClass::P) {
         model.extrapolation =
             measure_extrapolation(model, setup.data, setup.rows.usable,
                                   feature_targets(setup, model.outputs, columns, start.physics.parameters));
+        if (robot && setup.options.model == ModelClass::SPK) {
+            model.extrapolation->parameter_variance_factor = parameter_variance_factor(setup);
+            model.extrapolation->output_variance = output_variances(model, setup.data, setup.rows.usable);
+        }
+    } else if (robot) {
+        model.extrapolation =
+            measure_parametric_extrapolation(problem, *robot, parameter_variance_factor(setup));
     }
     return physics;
 }

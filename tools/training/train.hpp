@@ -45,6 +45,10 @@ struct PhysicsOptions {
     /// P: magnitude that each parameter of the regressor can have in a machine, > 0, in the parameter's own
     /// unit; empty: unknown. Chooses columns (see select_columns()) and bounds the deviation of the prior.
     Eigen::VectorXd parameter_size;
+    /// P each: what the robot's own parameters are, and how far they may be from the true ones (> 0). Empty:
+    /// unknown. With `TrainingOptions::shrinkage`, the start of P, SP, SP2 and SPK is the solution under
+    /// this prior (see robot_prior()) in place of gamma^2.
+    Eigen::VectorXd nominal, nominal_deviation;
     std::optional<Eigen::VectorXd> given; ///< SP2: all physical parameters, in place of least squares
 };
 
@@ -61,8 +65,9 @@ struct TrainingOptions {
     /// for inputs of unit deviation.
     bool relevance = true;
     bool centred = true; ///< NP: outputs less their mean; false, the paper's: a prior of mean zero
-    /// Away from the data, predictions go back to the mean (NP) or the physics, and standard deviations grow
-    /// to what the outputs span; false: neither, as in the paper.
+    /// Physics starts near the robot's own parameters, where PhysicsOptions knows them. Away from the data,
+    /// predictions go back to the mean (NP), the physics or zero (P), and standard deviations grow to what
+    /// the outputs span. False: none of it, as in the paper.
     bool shrinkage = true;
     int feature_count = 250;         ///< d >= 1; P has none
     bool orthogonal = true;          ///< orthogonal random features

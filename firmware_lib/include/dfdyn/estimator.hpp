@@ -189,7 +189,7 @@ class Estimator {
     using Gate = InnovationGate<Scalar>;
 
     /// Multiply-adds that an output takes between the regression's units and its own.
-    static constexpr int output_cost = function_cost + 8;
+    static constexpr int output_cost = function_cost + 15;
     /// Multiply-adds of an output's part in `innovation_square`.
     static constexpr int square_cost = 2;
 
@@ -382,13 +382,18 @@ class Estimator {
     /// seen after that, but the weights still hold the best guess of the rest: nothing is taken off.
     void extrapolate(Scalar feature_variance, Estimate& estimate) noexcept {
         const auto& known = constants_->extrapolation;
-        const Extrapolation<Scalar> beyond(feature_variance, known.inverse_far_variance);
-        const bool given = known.inverse_far_variance > 0;
+        const Extrapolation<Scalar> beyond(feature_variance, known.inverse_far_variance,
+                                           known.parameter_variance_factor);
+        const bool given = known.measured();
         const Scalar doubt = changed_ == 0 ? beyond.doubt() : Scalar(0);
         for (int k = 0; k < sizes_.output_count; ++k) {
+            const Scalar output_variance = given ? known.output_variance[k] : Scalar(0);
+            const Scalar open = beyond.parameter_doubt(ratio_[k], feature_variance, output_variance);
+            const Scalar trust = 1 - (changed_ == 0 ? open : Scalar(0));
             estimate.prediction[k] -= doubt * (estimate.prediction[k] - without_features_[k]);
+            estimate.prediction[k] *= trust;
             ratio_[k] = beyond.variance(ratio_[k], feature_variance, given ? known.extra_noise[k] : Scalar(0),
-                                        given ? known.prior_variance[k] : Scalar(0));
+                                        given ? known.prior_variance[k] : Scalar(0), output_variance);
         }
     }
 

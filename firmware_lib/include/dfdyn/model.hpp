@@ -87,7 +87,7 @@ struct Model {
         /// No prediction leaves the range ±`prediction_limit` (the output's unit); 0, also absent: no limit.
         Storage<Scalar, outputs> prediction_limit{};
         StructureConstants learner;
-        ExtrapolationConstants<Scalar, outputs> extrapolation{}; ///< of models with features
+        ExtrapolationConstants<Scalar, outputs> extrapolation{}; ///< zero: the paper's
     };
 };
 

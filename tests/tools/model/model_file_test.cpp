@@ -155,6 +155,31 @@ TEST_CASE("a bound of the predictions reads back, and a model without one stays 
     CHECK(refusal_with("/limits/prediction", {1, -1}).has_value());
 }
 
+TEST_CASE("what a model knows of its physics' parameters reads back; without it their variance counts once") {
+    DFDYN_SEEDED_ENGINE(engine);
+    for (const char* structure : {"P", "SPK"}) {
+        CAPTURE(structure);
+        TrainedModel model = dfdyn::tests::small_physics_model(engine, structure, InputKind::DFR, false);
+        dfdyn::tests::add_extrapolation(model, engine);
+        if (model.structure == "P") {
+            model.extrapolation->inverse_far_variance = 0;
+            model.extrapolation->prior_variance = {0, 0};
+        }
+        CHECK(model_from_json(model_to_json(model), "m.json").extrapolation->output_variance.empty());
+        model.extrapolation->parameter_variance_factor = 500;
+        model.extrapolation->output_variance = {3, 4};
+        const std::string text = model_to_json(model);
+        const TrainedModel read = model_from_json(text, "m.json");
+        CHECK(model_to_json(read) == text);
+        CHECK(read.extrapolation->parameter_variance_factor == 500);
+        model.extrapolation->parameter_variance_factor = 0.5;
+        CHECK(refusal(model_to_json(model)).has_value());
+        model.extrapolation->parameter_variance_factor = 500;
+        model.extrapolation->output_variance = {3, 0};
+        CHECK(refusal(model_to_json(model)).has_value());
+    }
+}
+
 TEST_CASE("models that differ in one number differ in identity") {
     std::mt19937_64 engine(1);
     TrainedModel model = small_model(engine, InputKind::DFR);

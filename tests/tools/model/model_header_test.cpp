@@ -141,6 +141,11 @@ TEST_CASE("the header knows what the model file does of the outputs away from th
     TrainedModel with_physics = small_physics_model(engine, "SPK", InputKind::DFR, false);
     dfdyn::tests::add_extrapolation(with_physics, engine);
     check_header(with_physics);
+    const std::vector<double> once = run_host(with_physics);
+    with_physics.extrapolation->parameter_variance_factor = 500;
+    with_physics.extrapolation->output_variance = {3, 4};
+    CHECK(run_host(with_physics) != once);
+    check_header(with_physics);
 }
 
 TEST_CASE("hostile names do not leave their comment") {

@@ -46,6 +46,23 @@ TEST_CASE("a link reaches as far as its centre of mass, whatever the tip") {
     CHECK(sizes_of(robot)[3] == Approx(0.5 * 0.1));
 }
 
+TEST_CASE("what a parameter may be off by follows from the links beyond its joint") {
+    Robot robot = dfdyn::tests::planar_arm(9.81); // two links of 1 kg, 1 m from joint to joint
+    robot.tip_placement.translation() = Eigen::Vector3d(0.6, 0, 0);
+    const ChainModel chain = chain_model(robot, OutputKind::joint_torque);
+    const auto effects = effect_models({"coulomb_friction"}, chain, 0.05);
+    const VectorXd deviations = parameter_deviations(robot, chain, effects);
+    CHECK(deviations[0] == Approx(2));
+    CHECK(deviations[9] == Approx(2 * 1.6 * 1.6));
+    CHECK(deviations[10] == Approx(1));
+    CHECK(deviations[13] == Approx(1 * 0.6));
+    CHECK(deviations[19] == Approx(1 * 0.6 * 0.6));
+    CHECK(deviations.tail(2) == parameter_sizes(robot, chain, effects).tail(2));
+    const VectorXd expected = expected_parameters(robot, chain, effects);
+    CHECK(expected.head(20) == nominal_parameters(robot, OutputKind::joint_torque));
+    CHECK(expected.tail(2).norm() == 0);
+}
+
 TEST_CASE("a robot's file without masses gives sizes by its efforts, one without either by a tonne") {
     Robot robot = dfdyn::tests::planar_arm(9.81);
     for (RobotJoint& joint : robot.joints) {

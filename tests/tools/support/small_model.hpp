@@ -55,8 +55,8 @@ inline tools::TrainedModel small_model(std::mt19937_64& engine, tools::InputKind
 inline void add_extrapolation(tools::TrainedModel& model, std::mt19937_64& engine) {
     std::uniform_real_distribution<double> positive(0.5, 2);
     const std::size_t outputs = model.outputs.names.size();
-    model.extrapolation = {positive(engine), numbers(engine, outputs, positive),
-                           numbers(engine, outputs, positive)};
+    model.extrapolation = {
+        positive(engine), numbers(engine, outputs, positive), numbers(engine, outputs, positive), {}, 1};
 }
 
 /// The same model with physics: `structure` is P, SP, SP2 or SPK; the outputs are a wrench at a sensor on

@@ -23,7 +23,6 @@ constexpr int lags = 3;
 constexpr Index features = 12; // columns: 6 frequencies
 constexpr Index outputs = 3;
 constexpr Index parameters = 5;
-constexpr double prior_variance = 2.5; // of pi
 constexpr double kernel_variance = 50; // of the weights
 
 /// A model with made-up constants and columns, and all unknowns [w_1 … w_m, pi] at once.
@@ -33,6 +32,7 @@ struct Problem {
     tools::RowList rows = dfdyn::tests::rows_between(lags, 400);
     tools::TrainedModel model;
     MatrixXd columns = random.matrix(397, outputs* parameters);
+    tools::ParameterPrior prior = tools::ParameterPrior::independent(parameters, 2.5);
 
     explicit Problem(double forgetting_factor) {
         const tools::LagSpread spread(data.positions, rows, lags);
@@ -58,6 +58,13 @@ struct Problem {
         return result;
     }
 
+    /// A prior with a mean and correlations.
+    void know() {
+        const MatrixXd root = random.matrix(parameters, parameters);
+        prior = {random.matrix(parameters, 1),
+                 root * root.transpose() + MatrixXd::Identity(parameters, parameters)};
+    }
+
     MatrixXd regressors() const {
         return tools::random_features(model.features, tools::stored_inputs(model.input, data, rows));
     }
@@ -67,7 +74,7 @@ struct Problem {
         const Index size = outputs * features + parameters;
         MatrixXd sum = MatrixXd::Zero(size, size);
         sum.diagonal().setConstant(weights()[0] / kernel_variance);
-        sum.diagonal().tail(parameters).setConstant(weights()[0] / prior_variance);
+        sum.bottomRightCorner(parameters, parameters) = weights()[0] * prior.information;
         for (Index k = 0; k < outputs; ++k) {
             const MatrixXd row = design(k, kernel, physics);
             sum += row.transpose() * weights().asDiagonal() * row;
@@ -77,6 +84,9 @@ struct Problem {
 
     VectorXd right_hand_side(bool kernel, bool physics) const {
         VectorXd sum = VectorXd::Zero(outputs * features + parameters);
+        if (physics) {
+            sum.tail(parameters) = weights()[0] * prior.information * prior.mean;
+        }
         for (Index k = 0; k < outputs; ++k) {
             const VectorXd y = data.outputs(rows, k) / noise(k);
             sum += design(k, kernel, physics).transpose() * weights().asDiagonal() * y;
@@ -117,8 +127,11 @@ TEST_CASE("SPK's start in block-arrow form is the solution for all unknowns") {
     const double forgetting_factor = GENERATE(1.0, 0.995);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(forgetting_factor);
-    const Problem problem(forgetting_factor);
-    const tools::JointStart start = tools::joint_start(problem.physics(), prior_variance);
+    Problem problem(forgetting_factor);
+    if (GENERATE(false, true)) {
+        problem.know();
+    }
+    const tools::JointStart start = tools::joint_start(problem.physics(), problem.prior);
     const MatrixXd inverse = problem.information(true, true).fullPivLu().inverse();
     const VectorXd truth = inverse * problem.right_hand_side(true, true);
     CHECK(error_of(start.physics.parameters, truth.tail(parameters)) < 1e-9);
@@ -142,8 +155,11 @@ TEST_CASE("P's start is the solution of ridge regression") {
     const double forgetting_factor = GENERATE(1.0, 0.995);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(forgetting_factor);
-    const Problem problem(forgetting_factor);
-    const tools::JointStart start = tools::parametric_start(problem.physics(), prior_variance);
+    Problem problem(forgetting_factor);
+    if (GENERATE(false, true)) {
+        problem.know();
+    }
+    const tools::JointStart start = tools::parametric_start(problem.physics(), problem.prior);
     const MatrixXd inverse = problem.information(false, true).fullPivLu().inverse();
     CHECK(error_of(start.physics.parameters,
                    (inverse * problem.right_hand_side(false, true)).tail(parameters)) < 1e-9);
@@ -176,8 +192,8 @@ TEST_CASE("the start of SP and SP2 is NP's on the residual") {
 TEST_CASE("a start that cannot be solved for is an error") {
     Problem problem(1);
     problem.columns(3, 2) = std::nan("");
-    CHECK_THROWS_AS(tools::joint_start(problem.physics(), prior_variance), tools::InputError);
-    CHECK_THROWS_AS(tools::parametric_start(problem.physics(), prior_variance), tools::InputError);
+    CHECK_THROWS_AS(tools::joint_start(problem.physics(), problem.prior), tools::InputError);
+    CHECK_THROWS_AS(tools::parametric_start(problem.physics(), problem.prior), tools::InputError);
 }
 
 } // namespace physics_start_test

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a model with physics predicts of a real arm's motion that it has not seen and does not learn.
+#include "tools/physics/model_training.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/tools/robot/arms.hpp"
+#include "tools/host/host_estimator.hpp"
+#include "tools/recording/recording.hpp"
+
+#include <cmath>
+#include <filesystem>
+
+namespace unseen_motion_test {
+
+using namespace dfdyn::tools;
+using Eigen::VectorXd;
+
+Recording recording(const std::string& name) {
+    ReadOptions options;
+    options.outputs = OutputKind::motor_current;
+    return read_recording(std::filesystem::path(DFDYN_TEST_DATA_DIR) / "ur5_kufieta" / name, options);
+}
+
+/// Per output.
+struct Outcome {
+    VectorXd error;    ///< rms over the deviation from the mean of the recording learned
+    VectorXd coverage; ///< share within two standard deviations
+};
+
+Outcome frozen(const TrainedModel& model, const Recording& learned, const Recording& unseen) {
+    const auto estimator = make_estimator(model, false);
+    const std::size_t outputs = unseen.output.names.size();
+    VectorXd mean = VectorXd::Zero(static_cast<Eigen::Index>(outputs));
+    for (std::size_t row = 0; row < learned.row_count(); ++row) {
+        for (std::size_t k = 0; k < outputs; ++k) {
+            mean[static_cast<Eigen::Index>(k)] +=
+                learned.output.row(row)[k] / static_cast<double>(learned.row_count());
+        }
+    }
+    Outcome outcome{VectorXd::Zero(mean.size()), VectorXd::Zero(mean.size())};
+    VectorXd constant = VectorXd::Zero(mean.size());
+    double predicted = 0;
+    for (std::size_t row = 0; row < unseen.row_count(); ++row) {
+        const Tick tick = estimator->tick({unseen.time_ns[row], unseen.position.row(row), {}, {}, {}},
+                                          dfdyn::Budget::predict_only());
+        if (!tick.status.predicted()) {
+            continue;
+        }
+        ++predicted;
+        for (std::size_t k = 0; k < outputs; ++k) {
+            const auto output = static_cast<Eigen::Index>(k);
+            const double measured = unseen.output.row(row)[k];
+            const double error = measured - static_cast<double>(tick.prediction[k]);
+            outcome.error[output] += error * error;
+            outcome.coverage[output] +=
+                std::abs(error) <= 2 * static_cast<double>(tick.standard_deviation[k]) ? 1 : 0;
+            constant[output] += (measured - mean[output]) * (measured - mean[output]);
+        }
+    }
+    REQUIRE(predicted > 1000);
+    outcome.error = outcome.error.cwiseQuotient(constant).cwiseSqrt();
+    outcome.coverage /= predicted;
+    return outcome;
+}
+
+TEST_CASE("P predicts a motion that a real arm has not shown it, and its deviation holds", "[.long]") {
+    const Recording learned = recording("Movement_No5_Acc_slow_no_disturbance.csv");
+    const Recording unseen = recording("Movement_No9_Singularity_Free_NoDist.csv");
+    ModelTraining training;
+    training.options.model = ModelClass::P;
+    training.options.likelihood_rows = 500;
+    training.options.starts = 2;
+    training.physics = RobotPhysics{
+        dfdyn::tests::ur5(), {"viscous_friction", "coulomb_friction", "torque_offset"}, 0.05, {}};
+    const auto train_on_it = [&] {
+        return train_model(prepare_training(std::span(&learned, 1), training), OutputKind::motor_current,
+                           training, {})
+            .model;
+    };
+    const Outcome calibrated = frozen(train_on_it(), learned, unseen);
+    for (Eigen::Index k = 0; k < calibrated.error.size(); ++k) {
+        CAPTURE(k, calibrated.error[k], calibrated.coverage[k]);
+        CHECK(calibrated.error[k] < 1.2);
+        CHECK(calibrated.coverage[k] > 0.9);
+    }
+    training.options.shrinkage = false;
+    const Outcome paper = frozen(train_on_it(), learned, unseen);
+    CHECK(paper.error.minCoeff() > 1.5);
+    CHECK(paper.coverage.maxCoeff() < 0.9);
+}
+
+} // namespace unseen_motion_test
