@@ -44,7 +44,9 @@ constexpr Model::Constants widened(const Single::Constants& model) {
                         static_cast<double>(model.learner.forgetting_factor), &start},
             .extrapolation = {static_cast<double>(model.extrapolation.inverse_far_variance),
                               widened(model.extrapolation.extra_noise),
-                              widened(model.extrapolation.prior_variance)}};
+                              widened(model.extrapolation.prior_variance),
+                              static_cast<double>(model.extrapolation.parameter_variance_factor),
+                              widened(model.extrapolation.output_variance)}};
 }
 
 constexpr Model::Constants constants = widened(ur5_model::constants);
