@@ -12,7 +12,7 @@ namespace dfdyn::tools {
 /// long (s): samples within it count as one. Chosen on two motions of a UR5 and on a servo (see
 /// docs/extrapolation.md).
 inline constexpr double residual_correlation_s = 4;
-/// The same where features explain most of it (SP, SPK). Chosen on the two motions of the UR5.
+/// The same where features explain most of it (SP, SPK). Chosen on one of these motions, after the other.
 inline constexpr double residual_correlation_with_features_s = 0.5;
 
 /// The number of the recording's samples that count as one for the model; at least 1.

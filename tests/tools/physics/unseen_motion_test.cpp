@@ -63,6 +63,7 @@ Outcome frozen(const TrainedModel& model, const Recording& learned, const Record
     return outcome;
 }
 
+// This pair had been seen when the range in Extrapolation::parameter_doubt was chosen.
 TEST_CASE("P predicts a motion that a real arm has not shown it, and its deviation holds", "[.long]") {
     const Recording learned = recording("Movement_No5_Acc_slow_no_disturbance.csv");
     const Recording unseen = recording("Movement_No9_Singularity_Free_NoDist.csv");
