@@ -46,6 +46,8 @@ struct StrayArm : RunningArm<Model> {
         for (auto& frequency : constants.features.frequencies) {
             frequency *= 4; // a short length scale
         }
+        constants.innovation_limit = 1000;
+        constants.innovation_patience = 5;
         return constants;
     }
 
@@ -204,6 +206,26 @@ TEMPLATE_TEST_CASE("near the data predictions stay as they are", "", Features, M
             CHECK(after.standard_deviation[k] >= arm.constants.output_noise_std[k]);
         }
     }
+}
+
+// Its covariance covers only what it has seen since, but the weights are still the best guess elsewhere.
+TEST_CASE("an arm that has changed keeps what it learned where it has not been since") {
+    DFDYN_SEEDED_ENGINE(engine);
+    StrayArm<Features> arm(engine);
+    arm.know();
+    arm.now = 2900; // where it has been
+    const auto before = arm.estimate_at(0);
+    arm.now = 3100;
+    arm.estimator.restart_window();
+    for (int t = 0; t < 30; ++t) {
+        auto sample = arm.due();
+        sample.output[1] += 50;
+        arm.tick(sample);
+    }
+    arm.now = 2900;
+    const auto after = arm.estimate_at(0);
+    CHECK(after.standard_deviation[0] > 2 * before.standard_deviation[0]);
+    CHECK(std::abs(after.prediction[0] - before.prediction[0]) < 3 * arm.constants.output_noise_std[0]);
 }
 
 } // namespace extrapolation_test

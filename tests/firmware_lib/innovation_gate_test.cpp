@@ -52,7 +52,7 @@ TEST_CASE("an arm that has changed is reported once and learned until plausible 
     CHECK(gate.change_pending());
     CHECK(gate.take_change());
     CHECK_FALSE(gate.take_change());
-    for (int t = 0; t + 1 < Gate::settling * patience; ++t) {
+    for (int t = 0; t < 10 * patience; ++t) {
         REQUIRE(gate.judge(t % 2 == 0 ? pushed : plausible) == 1); // they do not outnumber each other
     }
     for (int t = 0; t < Gate::settling * patience; ++t) {
@@ -113,6 +113,30 @@ TEST_CASE("the largest patience never ends, and none or a negative one learns ev
         CHECK(gate.judge(pushed) == 1);
         CHECK_FALSE(gate.change_pending());
     }
+}
+
+TEST_CASE("a new motion does not lose a change that nobody has taken") {
+    Gate gate(limit, patience);
+    for (int t = 0; t <= patience; ++t) {
+        static_cast<void>(gate.judge(pushed));
+    }
+    gate.restart();
+    CHECK(gate.take_change());
+}
+
+TEST_CASE("after a fault of any size and length the gate sees pushes again within a bounded time") {
+    Gate gate(limit, patience);
+    for (int t = 0; t < 100 * patience; ++t) {
+        static_cast<void>(gate.judge(1e30F));
+    }
+    int patiences = 0;
+    for (; Gate(gate).judge(pushed) == 1; ++patiences) {
+        REQUIRE(patiences < 5000);
+        for (int t = 0; t < patience; ++t) {
+            REQUIRE(gate.judge(plausible) == 1);
+        }
+    }
+    CHECK(patiences > 4); // the change is settled first
 }
 
 TEST_CASE("a limit that is none makes every sample a contradiction") {

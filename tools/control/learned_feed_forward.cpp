@@ -69,7 +69,7 @@ void LearnedFeedForward::learn(std::int64_t time_ns, const JointVector& position
     const std::span<const double> output = torque != nullptr ? values(*torque) : std::span<const double>();
     const Status status = learner_->tick({time_ns, values(position), {}, {}, output}, share_).status;
     counters_.samples += torque != nullptr ? 1 : 0;
-    if (status.learned() || status.reason() == Reason::learning_in_progress) {
+    if (status.learned() || status.learning == Reason::learning_in_progress) {
         ++counters_.learned;
         in_progress_ = true;
         take_over();
@@ -112,9 +112,9 @@ bool LearnedFeedForward::predict(std::int64_t time_ns, const JointVector& refere
         ++counters_.reference_unknown;
         return false;
     }
-    follower_->predict_with(weights_, prediction_);
+    const bool within_bounds = follower_->predict_with(weights_, prediction_);
     torque = Eigen::Map<const Eigen::VectorXf>(prediction_.data(), reference.size()).cast<double>();
-    return torque.allFinite();
+    return within_bounds && torque.allFinite();
 }
 
 } // namespace dfdyn::tools

@@ -76,18 +76,21 @@ class CombinedEstimator final : public HostEstimator {
         return idle;
     }
 
-    void predict_with(std::span<const float> weights, std::span<float> prediction) const override {
+    /// False if every member was beyond a bound, as in `tick`.
+    bool predict_with(std::span<const float> weights, std::span<float> prediction) const override {
+        bool within = false;
         std::span<const float> rest = weights.subspan(predictions_.size());
         std::vector<float> of_members(predictions_.size());
         std::vector<float> combined(predictions_.size());
         for (std::size_t j = 0; j < members_.size(); ++j) {
             const HostEstimator& member = *members_[j].estimator;
-            member.predict_with(rest.first(member.weight_count()),
-                                std::span(of_members).subspan(j * outputs_, outputs_));
+            const std::span<float> of_member = std::span(of_members).subspan(j * outputs_, outputs_);
+            within = member.predict_with(rest.first(member.weight_count()), of_member) || within;
             rest = rest.subspan(member.weight_count());
         }
         combination_.weigh(weights.data(), deviations_.data(), combined.data());
         combination_.combine(combined.data(), of_members.data(), prediction.data());
+        return within;
     }
 
     /// The combination's mean square errors, then the weights of each member.
@@ -150,6 +153,7 @@ class CombinedEstimator final : public HostEstimator {
             cost.variance += one.variance;
             cost.learn += one.learn;
             cost.forget += one.forget;
+            cost.reset_covariance += one.reset_covariance;
             cost.largest_step = std::max(cost.largest_step, one.largest_step);
         }
         return cost;

@@ -15,8 +15,8 @@ class FrozenEstimator final : public HostEstimator {
         return estimator_->tick(sample, Budget::predict_only());
     }
     bool advance(Budget /*budget*/) override { return estimator_->advance(Budget::predict_only()); }
-    void predict_with(std::span<const float> weights, std::span<float> prediction) const override {
-        estimator_->predict_with(weights, prediction);
+    bool predict_with(std::span<const float> weights, std::span<float> prediction) const override {
+        return estimator_->predict_with(weights, prediction);
     }
     std::size_t weight_count() const override { return estimator_->weight_count(); }
     void copy_weights(std::span<float> weights) const override { estimator_->copy_weights(weights); }

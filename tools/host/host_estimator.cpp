@@ -62,15 +62,18 @@ class EstimatorOf final : public HostEstimator {
 
     bool advance(Budget budget) override { return estimator_.advance(budget); }
 
-    void predict_with(std::span<const float> weights, std::span<float> prediction) const override {
+    bool predict_with(std::span<const float> weights, std::span<float> prediction) const override {
         estimator_.regression().predict_with(weights.data(), prediction.data());
+        bool within = true;
         for (int k = 0; k < output_count(); ++k) {
             float& mean = prediction[static_cast<std::size_t>(k)];
             mean = constants().output_offset[k] + constants().output_noise_std[k] * mean;
             if (const float limit = constants().prediction_limit[k]; limit > 0) {
+                within = within && std::abs(mean) <= limit;
                 mean = std::clamp(mean, -limit, limit);
             }
         }
+        return within;
     }
 
     std::size_t weight_count() const override {

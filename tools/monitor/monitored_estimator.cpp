@@ -92,8 +92,8 @@ class Monitored final : public MonitoredEstimator {
         renew();
         return idle;
     }
-    void predict_with(std::span<const float> weights, std::span<float> prediction) const override {
-        estimator_->predict_with(weights, prediction);
+    bool predict_with(std::span<const float> weights, std::span<float> prediction) const override {
+        return estimator_->predict_with(weights, prediction);
     }
     std::size_t weight_count() const override { return estimator_->weight_count(); }
     void copy_weights(std::span<float> weights) const override { estimator_->copy_weights(weights); }

@@ -110,7 +110,7 @@ class LatticePredictor {
 ///    R. Ramanathan, "Improved methods of combining forecasts", 1984).
 ///
 ///     estimate = estimator.tick(sample, budget);
-///     const Scalar* prediction = estimate.status.predicted() ? estimate.prediction.data() : nullptr;
+///     const Scalar* prediction = estimate.status.estimated() ? estimate.prediction.data() : nullptr;
 ///     if (prediction) residual.forecast(prediction, one_step); // of the measurement of this tick
 ///     if (sample.output_valid) residual.learn(prediction, sample.output.data());
 ///     else residual.restart();

@@ -25,8 +25,8 @@ struct Estimate {
     Storage<Scalar, m> prediction;         ///< in the output's unit, made before the sample was learned
     Storage<Scalar, m> standard_deviation; ///< of the measurement about it: parameter uncertainty and noise
     Storage<Scalar, m> innovation;         ///< measured - prediction; 0 without a usable measurement
-    /// The sum over the outputs of (measured - unbounded prediction)² / `standard_deviation`²; about m while
-    /// the model holds, 0 without a measurement. Where outputs share
+    /// The sum over the outputs of (measured - prediction)² / `standard_deviation`², both before the bound;
+    /// about m while the model holds, 0 without a measurement. Where outputs share
     /// parameters (P, SPK) it is not chi-square: how their errors correlate is not looked at.
     Scalar normalised_innovation_squared;
     Status status;
@@ -149,6 +149,7 @@ class Estimator {
         sequence_.end_change();
         if (result == SnapshotResult::ok) {
             restart_window();
+            gate_ = Gate(constants_->innovation_limit, constants_->innovation_patience);
         }
         return result;
     }
@@ -377,9 +378,10 @@ class Estimator {
         return error_square;
     }
 
-    /// Takes off the prediction, in units of the noise, what features say too far from their data, and makes
-    /// of `ratio_` the variances of measurements about it. Since the arm has changed, P tells what has been
-    /// seen after that, but the weights still hold the best guess of the rest: nothing is taken off.
+    /// Reduces the prediction, in units of the noise, by the doubt that its input deserves, and turns
+    /// `ratio_` into the variances of measurements about it. Once the arm has changed, P covers only what has
+    /// been seen since, while the weights are still the best guess elsewhere: nothing is reduced until
+    /// `reset`.
     void extrapolate(Scalar feature_variance, Estimate& estimate) noexcept {
         const auto& known = constants_->extrapolation;
         const Extrapolation<Scalar> beyond(feature_variance, known.inverse_far_variance,

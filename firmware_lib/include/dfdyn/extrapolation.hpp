@@ -39,7 +39,7 @@ struct ExtrapolationConstants {
 /// The variance of the physics' parameters counts `parameter_variance_factor` times, for the same reason.
 /// Where the data have not determined what the physics says, it exceeds all that the output can do: a
 /// prediction is weighted by 1 / (1 + s^2), s being this variance over that of the output times 3. For a
-/// uniform output that is the square of its range. 7 multiply-adds, and 7 for each output.
+/// output uniform between ±r that is r². 7 multiply-adds, and 9 for each output.
 template <class Scalar>
 class Extrapolation {
   public:

@@ -23,7 +23,8 @@ namespace dfdyn {
 /// So `learn` takes also what each member predicts with weights that it had 0.2 to 0.4 s ago (`HeldWeights`);
 /// the mean of both squares counts. The variance decides where nothing is learned, on a motion that was not
 /// seen before. It counts more than once because it assumes white noise: with residuals of autocorrelation ρ,
-/// n samples carry the information of n (1 - ρ) / (1 + ρ) (ρ = 0.82 gives the factor 10).
+/// n samples carry the information of n (1 - ρ) / (1 + ρ) (ρ = 0.82 gives the factor 10). Chosen before
+/// standard deviations were calibrated away from the data (`Extrapolation`), which also counts correlation.
 ///
 /// The powers, the factor and a memory of 0.8 s were chosen on the UR5 recordings No5 and No6. Weights are in
 /// [0, 1] and sum to 1, so that the combination of finite predictions lies among them. An error counts for at

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/strict_math.hpp"
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -12,10 +14,9 @@ namespace dfdyn {
 /// The contradiction of a sample is its normalised innovation squared over a limit: the model's, times a
 /// level that follows what is ordinary for this arm.
 ///  - Up to 1 the sample is learned as it is.
-///  - Up to `rejection` it is learned as one of contradiction⁴ times the noise variance: the further beyond
-///  the
-///    limit, the less it moves the model. This is a redescending influence function in three parts (F. R.
-///    Hampel, "The influence curve and its role in robust estimation", 1974).
+///  - Up to `rejection` it is learned with contradiction⁴ times the noise variance. The further beyond the
+///    limit, the less it moves the model: a redescending influence function in three parts (F. R. Hampel,
+///    "The influence curve and its role in robust estimation", 1974).
 ///  - Beyond that it is refused.
 ///
 /// A count, in samples, rises with each contradiction beyond `ordinary` and falls with each other sample. A
@@ -26,8 +27,8 @@ namespace dfdyn {
 ///
 /// The level is a running quantile by stochastic approximation, and at least 1. Only samples that are learned
 /// as they are after a change raise it: a model that is never right is not found to have changed again and
-/// again. Exponent, `rejection` and `settling` were chosen on a simulated arm of two links and on motions No3
-/// to No6 of a measured one.
+/// again. Exponent, `rejection` and `settling` were chosen on a simulated arm of two links, on motions No3 to
+/// No6 of a measured one and on a servo's runs 00 to 03.
 template <class Scalar>
 class InnovationGate {
   public:
@@ -43,13 +44,13 @@ class InnovationGate {
     /// number; with 0 or less every sample is learned as it is.
     constexpr InnovationGate(Scalar limit, std::int32_t patience) noexcept
         : limit_(limit), patience_(patience), rise_(1 + 2 / Scalar(std::max(patience, 2))),
-          fall_(1 - Scalar(0.002) / Scalar(std::max(patience, 2))) {}
+          fall_(std::min<Scalar>(1 - Scalar(0.002) / Scalar(std::max(patience, 2)),
+                                 1 - std::numeric_limits<Scalar>::epsilon())) {}
 
-    /// Begins a new motion with an empty count; the level stays.
+    /// Begins a new motion with an empty count. The level stays, and a change that is still to be reported.
     constexpr void restart() noexcept {
         count_ = 0;
         changed_ = false;
-        change_pending_ = false;
     }
 
     /// Judges one measured sample. Returns the noise variance to learn it with, in units of the output's
@@ -82,13 +83,13 @@ class InnovationGate {
     static constexpr int cost = 5; ///< multiply-adds of `judge`
 
   private:
-    static constexpr double highest = 1e12; ///< level
+    static constexpr double highest = 1000; ///< level: a model that far off has to be trained again
 
     constexpr void count(bool implausible) noexcept {
         if (!implausible) {
             count_ -= count_ > 0 ? 1 : 0;
             changed_ = changed_ && count_ > 0;
-        } else if (count_ < patience_) {
+        } else if (count_ < (changed_ ? settling : 1) * patience_) {
             ++count_;
         } else if (patience_ > 0 && !changed_) {
             changed_ = change_pending_ = true;

@@ -122,8 +122,11 @@ struct Status {
         return predicted() || prediction == Reason::prediction_bounded;
     }
     [[nodiscard]] constexpr bool learned() const noexcept { return estimated() && learning == Reason::ok; }
-    /// The one reason worth reporting.
-    [[nodiscard]] constexpr Reason reason() const noexcept { return predicted() ? learning : prediction; }
+    /// The one reason worth reporting: of the prediction unless it is ok; but a fault of the measurement goes
+    /// before a bound.
+    [[nodiscard]] constexpr Reason reason() const noexcept {
+        return predicted() || (estimated() && is_fault(learning)) ? learning : prediction;
+    }
 };
 
 } // namespace dfdyn

@@ -127,6 +127,18 @@ TEMPLATE_TEST_CASE("rows that bring no more than standing still pay for no forge
     }
 }
 
+TEST_CASE("a moving arm of fewer parameters than rows forgets at the full factor") {
+    for (const int parameters : {2, 4, 8}) {
+        CAPTURE(parameters);
+        constexpr double factor = 0.99;
+        Forgetting<double> forgetting(factor, parameters, 6);
+        const double brought = std::pow(factor, -parameters); // what a steady motion brings
+        for (int t = 0; t < 1000; ++t) {
+            REQUIRE(forgetting.factor_after(brought) == factor);
+        }
+    }
+}
+
 TEST_CASE("rows that bring no more than rounding pay for no forgetting, however long the memory") {
     constexpr float epsilon = std::numeric_limits<float>::epsilon();
     const auto paid = [](float brought) {

@@ -125,7 +125,7 @@ TEST_CASE("nanoseconds beyond the range of the clock are named, too") {
                                   ContainsSubstring("(nanoseconds? divide by 1e9)"));
 }
 
-TEST_CASE("--no-setup-check trains all the same, and a right recording needs no option") {
+TEST_CASE("a mistaken set-up trains with --no-setup-check, and a right one without any option") {
     const Bench wrong("outputs in mA");
     const Outcome unchecked = wrong.train("--no-setup-check");
     CAPTURE(unchecked.error);

@@ -18,7 +18,7 @@ class PrescribedEstimator final : public HostEstimator {
 
     Tick tick(const MeasuredSample& /*sample*/, dfdyn::Budget /*budget*/) override { return {}; }
     bool advance(dfdyn::Budget /*budget*/) override { return true; }
-    void predict_with(std::span<const float> other, std::span<float> prediction) const override {
+    bool predict_with(std::span<const float> other, std::span<float> prediction) const override {
         prediction[0] = other[0] * column;
         prediction[1] = other[1] * column;
     }

@@ -62,7 +62,7 @@ TEST_CASE("a plan without a robot has no rigid body, and says why") {
     CHECK_THAT(opponents_of(directory, plan).no_rigid_body, ContainsSubstring("expected joints"));
 }
 
-TEST_CASE("the rigid bodies of a plan are fitted to its training log, for torques and for currents") {
+TEST_CASE("the rigid bodies of a plan are fitted to its training log") {
     const TemporaryDirectory directory;
     json plan = small_plan();
     plan["robot"] = {{"urdf", DFDYN_TEST_DATA_DIR "/robots/small_arm/small_arm.urdf"}, {"tip", "tool"}};

@@ -21,14 +21,15 @@ namespace dfdyn {
 /// nevertheless is bounded by the learner, which looks at one parameter per sample and takes its variance
 /// back to the prior's.
 ///
-/// A row that repeats for ever brings φ'Pφ = (1-λ)/λ under forgetting at λ, and less once the account holds
-/// forgetting back. So a row that brings less than 1-λ stands still, and pays nothing: otherwise the log t
-/// that it brings in t samples would be given away 20 times over by what the arm knows of other places. Nor
-/// does a row pay that brings less than 1024 ε: there φ'Pφ is rounding, which stops falling where one more
-/// row no longer changes the factor of P, and would pay for ever. What such rows teach is learned all the
-/// same. A moving arm forgets at λ as long as one row in `payback` brings more than both; where the memory is
-/// well beyond p / (1024 ε) samples (8000 p in float, 4·10¹² p in double), none does, and the memory becomes
-/// longer than λ says.
+/// A row that repeats for ever brings φ'Pφ = (1-λ)/λ under forgetting at λ, and less once the account limits
+/// forgetting. So an instant that brings less than 1-λ per row belongs to a standstill, and pays nothing:
+/// otherwise the log t that t such rows bring would be taken, `payback` times, from the other parameters. An
+/// instant of m rows about few parameters, p < 2 m, pays from (1-λ) p / 2 on, half of what a motion brings.
+/// Nor does an instant pay that brings less than 1024 ε per row: there φ'Pφ is rounding, which stops falling
+/// where one more row no longer changes the factor of P, and would pay for ever. What such rows teach is
+/// learned all the same. A moving arm forgets at λ as long as one row in `payback` brings more than both;
+/// where the memory is well beyond p / (1024 ε) samples (8000 p in float, 4·10¹² p in double), none does, and
+/// the memory becomes longer than λ says.
 template <class Scalar>
 class Forgetting {
   public:
@@ -37,8 +38,9 @@ class Forgetting {
     constexpr Forgetting(Scalar factor, int parameters, int rows = 1) noexcept
         : factor_(factor), parameters_(static_cast<Scalar>(parameters)),
           payback_(std::clamp(parameters_ / (2 * static_cast<Scalar>(rows)), Scalar(1), Scalar(20))),
-          least_paid_(static_cast<Scalar>(rows) *
-                      std::max<Scalar>(1024 * std::numeric_limits<Scalar>::epsilon(), 1 - factor)) {
+          least_paid_(
+              std::max<Scalar>(static_cast<Scalar>(rows) * 1024 * std::numeric_limits<Scalar>::epsilon(),
+                               std::min<Scalar>(static_cast<Scalar>(rows), parameters_ / 2) * (1 - factor))) {
         using std::log;
         price_ = active() ? parameters_ * -log(factor) : Scalar(0);
         restart();

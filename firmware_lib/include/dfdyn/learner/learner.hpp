@@ -45,8 +45,7 @@ struct LearnerConstants {
 ///  - `variance(row)`: φ'Pφ of the last whole state, also while a row is being folded in. O(p²).
 ///  - `begin(row, target, noise_variance)`: takes a row in when `idle()`, with targets measured with
 ///    `noise_variance` in units of their noise variance, 1 without it.
-///  - `reset_covariance()`: begins, when `idle()`, to take the covariance back to the prior's; `advance` does
-///  it.
+///  - `reset_covariance()`: begins, when `idle()`, to set the covariance back to the prior's, in `advance`.
 ///  - `advance(budget)`: works on it and says whether there is nothing left to do.
 ///  - `sample_pending()`: the row is not learned yet; under forgetting there is more work after that.
 ///  - `last_ratio()`: 1 + φ'Pφ of the last row, before it was learned.

@@ -11,16 +11,14 @@ namespace dfdyn {
 /// in units of their noise and about their offset.
 ///  - `push`, `ready`, `restart`: the window of past positions.
 ///  - `evaluate`: computes the present columns; false if they mean nothing.
-///  - `predict(means)` at the present columns, m values; `predict_without_features(means)`: the physics'
-///  part.
-///  - `variances(ratios)`: 1 + the variance of each mean; returns φ'Pφ, what the features have in it.
+///  - `predict(means)` at the present columns, m values.
+///  - `predict_without_features(means)`: the part of the physics in that.
+///  - `variances(ratios)`: 1 + the variance of each mean; returns φ'Pφ, the part of the features.
 ///  - `begin(targets, noise_variance)`: takes the present columns in, after `predict`, when `idle()`, with
 ///    targets measured with `noise_variance` in units of their noise variance.
-///  - `reset_covariance()`: begins, when `idle()`, to take the covariance back to the prior's, while the
-///  means
-///    stay as they are (covariance resetting: G. C. Goodwin, K. S. Sin, "Adaptive Filtering, Prediction and
-///    Control", 1984).
-///  - `advance(budget)`: works on them, and says whether nothing is left to do.
+///  - `reset_covariance()`: begins, when `idle()`, to set the covariance back to the prior's. The means stay
+///    (covariance resetting: G. C. Goodwin, K. S. Sin, "Adaptive Filtering, Prediction and Control", 1984).
+///  - `advance(budget)`: works on them; true when nothing is left to do.
 ///  - `sample_pending()`: they are not learned yet; `last_ratios(ratios)`: `variances` before the last sample
 ///    that was.
 ///  - `weight_count`, `copy_weights` (when idle), `predict_with(weights, means)`: what has been learned as
