@@ -21,6 +21,7 @@ class PrescribedEstimator final : public HostEstimator {
     bool predict_with(std::span<const float> other, std::span<float> prediction) const override {
         prediction[0] = other[0] * column;
         prediction[1] = other[1] * column;
+        return true;
     }
     std::size_t weight_count() const override { return weights.size(); }
     void copy_weights(std::span<float> copy) const override { std::ranges::copy(weights, copy.begin()); }
