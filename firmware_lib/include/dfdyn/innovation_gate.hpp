@@ -18,6 +18,8 @@ namespace dfdyn {
 ///    limit, the less it moves the model: a redescending influence function in three parts (F. R. Hampel,
 ///    "The influence curve and its role in robust estimation", 1974).
 ///  - Beyond that it is refused.
+/// While such samples accumulate, in a push, the first of these bounds is `ordinary` instead of 1: the begin
+/// and the end of a push are below the limit.
 ///
 /// A count, in samples, rises with each contradiction beyond `ordinary` and falls with each other sample. A
 /// push ends before the count has reached the patience. Beyond the patience the arm is taken to have changed:
@@ -37,14 +39,16 @@ class InnovationGate {
     static constexpr double ordinary = 1.0 / 3;
     /// Contradiction beyond which a sample is refused.
     static constexpr double rejection = 10;
+    /// Part of the patience from which on the count makes samples beyond `ordinary` suspicious, too.
+    static constexpr std::int32_t suspicion = 16;
     /// Patiences of plausible samples that end a change.
     static constexpr std::int64_t settling = 4;
 
     /// `limit` > 0; one that is not, or is NaN, makes every sample a contradiction. `patience`: samples, any
     /// number; with 0 or less every sample is learned as it is.
     constexpr InnovationGate(Scalar limit, std::int32_t patience) noexcept
-        : limit_(limit), patience_(patience), rise_(1 + 2 / Scalar(std::max(patience, 2))),
-          fall_(std::min<Scalar>(1 - Scalar(0.002) / Scalar(std::max(patience, 2)),
+        : limit_(limit), patience_(patience), rise_(1 + 2 / Scalar(std::max<std::int32_t>(patience, 2))),
+          fall_(std::min<Scalar>(1 - Scalar(0.002) / Scalar(std::max<std::int32_t>(patience, 2)),
                                  1 - std::numeric_limits<Scalar>::epsilon())) {}
 
     /// Begins a new motion with an empty count. The level stays, and a change that is still to be reported.
@@ -62,9 +66,11 @@ class InnovationGate {
         const bool implausible = contradiction > Scalar(ordinary);
         count(implausible);
         level_ = std::clamp(level_ * (changed_ && implausible ? rise_ : fall_), Scalar(1), Scalar(highest));
-        const Scalar square = contradiction * contradiction;
+        const Scalar excess =
+            contradiction * (count_ > patience_ / suspicion ? Scalar(1 / ordinary) : Scalar(1));
+        const Scalar square = excess * excess;
         const Scalar fourth = square * square;
-        if (changed_ || patience_ <= 0 || contradiction <= 1) {
+        if (changed_ || patience_ <= 0 || excess <= 1) {
             return 1;
         }
         return contradiction > Scalar(rejection) ? Scalar(0) : fourth;
@@ -80,7 +86,7 @@ class InnovationGate {
         return pending;
     }
 
-    static constexpr int cost = 5; ///< multiply-adds of `judge`
+    static constexpr int cost = 6; ///< multiply-adds of `judge`
 
   private:
     static constexpr double highest = 1000; ///< level: a model that far off has to be trained again
