@@ -24,9 +24,23 @@ TEST_CASE("the further a sample is beyond the limit, the less it teaches, and fa
     CHECK(gate.judge(0) == 1);
     CHECK(gate.judge(limit) == 1);
     CHECK(gate.judge(2 * limit) == Approx(16));
-    CHECK(gate.judge(5 * limit) == Approx(625));
+    CHECK(gate.judge(5 * limit) == Approx(15 * 15 * 15 * 15)); // alarmed: in units of what is ordinary
     CHECK(gate.judge(11 * limit) == 0);
     CHECK(gate.judge(std::numeric_limits<float>::infinity()) == 0);
+}
+
+TEST_CASE("the end of a push teaches little, though it is below the limit, until it has been forgotten") {
+    Gate gate(limit, patience);
+    CHECK(gate.judge(0.9F * limit) == 1);
+    CHECK(gate.judge(plausible) == 1);
+    for (int t = 0; t < 10; ++t) {
+        REQUIRE(gate.judge(pushed) == 0);
+    }
+    CHECK(gate.judge(0.9F * limit) == Approx(2.7 * 2.7 * 2.7 * 2.7));
+    for (int t = 0; t < 11; ++t) {
+        REQUIRE(gate.judge(plausible) == 1);
+    }
+    CHECK(gate.judge(0.9F * limit) == 1);
 }
 
 TEST_CASE("pushes shorter than the patience teach nothing, as long as there is as much time between them") {

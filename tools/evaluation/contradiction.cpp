@@ -3,6 +3,7 @@
 #include "tools/common/quantile.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace dfdyn::tools {
@@ -39,20 +40,19 @@ std::vector<double> learn_rows(HostEstimator& estimator, std::span<const Recordi
     return innovations;
 }
 
-/// Of each half of the rows, by an estimator that has learned the other half.
-std::vector<double> innovations_by_halves(const TrainedModel& model, std::span<const Recording> recordings,
-                                          bool from_prior) {
+/// The rows of all recordings in two halves, and the innovations of each by an estimator that has learned the
+/// other.
+std::array<std::vector<double>, 2>
+innovations_of_halves(const TrainedModel& model, std::span<const Recording> recordings, bool from_prior) {
     std::size_t rows = 0;
     for (const Recording& recording : recordings) {
         rows += recording.row_count();
     }
     const auto later = make_estimator(model, from_prior);
     learn_rows(*later, recordings, 0, rows / 2);
-    std::vector<double> innovations = learn_rows(*later, recordings, rows / 2, rows);
     const auto earlier = make_estimator(model, from_prior);
     learn_rows(*earlier, recordings, rows / 2, rows);
-    std::ranges::copy(learn_rows(*earlier, recordings, 0, rows / 2), std::back_inserter(innovations));
-    return innovations;
+    return {learn_rows(*earlier, recordings, 0, rows / 2), learn_rows(*later, recordings, rows / 2, rows)};
 }
 
 } // namespace
@@ -77,12 +77,13 @@ std::vector<Contradiction> find_contradictions(const ReplayedRecording& replayed
 }
 
 void calibrate_innovation_limit(TrainedModel& model, std::span<const Recording> recordings, bool from_prior) {
-    model.limits.innovation = no_limit;
+    model.limits.innovation = no_limit; // while it is measured
     model.limits.innovation_patience = static_cast<int>(std::ceil(patience_s / model.sample_period_s));
-    const std::vector<double> innovations = innovations_by_halves(model, recordings, from_prior);
-    if (!innovations.empty()) {
-        model.limits.innovation = std::min(margin * quantile(innovations, ordinary_share), no_limit);
+    double ordinary = 0;
+    for (const std::vector<double>& half : innovations_of_halves(model, recordings, from_prior)) {
+        ordinary = half.empty() ? no_limit : std::max(ordinary, quantile(half, ordinary_share));
     }
+    model.limits.innovation = std::min(margin * ordinary, no_limit);
 }
 
 } // namespace dfdyn::tools

@@ -18,8 +18,8 @@ namespace dfdyn {
 ///    limit, the less it moves the model: a redescending influence function in three parts (F. R. Hampel,
 ///    "The influence curve and its role in robust estimation", 1974).
 ///  - Beyond that it is refused.
-/// While such samples accumulate, in a push, the first of these bounds is `ordinary` instead of 1: the begin
-/// and the end of a push are below the limit.
+/// From a sample beyond `alarm` until the count below is back at 0, contradictions are measured by what is
+/// ordinary, a third of the limit: the end of a push is below the limit, and would be learned.
 ///
 /// A count, in samples, rises with each contradiction beyond `ordinary` and falls with each other sample. A
 /// push ends before the count has reached the patience. Beyond the patience the arm is taken to have changed:
@@ -37,10 +37,10 @@ class InnovationGate {
     /// Contradiction beyond which a sample is evidence of a change. The calibrated limit is three times what
     /// 0.1 % of the samples of an unchanged arm exceed.
     static constexpr double ordinary = 1.0 / 3;
+    /// Contradiction beyond which a sample is taken for part of a push.
+    static constexpr double alarm = 3;
     /// Contradiction beyond which a sample is refused.
     static constexpr double rejection = 10;
-    /// Part of the patience from which on the count makes samples beyond `ordinary` suspicious, too.
-    static constexpr std::int32_t suspicion = 16;
     /// Patiences of plausible samples that end a change.
     static constexpr std::int64_t settling = 4;
 
@@ -54,6 +54,7 @@ class InnovationGate {
     /// Begins a new motion with an empty count. The level stays, and a change that is still to be reported.
     constexpr void restart() noexcept {
         count_ = 0;
+        alarmed_ = false;
         changed_ = false;
     }
 
@@ -66,8 +67,8 @@ class InnovationGate {
         const bool implausible = contradiction > Scalar(ordinary);
         count(implausible);
         level_ = std::clamp(level_ * (changed_ && implausible ? rise_ : fall_), Scalar(1), Scalar(highest));
-        const Scalar excess =
-            contradiction * (count_ > patience_ / suspicion ? Scalar(1 / ordinary) : Scalar(1));
+        alarmed_ = contradiction > Scalar(alarm) || (alarmed_ && count_ > 0);
+        const Scalar excess = contradiction * (alarmed_ ? Scalar(1 / ordinary) : Scalar(1));
         const Scalar square = excess * excess;
         const Scalar fourth = square * square;
         if (changed_ || patience_ <= 0 || excess <= 1) {
@@ -108,6 +109,7 @@ class InnovationGate {
     Scalar rise_, fall_; ///< factors of the level per sample
     Scalar level_ = 1;
     std::int64_t count_ = 0; ///< 0 … patience, or `settling` patiences where the arm has changed
+    bool alarmed_ = false;   ///< since a sample beyond `alarm` the count has not been 0
     bool changed_ = false;
     bool change_pending_ = false;
 };

@@ -98,7 +98,7 @@ TEST_CASE("contradictions are stretches above the limit") {
     CHECK(found[1].peak == 12);
 }
 
-TEST_CASE("the innovation limit follows the innovations of each half of the rows after the other") {
+TEST_CASE("the innovation limit follows the larger innovations of the halves, each after the other") {
     DFDYN_SEEDED_ENGINE(engine);
     TrainedModel model = small_model(engine, InputKind::DFR);
     const std::vector<Recording> recordings{moving_arm(2000)};
@@ -106,9 +106,10 @@ TEST_CASE("the innovation limit follows the innovations of each half of the rows
     CHECK(model.limits.innovation_patience == 375);
     TrainedModel unlimited = model;
     unlimited.limits.innovation = 1e30;
-    std::vector<double> innovations;
+    double ordinary = 0;
     for (const auto& [before, half] : {std::pair{0, 1000}, std::pair{1000, 0}}) {
         const auto estimator = make_estimator(unlimited, true);
+        std::vector<double> innovations;
         for (const int first : {before, half}) {
             estimator->begin_recording();
             for (int row = first; row < first + 1000; ++row) {
@@ -119,8 +120,9 @@ TEST_CASE("the innovation limit follows the innovations of each half of the rows
                 }
             }
         }
+        ordinary = std::max(ordinary, quantile(innovations, 0.999));
     }
-    CHECK(model.limits.innovation == Approx(3 * quantile(innovations, 0.999)));
+    CHECK(model.limits.innovation == Approx(3 * ordinary));
 }
 
 TEST_CASE("the CSV of a replay has the columns that scripts rely on") {

@@ -197,7 +197,7 @@ class BlockArrow {
 
     /// Of any call.
     [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
-        return frame_bytes + 48 * std::int64_t{sizeof(Scalar)};
+        return frame_bytes + 72 * std::int64_t{sizeof(Scalar)};
     }
 
     template <class Self, class Visitor>
