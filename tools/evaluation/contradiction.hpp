@@ -21,10 +21,10 @@ struct Contradiction {
 std::vector<Contradiction> find_contradictions(const ReplayedRecording& replayed, double limit);
 
 /// Sets the model's limit of the normalised innovation squared from its training rows, each half by an
-/// estimator that has learned the other half, from nothing or (`from_prior` false) from the model's own start:
-/// three times the value that 99.9 % of the innovations of a half do not exceed, of the half in which it is
-/// larger. Residuals of a real arm are neither white nor Gaussian, so a chi-square bound would refuse good
-/// samples. The patience becomes one and a half seconds. Cost: two ticks a row.
+/// estimator that has learned the other half, from nothing or (`from_prior` false) from the model's own
+/// start: three times the value that 99.9 % of the innovations of a half do not exceed, of the half in which
+/// it is larger. Residuals of a real arm are neither white nor Gaussian, so a chi-square bound would refuse
+/// good samples. The patience becomes one and a half seconds. Cost: two ticks a row.
 void calibrate_innovation_limit(TrainedModel& model, std::span<const Recording> recordings,
                                 bool from_prior = true);
 

@@ -47,8 +47,8 @@ class HostEstimator {
     virtual bool advance(Budget budget) = 0;
 
     /// What the columns of the last tick predict with other weights (as `weights` gave them); m values into
-    /// `prediction`, within the model's bounds. False if one of them was beyond. Not faded away from the data,
-    /// unlike a tick's: the weights' own variance is not known.
+    /// `prediction`, within the model's bounds. False if one of them was beyond. Not faded away from the
+    /// data, unlike a tick's: the weights' own variance is not known.
     virtual bool predict_with(std::span<const float> weights, std::span<float> prediction) const = 0;
 
     /// What has been learned as plain numbers: the weights of all outputs, m × 2d, and the physics'
