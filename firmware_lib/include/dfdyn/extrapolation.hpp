@@ -84,7 +84,7 @@ class Extrapolation {
                                             Scalar output_variance = 0) const noexcept {
         const Scalar rest = of_parameters(ratio, feature_variance);
         const Scalar bounded = output_variance > 0 && !(rest < output_variance) ? output_variance : rest;
-        const Scalar not_finite = ratio - ratio; // 0 otherwise
+        const Scalar not_finite = ratio - ratio; // 0 otherwise. NOLINT(misc-redundant-expression)
         const Scalar calibrated = 1 + extra_noise + bounded + prior_variance * unknown_ + not_finite;
         return measured_ ? calibrated : ratio;
     }
