@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # measure_refused.sh DFDYN OUT: how many good samples of one run a model refuses that was trained on another run of the same arm, in
 # which nobody touched it. Trains NP, P and SPK on runs of the servo and of the UR5, replays the others, and prints a table: the share
-# refused, and the normalised error with the gate and without it. Writes models and replays into OUT.
+# refused, and the normalised error with the gate and without it; then how many refuse less than 0.1 %. Writes models and replays into OUT.
 set -euo pipefail
 dfdyn=${1:?usage: measure_refused.sh DFDYN OUT}
 out=${2:?usage: measure_refused.sh DFDYN OUT}
@@ -24,6 +24,15 @@ share() {
 }
 errors() { awk '/nRMSE, one step/ { sub(/.*one step */, ""); gsub(/ +/, " "); print }' "$1"; }
 
+# without_gate MODEL: the model with a limit that no sample exceeds.
+without_gate() {
+    sed -E 's/("innovation": *)[-+.0-9e]+/\11e30/' "$1"
+    grep -qE '"innovation": *[-+.0-9e]+' "$1" || {
+        echo "$1: expected the number limits.innovation, found none" >&2
+        return 1
+    }
+}
+
 # one STRUCTURE URDF TIP FEATURES A B... : trains on A, replays each B.
 one() {
     local model=$1 urdf=$2 tip=$3 features=$4 a=$5 physics=() name b
@@ -37,7 +46,7 @@ one() {
     fi
     name=$out/$(basename "$a" .csv).$model
     "$dfdyn" train --log "$a" --model "$model" "${physics[@]}" "${training[@]}" -o "$name.json" >"$name.train" 2>&1
-    sed -E 's/("innovation": )[-+.0-9e]+/\11e30/' "$name.json" >"$name.open.json"
+    without_gate "$name.json" >"$name.open.json"
     for b in "$@"; do
         [[ $b != "$a" ]] || continue
         replay "$name.json" "$b" "$name.replay"
@@ -46,14 +55,22 @@ one() {
     done
 }
 
+# rows: the table's, of all runs.
+rows() {
+    local model run
+    for model in NP P SPK; do
+        for run in 00 03 04 08 12 15; do
+            one "$model" xl330_bam/pendulum.urdf arm 50 "$(echo "$data"/xl330_bam/"$run"_*.csv)" "$data"/xl330_bam/*.csv
+        done
+        for run in No5 No6 No9; do
+            one "$model" robots/ur5/ur5_robot.urdf ee_link 100 "$(echo "$data"/ur5_kufieta/Movement_"$run"_*.csv)" \
+                "$data"/ur5_kufieta/Movement_{No5_Acc_slow_no_disturbance,No6_Acc_slow_Verify_Model,No7_Acc_slow_Verify_Model_short,No9_Singularity_Free_NoDist}.csv
+        done
+    done
+}
+
 echo "| trained on | replayed | model | good samples refused (%) | nRMSE with the gate | without |"
 echo "| --- | --- | --- | ---: | --- | --- |"
-for model in NP P SPK; do
-    for run in 00 04 08 12 15; do
-        one "$model" xl330_bam/pendulum.urdf arm 50 "$(echo "$data"/xl330_bam/"$run"_*.csv)" "$data"/xl330_bam/*.csv
-    done
-    for run in No5 No6 No9; do
-        one "$model" robots/ur5/ur5_robot.urdf ee_link 100 "$(echo "$data"/ur5_kufieta/Movement_"$run"_*.csv)" \
-            "$data"/ur5_kufieta/Movement_{No5_Acc_slow_no_disturbance,No6_Acc_slow_Verify_Model,No7_Acc_slow_Verify_Model_short,No9_Singularity_Free_NoDist}.csv
-    done
-done
+rows | tee "$out/rows.md"
+awk -F '|' '{ few += $5 < 0.1; if ($5 > most) most = $5 + 0 }
+    END { printf "\n%d of %d replays refuse less than 0.1 %%, the others up to %.2f %%\n", few, NR, most }' "$out/rows.md"

@@ -30,7 +30,7 @@ namespace dfdyn {
 /// The level is a running quantile by stochastic approximation, and at least 1. Only samples that are learned
 /// as they are after a change raise it: a model that is never right is not found to have changed again and
 /// again. Exponent, `rejection` and `settling` were chosen on a simulated arm of two links, on motions No3 to
-/// No6 of a measured one and on a servo's runs 00 to 03.
+/// No6 of a measured one and on a servo's runs 00 to 03; `alarm` with a pushed motion No7 in sight as well.
 template <class Scalar>
 class InnovationGate {
   public:
