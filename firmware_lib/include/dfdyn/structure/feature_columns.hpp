@@ -34,6 +34,8 @@ class FeatureColumns {
             constants_->features, sizes.input_count(), sizes.feature_count, xi_.data(), phi_.data());
     }
 
+    [[nodiscard]] const typename Model::Sizes& sizes() const noexcept { return constants_->sizes; }
+
     /// φ of the last `evaluate`, 2d values.
     [[nodiscard]] const Scalar* data() const noexcept { return phi_.data(); }
 

@@ -13,7 +13,8 @@ namespace dfdyn {
 /// learned by one learner.
 ///
 /// A structure is a type that names the physics it uses (`NoPhysics` if none), the constants of its learner,
-/// a `Regression` (see `RegressionOf`), and a number that tells it from the others.
+/// its `Columns` (see `ColumnsOf`), a `Regression` (see `RegressionOf`), and a number that tells it from the
+/// others.
 template <template <class Scalar, int columns, int outputs> class LearnerForm = UdCovariance>
 struct Nonparametric {
     using Physics = NoPhysics;
@@ -21,6 +22,25 @@ struct Nonparametric {
 
     template <class Scalar, int columns, int outputs>
     using Constants = typename LearnerForm<Scalar, columns, outputs>::Constants;
+
+    /// See `ColumnsOf`.
+    template <class Model>
+    class Columns : public FeatureColumns<Model> {
+      public:
+        static constexpr int weights = product(Model::outputs, Model::columns);
+
+        explicit Columns(const typename Model::Constants& constants) noexcept
+            : FeatureColumns<Model>(constants) {}
+
+        /// `numbers`: w of each output, m × 2d.
+        void predict_with(const typename Model::Scalar* numbers,
+                          typename Model::Scalar* means) const noexcept {
+            const int count = this->sizes().column_count();
+            for (int k = 0; k < this->sizes().output_count; ++k) {
+                means[k] = detail::dot(numbers + k * count, this->data(), count);
+            }
+        }
+    };
 
     template <class Model>
     class Regression {
@@ -77,9 +97,7 @@ struct Nonparametric {
             }
         }
         void predict_with(const Scalar* weights, Scalar* means) const noexcept {
-            for (int k = 0; k < outputs_; ++k) {
-                means[k] = detail::dot(weights + k * column_count_, columns_.data(), column_count_);
-            }
+            columns_.predict_with(weights, means);
         }
 
         [[nodiscard]] static constexpr Cost cost(const typename Model::Sizes& sizes) noexcept {
@@ -108,7 +126,7 @@ struct Nonparametric {
 
         [[no_unique_address]] Extent<Model::outputs> outputs_;
         [[no_unique_address]] Extent<Model::columns> column_count_;
-        FeatureColumns<Model> columns_;
+        Columns<Model> columns_;
         Learner learner_;
     };
 };

@@ -20,6 +20,25 @@ struct Parametric {
     template <class Scalar, int columns, int outputs>
     using Constants = LearnerConstants<Scalar, Physics::columns, 1>;
 
+    /// See `ColumnsOf`.
+    template <class Model>
+    class Columns : public PhysicsColumns<Model> {
+      public:
+        static constexpr int weights = Model::parameters;
+
+        explicit Columns(const typename Model::Constants& constants) noexcept
+            : PhysicsColumns<Model>(constants) {}
+
+        /// `numbers`: π, p values.
+        void predict_with(const typename Model::Scalar* numbers,
+                          typename Model::Scalar* means) const noexcept {
+            const int count = this->sizes().physics.column_count;
+            for (int k = 0; k < this->sizes().output_count; ++k) {
+                means[k] = detail::dot(this->data() + k * count, numbers, count);
+            }
+        }
+    };
+
     template <class Model>
     class Regression {
       public:
@@ -75,9 +94,7 @@ struct Parametric {
             }
         }
         void predict_with(const Scalar* weights, Scalar* means) const noexcept {
-            for (int k = 0; k < outputs_; ++k) {
-                means[k] = detail::dot(physics_.data() + k * parameters_, weights, parameters_);
-            }
+            physics_.predict_with(weights, means);
         }
 
         [[nodiscard]] static constexpr Cost cost(const typename Model::Sizes& sizes) noexcept {
@@ -105,7 +122,7 @@ struct Parametric {
 
         [[no_unique_address]] Extent<Model::outputs> outputs_;
         [[no_unique_address]] Extent<Model::parameters> parameters_;
-        PhysicsColumns<Model> physics_;
+        Columns<Model> physics_;
         Learner learner_;
     };
 };

@@ -41,6 +41,8 @@ class PhysicsColumns {
         return finite;
     }
 
+    [[nodiscard]] const typename Model::Sizes& sizes() const noexcept { return constants_->sizes; }
+
     /// ψ of the last `evaluate`, m × p.
     [[nodiscard]] const Scalar* data() const noexcept { return psi_.data(); }
 

@@ -7,6 +7,23 @@
 
 namespace dfdyn {
 
+/// The columns of a structure at one motion, without what is learned: where the arm *shall* go, there is
+/// nothing to learn (`LearnedTorque`).
+///  - `push`, `ready`, `restart`: the window of past positions.
+///  - `evaluate`: computes the columns; false if they mean nothing.
+///  - `predict_with(numbers, means)`: with `weights` numbers as `copy_weights` of the `Regression` gives
+///  them.
+template <class C, class Scalar, class Sample>
+concept ColumnsOf = requires(C columns, const C& constant, Scalar* values, const Scalar* numbers,
+                             const Sample& sample) {
+    columns.restart();
+    columns.push(sample);
+    { constant.ready() } -> std::same_as<bool>;
+    { columns.evaluate() } -> std::same_as<bool>;
+    constant.predict_with(numbers, values);
+    { C::weights } -> std::convertible_to<int>;
+};
+
 /// What an estimator predicts with and learns: the part of a model that its structure brings. All outputs are
 /// in units of their noise and about their offset.
 ///  - `push`, `ready`, `restart`: the window of past positions.
