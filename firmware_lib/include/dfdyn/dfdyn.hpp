@@ -2,6 +2,10 @@
 #pragma once
 
 // Everything an embedding needs; each header also stands alone.
+#include "dfdyn/control/disturbance_observer.hpp"
+#include "dfdyn/control/feed_forward.hpp"
+#include "dfdyn/control/learned_torque.hpp"
+#include "dfdyn/control/loop_margin.hpp"
 #include "dfdyn/estimator.hpp"
 #include "dfdyn/extrapolation.hpp"
 #include "dfdyn/features/random_fourier.hpp"

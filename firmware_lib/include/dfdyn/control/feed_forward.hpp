@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/control/reference.hpp"
+#include "dfdyn/forecast_combination.hpp"
+#include "dfdyn/strict_math.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+
+namespace dfdyn {
+
+/// What a `FeedForward` learns with; see `LearnedTorque` for what the calls mean.
+template <class L>
+concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename L::Scalar* values,
+                                 typename L::Scalar* torque) {
+    { L::outputs } -> std::convertible_to<int>;
+    learner.begin(time_ns, values);
+    learner.learn(time_ns, values, values);
+    learner.go_on();
+    { learner.predict(time_ns, values, torque) } -> std::same_as<bool>;
+};
+
+/// The torque that the reference takes: the caller's nominal one, and more and more a learned one.
+///
+/// The learner predicts once per sample period of its model (a *knot*) the torque of the knot to come, for
+/// the reference at constant acceleration until then; between knots it is interpolated. Joint by joint the
+/// torque that in the end had to be commanded decides whose forecast is used: `commanded` compares both with
+/// it at each knot, and they are combined as `ForecastCombination` does, over the last second. What is
+/// commanded contains the feedback, so the judge sees the tracking error, and no torque sensor can mislead
+/// it. Until a second has been judged the nominal torque is used alone.
+///
+/// What is learned enters without a step: its share rises within `rise_s` and falls within `fall_s`, it adds
+/// at most `cap` to the nominal torque and changes by at most `rate`; the whole is within `limit`.
+///
+///     begin(now, position);                              // the arm rests at the reference's start
+///     each control tick:
+///         torque = update(reference, nominal) + feedback + observer;  limited
+///         commanded(torque);
+///         measured(time, position, torque that was in effect then);   // or nullptr for it
+///
+/// Learn from the command that was in effect when the position was read rather than from a torque sensor: a
+/// sensor's offset or scale then costs nothing. Cost per tick: the learner's, and 20 n at a knot, 12 n else.
+template <TorqueLearner Learner>
+class FeedForward {
+  public:
+    using Scalar = typename Learner::Scalar;
+    static constexpr int n = Learner::outputs;
+    using Torques = Storage<Scalar, n>;
+
+    struct Settings {
+        std::int64_t period_ns; ///< of a control tick, > 0
+        int ticks_per_sample;   ///< control ticks of a sample period of the model, ≥ 1
+        Torques limit;          ///< N·m, of each joint's torque, > 0
+        Torques cap;            ///< N·m, of what is learned beyond the nominal torque, ≥ 0
+        Torques rate;           ///< N·m/s, of that; > 0
+        Scalar rise_s = Scalar(0.5);
+        Scalar fall_s = Scalar(0.2);
+        Scalar memory_s = 1; ///< over which the forecasts are judged, ≥ a sample period
+    };
+
+    /// Ticks by which the interpolation runs ahead: a command is held for a tick, so half a tick late in the
+    /// mean, and the torque that was learned with a position had been held before it.
+    static constexpr Scalar lead = 1;
+
+    explicit FeedForward(Learner& learner, const Settings& settings) noexcept
+        : learner_(&learner), joints_(learner.output_count()), settings_(settings),
+          judged_for_(static_cast<int>(settings.memory_s / sample_period_s(settings))),
+          combination_(Extent<2>{}, joints_, settings.memory_s / sample_period_s(settings)),
+          forecasts_(Forecasts::zeros(extent<product(2, n)>(2 * joints_))), from_(Torques::zeros(joints_)),
+          to_(from_), ahead_(from_), share_(from_), part_(from_), torque_(from_) {}
+
+    /// The arm rests at `position` (n values, rad) and is about to move from there.
+    void begin(std::int64_t time_ns, const Scalar* position) noexcept {
+        knot_ns_ = time_ns;
+        tick_ = 0;
+        judged_ = 0;
+        combination_.restart();
+        learner_->begin(time_ns, position);
+        for (int k = 0; k < joints_; ++k) {
+            share_[k] = part_[k] = 0;
+        }
+        known_ = next_known_ = false;
+    }
+
+    /// Uses what is learned, or leaves it out; without a step in either case. It is learned in both.
+    void enable(bool on) noexcept { enabled_ = on; }
+    [[nodiscard]] bool enabled() const noexcept { return enabled_; }
+
+    /// Feed-forward torque of this tick, N·m: `reference` and `nominal` (n values, N·m; zeros if there is no
+    /// model) of now. A nominal torque that is no number counts as 0.
+    const Torques& update(const Reference<Scalar, n>& reference, const Scalar* nominal) noexcept {
+        const int since_knot = static_cast<int>(tick_++ % settings_.ticks_per_sample);
+        if (since_knot == 0) {
+            go_to_next_knot(reference);
+        }
+        const Scalar way = std::min((static_cast<Scalar>(since_knot) + lead) /
+                                        static_cast<Scalar>(settings_.ticks_per_sample),
+                                    Scalar(1));
+        for (int k = 0; k < joints_; ++k) {
+            const Scalar learned = from_[k] + way * (to_[k] - from_[k]);
+            torque_[k] = with_learned(k, bounded(nominal[k], settings_.limit[k]), learned);
+            if (since_knot == 0) {
+                forecasts_[k] = nominal[k];
+                forecasts_[joints_ + k] = from_[k];
+            }
+        }
+        at_knot_ = since_knot == 0;
+        return torque_;
+    }
+
+    /// What has been commanded in this tick, n values, N·m; after `update`. Values that are no numbers are
+    /// not judged.
+    void commanded(const Scalar* torque) noexcept {
+        if (!at_knot_ || !known_) {
+            return;
+        }
+        for (int i = 0; i < 2 * joints_; ++i) {
+            if (!std::isfinite(forecasts_[i]) || !std::isfinite(torque[i % joints_])) {
+                return;
+            }
+        }
+        combination_.learn(forecasts_.data(), torque);
+        judged_ = std::min(judged_ + 1, judged_for_);
+    }
+
+    /// The newest measured position, n values, rad, and the torque that was in effect then, N·m; nullptr for
+    /// what is not known. In every tick after `update`: at a knot it is learned, between knots learning goes
+    /// on. `time_ns`: of the measurement, a whole number of control ticks after `begin`.
+    void measured(std::int64_t time_ns, const Scalar* position, const Scalar* torque) noexcept {
+        if (at_knot_ && position != nullptr) {
+            learner_->learn(time_ns, position, torque);
+        } else {
+            learner_->go_on();
+        }
+    }
+
+    /// Share of the learned forecast in each joint's torque, 0 … 1.
+    [[nodiscard]] const Torques& share() const noexcept { return share_; }
+    /// What has been learned and is in the torque now, N·m.
+    [[nodiscard]] const Torques& learned_part() const noexcept { return part_; }
+    [[nodiscard]] const Learner& learner() const noexcept { return *learner_; }
+
+  private:
+    using Forecasts = Storage<Scalar, product(2, n)>;
+
+    static constexpr Scalar sample_period_s(const Settings& settings) noexcept {
+        return Scalar(1e-9) * static_cast<Scalar>(settings.period_ns) *
+               static_cast<Scalar>(settings.ticks_per_sample);
+    }
+    [[nodiscard]] Scalar period_s() const noexcept {
+        return Scalar(1e-9) * static_cast<Scalar>(settings_.period_ns);
+    }
+
+    static Scalar bounded(Scalar value, Scalar limit) noexcept {
+        return std::isfinite(value) ? std::clamp(value, -limit, limit) : Scalar(0);
+    }
+
+    void go_to_next_knot(const Reference<Scalar, n>& reference) noexcept {
+        knot_ns_ += settings_.period_ns * settings_.ticks_per_sample;
+        for (int k = 0; k < joints_; ++k) {
+            ahead_[k] = position_after(reference, k, sample_period_s(settings_));
+            from_[k] = to_[k];
+        }
+        known_ = next_known_;
+        next_known_ = learner_->predict(knot_ns_, ahead_.data(), to_.data());
+    }
+
+    /// The share that the judge gives the learner.
+    [[nodiscard]] Scalar earned_share(int k) const noexcept {
+        const bool trusted = enabled_ && known_ && next_known_ && judged_ >= judged_for_;
+        return trusted ? combination_.weights()[joints_ + k] : Scalar(0);
+    }
+
+    Scalar with_learned(int k, Scalar nominal, Scalar learned) noexcept {
+        const Scalar step = earned_share(k) - share_[k];
+        share_[k] += std::clamp(step, -period_s() / settings_.fall_s, period_s() / settings_.rise_s);
+        const Scalar beyond =
+            known_ && next_known_ ? bounded(learned - nominal, settings_.cap[k]) : Scalar(0);
+        const Scalar most = settings_.rate[k] * period_s();
+        part_[k] += std::clamp(share_[k] * beyond - part_[k], -most, most);
+        return bounded(nominal + part_[k], settings_.limit[k]);
+    }
+
+    Learner* learner_;
+    [[no_unique_address]] Extent<n> joints_;
+    Settings settings_;
+    int judged_for_; ///< knots that make the learner trusted
+    ForecastCombination<Scalar, 2, n> combination_;
+    Forecasts forecasts_; ///< for this knot: the nominal torque, then the learned one
+    Torques from_, to_;   ///< learned, of this knot and the next
+    Torques ahead_;
+    Torques share_, part_, torque_;
+    std::int64_t knot_ns_ = 0; ///< the next
+    std::int64_t tick_ = 0;
+    int judged_ = 0;
+    bool enabled_ = true;
+    bool known_ = false, next_known_ = false; ///< whether the learner had something to say of the two knots
+    bool at_knot_ = false;
+};
+
+} // namespace dfdyn

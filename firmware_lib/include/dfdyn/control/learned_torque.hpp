@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+namespace dfdyn {
+
+/// The torque that a motion will take, learned while the arm moves: it learns from windows of measured
+/// positions and predicts at a window of the reference's. So what is predicted follows from what the arm
+/// shall do. The prediction of an `Estimator` alone is that of the motion *measured*: fed forward it would be
+/// positive feedback of the position error.
+///
+/// Beside the estimator it has a second window with its columns, and a copy of the learned weights, which
+/// changes whenever a sample has been learned: 2d m + p scalars and the windows, no second covariance.
+///
+/// Samples come a sample period of the model apart; learning one is spread over the control ticks until the
+/// next. `tick_cost()` bounds every call. Refers to `constants`, which must outlive it. Never allocates.
+template <class ModelType>
+class LearnedTorque {
+  public:
+    using Model = ModelType;
+    using Scalar = typename Model::Scalar;
+    using Estimator = dfdyn::Estimator<Model>;
+    static constexpr int outputs = Model::outputs;
+    static_assert(Model::joints == Model::outputs, "a model of the torques of all joints");
+
+    explicit LearnedTorque(const typename Model::Constants&&, int ticks) = delete;
+
+    /// `ticks`: control ticks from one sample to the next, ≥ 1.
+    LearnedTorque(const typename Model::Constants& constants, int ticks) noexcept
+        : constants_(&constants), share_(share_of(constants.sizes, ticks > 1 ? ticks : 1)),
+          estimator_(constants), columns_(constants), sample_{}, weights_{} {
+        take_over();
+    }
+
+    [[nodiscard]] Extent<outputs> output_count() const noexcept { return constants_->sizes.output_count; }
+
+    /// The arm rests at `position` (n values, rad), and has long since: both windows begin anew. What has
+    /// been learned stays.
+    void begin(std::int64_t time_ns, const Scalar* position) noexcept {
+        estimator_.restart_window();
+        columns_.restart();
+        for (int lag = 0; lag < longest_window && !columns_.ready(); ++lag) {
+            push(time_ns, position);
+        }
+    }
+
+    /// Begins to learn a sample: `position` as measured, n values, rad, and the torque that moved it there,
+    /// N·m; nullptr: not known. Faulty samples are refused as `Estimator::tick` says.
+    Status learn(std::int64_t time_ns, const Scalar* position, const Scalar* torque) noexcept {
+        sample_.time_ns = time_ns;
+        sample_.output_valid = torque != nullptr;
+        for (int k = 0; k < output_count(); ++k) {
+            sample_.position[k] = position[k];
+            sample_.output[k] = torque != nullptr ? torque[k] : Scalar(0);
+        }
+        const Status status = estimator_.tick(sample_, share_).status;
+        pending_ = true;
+        take_over_when_done();
+        return status;
+    }
+
+    /// Goes on with that sample; in every control tick that has none.
+    void go_on() noexcept {
+        estimator_.advance(share_);
+        take_over_when_done();
+    }
+
+    /// The torque that the reference takes a sample period after the last call, N·m: `position` then, rad.
+    /// False, and zeros, where the model knows nothing, or what it knows is beyond its limits. A position
+    /// that is no number begins the reference's window anew.
+    bool predict(std::int64_t time_ns, const Scalar* position, Scalar* torque) noexcept {
+        bool known = true;
+        for (int k = 0; k < output_count(); ++k) {
+            known = known && std::isfinite(position[k]);
+        }
+        if (known) {
+            push(time_ns, position);
+        } else {
+            columns_.restart();
+        }
+        known = known && columns_.ready() && columns_.evaluate();
+        if (known) {
+            columns_.predict_with(weights_.data(), torque);
+        }
+        for (int k = 0; known && k < output_count(); ++k) {
+            torque[k] = constants_->output_offset[k] + constants_->output_noise_std[k] * torque[k];
+            const Scalar limit = constants_->prediction_limit[k];
+            known = std::isfinite(torque[k]) && !(limit > 0 && std::abs(torque[k]) > limit);
+        }
+        for (int k = 0; !known && k < output_count(); ++k) {
+            torque[k] = 0;
+        }
+        return known;
+    }
+
+    /// Back to what was known at the start.
+    void reset() noexcept {
+        estimator_.reset();
+        columns_.restart();
+        take_over();
+    }
+
+    [[nodiscard]] const Estimator& estimator() const noexcept { return estimator_; }
+    /// A buffer of this many bytes holds any snapshot.
+    static constexpr std::size_t snapshot_capacity = Estimator::snapshot_capacity;
+    /// See `Estimator::snapshot`.
+    [[nodiscard]] SnapshotResult snapshot(std::span<std::byte> buffer) const noexcept {
+        return estimator_.snapshot(buffer);
+    }
+    /// See `Estimator::restore`. Both windows begin anew: `begin` follows.
+    [[nodiscard]] SnapshotResult restore(std::span<const std::byte> buffer) noexcept {
+        const SnapshotResult result = estimator_.restore(buffer);
+        if (result == SnapshotResult::ok) {
+            columns_.restart();
+            pending_ = true;
+            take_over_when_done();
+        }
+        return result;
+    }
+
+    /// Multiply-adds of a control tick with `learn` or `go_on` and `predict`, at most.
+    [[nodiscard]] std::int64_t tick_cost() const noexcept {
+        const Cost cost = Estimator::cost(constants_->sizes);
+        return 2 * cost.predict + cost.variance + share_.operations;
+    }
+
+  private:
+    using Columns = typename Model::Structure::template Columns<Model>;
+    static_assert(ColumnsOf<Columns, Scalar, typename Model::Sample>);
+
+    /// Samples of any model's window, at most: a bound for a loop.
+    static constexpr int longest_window = 4096;
+
+    /// What suffices to learn a sample in `ticks` slices, in each of which as much may be left over as a
+    /// slice cannot use.
+    static constexpr Budget share_of(const typename Model::Sizes& sizes, int ticks) noexcept {
+        const Cost cost = Estimator::cost(sizes);
+        return {(cost.learn + cost.forget + ticks - 1) / ticks + cost.largest_step};
+    }
+
+    void push(std::int64_t time_ns, const Scalar* position) noexcept {
+        sample_.time_ns = time_ns;
+        for (int k = 0; k < output_count(); ++k) {
+            sample_.position[k] = position[k];
+        }
+        columns_.push(sample_);
+    }
+
+    void take_over_when_done() noexcept {
+        if (pending_ && estimator_.regression().idle()) {
+            take_over();
+        }
+    }
+
+    void take_over() noexcept {
+        estimator_.regression().copy_weights(weights_.data());
+        pending_ = false;
+    }
+
+    const typename Model::Constants* constants_;
+    Budget share_; ///< of a control tick
+    Estimator estimator_;
+    Columns columns_; ///< at the reference
+    typename Model::Sample sample_;
+    Storage<Scalar, Columns::weights> weights_;
+    bool pending_ = false; ///< the estimator may know more than `weights_`
+};
+
+} // namespace dfdyn

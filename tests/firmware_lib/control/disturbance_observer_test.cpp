@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/control/disturbance_observer.hpp"
+
+#include "tests/firmware_lib/control/joint.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace disturbance_observer_test {
+
+using namespace dfdyn;
+using namespace dfdyn::tests;
+
+using Observer = DisturbanceObserver<double, 1>;
+constexpr double none = 0;
+constexpr double step_s = 1e-5;
+constexpr JointLoop<double> joint_loop{1.5, 500, 60, 0, 0};
+constexpr double bandwidth = 40;
+
+/// e(t) of (J s² + D s + P)(s + b) e = s · disturbance for a step of 1 N·m: the sum of three exponentials, as
+/// their partial fractions give them.
+double error_after_step(double t) {
+    const auto [inertia, stiffness, damping, delay, other_delay] = joint_loop;
+    const double centre = damping / (2 * inertia);
+    const double spread = std::sqrt(centre * centre - stiffness / inertia);
+    const double poles[] = {-centre + spread, -centre - spread, -bandwidth};
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+        const double others = (poles[i] - poles[(i + 1) % 3]) * (poles[i] - poles[(i + 2) % 3]);
+        sum += std::exp(poles[i] * t) / (others * inertia);
+    }
+    return sum;
+}
+
+TEST_CASE("after a step of torque the error is that of the feedback's poles and one at the bandwidth") {
+    ServoJoint joint(joint_loop, step_s);
+    Observer observer({}, {step_s, {{bandwidth}}, {{100}}});
+    double largest = 0;
+    double worst = 0;
+    for (int i = 0; i < 100'000; ++i) {
+        const double feedback = joint.feedback();
+        const double rate = joint.error_rate();
+        const double estimate = observer.update(&feedback, &joint_loop.inertia, &rate, &none)[0];
+        joint.advance(feedback + estimate - 1);
+        const double truth = error_after_step(step_s * (i + 1));
+        largest = std::max(largest, truth);
+        worst = std::max(worst, std::abs(-joint.position() - truth));
+    }
+    CHECK(worst < 0.01 * largest);
+    CHECK(observer.estimate()[0] == Approx(1).epsilon(1e-3));
+    CHECK(std::abs(joint.position()) < 1e-3 * largest);
+}
+
+TEST_CASE("no estimate leaves its limit, and none grows against the limit of the command") {
+    DFDYN_SEEDED_ENGINE(engine);
+    std::normal_distribution<double> size(0, 50);
+    Observer observer({}, {1e-3, {{bandwidth}}, {{3}}});
+    for (int i = 0; i < 10'000; ++i) {
+        const double feedback = size(engine);
+        const double rate = size(engine);
+        const double inertia = std::abs(size(engine));
+        REQUIRE(std::abs(observer.update(&feedback, &inertia, &rate, &none)[0]) <= 3);
+    }
+    observer.restart();
+    constexpr double push = 20;
+    constexpr double excess = 1;
+    for (int i = 0; i < 1000; ++i) {
+        observer.update(&push, &none, &none, &excess);
+    }
+    CHECK(observer.estimate()[0] == 0);
+    const double back = -push;
+    observer.update(&back, &none, &none, &excess); // away from the limit it may go
+    CHECK(observer.estimate()[0] < 0);
+}
+
+TEST_CASE("what is no number leaves the estimate as it was") {
+    DisturbanceObserver<float, 2> observer({}, {0.001F, {{20, 20}}, {{5, 5}}});
+    const float inertia[] = {1, 1};
+    const float zero[] = {0, 0};
+    const float push[] = {4, 4};
+    observer.update(push, inertia, zero, zero);
+    const float before = observer.estimate()[0];
+    REQUIRE(before > 0);
+    for (const float bad :
+         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        const float broken[] = {bad, 4};
+        observer.update(broken, inertia, zero, zero);
+        CHECK(observer.estimate()[0] == before);
+        observer.update(zero, inertia, broken, zero);
+        CHECK(observer.estimate()[0] == before);
+    }
+    CHECK(observer.estimate()[1] > before);
+    observer.restart();
+    CHECK(observer.estimate()[0] == 0);
+}
+
+} // namespace disturbance_observer_test

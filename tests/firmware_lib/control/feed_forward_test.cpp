@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/control/feed_forward.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace feed_forward_test {
+
+using namespace dfdyn;
+using namespace dfdyn::tests;
+
+constexpr std::int64_t period_ns = 2'000'000;
+constexpr double period_s = 2e-3;
+constexpr int ticks_per_sample = 4;
+
+/// A learner that says what a test wants, and notes what it is asked.
+struct ToldLearner {
+    using Scalar = double;
+    static constexpr int outputs = 1;
+
+    [[nodiscard]] static constexpr Extent<1> output_count() noexcept { return {}; }
+    void begin(std::int64_t /*time_ns*/, const double* position) { began_at = *position; }
+    void learn(std::int64_t time_ns, const double* /*position*/, const double* torque) {
+        learned.push_back(time_ns);
+        last_torque = torque != nullptr ? *torque : std::numeric_limits<double>::quiet_NaN();
+    }
+    void go_on() { ++went_on; }
+    bool predict(std::int64_t time_ns, const double* position, double* torque) {
+        predicted.push_back(time_ns);
+        asked_at.push_back(*position);
+        *torque = knows ? forecast : 0;
+        return knows;
+    }
+
+    double forecast = 0;
+    bool knows = true;
+    double began_at = -1, last_torque = 0;
+    int went_on = 0;
+    std::vector<std::int64_t> learned, predicted;
+    std::vector<double> asked_at;
+};
+
+using Forward = FeedForward<ToldLearner>;
+const Forward::Settings settings{period_ns, ticks_per_sample, {{100}}, {{60}}, {{2000}}};
+
+Reference<double, 1> reference_at(double time_s) {
+    return {{{std::sin(time_s)}}, {{std::cos(time_s)}}, {{-std::sin(time_s)}}};
+}
+
+/// Runs a feed-forward under a loop that in the end commands `needed`.
+struct Run {
+    ToldLearner learner;
+    Forward forward{learner, settings};
+    std::int64_t tick = 0;
+    double last = 0;
+    double largest_step = 0;
+
+    Run() {
+        constexpr double start = 0;
+        forward.begin(0, &start);
+    }
+
+    void go(double seconds, double nominal, double needed) {
+        const auto end = tick + std::llround(seconds / period_s);
+        for (; tick < end; ++tick) {
+            const double time_s = static_cast<double>(tick) * period_s;
+            const double torque = forward.update(reference_at(time_s), &nominal)[0];
+            forward.commanded(&needed);
+            const double position = std::sin(time_s);
+            forward.measured(tick * period_ns, &position, &needed);
+            largest_step = tick > 0 ? std::max(largest_step, std::abs(torque - last)) : 0;
+            last = torque;
+        }
+    }
+};
+
+TEST_CASE("what is learned comes in without a step, and only after a second that was judged") {
+    Run run;
+    run.learner.forecast = 50;
+    run.go(1.0, 10, 50);
+    CHECK(run.last == 10);
+    CHECK(run.forward.share()[0] == 0);
+    run.go(0.25, 10, 50);
+    CHECK(run.forward.share()[0] == Approx(0.5).margin(0.03));
+    run.go(0.5, 10, 50);
+    CHECK(run.last == Approx(50).margin(0.01));
+    CHECK(run.largest_step <= 40 * period_s / 0.5 + 1e-9);
+}
+
+TEST_CASE("a learner that has gone wrong is out within a second, and back when it is right again") {
+    Run run;
+    run.learner.forecast = 50;
+    run.go(3, 10, 50);
+    REQUIRE(run.forward.share()[0] > 0.99);
+    run.learner.forecast = -30; // 80 N·m off, the nominal torque 40
+    run.go(1, 10, 50);
+    CHECK(run.forward.share()[0] < 0.1);
+    run.learner.forecast = 50;
+    run.go(6, 10, 50);
+    CHECK(run.forward.share()[0] > 0.9);
+}
+
+TEST_CASE("switching off and on makes no step, and learning goes on in between") {
+    Run run;
+    run.learner.forecast = 50;
+    run.go(3, 10, 50);
+    const std::size_t learned = run.learner.learned.size();
+    run.forward.enable(false);
+    run.largest_step = 0;
+    run.go(0.25, 10, 50);
+    CHECK(run.last == Approx(10).margin(0.5));
+    CHECK(run.learner.learned.size() > learned + 20);
+    run.forward.enable(true);
+    run.go(1, 10, 50);
+    CHECK(run.last == Approx(50).margin(0.01));
+    CHECK(run.largest_step <= 40 * period_s / 0.2 + 1e-9);
+}
+
+TEST_CASE("no torque leaves the limit, no learned part the cap, and none is faster than the rate") {
+    DFDYN_SEEDED_ENGINE(engine);
+    std::normal_distribution<double> size(0, 200);
+    std::bernoulli_distribution rarely(0.01);
+    Run run;
+    double part = 0;
+    for (int i = 0; i < 5000; ++i) {
+        run.learner.forecast = rarely(engine) ? std::numeric_limits<double>::quiet_NaN() : size(engine);
+        run.learner.knows = std::isfinite(run.learner.forecast);
+        const double nominal = rarely(engine) ? std::numeric_limits<double>::infinity() : size(engine);
+        run.go(period_s, nominal,
+               rarely(engine) ? std::numeric_limits<double>::quiet_NaN() : run.learner.forecast);
+        const double now = run.forward.learned_part()[0];
+        REQUIRE(std::abs(run.last) <= 100);
+        REQUIRE(std::abs(now) <= 60);
+        REQUIRE(std::abs(now - part) <= 2000 * period_s * (1 + 1e-12));
+        part = now;
+    }
+}
+
+TEST_CASE(
+    "the learner is asked for the next knot, where the reference will be, and learns one sample per knot") {
+    Run run;
+    run.go(10 * ticks_per_sample * period_s, 0, 0);
+    CHECK(run.learner.began_at == 0);
+    REQUIRE(run.learner.predicted.size() == 10);
+    REQUIRE(run.learner.learned.size() == 10);
+    CHECK(run.learner.went_on == 10 * (ticks_per_sample - 1));
+    for (std::size_t k = 0; k < 10; ++k) {
+        const auto next_ns = static_cast<std::int64_t>(k + 1) * ticks_per_sample * period_ns;
+        CHECK(run.learner.predicted[k] == next_ns);
+        CHECK(run.learner.asked_at[k] == Approx(std::sin(1e-9 * static_cast<double>(next_ns))).margin(1e-7));
+        CHECK(run.learner.learned[k] == next_ns - ticks_per_sample * period_ns);
+    }
+}
+
+TEST_CASE("a position that was not measured is not learned") {
+    Run run;
+    run.go(0.1, 0, 0);
+    const std::size_t learned = run.learner.learned.size();
+    constexpr double nothing = 0;
+    for (int i = 0; i < 2 * ticks_per_sample; ++i) {
+        run.forward.update(reference_at(0.1), &nothing);
+        run.forward.commanded(&nothing);
+        run.forward.measured(0, nullptr, nullptr);
+    }
+    CHECK(run.learner.learned.size() == learned);
+}
+
+} // namespace feed_forward_test
