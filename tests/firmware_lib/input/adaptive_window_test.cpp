@@ -164,4 +164,25 @@ TEST_CASE("the values may lie apart") {
     CHECK(AdaptiveWindow<double>(ages, values, 2, 3, 1e-9).velocity() == Approx(2));
 }
 
+TEST_CASE("the slope of a reference over the window of the readings has the readings' delay") {
+    const Signal reference = [](double t) { return std::sin(3 * t); };
+    const Signal position = [&](double t) { return reference(t) - 0.02 * t; };
+    constexpr double noise_bound = 1e-4;
+    double largest_error = 0;
+    double largest_delay = 0;
+    for (int t = 0; t < 1000; ++t) {
+        const double now = 0.00137 * t;
+        const Samples<double> readings(position, now, uniform_ages(20));
+        const Samples<double> references(reference, now, uniform_ages(20));
+        const AdaptiveWindow<double> window = readings.window(noise_bound);
+        const double rate = window.slope_of(references.values.data()) - window.velocity();
+        largest_error = std::max(largest_error, std::abs(rate - 0.02));
+        largest_delay = std::max(largest_delay, std::abs(3 * std::cos(3 * now) - 0.02 - window.velocity()));
+    }
+    CHECK(largest_error < 1e-9);
+    CHECK(largest_delay > 0.05); // which a comparison with the reference's velocity of now would have
+    constexpr double alone = 0;
+    CHECK(AdaptiveWindow<double>(&alone, &alone, 1, 1, noise_bound).slope_of(&alone) == 0);
+}
+
 } // namespace adaptive_window_test

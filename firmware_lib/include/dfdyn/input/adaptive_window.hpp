@@ -26,6 +26,14 @@ class AdaptiveWindow {
     /// Slope of the longest straight line that fits, in units of value per time.
     [[nodiscard]] constexpr Scalar velocity() const noexcept { return longest(1).slope; }
 
+    /// Slope of another signal of the same times, over the samples of that line: two signals that are
+    /// compared get the same delay. `stride` and order are those of `value`.
+    [[nodiscard]] constexpr Scalar slope_of(const Scalar* other) const noexcept {
+        const int length = longest(1).length;
+        return length < 2 ? Scalar(0)
+                          : AdaptiveWindow(time_, other, stride_, length, noise_bound_).fit(1, length).slope;
+    }
+
     /// Second derivative of the longest parabola that fits.
     [[nodiscard]] constexpr Scalar acceleration() const noexcept { return longest(2).curvature; }
 
@@ -48,6 +56,7 @@ class AdaptiveWindow {
         Scalar slope_at_mean = 0, half_curvature = 0;
         Scalar skew = 0, spread = 0;
         Scalar slope = 0, curvature = 0; ///< at the newest sample
+        int length = 0;                  ///< samples
     };
 
   public:
@@ -72,6 +81,7 @@ class AdaptiveWindow {
 
     [[nodiscard]] constexpr Fit fit(int degree, int length) const noexcept {
         Fit result;
+        result.length = length;
         for (int i = 0; i < length; ++i) {
             result.mean_time += time_[i];
             result.mean_value += relative(i);
