@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What it takes to embed the estimator: a model that `dfdyn train --header` wrote, one object, one call per
-// tick.
+// What it takes to watch an arm with an embedded estimator: a model that `dfdyn train --header` wrote, one
+// object, one call per tick. To move it, see joint_controller.hpp.
 #include "embedding.hpp"
 
 #include "ur5_model.hpp" // constants, in flash
@@ -23,7 +23,7 @@ int run_example(void (*after_tick)(const TickOutcome&)) {
     float output_square = 0;
     for (const Ur5Sample& recorded : ur5_samples) {
         const auto estimate = estimator.tick(read_sensors<Estimator::Sample>(recorded), budget);
-        if (estimate.status.predicted()) { // in a robot: feed estimate.prediction forward
+        if (estimate.status.predicted()) { // to compare, never to feed forward
             error_square += estimate.innovation[1] * estimate.innovation[1];
             output_square += recorded.current_A[1] * recorded.current_A[1];
         }

@@ -118,7 +118,7 @@ void learn(std::int64_t instant_ns) {
         return;
     }
     const auto estimate = estimator.tick(sample, budget);
-    if (estimate.status.predicted() && sample.output_valid) { // in a robot: feed estimate.prediction forward
+    if (estimate.status.predicted() && sample.output_valid) { // to compare, never to feed forward
         statistics.error_square += estimate.innovation[1] * estimate.innovation[1];
         statistics.output_square += sample.output[1] * sample.output[1];
     }

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "simulated_joints.hpp"
+
+/// The controller and its arm, tick by tick: on a computer, and in the timer interrupt of a Cortex-M.
+class ClosedLoop {
+  public:
+    ClosedLoop()
+        : controller_({.position = 80, .velocity = 8, .inertia = 0.2F, .limit = 15, .bandwidth = 30}) {
+        controller_.activate(joints_.state());
+    }
+
+    void tick() {
+        const JointController::Reference reference = SimulatedJoints::reference(tick_++);
+        const JointController::State& state = joints_.state();
+        for (int k = 0; k < JointController::joints; ++k) {
+            const float error = reference.position[k] - state.position[k];
+            error_square_ += error * error;
+        }
+        joints_.advance(controller_.update(state, reference, SimulatedJoints::nominal(reference)));
+    }
+
+    /// Root mean square of the tracking error since the last call, over all joints, rad.
+    float take_error(int ticks) {
+        const float mean = error_square_ / static_cast<float>(ticks * JointController::joints);
+        error_square_ = 0;
+        return std::sqrt(mean);
+    }
+
+    JointController& controller() { return controller_; }
+
+  private:
+    JointController controller_;
+    SimulatedJoints joints_;
+    std::int64_t tick_ = 0;
+    float error_square_ = 0;
+};

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The joint controller in the timer interrupt of 1 kHz, moving the simulated joints for some seconds.
+#include "closed_loop.hpp"
+#include "report.hpp"
+#include "stack_watermark.hpp"
+#include "systick.hpp"
+
+#include <algorithm>
+
+namespace {
+
+constexpr std::uint32_t timer_hz = 1000;
+constexpr std::uint32_t seconds = 6;
+
+ClosedLoop loop;
+std::uint32_t ticks = 0;
+std::uint32_t longest = 0;  ///< of an interrupt, the arm's simulation included, in counts of the timer
+std::uint32_t overruns = 0; ///< interrupts that were due before the one before had ended
+float first_error = 0;
+float last_error = 0;
+volatile bool ended;
+
+std::uint32_t microradians(float error_rad) { return static_cast<std::uint32_t>(1e6F * error_rad); }
+
+} // namespace
+
+extern "C" void systick_handler() {
+    if (ended) {
+        return;
+    }
+    static_cast<void>(systick().control); // forgets that the timer has passed zero
+    loop.tick();
+    const std::uint32_t spent = systick().reload - systick().value;
+    overruns += (systick().control & SysTick::passed_zero) != 0 ? 1 : 0;
+    longest = std::max(longest, spent);
+    if (++ticks % timer_hz == 0) {
+        last_error = loop.take_error(timer_hz);
+        first_error = ticks == timer_hz ? last_error : first_error;
+    }
+    ended = ticks == seconds * timer_hz;
+}
+
+int application() {
+    systick().reload = core_clock_hz / timer_hz - 1;
+    systick().value = 0;
+    systick().control = SysTick::enabled | SysTick::interrupts | SysTick::core_clock;
+    while (!ended) {
+        asm volatile("wfi" ::: "memory");
+    }
+    report(DFDYN_CORE ": joint controller: tracking error in the first second ", microradians(first_error),
+           "");
+    report(" urad, in the last ", microradians(last_error), " urad");
+    report("; overruns ", overruns, "");
+    report("; an interrupt took at most ", longest / (core_clock_hz / 1'000'000),
+           " us of 1000, at 500 million instructions per second");
+    report("; stack ", stack_used_bytes(), " bytes\n");
+    return overruns == 0 && last_error < first_error / 2 ? 0 : 1;
+}

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// dfdyn_linux_loop [SECONDS]: the controller in a bare loop of 1 kHz, as a real-time Linux runs it: absolute
+// times, locked memory, SCHED_FIFO where it is allowed. Without SECONDS as fast as it goes, which is what the
+// tests do: the arm is simulated either way. Prints the tracking error second by second.
+#include "closed_loop.hpp"
+
+#include <sched.h>
+#include <sys/mman.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+
+namespace {
+
+constexpr int ticks_per_second = 1000;
+constexpr int seconds_without_clock = 12;
+
+ClosedLoop loop; // static: it is large, and nothing is allocated
+
+void become_real_time() {
+    constexpr sched_param priority{80};
+    if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0 || sched_setscheduler(0, SCHED_FIFO, &priority) != 0) {
+        std::puts("note: not allowed to lock memory or to run in real time");
+    }
+}
+
+void sleep_until(timespec& due) {
+    constexpr long second_ns = 1'000'000'000;
+    due.tv_nsec += JointController::period_ns;
+    due.tv_sec += due.tv_nsec / second_ns;
+    due.tv_nsec %= second_ns;
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr);
+}
+
+} // namespace
+
+int main(int count, char** arguments) {
+    const bool timed = count > 1;
+    const long seconds = timed ? std::strtol(arguments[1], nullptr, 10) : seconds_without_clock;
+    if (timed) {
+        become_real_time();
+    }
+    timespec due{};
+    clock_gettime(CLOCK_MONOTONIC, &due);
+    float first = 0;
+    float last = 0;
+    for (long second = 0; second < seconds; ++second) {
+        for (int i = 0; i < ticks_per_second; ++i) {
+            if (timed) {
+                sleep_until(due);
+            }
+            loop.tick();
+        }
+        last = loop.take_error(ticks_per_second);
+        first = second == 0 ? last : first;
+        std::printf("second %ld: tracking error %.3f mrad, learned share of joint 2 %.2f\n", second + 1,
+                    1e3 * static_cast<double>(last),
+                    static_cast<double>(loop.controller().forward().share()[1]));
+    }
+    return last < first / 2 || seconds < seconds_without_clock ? 0 : 1;
+}

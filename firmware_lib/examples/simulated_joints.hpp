@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/features/cos_sin.hpp" // the C library's are slow where they matter
+#include "joint_controller.hpp"
+
+#include <cmath>
+
+/// In the place of a robot: six joints with inertia, gravity and friction, not those that the model was
+/// trained on, and a motion for them.
+class SimulatedJoints {
+  public:
+    static constexpr int joints = JointController::joints;
+    static constexpr float inertia = 0.2F; // A·s²/rad
+    static constexpr float weight = 1;     // A
+    static constexpr float coulomb = 0.8F; // A
+    static constexpr float viscous = 0.5F; // A·s/rad
+    static constexpr float period_s = 1e-9F * JointController::period_ns;
+
+    /// At rest at the motion's start.
+    SimulatedJoints() {
+        const JointController::Reference start = reference(0);
+        for (int k = 0; k < joints; ++k) {
+            state_.position[k] = start.position[k];
+        }
+    }
+
+    /// A motion that repeats, from rest.
+    static JointController::Reference reference(std::int64_t tick) {
+        JointController::Reference reference{};
+        constexpr float rate = 2.5F; // rad/s
+        const float angle = rate * period_s * static_cast<float>(tick);
+        float cosine = 1;
+        float sine = 0;
+        dfdyn::cos_sin(&angle, 1, 1.0F, &cosine, &sine);
+        for (int k = 0; k < joints; ++k) {
+            const float size = 0.2F + 0.05F * static_cast<float>(k);
+            reference.position[k] = size * (1 - cosine);
+            reference.velocity[k] = size * rate * sine;
+            reference.acceleration[k] = size * rate * rate * cosine;
+        }
+        return reference;
+    }
+
+    /// What a model that knows inertia only says of it.
+    static JointController::Efforts nominal(const JointController::Reference& reference) {
+        JointController::Efforts effort{};
+        for (int k = 0; k < joints; ++k) {
+            effort[k] = inertia * reference.acceleration[k];
+        }
+        return effort;
+    }
+
+    /// A period under these efforts, in short steps.
+    void advance(const JointController::Efforts& effort) {
+        constexpr int steps = 4;
+        constexpr float step_s = period_s / steps;
+        for (int k = 0; k < joints; ++k) {
+            for (int i = 0; i < steps; ++i) {
+                const float net = effort[k] - friction(state_.velocity[k]) - weight * state_.position[k];
+                state_.velocity[k] += step_s / inertia * net;
+                state_.position[k] += step_s * state_.velocity[k];
+            }
+        }
+        state_.time_ns += JointController::period_ns;
+    }
+
+    [[nodiscard]] const JointController::State& state() const { return state_; }
+
+  private:
+    /// Smooth about rest, so that the steps can be long.
+    static float friction(float velocity) {
+        constexpr float slow = 0.01F; // rad/s
+        return coulomb * velocity / (slow + std::abs(velocity)) + viscous * velocity;
+    }
+
+    JointController::State state_{};
+};
