@@ -99,8 +99,8 @@ class LatticePredictor {
 /// detection and display.
 ///
 /// **Never feed a forecast forward.** It follows the measured outputs, an external contact's force included;
-/// fed forward it would be positive feedback. Feed forward `Estimate::prediction`, which this object neither
-/// reads back nor changes.
+/// fed forward it would be positive feedback. What to feed forward is a prediction for the reference:
+/// `FeedForward`.
 ///
 /// A model's errors are coloured: at 125 Hz, and more so at 1 kHz, most of an error is that of the sample
 /// before, so that y(t-1) alone may err less than the model. Each output has two forecasts and a weight w:
