@@ -156,11 +156,11 @@ Wrench ArmDynamics::at_sensor(const SpatialForce& beyond, const Eigen::Isometry3
     return robot_.sensor->parent_to_child ? result : -result;
 }
 
-Wrench ArmDynamics::wrench_of_tip_force(const Configuration& configuration,
-                                        const Eigen::Vector3d& force) const {
+Wrench ArmDynamics::wrench_of_force(const Configuration& configuration, const Eigen::Vector3d& point,
+                                    const Eigen::Vector3d& force) const {
     const std::size_t link = robot_.sensor->link;
     // what the surroundings carry the base's side need not
-    const SpatialForce spared{tip(configuration).cross(-force), -force};
+    const SpatialForce spared{point.cross(-force), -force};
     return at_sensor(spared, link == 0 ? Eigen::Isometry3d::Identity() : configuration.place[link - 1]);
 }
 
@@ -177,9 +177,13 @@ Eigen::Vector3d ArmDynamics::tip(const Configuration& configuration) const {
 }
 
 PointJacobian ArmDynamics::tip_jacobian(const Configuration& configuration) const {
-    const Eigen::Vector3d point = tip(configuration);
-    PointJacobian result(3, joint_count());
-    for (Eigen::Index i = 0; i < result.cols(); ++i) {
+    return point_jacobian(configuration, joint_count() - 1, tip(configuration));
+}
+
+PointJacobian ArmDynamics::point_jacobian(const Configuration& configuration, Eigen::Index link,
+                                          const Eigen::Vector3d& point) const {
+    PointJacobian result = PointJacobian::Zero(3, joint_count());
+    for (Eigen::Index i = 0; i <= link; ++i) {
         const SpatialMotion& axis = configuration.axis[static_cast<std::size_t>(i)];
         result.col(i) = axis.linear + axis.angular.cross(point);
     }

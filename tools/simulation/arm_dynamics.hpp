@@ -48,8 +48,9 @@ class ArmDynamics {
     Wrench wrench(const Configuration& configuration, const JointVector& velocity,
                   const JointVector& acceleration) const;
 
-    /// What a force at the tip (N, in the base's frame) adds to that.
-    Wrench wrench_of_tip_force(const Configuration& configuration, const Eigen::Vector3d& force) const;
+    /// What a force (N) on a point (m) of a part beyond the sensor adds to that; both in the base's frame.
+    Wrench wrench_of_force(const Configuration& configuration, const Eigen::Vector3d& point,
+                           const Eigen::Vector3d& force) const;
 
     /// Kinetic (rotors included) plus potential energy; the latter is zero at the base's origin. J.
     double energy(const Configuration& configuration, const JointVector& velocity) const;
@@ -57,6 +58,9 @@ class ArmDynamics {
     /// Of the tip frame's origin, in the base's frame, m.
     Eigen::Vector3d tip(const Configuration& configuration) const;
     PointJacobian tip_jacobian(const Configuration& configuration) const;
+    /// Of a point (m, in the base's frame) of the link that joint `link`, from 0, moves.
+    PointJacobian point_jacobian(const Configuration& configuration, Eigen::Index link,
+                                 const Eigen::Vector3d& point) const;
 
   private:
     struct LinkMotion {

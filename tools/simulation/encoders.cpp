@@ -19,7 +19,15 @@ double Encoders::count(std::size_t joint) const {
     return std::ldexp(prismatic_[joint] ? 1 : 2 * std::numbers::pi, -model_.bits_per_turn);
 }
 
+void Encoders::add_faults(const JointVector& last) {
+    reading_ += faults_->jump;
+    for (Eigen::Index i = 0; i < last.size(); ++i) {
+        reading_[i] = faults_->frozen[static_cast<std::size_t>(i)] ? last[i] : reading_[i];
+    }
+}
+
 void Encoders::observe(const JointVector& position) {
+    const JointVector last = reading_;
     reading_ = position;
     if (model_.offset) {
         reading_ += *model_.offset;
@@ -31,6 +39,9 @@ void Encoders::observe(const JointVector& position) {
         if (size > 0) {
             reading_[i] = size * std::round(reading_[i] / size);
         }
+    }
+    if (faults_) {
+        add_faults(last);
     }
 }
 

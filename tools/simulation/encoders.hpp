@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/simulation/faults/fault.hpp"
 #include "tools/simulation/joint_vector.hpp"
 #include "tools/training/random_source.hpp"
 
@@ -20,22 +21,28 @@ struct EncoderModel {
 };
 
 /// Readings, held until the next: offset, eccentricity (amplitude · sin(q + phase)), noise, rounding to the
-/// nearest count.
+/// nearest count, faults.
 class Encoders {
   public:
     Encoders(EncoderModel model, std::vector<bool> prismatic, std::uint64_t seed);
 
     void observe(const JointVector& position);
+    /// From the next reading on.
+    void set_faults(const EncoderFaults& faults) { faults_ = faults; }
     const JointVector& reading() const noexcept { return reading_; }
 
     /// The size of one count of joint `joint`, rad or m; 0 without quantiser.
     double count(std::size_t joint) const;
 
   private:
+    /// `last`: the reading before; empty at the first.
+    void add_faults(const JointVector& last);
+
     EncoderModel model_;
     std::vector<bool> prismatic_;
     NormalSource noise_;
     JointVector reading_;
+    std::optional<EncoderFaults> faults_;
 };
 
 } // namespace dfdyn::tools

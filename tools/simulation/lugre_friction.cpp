@@ -17,7 +17,7 @@ double LuGreFriction::level(double velocity) const noexcept {
     const double unloaded = parameters_.coulomb +
                             (parameters_.breakaway - parameters_.coulomb) * std::exp(-ratio * ratio) +
                             (velocity < 0 ? parameters_.negative_excess : 0);
-    return std::max(least, drifted_ * unloaded + parameters_.load_coefficient * load_);
+    return std::max(least, factor_ * (drifted_ * unloaded + parameters_.load_coefficient * load_));
 }
 
 double LuGreFriction::deflection_rate(double velocity) const noexcept {
@@ -26,9 +26,9 @@ double LuGreFriction::deflection_rate(double velocity) const noexcept {
 
 double LuGreFriction::torque(double velocity) const noexcept {
     if (!(parameters_.stiffness > 0)) {
-        return drifted_ * parameters_.viscous * velocity;
+        return factor_ * drifted_ * parameters_.viscous * velocity;
     }
-    const double viscous = drifted_ * parameters_.viscous;
+    const double viscous = factor_ * drifted_ * parameters_.viscous;
     const double rate = deflection_rate(velocity);
     return parameters_.stiffness * deflection_ + parameters_.damping * rate + viscous * velocity;
 }

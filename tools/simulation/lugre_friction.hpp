@@ -30,6 +30,9 @@ class LuGreFriction {
     /// From now on: the time, and the torque that the joint's gear passes on.
     void set_conditions(double time_s, double load) noexcept;
 
+    /// From now on levels and viscous friction are `factor` times what the parameters say.
+    void set_factor(double factor) noexcept { factor_ = factor; }
+
     /// What opposes the motion at `velocity`.
     double torque(double velocity) const noexcept;
 
@@ -47,6 +50,7 @@ class LuGreFriction {
     double deflection_ = 0;
     double drifted_ = 1; ///< times what it was at t = 0, never negative
     double load_ = 0;    ///< N·m, magnitude
+    double factor_ = 1;
 };
 
 } // namespace dfdyn::tools

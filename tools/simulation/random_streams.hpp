@@ -13,6 +13,7 @@ inline constexpr std::uint32_t torque_noise = 3;
 inline constexpr std::uint32_t clock_jitter = 4;
 inline constexpr std::uint32_t task = 5;
 inline constexpr std::uint32_t controller_model = 6;
+inline constexpr std::uint32_t lost_frames = 7;
 inline constexpr std::uint32_t output_noise = 100; ///< and following, one per output
 
 } // namespace dfdyn::tools::stream

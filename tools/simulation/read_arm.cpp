@@ -91,9 +91,10 @@ std::vector<Payload> read_payloads(const JsonReader& reader) {
     std::vector<Payload> payloads;
     for (const JsonReader& entry : reader.objects("payloads", 0, 100)) {
         const ScenarioReader one(entry, 0);
-        one.allow_only({"attached_s", "mass_kg", "centre_m"});
+        one.allow_only({"attached_s", "removed_s", "mass_kg", "centre_m"});
         Payload payload;
         payload.attached_s = one.within("attached_s", 0, 1e6, 0);
+        payload.removed_s = one.within("removed_s", payload.attached_s + 1e-3, 1e7, payload.removed_s);
         payload.mass = one.json().number_within("mass_kg", 1e-6, 1e4);
         payload.centre = Eigen::Map<const Eigen::Vector3d>(one.json().numbers("centre_m", 3).data());
         if (!payloads.empty() && payload.attached_s < payloads.back().attached_s) {

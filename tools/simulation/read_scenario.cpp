@@ -192,7 +192,7 @@ Scenario read_scenario(const std::filesystem::path& path, const Robot& robot) {
     const nlohmann::json json = load(path);
     const ScenarioReader reader(JsonReader(json, shown(path)), static_cast<int>(robot.joints.size()));
     reader.allow_only({"schema", "chain", "seed", "integration_rate_hz", "recording", "task", "controller",
-                       "actuators", "arm", "contacts", "payloads", "encoders", "derivatives",
+                       "actuators", "arm", "contacts", "payloads", "faults", "encoders", "derivatives",
                        "force_torque"});
     Scenario scenario;
     scenario.seed = reader.json().has("seed") ? reader.json().seed("seed") : scenario.seed;
@@ -210,6 +210,9 @@ Scenario read_scenario(const std::filesystem::path& path, const Robot& robot) {
     }
     if (reader.json().has("payloads")) {
         scenario.payloads = read_payloads(reader.json());
+    }
+    if (reader.json().has("faults")) {
+        scenario.faults = read_faults(reader, 1 / scenario.controller.rate_hz);
     }
     scenario.encoders = read_encoders(reader.object("encoders"));
     scenario.derivatives = read_derivatives(reader.object("derivatives"), scenario.encoders.rate_hz);

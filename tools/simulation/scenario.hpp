@@ -4,6 +4,7 @@
 #include "tools/simulation/controller.hpp"
 #include "tools/simulation/derivative_estimator.hpp"
 #include "tools/simulation/encoders.hpp"
+#include "tools/simulation/faults/fault_schedule.hpp"
 #include "tools/simulation/output_noise.hpp"
 #include "tools/simulation/payload_schedule.hpp"
 #include "tools/simulation/robot_errors.hpp"
@@ -41,6 +42,7 @@ struct Scenario {
     JointLoads loads;         ///< likewise
     ActuatorModel actuators;
     std::vector<Payload> payloads; ///< in order of time
+    std::vector<Fault> faults;     ///< that begin when their time comes
     TorqueSensorModel torque_sensor;
     std::optional<OutputNoiseModel> output_noise;
     EncoderModel encoders;

@@ -55,6 +55,10 @@ RobotErrors read_robot_errors(const ScenarioReader& reader);
 JointLoads read_joint_loads(const ScenarioReader& reader);
 std::vector<Payload> read_payloads(const JsonReader& reader);
 
+/// The entries of `faults`, each of a kind of the catalogue (see FaultKind). `loop_period_s`: of the loop's
+/// ticks.
+std::vector<Fault> read_faults(const ScenarioReader& reader, double loop_period_s);
+
 /// The section `recording.noise`.
 OutputNoiseModel read_output_noise(const ScenarioReader& reader);
 

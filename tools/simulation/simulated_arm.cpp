@@ -76,8 +76,10 @@ SimulatedArm::SimulatedArm(const Robot& robot, const ActuatorModel& actuators, c
         motor_.push_back(coordinate);
         coordinate += soft(i) ? 2 : 1;
     }
+    bare_ = dynamics_.robot().joints.back().inertia;
+    bare_beyond_ = robot.sensor ? robot.sensor->inertia_beyond : InertialParameters::Zero();
     rest_on_gears();
-    state_.torque = command_ = load_ = JointVector::Zero(position.size());
+    state_.torque = asked_ = command_ = load_ = JointVector::Zero(position.size());
     complete();
 }
 
@@ -106,10 +108,37 @@ void SimulatedArm::attach(const InertialParameters& body) {
     complete();
 }
 
+void SimulatedArm::release() {
+    Robot robot = dynamics_.robot();
+    robot.joints.back().inertia = bare_;
+    if (robot.sensor) {
+        robot.sensor->inertia_beyond = bare_beyond_;
+    }
+    dynamics_ = ArmDynamics(std::move(robot), rotors(actuators_));
+    complete();
+}
+
+void SimulatedArm::set_faults(const ArmFaults& faults) {
+    faults_ = faults;
+    for (Eigen::Index i = 0; i < joint_count(); ++i) {
+        friction_[static_cast<std::size_t>(i)].set_factor(faults.friction_factor[i]);
+    }
+    if (commanded_) {
+        apply(JointVector(asked_));
+    }
+    state_.friction = friction_at(velocity_);
+    accelerate();
+}
+
 void SimulatedArm::apply(const JointVector& command) {
-    command_ = command;
+    asked_ = command_ = command;
     if (actuators_.torque_limit) {
         command_ = command.cwiseMin(*actuators_.torque_limit).cwiseMax(-*actuators_.torque_limit);
+    }
+    if (faults_) {
+        command_ = faults_->actuator_gain.cwiseProduct(command_)
+                       .cwiseMin(faults_->actuator_limit)
+                       .cwiseMax(-faults_->actuator_limit);
     }
     if (actuators_.bandwidth_hz > 0 && commanded_) {
         return; // the torque follows
@@ -174,6 +203,32 @@ void SimulatedArm::add_loads(const ArmDynamics::Configuration& configuration, co
     }
 }
 
+Eigen::Index SimulatedArm::pushed_link(const Push& push) const {
+    if (!push.link) {
+        return dynamics_.joint_count() - 1;
+    }
+    return motor(*push.link) + (soft(*push.link) ? 1 : 0);
+}
+
+Eigen::Vector3d SimulatedArm::pushed_point(const Push& push,
+                                           const ArmDynamics::Configuration& configuration) const {
+    return push.link ? configuration.place[static_cast<std::size_t>(pushed_link(push))] * push.point
+                     : dynamics_.tip(configuration);
+}
+
+void SimulatedArm::add_faults(const ArmDynamics::Configuration& configuration, JointVector& force) const {
+    for (Eigen::Index i = 0; i < joint_count(); ++i) {
+        force[motor(i)] += faults_->load[i];
+        if (soft(i)) {
+            force[motor(i) + 1] += faults_->load[i];
+        }
+    }
+    for (const Push& push : faults_->pushes) {
+        const Eigen::Vector3d point = pushed_point(push, configuration);
+        force += dynamics_.point_jacobian(configuration, pushed_link(push), point).transpose() * push.force;
+    }
+}
+
 /// On the coordinates.
 JointVector SimulatedArm::forces(const ArmDynamics::Configuration& configuration, const JointVector& position,
                                  const JointVector& velocity, const Instant& instant) const {
@@ -187,6 +242,9 @@ JointVector SimulatedArm::forces(const ArmDynamics::Configuration& configuration
     }
     if (!loads_.none()) {
         add_loads(configuration, position, velocity, instant.time_s, force);
+    }
+    if (faults_) {
+        add_faults(configuration, force);
     }
     return force;
 }
@@ -230,9 +288,20 @@ void SimulatedArm::complete() {
 }
 
 Wrench SimulatedArm::wrench() const {
-    const Wrench rigid = dynamics_.wrench(configuration_, velocity_, acceleration_);
+    Wrench wrench = dynamics_.wrench(configuration_, velocity_, acceleration_);
     const Eigen::Vector3d force = loads_.tip_force(time_s_);
-    return force.isZero(0) ? rigid : Wrench(rigid + dynamics_.wrench_of_tip_force(configuration_, force));
+    if (!force.isZero(0)) {
+        wrench += dynamics_.wrench_of_force(configuration_, dynamics_.tip(configuration_), force);
+    }
+    for (const Push& push : faults_ ? faults_->pushes : std::vector<Push>()) {
+        const bool beyond =
+            !push.link || pushed_link(push) >= static_cast<Eigen::Index>(dynamics_.robot().sensor->link);
+        if (beyond) {
+            wrench +=
+                dynamics_.wrench_of_force(configuration_, pushed_point(push, configuration_), push.force);
+        }
+    }
+    return wrench;
 }
 
 void SimulatedArm::advance(double duration) {

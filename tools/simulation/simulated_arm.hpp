@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tools/simulation/arm_dynamics.hpp"
+#include "tools/simulation/faults/fault.hpp"
 #include "tools/simulation/gear.hpp"
 #include "tools/simulation/joint_loads.hpp"
 #include "tools/simulation/lugre_friction.hpp"
@@ -49,8 +50,14 @@ class SimulatedArm {
 
     /// Fixes a body to the last link, in that link's frame; the motion goes on.
     void attach(const InertialParameters& body);
+    /// Takes off all that was attached.
+    void release();
 
-    /// Holds the actuators' torque at `command`, within their limit, and completes the state's acceleration.
+    /// These faults act from now on, and no others.
+    void set_faults(const ArmFaults& faults);
+
+    /// Holds the actuators' torque at `command`, within their limit and with their faults, and completes the
+    /// state's acceleration.
     void apply(const JointVector& command);
 
     /// Goes on by `duration` (s) under that torque.
@@ -85,6 +92,10 @@ class SimulatedArm {
                        const JointVector& velocity, const Instant& instant) const;
     void add_loads(const ArmDynamics::Configuration& configuration, const JointVector& position,
                    const JointVector& velocity, double time_s, JointVector& force) const;
+    void add_faults(const ArmDynamics::Configuration& configuration, JointVector& force) const;
+    /// The coordinate that moves a push's point, and that point in the base's frame.
+    Eigen::Index pushed_link(const Push& push) const;
+    Eigen::Vector3d pushed_point(const Push& push, const ArmDynamics::Configuration& configuration) const;
     Instant instant(double later_s) const;
     JointVector friction_at(const JointVector& velocity) const;
     JointVector acceleration_at(const JointVector& position, const JointVector& velocity,
@@ -99,9 +110,11 @@ class SimulatedArm {
     std::vector<LuGreFriction> friction_;
     std::vector<Eigen::Index> motor_;
     JointVector position_, velocity_, acceleration_; ///< coordinates
-    JointVector command_;
-    bool commanded_ = false; ///< the first command is there before the brakes let go
-    JointVector load_;       ///< N·m, what the gears pass on; friction sees it a step later
+    std::optional<ArmFaults> faults_;
+    InertialParameters bare_, bare_beyond_; ///< of the last link, and beyond the sensor, without payloads
+    JointVector asked_, command_;           ///< before and after limit and faults
+    bool commanded_ = false;                ///< the first command is there before the brakes let go
+    JointVector load_;                      ///< N·m, what the gears pass on; friction sees it a step later
     double time_s_ = 0;
     State state_;
     ArmDynamics::Configuration configuration_, stage_;

@@ -12,7 +12,7 @@ SimulatedPlant::SimulatedPlant(const Robot& robot, const Scenario& scenario, con
     : period_s_(1 / scenario.integration_rate_hz),
       encoder_steps_(std::llround(scenario.integration_rate_hz / scenario.encoders.rate_hz)),
       arm_(real_robot(robot, scenario.robot_errors), scenario.actuators, position, scenario.loads),
-      payloads_(scenario.payloads, robot),
+      payloads_(scenario.payloads, robot), faults_(scenario.faults, robot.joints.size()),
       encoders_(scenario.encoders, prismatic_joints(robot), scenario.seed),
       torque_sensor_(scenario.torque_sensor, period_s_, scenario.seed) {
     if (scenario.force_torque) {
@@ -22,7 +22,12 @@ SimulatedPlant::SimulatedPlant(const Robot& robot, const Scenario& scenario, con
 }
 
 void SimulatedPlant::observe() {
-    payloads_.attach_due(time_s(), arm_);
+    payloads_.update(time_s(), arm_);
+    if (faults_.go_to(time_s())) {
+        arm_.set_faults(faults_.now().arm);
+        encoders_.set_faults(faults_.now().encoders);
+        torque_sensor_.set_faults(faults_.now().torque_sensor);
+    }
     if (step_ % encoder_steps_ == 0) {
         encoders_.observe(arm_.state().motor_position);
     }

@@ -27,6 +27,8 @@ class SimulatedPlant {
     /// As the F/T sensor shows it; the scenario must have one.
     const Wrench& wrench() const { return wrench_sensor_->reading(); }
     const SimulatedArm::State& truth() const noexcept { return arm_.state(); }
+    /// What is wrong with its link now.
+    const LinkFaults& link_faults() const noexcept { return faults_.now().link; }
 
   private:
     void observe();
@@ -35,6 +37,7 @@ class SimulatedPlant {
     std::int64_t encoder_steps_;
     SimulatedArm arm_;
     PayloadSchedule payloads_;
+    FaultSchedule faults_;
     Encoders encoders_;
     std::optional<WrenchSensor> wrench_sensor_;
     TorqueSensor torque_sensor_;

@@ -30,7 +30,7 @@ Simulation::Simulation(const Robot& robot, const Scenario& scenario)
       task_(make_task(scenario.task, robot, 1 / scenario.controller.rate_hz, scenario.seed)),
       reference_(task_->next()),
       arm_(real_robot(robot, scenario.robot_errors), scenario.actuators, reference_.position, scenario.loads),
-      payloads_(scenario.payloads, robot),
+      payloads_(scenario.payloads, robot), faults_(scenario.faults, robot.joints.size()),
       controller_(robot, scenario.actuators.rotor_inertia, scenario.controller, scenario.seed),
       encoders_(scenario.encoders, prismatic_joints(robot), scenario.seed),
       control_derivatives_(scenario.derivatives, static_cast<int>(robot.joints.size()),
@@ -59,7 +59,13 @@ void Simulation::control() {
 
 /// What happens at the instant of the state at hand.
 void Simulation::observe() {
-    payloads_.attach_due(static_cast<double>(step_) * period_s_, arm_);
+    const double time_s = static_cast<double>(step_) * period_s_;
+    payloads_.update(time_s, arm_);
+    if (faults_.go_to(time_s)) {
+        arm_.set_faults(faults_.now().arm);
+        encoders_.set_faults(faults_.now().encoders);
+        torque_sensor_.set_faults(faults_.now().torque_sensor);
+    }
     if (step_ % encoder_steps_ == 0) {
         encoders_.observe(arm_.state().motor_position);
         control_derivatives_.observe(encoders_.reading());
@@ -72,7 +78,7 @@ void Simulation::observe() {
     }
     torque_sensor_.observe(arm_.state().torque);
     if (wrench_sensor_) {
-        wrench_sensor_->observe(static_cast<double>(step_) * period_s_, arm_.wrench());
+        wrench_sensor_->observe(time_s, arm_.wrench());
     }
 }
 

@@ -53,6 +53,7 @@ class Simulation {
     Reference reference_;
     SimulatedArm arm_;
     PayloadSchedule payloads_;
+    FaultSchedule faults_;
     Controller controller_;
     Encoders encoders_;
     DerivativeEstimator control_derivatives_; ///< the controller's own, at the encoders' rate

@@ -48,6 +48,9 @@ JointVector TorqueSensor::read(const JointVector& torque) {
     for (Eigen::Index i = 0; i < reading.size(); ++i) {
         reading[i] += model_.noise[i] * noise_.next();
     }
+    if (faults_) {
+        reading = reading.cwiseProduct(faults_->factor) + faults_->bias;
+    }
     return reading;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/simulation/faults/fault.hpp"
 #include "tools/simulation/joint_vector.hpp"
 #include "tools/training/random_source.hpp"
 
@@ -21,7 +22,7 @@ struct TorqueSensorModel {
     JointVector current(const JointVector& torque) const { return torque.cwiseQuotient(*torque_constant); }
 };
 
-/// Delay (fractions of a step by linear interpolation), gain, offset, noise.
+/// Delay (fractions of a step by linear interpolation), gain, offset, noise, faults.
 class TorqueSensor {
   public:
     /// `period_s`: of the simulation's steps.
@@ -29,6 +30,8 @@ class TorqueSensor {
 
     /// One step of the simulation.
     void observe(const JointVector& torque);
+
+    void set_faults(const TorqueSensorFaults& faults) { faults_ = faults; }
 
     /// Of the torque at hand, `torque`, or of an earlier one: another noise in every call.
     JointVector read(const JointVector& torque);
@@ -41,6 +44,7 @@ class TorqueSensor {
     std::vector<JointVector> past_; ///< ring; empty without delay
     std::size_t newest_ = 0;
     NormalSource noise_;
+    std::optional<TorqueSensorFaults> faults_;
 };
 
 } // namespace dfdyn::tools

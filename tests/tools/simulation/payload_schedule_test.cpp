@@ -25,12 +25,12 @@ TEST_CASE("a payload moves the arm as one body with its last link: from its time
     REQUIRE(acceleration_of(arm) == Approx(alone));
     // at half the length from the joint: in the frame of the tip, half the length back up
     PayloadSchedule schedule({{1.5, 3, {0, 0, length / 2}}}, pendulum(mass, length));
-    schedule.attach_due(1.499, arm);
+    schedule.update(1.499, arm);
     CHECK(acceleration_of(arm) == Approx(alone));
     const double moment = mass * length + 3 * length / 2;
     const double inertia = mass * length * length + 3 * length * length / 4;
     for (int again = 0; again < 2; ++again) {
-        schedule.attach_due(1.5 + again, arm);
+        schedule.update(1.5 + again, arm);
         CHECK(acceleration_of(arm) == Approx(-gravity * moment / inertia * std::sin(0.3)));
     }
 }
@@ -41,7 +41,7 @@ TEST_CASE("payloads that are due together are all attached; the motion goes on")
     const double position = arm.state().position[0], velocity = arm.state().velocity[0];
     PayloadSchedule schedule({{0, 1, {0, 0, 0}}, {0.1, 1, {0, 0, length}}, {5, 1, {0, 0, 0}}},
                              pendulum(mass, length));
-    schedule.attach_due(0.1, arm);
+    schedule.update(0.1, arm);
     CHECK(arm.state().position[0] == position);
     CHECK(arm.state().velocity[0] == velocity);
     // the second is on the axis, where a point has no part in the swing
@@ -49,6 +49,26 @@ TEST_CASE("payloads that are due together are all attached; the motion goes on")
     arm.apply(JointVector::Constant(1, 1));
     const double swing = -gravity / length * std::sin(position);
     CHECK(acceleration_of(arm) == Approx(swing + 1 / ((mass + 1) * length * length)));
+}
+
+TEST_CASE("a payload that is taken off leaves the arm as it was before, with what else it carries") {
+    SimulatedArm arm = resting();
+    PayloadSchedule schedule({{0, 1, {0, 0, 0}, 2}, {1, 3, {0, 0, length / 2}}, {1.5, 5, {0.1, 0, 0}, 2}},
+                             pendulum(mass, length));
+    schedule.update(0.5, arm);
+    CHECK(acceleration_of(arm) == Approx(-gravity / length * std::sin(0.3)));
+    schedule.update(1.999, arm);
+    schedule.update(2, arm);
+    const double moment = mass * length + 3 * length / 2;
+    const double inertia = mass * length * length + 3 * length * length / 4;
+    CHECK(acceleration_of(arm) == Approx(-gravity * moment / inertia * std::sin(0.3)));
+    PayloadSchedule alone({{0, 0.1, {0, 0, 0.1}, 1}}, pendulum(mass, length));
+    SimulatedArm other = resting();
+    const double before = acceleration_of(other);
+    alone.update(0, other);
+    CHECK(acceleration_of(other) != before);
+    alone.update(1, other);
+    CHECK(acceleration_of(other) == before); // bit for bit
 }
 
 TEST_CASE("a plant attaches its payloads as its time comes") {

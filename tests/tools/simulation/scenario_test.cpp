@@ -172,6 +172,23 @@ TEST_CASE("what an arm has beyond its description is read, and refused where it 
     CHECK_THAT(error_with("/arm", {{"links", {{{"link", 2}}}}}), StartsWith("arm.links[0].link"));
 }
 
+TEST_CASE("payloads that are taken off, and faults in ticks of the controller, are read") {
+    json scenario = minimal();
+    scenario["payloads"] = {{{"mass_kg", 1}, {"centre_m", {0, 0, 0}}, {"attached_s", 2}, {"removed_s", 3}}};
+    scenario["faults"] = {{{"kind", "cycles_lost"}, {"at_s", 2}, {"cycles", 3}}};
+    scenario["controller"]["rate_hz"] = 500;
+    const Scenario read_back = read(scenario);
+    CHECK(read_back.payloads.at(0).removed_s == 3);
+    CHECK(read_back.faults.at(0).from_ns == 2'000'000'000);
+    CHECK(read_back.faults.at(0).until_ns == 2'006'000'000);
+    CHECK(read(minimal()).faults.empty());
+    CHECK_THAT(error_with("/payloads",
+                          {{{"mass_kg", 1}, {"centre_m", {0, 0, 0}}, {"attached_s", 2}, {"removed_s", 2}}}),
+               Catch::Matchers::StartsWith("payloads[0].removed_s: expected a number from 2.001"));
+    CHECK_THAT(error_with("/faults", {{{"kind", "push"}, {"force", 3}}}),
+               Catch::Matchers::StartsWith("faults[0].field \"force\": expected one of kind, force_n, "));
+}
+
 TEST_CASE("a file that is no scenario is refused") {
     const TemporaryDirectory directory;
     CHECK_THROWS_AS(read_scenario_chain(directory.path() / "none.json"), InputError);

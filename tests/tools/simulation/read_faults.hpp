@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/simulation/scenario_reader.hpp"
+
+#include <string>
+#include <vector>
+
+namespace dfdyn::tests {
+
+/// The `faults` of a scenario whose loop ticks at 1 kHz, from their JSON.
+inline std::vector<tools::Fault> faults_of(const std::string& faults, int joints) {
+    const nlohmann::json json = tools::parse_json(R"({"faults": )" + faults + "}", "s.json");
+    return tools::read_faults({tools::JsonReader(json, "s.json"), joints}, 0.001);
+}
+
+} // namespace dfdyn::tests
