@@ -27,8 +27,8 @@ int run(const PlantOptions& options) {
     const JointVector start = make_task(scenario.task, robot, period_s, scenario.seed)->next().position;
     SimulatedPlant plant(robot, scenario, start);
     PlantPort port(bus, scenario.torque_sensor);
-    const PaceOutcome pace =
-        run_plant(plant, port, {options.interface, period_s, options.duration_s, stop_on_signals()});
+    const PaceOutcome pace = run_plant(
+        plant, port, {options.interface, period_s, options.duration_s, stop_on_signals()}, scenario.seed);
     std::cout << "plant: " << port.commands() << " command frames, " << port.timeouts()
               << " times without command, " << port.refused() << " frames refused\n";
     print_pace(std::cout, pace);
@@ -44,7 +44,7 @@ void add_plant_command(CLI::App& app, Command& chosen) {
     command->add_option("--robot", options->robot, "The arm")->required()->type_name("R.urdf");
     command
         ->add_option("--scenario", options->scenario,
-                     "Friction, payloads, sensors, and where it stands: docs/scenario.md")
+                     "Friction, payloads, sensors, faults, and where it stands: docs/scenario.md")
         ->required()
         ->type_name("S.json");
     command->add_option("--bus", options->bus, "Its devices: docs/can.md")->required()->type_name("bus.json");

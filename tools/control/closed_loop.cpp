@@ -3,12 +3,14 @@
 
 #include "tools/common/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dfdyn::tools {
 
 ClosedLoop::Link::Link(const BusDescription& bus, const Scenario& scenario)
-    : loop(bus, 1 / scenario.controller.rate_hz), plant(bus, scenario.torque_sensor) {
+    : devices(plant_end, scenario.seed), loop(bus, 1 / scenario.controller.rate_hz),
+      plant(bus, scenario.torque_sensor) {
     MemoryBus::join(loop_end, plant_end);
 }
 
@@ -17,55 +19,108 @@ ClosedLoop::ClosedLoop(const Robot& robot, const Scenario& scenario, const std::
     : period_s_(1 / scenario.controller.rate_hz),
       link_(bus != nullptr ? std::make_unique<Link>(*bus, scenario) : nullptr),
       loop_(make_control_loop(robot, scenario, source, learned, link_ ? link_->loop.delay_ticks() : 0)),
-      plant_(robot, scenario, loop_->reference().position) {
+      plant_(robot, scenario, loop_->reference().position), faults_(scenario.faults, robot.joints.size()),
+      losses_(scenario.seed) {
     if (bus != nullptr) {
         check_bus(*bus, robot, scenario);
     }
 }
 
-LoopInput ClosedLoop::sense(std::int64_t time_ns) {
-    if (link_) {
-        link_->loop_end.set_time(time_ns);
-        link_->plant_end.set_time(time_ns);
-        link_->plant.send(link_->plant_end, plant_);
-        link_->loop.receive(link_->loop_end);
-        return link_->loop.sense(time_ns, time_ns);
+std::int64_t ClosedLoop::pace_ns(std::int64_t tick) const {
+    return std::llround(static_cast<double>(tick) * period_s_ * 1e9);
+}
+
+const LinkFaults& ClosedLoop::faults_at(double motion_time_s) {
+    static const LinkFaults none;
+    if (loop_->state() == LoopState::waiting) {
+        return none;
     }
-    position_ = plant_.position();
-    torque_ = plant_.torque();
+    faults_.go_to(motion_time_s);
+    return faults_.now().link;
+}
+
+/// When the next tick begins: no tick begins before the one before it.
+std::int64_t ClosedLoop::begin_ns() {
+    begun_ns_ = std::max(begun_ns_, pace_ns(tick_) + faults_at(motion_time(tick_)).late_ns);
+    return begun_ns_;
+}
+
+/// The next cycle of the devices: one reading of every sensor.
+void ClosedLoop::measure() {
+    const std::int64_t now_ns = pace_ns(cycle_);
+    const double time_s = motion_time(cycle_);
+    plant_.advance_to(time_s);
+    position_when_due_.push_back(plant_.truth().position);
+    const LinkFaults& faults = faults_at(time_s);
+    bus_set_ns_ = faults.bus_set_ns;
+    if (!link_) {
+        readings_ = {now_ns + bus_set_ns_, !faults.devices_silent && !losses_.next(faults.share_lost),
+                     plant_.position(), plant_.torque()};
+        return;
+    }
+    link_->loop_end.set_time(now_ns + bus_set_ns_);
+    link_->plant_end.set_time(now_ns);
+    link_->devices.set_faults(faults);
+    if (cycle_ > tick_) { // the loop is late: drives let go of a command that is too old
+        plant_.apply(link_->plant.torque(now_ns));
+    }
+    link_->plant.send(link_->devices, plant_);
+    link_->loop_end.set_wall_clock(faults.wall_set_ns);
+}
+
+LoopInput ClosedLoop::sense(std::int64_t due_ns, std::int64_t now_ns) {
+    if (link_) {
+        link_->loop_end.set_time(now_ns + bus_set_ns_);
+        link_->loop.receive(link_->loop_end);
+        return link_->loop.sense(due_ns + bus_set_ns_, now_ns + bus_set_ns_);
+    }
     LoopInput input;
-    input.time_ns = time_ns;
-    input.position = &position_;
-    input.torque = &torque_;
+    input.time_ns = readings_.fresh ? readings_.time_ns : due_ns + bus_set_ns_;
+    input.position = readings_.fresh ? &readings_.position : nullptr;
+    input.torque = readings_.fresh ? &readings_.torque : nullptr;
+    readings_.fresh = false;
     return input;
 }
 
-void ClosedLoop::command(std::int64_t time_ns, const JointVector& torque) {
+void ClosedLoop::command(std::int64_t now_ns, const JointVector& torque) {
+    const LinkFaults& faults = faults_at(plant_.time_s());
     if (!link_) {
-        plant_.apply(torque);
+        if (!losses_.next(faults.share_lost)) {
+            plant_.apply(torque);
+        }
         return;
     }
+    link_->plant_end.set_time(now_ns);
+    link_->devices.set_faults(faults);
     link_->loop.send(link_->loop_end, torque);
-    link_->plant.receive(link_->plant_end);
-    plant_.apply(link_->plant.torque(time_ns));
+    link_->plant.receive(link_->devices);
+    plant_.apply(link_->plant.torque(now_ns));
 }
 
 void ClosedLoop::run_to(double time_s, const std::function<void(const ClosedLoopInstant&)>& on_tick) {
-    while (static_cast<double>(moving_tick_) * period_s_ < time_s && loop_->state() != LoopState::stopped) {
+    while (motion_time(tick_) < time_s && loop_->state() != LoopState::stopped) {
         ClosedLoopInstant instant;
-        instant.time_s = static_cast<double>(moving_tick_) * period_s_;
-        plant_.advance_to(instant.time_s);
-        const std::int64_t time_ns = std::llround(static_cast<double>(tick_++) * period_s_ * 1e9);
-        instant.measured = sense(time_ns);
+        instant.time_s = motion_time(tick_);
+        const std::int64_t due_ns = pace_ns(tick_);
+        const std::int64_t now_ns = begin_ns();
+        while (pace_ns(cycle_) <= now_ns) {
+            measure();
+            ++cycle_;
+        }
+        plant_.advance_to(instant.time_s + 1e-9 * static_cast<double>(now_ns - due_ns));
+        instant.measured = sense(due_ns, now_ns);
+        instant.measured.deadline_missed = static_cast<double>(now_ns - due_ns) > 1e9 * period_s_;
         instant.command = loop_->tick(instant.measured);
+        ++tick_;
+        instant.error = loop_->reference().position - position_when_due_.front();
+        position_when_due_.pop_front();
         if (loop_->state() == LoopState::waiting) {
+            ++waited_;
             check_waiting();
             continue;
         }
-        ++moving_tick_;
-        instant.error = loop_->reference().position - plant_.truth().position;
         on_tick(instant);
-        command(time_ns, instant.command);
+        command(now_ns, instant.command);
     }
 }
 

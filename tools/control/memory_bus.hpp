@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dfdyn/hal/bus.hpp"
+#include "dfdyn/hal/wall_clock.hpp"
 
 #include <algorithm>
 #include <deque>
@@ -9,7 +10,8 @@
 namespace dfdyn::tools {
 
 /// One end of a wire within the program, on a clock that is told the time (hal::Bus). What is sent on one
-/// end waits at the other, stamped with its time.
+/// end waits at the other, stamped by the other's wall clock; when it is read, its stamp moves onto the clock
+/// of `now_ns`, as those of hal::SocketCanBus do.
 class MemoryBus {
   public:
     /// Joins two ends; both must outlive their use.
@@ -20,18 +22,27 @@ class MemoryBus {
 
     void set_time(std::int64_t now_ns) noexcept { now_ns_ = now_ns; }
 
+    /// By how much the wall clock is ahead of that time.
+    void set_wall_clock(std::int64_t ahead_ns) noexcept { ahead_ns_ = ahead_ns; }
+
     std::span<const hal::Frame> drain(std::span<hal::Frame> into) noexcept {
         const std::size_t count = std::min(into.size(), waiting_.size());
         const auto end = waiting_.begin() + static_cast<std::ptrdiff_t>(count);
         std::copy(waiting_.begin(), end, into.begin());
         waiting_.erase(waiting_.begin(), end);
+        for (hal::Frame& frame : into.first(count)) {
+            frame.stamp_ns = clock_.to_monotonic(frame.stamp_ns, now_ns_, now_ns_ + ahead_ns_).stamp_ns;
+        }
+        if (count < into.size()) {
+            clock_.nothing_waiting(now_ns_, now_ns_ + ahead_ns_);
+        }
         counters_.received += count;
         return into.first(count);
     }
 
     hal::SendResult send(const hal::Frame& frame) noexcept {
         other_->waiting_.push_back(frame);
-        other_->waiting_.back().stamp_ns = now_ns_;
+        other_->waiting_.back().stamp_ns = other_->now_ns_ + other_->ahead_ns_;
         ++counters_.sent;
         return hal::SendResult::sent;
     }
@@ -43,7 +54,8 @@ class MemoryBus {
   private:
     MemoryBus* other_ = nullptr;
     std::deque<hal::Frame> waiting_;
-    std::int64_t now_ns_ = 0;
+    std::int64_t now_ns_ = 0, ahead_ns_ = 0;
+    hal::WallClock clock_;
     hal::BusCounters counters_;
 };
 

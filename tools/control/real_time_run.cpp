@@ -4,6 +4,7 @@
 #include "dfdyn/hal/socketcan_bus.hpp"
 #include "tools/common/error.hpp"
 #include "tools/common/real_time.hpp"
+#include "tools/control/lossy_bus.hpp"
 
 #include <cmath>
 #include <limits>
@@ -59,17 +60,22 @@ PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, 
     });
 }
 
-PaceOutcome run_plant(SimulatedPlant& plant, PlantPort& port, const RealTimeRun& run) {
+PaceOutcome run_plant(SimulatedPlant& plant, PlantPort& port, const RealTimeRun& run, std::uint64_t seed) {
     std::optional<std::int64_t> start_ns; // until the first command its brakes hold it
+    std::optional<LossyBus<hal::SocketCanBus>> devices;
     return keep_pace(run, [&](hal::SocketCanBus& bus, std::int64_t /*due_ns*/, bool /*missed*/, bool over) {
-        port.receive(bus);
+        if (!devices) {
+            devices.emplace(bus, seed);
+        }
+        port.receive(*devices);
         if (port.commands() > 0) {
             start_ns = start_ns.value_or(bus.now_ns());
             // where it really is now, also when this tick is late: the stamps of its frames are to be true
             plant.advance_to(1e-9 * static_cast<double>(bus.now_ns() - *start_ns));
+            devices->set_faults(plant.link_faults());
         }
         plant.apply(port.torque(bus.now_ns()));
-        port.send(bus, plant);
+        port.send(*devices, plant);
         return !over;
     });
 }

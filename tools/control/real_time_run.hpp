@@ -37,7 +37,8 @@ struct LoopLog {
 PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, LoopLog& log);
 
 /// Runs a simulated arm on a CAN interface likewise: it stands until the first command comes, and goes on
-/// until the time is over or `stop` becomes true.
-PaceOutcome run_plant(SimulatedPlant& plant, PlantPort& port, const RealTimeRun& run);
+/// until the time is over or `stop` becomes true. Frames are lost as the faults of its scenario say, whose
+/// seed is `seed`.
+PaceOutcome run_plant(SimulatedPlant& plant, PlantPort& port, const RealTimeRun& run, std::uint64_t seed);
 
 } // namespace dfdyn::tools
