@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <functional>
 #include <string>
@@ -103,6 +104,24 @@ TEST_CASE("a loop whose arm falls silent stops by itself, and says why", "[virtu
     CHECK_THAT(said, ContainsSubstring("stopped (no_position)"));
     CHECK_THAT(said, ContainsSubstring("(last: position_"));
     CHECK_THAT(said, ContainsSubstring("status 1"));
+}
+
+TEST_CASE("a plant loses the frames that its scenario's faults say, from their time on", "[virtual_time]") {
+    const TemporaryDirectory directory;
+    std::string text = file_content(data + "/scenarios/small_arm_loop.json");
+    const std::string place = R"("encoders")";
+    text.replace(text.find(place), place.size(),
+                 R"("faults": [{"kind": "cycles_lost", "cycles": 1000, "at_s": 1.5}], "encoders")");
+    const std::string scenario = directory.write("s.json", text);
+    const std::string said = undisturbed(
+        [&] {
+            const Background plant(call("plant --can vcan0", scenario));
+            return run(call("loop --can vcan0 --duration 5") + " || true");
+        },
+        {"missed_deadlines"});
+    CAPTURE(said);
+    CHECK_THAT(said, ContainsSubstring("stopped (no_position)"));
+    CHECK(std::abs(number_after(said, "ticks, ") - 155) < 15); // followed the reference, at 100 Hz
 }
 
 TEST_CASE("a loop whose interface goes down stops by itself, and says why", "[virtual_time]") {

@@ -9,10 +9,12 @@
 #include "tools/common/progress.hpp"
 #include "tools/common/text.hpp"
 #include "tools/control/closed_loop.hpp"
+#include "tools/control/loop_peaks.hpp"
 #include "tools/control/loop_recording.hpp"
 #include "tools/control/loop_summary.hpp"
 #include "tools/control/tracking_report.hpp"
 #include "tools/model/model_file.hpp"
+#include "tools/simulation/faults/fault_kind.hpp"
 
 #include <cmath>
 #include <iostream>
@@ -94,9 +96,11 @@ std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOption
     const std::string name = learned ? "learned" : "nominal";
     LoopRecording recording = make_recording(parts, options);
     Tracking tracking;
+    LoopPeaks peaks;
     Progress progress("simulating " + name, static_cast<std::size_t>(options.duration_s * 1000));
     loop.run_to(options.duration_s, [&](const ClosedLoopInstant& instant) {
         tracking.add(instant.time_s, instant.error, loop.loop().feed_forward().learned_share());
+        peaks.add(instant.command, loop.plant().truth().velocity);
         recording.add(instant.measured);
         progress.update(static_cast<std::size_t>(instant.time_s * 1000));
     });
@@ -105,6 +109,7 @@ std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOption
     }
     std::cout << name << ' ';
     print_loop(std::cout, loop.loop());
+    print_peaks(std::cout, peaks);
     show_changes(options, loop.loop());
     return loop.loop().state() == LoopState::running ? std::optional(TrackingRun{name, tracking.windows()})
                                                      : std::nullopt;
@@ -113,15 +118,19 @@ std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOption
 int simulate(const LoopOptions& options) {
     const LoopParts parts = read_parts(options);
     std::vector<TrackingRun> runs;
+    bool stopped = false;
     for (const bool learned : {false, true}) {
         if (learned && !parts.model) {
             break;
         }
         const std::optional<TrackingRun> run = simulate_run(parts, options, learned);
-        if (!run) {
-            return 1;
+        stopped = stopped || !run;
+        if (run) {
+            runs.push_back(*run);
         }
-        runs.push_back(*run);
+    }
+    if (stopped) {
+        return 1;
     }
     show_tracking(parts, options, runs);
     return 0;
@@ -176,7 +185,8 @@ void add_loop_command(CLI::App& app, Command& chosen) {
         ->type_name("R.urdf");
     command
         ->add_option("--scenario", options->scenario,
-                     "Task, gains, limits; for --simulate also friction, payloads, sensors: docs/scenario.md")
+                     "Task, gains, limits; for --simulate also friction, payloads, sensors, faults: "
+                     "docs/scenario.md")
         ->required()
         ->type_name("S.json");
     command->add_option("--model", options->model, "Of the joints' torques; none: the rigid body alone")
@@ -198,6 +208,9 @@ void add_loop_command(CLI::App& app, Command& chosen) {
         "Examples:\n"
         "  dfdyn loop --simulate --robot arm.urdf --scenario s.json --model m.json --duration 90 -o out\n"
         "  dfdyn loop --robot arm.urdf --scenario s.json --model m.json --bus bus.json --can can0\n"
+        "Kinds of faults of a scenario: " +
+        fault_kind_names("and") +
+        ".\n"
         "Exit status: 0 done, 1 the loop stopped by itself for safety, 2 bad usage or input.");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }

@@ -102,6 +102,25 @@ TEST_CASE("a simulated loop that stops by itself says why, with status 1") {
     CHECK_THAT(outcome.out, !ContainsSubstring("tracking error"));
 }
 
+TEST_CASE("a scenario's fault strikes a simulated loop, and strikes it alike when it is called again") {
+    const std::string place = R"("encoders")";
+    const auto with = [&](const std::string& fault) { return R"("faults": [)" + fault + "], " + place; };
+    const Bench glitch(
+        place, with(R"({"kind": "encoder_jump", "joint": 2, "rad": 0.02, "at_s": 5, "for_s": 0.01})"));
+    const Outcome struck = glitch.loop(simulate + bus);
+    REQUIRE(struck.status == 0);
+    CHECK_THAT(struck.out, ContainsSubstring("peaks: command, from tick to tick, by "));
+    CHECK(struck.out == glitch.loop(simulate + bus).out);
+    CHECK(struck.out != Bench().loop(simulate + bus).out);
+    const Bench silence(place, with(R"({"kind": "cycles_lost", "cycles": 100, "at_s": 5})"));
+    const Outcome stopped = silence.loop(simulate + bus);
+    CHECK(stopped.status == 1);
+    CHECK_THAT(stopped.out, ContainsSubstring("stopped (no_position)"));
+    CHECK_THAT(Bench(place, with(R"({"kind": "gremlin"})")).refusal(simulate),
+               ContainsSubstring("faults[0].kind: expected friction_step, push, "));
+    CHECK_THAT(silence.call("loop --help").out, ContainsSubstring("late_ticks and clock_jump"));
+}
+
 TEST_CASE("an interface that is not there is said, by the loop and by the plant") {
     const Bench bench;
     CHECK_THAT(bench.refusal(" --can nosuch0" + bus), ContainsSubstring("nosuch0"));
