@@ -76,6 +76,7 @@ class BusArmOf final : public BusArm {
         sample_.output_reason = report.output;
         sample_.position.assign(sample.position.begin(), sample.position.end());
         sample_.output.assign(sample.output.begin(), sample.output.end());
+        sample_.position_age_ns.assign(report.position_age_ns.begin(), report.position_age_ns.end());
         return sample_;
     }
 

@@ -19,6 +19,7 @@ struct BusSample {
     hal::Reason output_reason = hal::Reason::ok;   ///< ok: `output` is valid
     std::vector<double> position;                  ///< rad
     std::vector<double> output;                    ///< in the order of `output_names`
+    std::vector<std::int64_t> position_age_ns;     ///< per joint: see hal::SampleReport
 
     [[nodiscard]] bool valid() const noexcept { return position_reason == hal::Reason::ok; }
     [[nodiscard]] bool output_valid() const noexcept { return valid() && output_reason == hal::Reason::ok; }

@@ -18,6 +18,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -31,6 +32,7 @@ struct LoopOptions {
     bool simulate = false;
     bool from_prior = false;
     double duration_s = 0;
+    LoopLimits limits;
 };
 
 struct LoopParts {
@@ -92,7 +94,7 @@ void show_changes(const LoopOptions& options, const ControlLoop& loop) {
 /// Nothing where the loop stopped by itself.
 std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOptions& options, bool learned) {
     ClosedLoop loop(parts.robot, parts.scenario, shown(options.scenario), learned ? &*parts.model : nullptr,
-                    parts.bus ? &*parts.bus : nullptr);
+                    parts.bus ? &*parts.bus : nullptr, options.limits);
     const std::string name = learned ? "learned" : "nominal";
     LoopRecording recording = make_recording(parts, options);
     Tracking tracking;
@@ -140,8 +142,9 @@ int run_on_bus(const LoopOptions& options) {
     const LoopParts parts = read_parts(options);
     const double period_s = 1 / parts.scenario.controller.rate_hz;
     LoopPort port(*parts.bus, period_s);
-    const auto loop = make_control_loop(parts.robot, parts.scenario, shown(options.scenario),
-                                        parts.model ? &*parts.model : nullptr, port.delay_ticks());
+    const auto loop =
+        make_control_loop(parts.robot, parts.scenario, shown(options.scenario),
+                          parts.model ? &*parts.model : nullptr, port.delay_ticks(), options.limits);
     LoopLog log{Tracking(), make_recording(parts, options)};
     const PaceOutcome pace =
         run_loop(*loop, port, {options.interface, period_s, options.duration_s, stop_on_signals()}, log);
@@ -198,6 +201,28 @@ void add_loop_command(CLI::App& app, Command& chosen) {
     command->add_option("--duration", options->duration_s, "Seconds; with --can none: until Ctrl-C")
         ->check(CLI::PositiveNumber)
         ->type_name("S");
+    command
+        ->add_option(
+            "--following-error", options->limits.following_error,
+            "Largest distance from the reference, rad (m); one value, or one per joint. None: that of "
+            "0.8 of the torque limit by the position gain")
+        ->delimiter(',')
+        ->check(CLI::PositiveNumber)
+        ->type_name("E");
+    command
+        ->add_option("--speed-limit", options->limits.speed,
+                     "Largest speed, rad/s (m/s); one value, or one per joint. None: the robot's")
+        ->delimiter(',')
+        ->check(CLI::PositiveNumber)
+        ->type_name("V");
+    command
+        ->add_option("--stop", options->limits.mode,
+                     "After a stop: hold the arm until told to end, or go limp 0.2 s after the brakes were "
+                     "requested")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, StopMode>{{"hold", StopMode::hold}, {"limp", StopMode::limp}}))
+        ->default_str("hold")
+        ->type_name("hold|limp");
     command
         ->add_option(
             "-o,--output", options->folder,

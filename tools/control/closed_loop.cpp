@@ -15,10 +15,11 @@ ClosedLoop::Link::Link(const BusDescription& bus, const Scenario& scenario)
 }
 
 ClosedLoop::ClosedLoop(const Robot& robot, const Scenario& scenario, const std::string& source,
-                       const LoopModel* learned, const BusDescription* bus)
+                       const LoopModel* learned, const BusDescription* bus, const LoopLimits& limits)
     : period_s_(1 / scenario.controller.rate_hz),
       link_(bus != nullptr ? std::make_unique<Link>(*bus, scenario) : nullptr),
-      loop_(make_control_loop(robot, scenario, source, learned, link_ ? link_->loop.delay_ticks() : 0)),
+      loop_(
+          make_control_loop(robot, scenario, source, learned, link_ ? link_->loop.delay_ticks() : 0, limits)),
       plant_(robot, scenario, loop_->reference().position), faults_(scenario.faults, robot.joints.size()),
       losses_(scenario.seed) {
     if (bus != nullptr) {

@@ -33,7 +33,7 @@ class ClosedLoop {
     /// `bus`: none, or the devices whose frames go between the two; it must fit the scenario (see
     /// check_bus).
     ClosedLoop(const Robot& robot, const Scenario& scenario, const std::string& source,
-               const LoopModel* learned, const BusDescription* bus = nullptr);
+               const LoopModel* learned, const BusDescription* bus = nullptr, const LoopLimits& limits = {});
 
     /// Runs from where it is to `time_s`, which counts from where the motion began: until then the arm
     /// stands. Ends early when the loop has stopped. `on_tick` sees every tick since, before its command goes

@@ -9,22 +9,29 @@ namespace dfdyn::tools {
 
 ControlLoop::ControlLoop(LoopConfig config, FeedForward feed_forward, std::unique_ptr<Task> task)
     : config_(std::move(config)), feed_forward_(std::move(feed_forward)),
-      feedback_(config_.gains, config_.filter, config_.period_s), safe_stop_(config_.safe_stop),
+      feedback_(config_.gains, config_.filter, config_.period_s,
+                {config_.safe_stop.speed_limit, config_.safe_stop.acceleration}),
+      clock_(std::llround(config_.period_s * 1e9)),
+      watch_(config_.safe_stop, config_.period_s, config_.filter.noise_bound), safe_stop_(config_.safe_stop),
       task_(std::move(task)), zero_(JointVector::Zero(config_.torque_limit.size())), error_(zero_),
-      command_(zero_), last_followed_(zero_) {
-    references_.resize(static_cast<std::size_t>(config_.knot_ticks + 1 + config_.delay_ticks));
+      command_(zero_), feedback_torque_(zero_), missing_(static_cast<std::size_t>(zero_.size())),
+      blind_(missing_.size()) {
+    references_.resize(
+        static_cast<std::size_t>(config_.knot_ticks + 1 + config_.delay_ticks + SampleClock::max_age));
     for (int i = 0; i <= config_.knot_ticks; ++i) {
         references_[static_cast<std::size_t>(i)] = task_->next();
     }
 }
 
-const Reference& ControlLoop::measured_reference() const noexcept {
-    const std::size_t delay = std::min(tick_, static_cast<std::size_t>(config_.delay_ticks));
+const Reference& ControlLoop::measured_reference(int ago) const noexcept {
+    const std::size_t delay = std::min(tick_, static_cast<std::size_t>(config_.delay_ticks + ago));
     return references_[(tick_ - delay) % references_.size()];
 }
 
 const JointVector& ControlLoop::tick(const LoopInput& input) {
     ++counters_.ticks;
+    told_ = told_ || input.stop_requested;
+    position_tick_ = input.position != nullptr ? counters_.ticks : position_tick_;
     if (state() == LoopState::running) { // the reference goes on with the time
         ++tick_;
         references_[(tick_ + static_cast<std::size_t>(config_.knot_ticks)) % references_.size()] =
@@ -32,57 +39,188 @@ const JointVector& ControlLoop::tick(const LoopInput& input) {
     }
     sense(input);
     if (feedback_.position().size() > 0) {
-        error_ = measured_reference().position - feedback_.position();
+        error_ = feedback_.error();
+        watch_.move(feedback_, command_);
     }
-    const LoopState state = safe_stop_.tick(
-        {input.position != nullptr, input.deadline_missed, input.bus_lost, input.stop_requested}, error_);
+    const LoopState state = safe_stop_.tick({feedback_.complete(), input.deadline_missed, input.bus_lost,
+                                             input.stop_requested, input.returning, watch_.cause()},
+                                            error_);
     if (state == LoopState::running) {
-        follow(input);
+        follow();
     } else if (state != LoopState::waiting && moved()) {
         hold();
+        limit();
     }
-    limit();
     return command_;
 }
 
 void ControlLoop::sense(const LoopInput& input) {
+    clock_.advance();
+    feedback_.advance();
+    exact_ = false;
+    torque_ = nullptr;
     if (input.position != nullptr) {
-        feedback_.observe(*input.position);
-    } else if (state() == LoopState::running) {
-        feedback_.coast();
+        const std::optional<int> place = clock_.place(input.time_ns);
+        if (place && *place > 0) {
+            early_ = {counters_.ticks + static_cast<std::uint64_t>(*place), *input.position,
+                      input.torque != nullptr ? *input.torque : zero_, input.torque != nullptr};
+        } else if (place) {
+            take(-*place, *input.position, input.missing);
+            torque_ = exact_ ? input.torque : nullptr;
+        }
+    } else if (early_ && early_->tick == counters_.ticks) {
+        take(0, early_->position, nullptr);
+        torque_ = early_->has_torque ? &early_->torque : nullptr;
+    }
+    if (state() == LoopState::running && !feedback_.complete()) {
         ++counters_.coasted;
     }
 }
 
-void ControlLoop::follow(const LoopInput& input) {
+void ControlLoop::take(int ticks_ago, const JointVector& position, const std::vector<bool>* missing) {
+    if (missing != nullptr) {
+        missing_ = *missing;
+    } else {
+        missing_.assign(missing_.size(), false);
+    }
+    const Reference& reference = measured_reference(ticks_ago);
+    watch_.read(position, reference.position, feedback_, missing_);
+    for (std::size_t joint = 0; joint < missing_.size(); ++joint) {
+        missing_[joint] = missing_[joint] || watch_.repeated()[joint];
+    }
+    feedback_.observe(ticks_ago, position, reference, &missing_);
+    exact_ = ticks_ago == 0 && feedback_.complete();
+}
+
+void ControlLoop::follow() {
+    const auto period_ns = static_cast<double>(config_.period_s * 1e9);
     const auto knot_ticks = static_cast<std::size_t>(config_.knot_ticks);
     const std::size_t since_knot = tick_ % knot_ticks;
     if (!moved()) {
-        feed_forward_.begin(input.time_ns, reference());
+        start_ns_ = clock_.expected_ns();
+        feed_forward_.begin(start_ns_, reference());
     }
+    const auto time_ns = [&](std::size_t tick) {
+        return start_ns_ + std::llround(static_cast<double>(tick) * period_ns);
+    };
     ++counters_.running;
     if (since_knot == 0) {
-        if (input.position != nullptr) {
-            feed_forward_.measured(input.time_ns, *input.position, input.torque);
+        if (exact_) {
+            feed_forward_.measured(time_ns(tick_), feedback_.position(), torque_);
         }
-        const auto ahead_ns =
-            static_cast<std::int64_t>(std::llround(static_cast<double>(knot_ticks) * config_.period_s * 1e9));
-        feed_forward_.advance(input.time_ns + ahead_ns,
+        feed_forward_.advance(time_ns(tick_ + knot_ticks),
                               references_[(tick_ + knot_ticks) % references_.size()]);
     } else {
         feed_forward_.go_on();
     }
     const double share = static_cast<double>(since_knot) / static_cast<double>(knot_ticks);
-    command_ = feed_forward_.torque(share) + feedback_.torque(measured_reference());
-    last_followed_ = command_;
+    const JointVector forward = feed_forward_.torque(share);
+    command_ = forward + feedback_torque();
+    limit();
+    feedback_torque_ = command_ - forward;
+}
+
+JointVector ControlLoop::feedback_torque() {
+    JointVector torque = feedback_.torque();
+    if (moved() && !feedback_.regular()) {
+        recovery_ = recovery_ticks;
+    }
+    if (recovery_ > 0 && counters_.running > 1) {
+        const JointVector step = feedback_step * config_.torque_limit;
+        const JointVector limited =
+            torque.cwiseMin(feedback_torque_ + step).cwiseMax(feedback_torque_ - step);
+        recovery_ -= limited == torque ? 1 : 0;
+        torque = limited;
+    }
+    return torque;
 }
 
 void ControlLoop::hold() {
-    const bool fresh = safe_stop_.cause() != StopCause::no_position;
-    const JointVector damping =
-        fresh ? JointVector(config_.gains.velocity.cwiseProduct(feedback_.velocity())) : zero_;
-    const JointVector holding = feed_forward_.gravity(feedback_.position()) - damping;
-    command_ = last_followed_ + safe_stop_.hold_share() * (holding - last_followed_);
+    request_brakes();
+    const JointVector target = limp() ? zero_ : holding_torque();
+    const JointVector step = config_.period_s / stop_time_s * config_.torque_limit;
+    command_ = target.cwiseMin(command_ + step).cwiseMax(command_ - step);
+}
+
+void ControlLoop::begin_braking(Eigen::Index joint) {
+    const double age_s = config_.period_s * static_cast<double>(feedback_.age(joint));
+    braking_.velocity[joint] = feedback_.velocity()[joint];
+    braking_.acceleration[joint] = -braking_.velocity[joint] / stop_time_s;
+    braking_.position[joint] = feedback_.position()[joint] + age_s * braking_.velocity[joint];
+}
+
+void ControlLoop::brake() {
+    if (braking_.position.size() == 0) {
+        braking_ = {zero_, zero_, zero_};
+        for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
+            begin_braking(joint);
+        }
+    }
+    for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
+        const auto j = static_cast<std::size_t>(joint);
+        if (blind_[j] && damped(joint)) { // from where it is, after all
+            begin_braking(joint);
+        }
+        blind_[j] = !damped(joint);
+        const double before = braking_.velocity[joint];
+        const double after = before + config_.period_s * braking_.acceleration[joint];
+        if (after * before <= 0) {
+            braking_.velocity[joint] = braking_.acceleration[joint] = 0;
+        } else {
+            braking_.position[joint] += config_.period_s * (before + after) / 2;
+            braking_.velocity[joint] = after;
+        }
+    }
+}
+
+JointVector ControlLoop::holding_torque() {
+    brake();
+    Reference where = braking_; // measured, where it is
+    for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
+        where.position[joint] = damped(joint) ? feedback_.position()[joint] : where.position[joint];
+    }
+    JointVector torque = feed_forward_.holding(where);
+    for (Eigen::Index joint = 0; joint < torque.size(); ++joint) {
+        if (damped(joint)) {
+            const double most = spring_share * config_.torque_limit[joint];
+            const double spring = std::max(0.0, config_.gains.position[joint]) *
+                                  (braking_.position[joint] - feedback_.position()[joint]);
+            torque[joint] += std::clamp(spring, -most, most);
+            torque[joint] += std::max(0.0, config_.gains.velocity[joint]) *
+                             (braking_.velocity[joint] - feedback_.velocity()[joint]);
+        }
+    }
+    return torque;
+}
+
+void ControlLoop::request_brakes() {
+    constexpr double rest_speed = 0.05; // rad/s, m/s
+    if (brake_tick_) {
+        return;
+    }
+    bool blind = false, rests = true;
+    for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
+        blind = blind || !damped(joint);
+        rests = rests && damped(joint) && std::abs(feedback_.velocity()[joint]) <= rest_speed;
+    }
+    const bool stopped = state() == LoopState::stopped;
+    stopped_tick_ = stopped && !stopped_tick_ ? counters_.ticks : stopped_tick_;
+    const double waited_s =
+        stopped ? config_.period_s * static_cast<double>(counters_.ticks - *stopped_tick_) : 0;
+    if (blind || (stopped && (rests || waited_s >= brake_timeout_s))) {
+        brake_tick_ = counters_.ticks;
+    }
+}
+
+bool ControlLoop::limp() const noexcept {
+    return config_.safe_stop.mode == StopMode::limp && state() == LoopState::stopped && brake_tick_ &&
+           counters_.ticks - *brake_tick_ >= static_cast<std::uint64_t>(config_.safe_stop.brake_ticks);
+}
+
+bool ControlLoop::done() const noexcept {
+    const double silent_s = config_.period_s * static_cast<double>(counters_.ticks - position_tick_);
+    const bool over = told_ || limp() || silent_s >= give_up_s;
+    return state() == LoopState::stopped && (!moved() || (brake_requested() && over));
 }
 
 void ControlLoop::limit() {

@@ -73,6 +73,21 @@ void FeedForward::advance(std::int64_t next_ns, const Reference& next) {
     }
 }
 
+JointVector FeedForward::holding(const Reference& reference) {
+    const JointVector torque = nominal_torque(reference);
+    if (!trusted()) {
+        return torque;
+    }
+    if (held_learned_.size() == 0) {
+        held_learned_ = to_ - nominal_now_;
+    }
+    JointVector learned;
+    if (learned_->rest(reference.position, learned)) {
+        held_learned_ = learned_share().cwiseProduct(learned - gravity(reference.position));
+    }
+    return torque + held_learned_;
+}
+
 JointVector FeedForward::learned_share() const {
     if (!trusted()) {
         return JointVector::Zero(dynamics_.joint_count());

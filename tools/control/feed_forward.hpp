@@ -43,6 +43,12 @@ class FeedForward {
     /// What gravity takes at `position`, by the nominal rigid body.
     JointVector gravity(const JointVector& position);
 
+    /// What brakes the arm along `reference`, or holds it there, N·m: by the nominal rigid body, and of the
+    /// learned model's prediction at rest the share that it had when the motion ended. For a motion that has
+    /// ended: call it once per tick. The learned part is renewed every few calls, each of which does one
+    /// evaluation of the model at most; until the first it is that of the motion.
+    JointVector holding(const Reference& reference);
+
     /// Share of the learned model in each joint's torque, 0 … 1.
     JointVector learned_share() const;
     const LearnedFeedForward* learned() const { return learned_ ? &*learned_ : nullptr; }
@@ -62,6 +68,7 @@ class FeedForward {
     bool known_ = false; ///< whether the learned model had something to say of the knot at hand
     JointVector nominal_now_, learned_now_; ///< for the knot to come
     JointVector from_, to_;
+    JointVector held_learned_; ///< of `holding`: learned part, as of the last evaluation; empty before
 };
 
 } // namespace dfdyn::tools

@@ -117,4 +117,19 @@ bool LearnedFeedForward::predict(std::int64_t time_ns, const JointVector& refere
     return within_bounds && torque.allFinite();
 }
 
+bool LearnedFeedForward::rest(const JointVector& position, JointVector& torque) {
+    if (rest_lag_ == 0) {
+        follower_->begin_recording();
+        rest_position_ = position;
+    }
+    const Tick tick = follower_->tick({rest_lag_ * sample_period_ns_, values(rest_position_), {}, {}, {}});
+    rest_lag_ = rest_lag_ < lags_ ? rest_lag_ + 1 : 0;
+    if (rest_lag_ > 0 || !tick.status.estimated()) {
+        return false;
+    }
+    const bool within_bounds = follower_->predict_with(weights_, prediction_);
+    torque = Eigen::Map<const Eigen::VectorXf>(prediction_.data(), position.size()).cast<double>();
+    return within_bounds && torque.allFinite();
+}
+
 } // namespace dfdyn::tools

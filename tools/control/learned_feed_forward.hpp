@@ -48,6 +48,11 @@ class LearnedFeedForward {
     /// where the model does not know.
     bool predict(std::int64_t time_ns, const JointVector& reference, JointVector& torque);
 
+    /// What torque holds the arm at rest at `position`, once the motion has ended: each call takes one of the
+    /// window's samples; the call that completes it writes `torque`, N·m, of the position at the first of
+    /// these calls, and returns true where the model knows it. Then the next window begins.
+    bool rest(const JointVector& position, JointVector& torque);
+
     /// Multiply-adds of a control tick, at most.
     std::int64_t tick_cost() const;
     const LearningCounters& counters() const noexcept { return counters_; }
@@ -65,6 +70,8 @@ class LearnedFeedForward {
     std::int64_t begin_ns_ = 0;
     bool in_progress_ = false; ///< the learner knows more than `weights_`
     std::vector<float> weights_, prediction_;
+    int rest_lag_ = 0; ///< samples of the window that `rest` fills
+    JointVector rest_position_;
     LearningCounters counters_;
 };
 

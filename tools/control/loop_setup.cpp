@@ -10,13 +10,13 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 namespace dfdyn::tools {
 
 namespace {
 
 constexpr double ramp_s = 0.2;
-constexpr double largest_following_error_rad = 0.5;
 
 JointVector torque_limit(const Robot& robot, const Scenario& scenario, const std::string& source) {
     if (scenario.actuators.torque_limit) {
@@ -32,6 +32,20 @@ JointVector torque_limit(const Robot& robot, const Scenario& scenario, const std
         limit[i] = *joint.effort;
     }
     return limit;
+}
+
+/// One value per joint of `given`, which has one or as many.
+JointVector per_joint(const std::vector<double>& given, const Robot& robot, const std::string& option) {
+    const std::size_t joints = robot.joints.size();
+    if (given.size() != 1 && given.size() != joints) {
+        throw InputError(option + ": expected 1 value, or one for each of " + std::to_string(joints) +
+                         " joints, found " + std::to_string(given.size()));
+    }
+    JointVector result(static_cast<Eigen::Index>(joints));
+    for (std::size_t i = 0; i < joints; ++i) {
+        result[static_cast<Eigen::Index>(i)] = given[given.size() == 1 ? 0 : i];
+    }
+    return result;
 }
 
 int knot_ticks(double period_s, double knot_s, const std::string& source) {
@@ -67,9 +81,42 @@ double bus_load(const BusDescription& bus) {
 
 } // namespace
 
+SafeStopConfig default_limits(const Robot& robot, const Scenario& scenario, const JointVector& torque_limit,
+                              const JointVector& start) {
+    constexpr double following_share = 0.8, largest_angle_rad = 0.5, largest_way_m = 0.1;
+    constexpr double acceleration_margin = 2, largest_speed = 100;
+    constexpr double pressing_s = 0.25, brake_s = 0.2;
+    const ControllerModel& controller = scenario.controller;
+    const ArmDynamics dynamics(robot, scenario.actuators.rotor_inertia);
+    ArmDynamics::Configuration configuration;
+    dynamics.configure(start, configuration);
+    const JointVector inertia = dynamics.mass_matrix(configuration).diagonal();
+    SafeStopConfig config;
+    config.torque_limit = torque_limit;
+    config.acceleration = acceleration_margin * torque_limit.cwiseQuotient(inertia);
+    config.following_error = config.speed_limit = JointVector(torque_limit.size());
+    for (Eigen::Index i = 0; i < torque_limit.size(); ++i) {
+        const RobotJoint& joint = robot.joints[static_cast<std::size_t>(i)];
+        const double gain = controller.position_gain[i];
+        const double largest = joint.prismatic ? largest_way_m : largest_angle_rad;
+        const double speed = joint.velocity.value_or(0);
+        config.following_error[i] =
+            gain > 0 ? std::min(largest, following_share * torque_limit[i] / gain) : largest;
+        config.speed_limit[i] =
+            speed > 0 && speed <= largest_speed ? speed : std::numeric_limits<double>::infinity();
+    }
+    const auto ticks = [&](double time_s) {
+        return static_cast<int>(std::ceil(time_s * controller.rate_hz));
+    };
+    config.ramp_ticks = ticks(ramp_s);
+    config.pressing_ticks = ticks(pressing_s);
+    config.brake_ticks = ticks(brake_s);
+    return config;
+}
+
 std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenario& scenario,
                                                const std::string& source, const LoopModel* learned,
-                                               int delay_ticks) {
+                                               int delay_ticks, const LoopLimits& limits) {
     const ControllerModel& controller = scenario.controller;
     if (controller.kind != ControllerKind::feed_forward) {
         throw InputError(source + ": controller.kind: expected feed_forward, found another");
@@ -81,8 +128,15 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
     config.gains = {controller.position_gain, controller.velocity_gain};
     config.filter = scenario.derivatives;
     config.torque_limit = torque_limit(robot, scenario, source);
-    config.safe_stop.following_error = JointVector::Constant(joints, largest_following_error_rad);
-    config.safe_stop.ramp_ticks = static_cast<int>(std::ceil(ramp_s * controller.rate_hz));
+    const auto make = [&] { return make_task(scenario.task, robot, config.period_s, scenario.seed); };
+    config.safe_stop = default_limits(robot, scenario, config.torque_limit, make()->next().position);
+    config.safe_stop.mode = limits.mode;
+    if (!limits.following_error.empty()) {
+        config.safe_stop.following_error = per_joint(limits.following_error, robot, "--following-error");
+    }
+    if (!limits.speed.empty()) {
+        config.safe_stop.speed_limit = per_joint(limits.speed, robot, "--speed-limit");
+    }
 
     std::optional<LearnedFeedForward> model;
     if (learned != nullptr) {
@@ -93,9 +147,8 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
     }
     FeedForward feed_forward(robot, scenario.actuators.rotor_inertia, std::move(model),
                              config.knot_ticks * config.period_s);
-    return std::make_unique<ControlLoop>(
-        std::move(config), std::move(feed_forward),
-        make_task(scenario.task, robot, 1 / controller.rate_hz, scenario.seed));
+    std::unique_ptr<Task> task = make();
+    return std::make_unique<ControlLoop>(std::move(config), std::move(feed_forward), std::move(task));
 }
 
 void check_bus(const BusDescription& bus, const Robot& robot, const Scenario& scenario) {

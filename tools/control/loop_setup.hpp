@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace dfdyn::tools {
 
@@ -17,13 +18,31 @@ struct LoopModel {
     bool from_prior = false; ///< learn from nothing
 };
 
+/// Limits that a user sets; empty or none: the defaults of `default_limits`. A single value is that of all
+/// joints.
+struct LoopLimits {
+    std::vector<double> following_error; ///< rad, m
+    std::vector<double> speed;           ///< rad/s, m/s
+    StopMode mode = StopMode::hold;
+};
+
+/// Limits of a loop with these gains and torque limits:
+/// - following error: the position gain times it is 0.8 of the torque limit; at most 0.5 rad or 0.1 m;
+/// - speed: the robot's own; none where it has none, or one of more than 100 rad/s or m/s;
+/// - acceleration: that of twice the torque limit at the joint's own inertia (links and rotor) where the
+///   motion starts;
+/// - pressing at the torque limit: 0.25 s. Other patience: SafeStopConfig.
+SafeStopConfig default_limits(const Robot& robot, const Scenario& scenario, const JointVector& torque_limit,
+                              const JointVector& start);
+
 /// The loop that a scenario describes: task, gains and rate of its `controller` (of kind feed_forward),
 /// filter of its `derivatives`, torque limit of its `actuators` or else of the robot. The nominal rigid body
 /// is `robot` with the scenario's rotors. `learned`: none for nominal feed-forward alone. `delay_ticks`: see
-/// LoopConfig. Throws InputError, naming `source` or the model, for what does not fit.
+/// LoopConfig. `limits`: replace the defaults. Throws InputError, naming `source` or the model, for what does
+/// not fit.
 std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenario& scenario,
                                                const std::string& source, const LoopModel* learned,
-                                               int delay_ticks = 0);
+                                               int delay_ticks = 0, const LoopLimits& limits = {});
 
 /// Throws InputError, naming the description's file, unless it has the robot's joints, its joints' rate is
 /// that of the loop, its bit rate carries their frames, and the scenario has what its sensor or its drives

@@ -21,7 +21,12 @@ void print_loop(std::ostream& out, const ControlLoop& loop) {
     const LoopCounters& counters = loop.counters();
     out << "loop: " << counters.ticks << " ticks, " << counters.running << " followed the reference, "
         << counters.coasted << " of them without position; " << counters.limited << " at a torque limit; "
-        << name(loop.state()) << " (" << name(loop.cause()) << ")\n";
+        << name(loop.state()) << " (" << name(loop.cause());
+    if (loop.cause() >= StopCause::overspeed) {
+        out << " of joint " << loop.stopped_by() + 1;
+    }
+    out << ')' << (loop.brake_requested() ? ", brakes requested" : "") << (loop.limp() ? ", limp" : "")
+        << '\n';
     if (const LearnedFeedForward* const learned = loop.feed_forward().learned()) {
         print_learning(out, *learned);
     }
@@ -30,13 +35,17 @@ void print_loop(std::ostream& out, const ControlLoop& loop) {
 void print_port(std::ostream& out, const PortCounters& counters) {
     out << "bus: " << counters.received << " frames, at most " << counters.most_in_tick << " in a tick, "
         << counters.overfull_ticks << " ticks left some; " << counters.incomplete
-        << " ticks without a complete sample, " << counters.invalid << " with one not believed";
+        << " ticks without a complete sample, " << counters.held << " with joints missing, "
+        << counters.invalid << " with one not believed";
     if (counters.invalid > 0) {
         out << " (last: " << hal::name(counters.last_reason);
         if (counters.last_joint != hal::unused_joint) {
             out << " of joint " << counters.last_joint + 1;
         }
         out << ')';
+    }
+    if (counters.clock_jumps > 0) {
+        out << "; " << counters.clock_jumps << " clock jumps corrected";
     }
     out << "; " << counters.refused << " command frames refused\n";
 }

@@ -7,6 +7,7 @@
 #include "tools/control/lossy_bus.hpp"
 
 #include <cmath>
+#include <iostream>
 #include <limits>
 #include <optional>
 
@@ -42,6 +43,7 @@ PaceOutcome keep_pace(const RealTimeRun& run, const Tick& tick) try {
 } // namespace
 
 PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, LoopLog& log) {
+    bool brakes = false; // requested
     return keep_pace(run, [&](hal::SocketCanBus& bus, std::int64_t due_ns, bool missed, bool over) {
         port.receive(bus);
         LoopInput input = port.sense(due_ns, bus.now_ns());
@@ -56,7 +58,14 @@ PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, 
         if (loop.state() != LoopState::waiting) {
             port.send(bus, torque);
         }
-        return loop.state() != LoopState::stopped;
+        if (loop.brake_requested() && !brakes) {
+            brakes = true;
+            if (loop.cause() != StopCause::requested && !loop.done()) {
+                std::cerr << "loop: stopped (" << name(loop.cause())
+                          << "): holds the arm, requests its brakes; ends at Ctrl-C\n";
+            }
+        }
+        return !loop.done();
     });
 }
 

@@ -31,9 +31,10 @@ struct LoopLog {
     LoopRecording recording;
 };
 
-/// Runs `loop` on a CAN interface, a tick per period, each at an absolute time, until it has stopped; a stop
-/// is requested when the time is over or `stop` becomes true. A tick that begins late is run at once.
-/// `log` gets every tick of the motion. Throws InputError where the interface cannot be opened.
+/// Runs `loop` on a CAN interface, a tick per period, each at an absolute time, until it is done; a stop is
+/// requested when the time is over or `stop` becomes true. A loop that has stopped by itself holds the arm
+/// until then, and says so on standard error when it requests the brakes. A tick that begins late is run at
+/// once. `log` gets every tick of the motion. Throws InputError where the interface cannot be opened.
 PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, LoopLog& log);
 
 /// Runs a simulated arm on a CAN interface likewise: it stands until the first command comes, and goes on

@@ -31,6 +31,12 @@ const char* name(StopCause cause) noexcept {
         return "following_error";
     case StopCause::bus_lost:
         return "bus_lost";
+    case StopCause::overspeed:
+        return "overspeed";
+    case StopCause::torque_limit:
+        return "torque_limit";
+    case StopCause::frozen_encoder:
+        return "frozen_encoder";
     }
     return "unknown";
 }
@@ -38,7 +44,11 @@ const char* name(StopCause cause) noexcept {
 SafeStop::SafeStop(const SafeStopConfig& config) : config_(config) {}
 
 void SafeStop::count(const TickHealth& health) {
-    without_position_ = health.position_valid ? 0 : without_position_ + 1;
+    returning_ += !health.position_valid && health.returning ? 1 : 0;
+    lost_ += health.position_valid || health.returning ? 0 : 1;
+    if (health.position_valid) {
+        lost_ = returning_ = 0;
+    }
     missed_ = health.deadline_missed ? missed_ + 1 : 0;
 }
 
@@ -49,11 +59,14 @@ StopCause SafeStop::judge(const TickHealth& health, const JointVector& error) co
     if (health.bus_lost) {
         return StopCause::bus_lost;
     }
-    if (without_position_ > config_.position_patience) {
+    if (lost_ > config_.position_patience || returning_ > config_.return_patience) {
         return StopCause::no_position;
     }
     if (missed_ > config_.deadline_patience) {
         return StopCause::missed_deadlines;
+    }
+    if (health.joint != StopCause::none) {
+        return health.joint;
     }
     const bool follows = (error.array().abs() <= config_.following_error.array()).all();
     return follows ? StopCause::none : StopCause::following_error;
@@ -77,15 +90,6 @@ LoopState SafeStop::tick(const TickHealth& health, const JointVector& error) {
         }
     }
     return state_;
-}
-
-double SafeStop::hold_share() const noexcept {
-    if (state_ < LoopState::stopping) {
-        return 0;
-    }
-    return state_ == LoopState::stopped
-               ? 1
-               : static_cast<double>(ramped_) / static_cast<double>(config_.ramp_ticks);
 }
 
 } // namespace dfdyn::tools

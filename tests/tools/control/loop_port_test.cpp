@@ -27,7 +27,7 @@ class Line {
   public:
     explicit Line(const BusDescription& description) : devices_(description), port_(description, 0.001) {}
 
-    /// Goes on by a period; the drive sends its position and torque if it is to.
+    /// Goes on by a period; the drive sends its position and torque if it is to, stamped `jump_ns` ahead.
     LoopInput tick(double position, bool sends = true) {
         bus.time_ns += period;
         if (sends) {
@@ -39,15 +39,16 @@ class Line {
     LoopPort& port() { return port_; }
 
     ScriptedBus bus;
+    std::int64_t jump_ns = 0; ///< of the clock that stamps
 
   private:
     void send(double position) {
         if (const auto frame = devices_.sync()) {
-            bus.waiting.push_back(stamped(*frame, bus.time_ns));
+            bus.waiting.push_back(stamped(*frame, bus.time_ns + jump_ns));
         }
         const double torque = 10 * position;
         for (const hal::Frame& frame : devices_.joints({&position, 1}, {&torque, 1})) {
-            bus.waiting.push_back(stamped(frame, bus.time_ns));
+            bus.waiting.push_back(stamped(frame, bus.time_ns + jump_ns));
         }
     }
 
@@ -105,6 +106,76 @@ TEST_CASE(
     CHECK(input.position == nullptr);
     CHECK(line.port().counters().last_reason == hal::Reason::position_out_of_range);
     CHECK(line.port().counters().invalid == invalid + 5);
+}
+
+TEST_CASE("a sample of an earlier instant has its own stamp") {
+    Line line(one_drive(at_sync));
+    for (int tick = 0; tick < 30; ++tick) {
+        line.tick(at(tick));
+    }
+    CHECK(line.tick(0, false).position == nullptr);
+    const LoopInput late = line.tick(at(31));
+    REQUIRE(late.position != nullptr);
+    CHECK((*late.position)[0] == Approx(at(29)).margin(1e-5));
+    CHECK(late.time_ns == line.bus.time_ns - 2 * period);
+    const LoopInput next = line.tick(at(32));
+    CHECK(next.time_ns == line.bus.time_ns - period);
+}
+
+TEST_CASE("a joint whose value is held from the sample before is missing") {
+    std::string trigger = at_timer;
+    Line line(one_drive(trigger.replace(trigger.find("0.002"), 5, "0.000")));
+    for (int tick = 0; tick < 30; ++tick) {
+        CHECK(line.tick(at(tick)).missing == nullptr);
+    }
+    const LoopInput input = line.tick(0, false);
+    REQUIRE(input.position != nullptr);
+    REQUIRE(input.missing != nullptr);
+    CHECK((*input.missing)[0]);
+    CHECK(line.port().counters().held == 1);
+    CHECK(line.tick(at(31)).missing == nullptr);
+}
+
+TEST_CASE("devices that come back and qualify are said to return, silent ones are not") {
+    Line line(one_drive(at_sync));
+    for (int tick = 0; tick < 30; ++tick) {
+        line.tick(at(tick));
+    }
+    for (int tick = 0; tick < 6; ++tick) {
+        CHECK_FALSE(line.tick(0, false).returning);
+    }
+    CHECK(line.tick(at(36)).position != nullptr); // of the SYNC before the silence
+    int returning = 0;
+    for (int tick = 37; line.tick(at(tick)).position == nullptr; ++tick) {
+        ++returning;
+        REQUIRE(returning < 20);
+    }
+    CHECK(returning >= 9);
+    CHECK(line.port().counters().last_reason == hal::Reason::qualifying);
+}
+
+TEST_CASE("after a small jump of the bus' clock samples are on the clock of the ticks again") {
+    const std::string trigger = GENERATE(at_sync, at_set, at_timer);
+    CAPTURE(trigger);
+    Line line(one_drive(trigger));
+    int tick = 0;
+    for (; tick < 50; ++tick) {
+        line.tick(at(tick));
+    }
+    line.jump_ns = -4 * period;
+    const int delay = line.port().delay_ticks();
+    int without = 0;
+    for (int after = 0; after < 30; ++after, ++tick) {
+        const LoopInput input = line.tick(at(tick));
+        if (input.position == nullptr || input.missing != nullptr) {
+            ++without;
+            continue;
+        }
+        CHECK(input.time_ns == line.bus.time_ns - delay * period);
+        CHECK((*input.position)[0] == Approx(at(tick - delay)).margin(1e-5));
+    }
+    CHECK(without <= 8);
+    CHECK(line.port().counters().clock_jumps == 1);
 }
 
 TEST_CASE("ticks for which no sample becomes complete are counted") {

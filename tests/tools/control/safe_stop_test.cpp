@@ -21,7 +21,7 @@ SafeStopConfig small_config() {
     return config;
 }
 
-constexpr TickHealth healthy{true, false, false, false};
+constexpr TickHealth healthy{true, false, false, false, false, StopCause::none};
 const JointVector no_error = JointVector::Zero(2);
 
 SafeStop running() {
@@ -45,7 +45,6 @@ TEST_CASE("a loop waits for positions as long as it takes, then runs while all i
         CHECK(stop.tick(healthy, no_error) == LoopState::running);
     }
     CHECK(stop.cause() == StopCause::none);
-    CHECK(stop.hold_share() == 0);
 }
 
 TEST_CASE("a loop stops at the first tick beyond its patience, and not before") {
@@ -53,8 +52,9 @@ TEST_CASE("a loop stops at the first tick beyond its patience, and not before") 
         {StopCause::requested, [](TickHealth& h) { h.stop_requested = true; }},
         {StopCause::bus_lost, [](TickHealth& h) { h.bus_lost = true; }},
         {StopCause::no_position, [](TickHealth& h) { h.position_valid = false; }},
-        {StopCause::missed_deadlines, [](TickHealth& h) { h.deadline_missed = true; }}};
-    const std::vector<int> patience{0, 0, 3, 2};
+        {StopCause::missed_deadlines, [](TickHealth& h) { h.deadline_missed = true; }},
+        {StopCause::frozen_encoder, [](TickHealth& h) { h.joint = StopCause::frozen_encoder; }}};
+    const std::vector<int> patience{0, 0, 3, 2, 0};
     for (std::size_t i = 0; i < faults.size(); ++i) {
         CAPTURE(name(faults[i].first));
         SafeStop stop = running();
@@ -85,16 +85,37 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("stopping goes over to holding in equal steps, and nothing leads back") {
+TEST_CASE(
+    "devices that come back and still qualify have a patience of their own, beyond that of lost cycles") {
+    SafeStop stop = running();
+    const TickHealth lost = health([](TickHealth& h) { h.position_valid = false; });
+    const TickHealth returning = health([](TickHealth& h) {
+        h.position_valid = false;
+        h.returning = true;
+    });
+    for (int tick = 0; tick < small_config().position_patience; ++tick) {
+        CHECK(stop.tick(lost, no_error) == LoopState::running);
+    }
+    for (int tick = 0; tick < small_config().return_patience; ++tick) {
+        CHECK(stop.tick(returning, no_error) == LoopState::running);
+    }
+    SafeStop back = stop;
+    CHECK(back.tick(healthy, no_error) == LoopState::running);
+    CHECK(back.tick(lost, no_error) == LoopState::running);
+    SafeStop lost_again = stop;
+    CHECK(lost_again.tick(lost, no_error) == LoopState::stopping);
+    CHECK(stop.tick(returning, no_error) == LoopState::stopping);
+    CHECK(stop.cause() == StopCause::no_position);
+}
+
+TEST_CASE("stopping becomes stopped after the ramp, and nothing leads back") {
     SafeStop stop = running();
     stop.tick(health([](TickHealth& h) { h.bus_lost = true; }), no_error);
-    for (const double share : {0.25, 0.5, 0.75}) {
+    for (int tick = 1; tick < small_config().ramp_ticks; ++tick) {
         CHECK(stop.tick(healthy, no_error) == LoopState::stopping);
-        CHECK(stop.hold_share() == share);
     }
     for (int tick = 0; tick < 10; ++tick) {
         CHECK(stop.tick(healthy, no_error) == LoopState::stopped);
-        CHECK(stop.hold_share() == 1);
     }
     CHECK(stop.tick(health([](TickHealth& h) { h.stop_requested = true; }), no_error) == LoopState::stopped);
     CHECK(stop.cause() == StopCause::bus_lost);
@@ -102,7 +123,7 @@ TEST_CASE("stopping goes over to holding in equal steps, and nothing leads back"
 
 TEST_CASE("who has not moved anything stops at once") {
     SafeStop asked(small_config());
-    CHECK(asked.tick({false, false, false, true}, no_error) == LoopState::stopped);
+    CHECK(asked.tick({false, false, false, true, false, StopCause::none}, no_error) == LoopState::stopped);
     SafeStop elsewhere(small_config());
     CHECK(elsewhere.tick(healthy, JointVector::Constant(2, 1)) == LoopState::stopped);
     CHECK(elsewhere.cause() == StopCause::following_error);

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+// A loop over the frames of devices that are lost, late or wrongly stamped, and what it does when it stops.
+#include "tests/tools/control/faulty_loop.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/can/bus_support.hpp"
+#include "tools/commands/robot_options.hpp"
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace faulty_loop_test {
+
+using namespace dfdyn::tools;
+using namespace dfdyn::tests;
+namespace hal = dfdyn::hal;
+
+const std::string data = DFDYN_TEST_DATA_DIR;
+
+/// Robot and scenario of the project's test data.
+struct Arm {
+    Robot robot;
+    Scenario scenario;
+};
+Arm read_arm(const std::string& urdf, const std::string& scenario) {
+    const std::string path = data + "/scenarios/" + scenario;
+    Robot robot = read_scenario_robot(data + "/robots/" + urdf, path);
+    Scenario read = read_scenario(path, robot);
+    return {std::move(robot), std::move(read)};
+}
+Arm ur5() { return read_arm("ur5/ur5_robot.urdf", "ur5_loop.json"); }
+Arm icub() { return read_arm("icub_right_arm/icub_right_arm.urdf", "icub_loop.json"); }
+BusDescription bus_of(const std::string& name) { return read_bus_description(data + "/can/" + name); }
+
+constexpr std::int64_t ms = 1'000'000;
+
+/// A fault of time: what happens in the `after`-th tick since it began, at least 0.
+struct TimeFault {
+    std::string name;
+    std::function<LoopFault(int after)> fault;
+};
+
+std::vector<TimeFault> time_faults() {
+    std::vector<TimeFault> faults;
+    for (const int ticks : {1, 2, 3}) {
+        faults.push_back({std::to_string(ticks) + " cycles lost", [ticks](int after) {
+                              LoopFault fault;
+                              fault.lost = after < ticks;
+                              return fault;
+                          }});
+    }
+    faults.push_back({"a late tick", [](int after) {
+                          LoopFault fault;
+                          fault.late_ticks = after < 1 ? 1 : 0;
+                          return fault;
+                      }});
+    for (const std::int64_t jump_ns : {4 * ms, -4 * ms, 20 * ms, -20 * ms, 1000 * ms, -1000 * ms}) {
+        faults.push_back({"clock jumps by " + std::to_string(jump_ns / ms) + " ms", [jump_ns](int) {
+                              LoopFault fault;
+                              fault.clock_ns = jump_ns;
+                              return fault;
+                          }});
+    }
+    return faults;
+}
+
+TEST_CASE("lost cycles, a late tick and clocks that jump change no command by a tenth of its limit, and no "
+          "speed by a fifth") {
+    const auto [arm, bus] =
+        GENERATE(table<std::string, std::string>({{"ur5", "ur5_loop.json"}, {"icub", "icub_loop.json"}}));
+    const Arm parts = arm == "ur5" ? ur5() : icub();
+    const double begin_s = 3.4;
+    const auto run = [&, &name = bus](const std::function<LoopFault(int)>& fault) {
+        auto loop = std::make_unique<FaultyLoop>(parts.robot, parts.scenario, bus_of(name));
+        loop->run_to(begin_s);
+        loop->forget_peaks();
+        const int begin = loop->moving_tick();
+        loop->run_to(begin_s + 0.3, [&](int tick) { return fault(tick - begin); });
+        return loop;
+    };
+    const auto healthy = run([](int) { return LoopFault(); });
+    REQUIRE(healthy->peak_step() < 0.05);
+    for (const TimeFault& fault : time_faults()) {
+        CAPTURE(arm, fault.name);
+        const auto loop = run(fault.fault);
+        CHECK(loop->peak_step() < 0.1);
+        CHECK(loop->peak_speed() < 1.2 * healthy->peak_speed());
+        CHECK(loop->loop().state() == LoopState::running);
+    }
+}
+
+TEST_CASE("of 1 % and 5 % of the frames lost no command changes by a tenth of its limit, and the loop runs") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Arm parts = ur5();
+    for (const double share : {0.01, 0.05}) {
+        CAPTURE(share);
+        FaultyLoop loop(parts.robot, parts.scenario, bus_of("ur5_loop.json"));
+        loop.run_to(0.2);
+        loop.forget_peaks();
+        loop.run_to(8, [&](int) {
+            LoopFault fault;
+            fault.drops = [&](const hal::Frame&) {
+                return std::uniform_real_distribution<double>(0, 1)(engine) < share;
+            };
+            return fault;
+        });
+        CHECK(static_cast<double>(loop.loop().counters().coasted) > 3000 * share);
+        CHECK(loop.peak_step() < 0.1);
+        CHECK(loop.loop().state() == LoopState::running);
+    }
+}
+
+/// Buses of all device families, for the small arm: boards and sensor.
+struct Family {
+    std::string name, text;
+};
+std::vector<Family> families(const TemporaryDirectory& directory) {
+    directory.write("joints.dbc", R"(VERSION ""
+BU_: Arm Host
+BO_ 288 Joints: 8 Arm
+ SG_ First : 0|32@1- (0.000001,0) [-8|8] "rad" Host
+ SG_ Second : 32|32@1- (0.000001,0) [-8|8] "rad" Host
+BO_ 289 Efforts: 8 Arm
+ SG_ FirstTorque : 0|32@1- (0.001,0) [-200|200] "Nm" Host
+ SG_ SecondTorque : 32|32@1- (0.001,0) [-200|200] "Nm" Host
+)");
+    const auto bus = [](const std::string& trigger, const std::string& joints, const std::string& output) {
+        return R"({"schema": "dfdyn.bus/1", "bit_rate": 1000000, "sample_rate_hz": 500, "trigger": )" +
+               trigger + R"(, "joints": {)" + joints + R"(}, "output": {)" + output + "}}";
+    };
+    return {
+        {"cia402, efforts", bus(at_sync, R"("family": "cia402",
+ "position": {"pdo": "0x280", "length": 6, "start_bit": 0, "bits": 32},
+ "effort": {"pdo": "0x280", "length": 6, "start_bit": 32, "bits": 16},
+ "boards": [{"node": 1, "joint": 1, "counts_per_turn": 1048576, "effort_per_count": 0.01},
+            {"node": 2, "joint": 2, "counts_per_turn": 1048576, "effort_per_count": 0.01}])",
+                                R"("family": "efforts", "quantity": "tau")")},
+        {"odrive, ati_netcan",
+         bus(R"({"on": "timer", "delay_s": 0.002})",
+             R"("family": "odrive", "boards": [{"node": 1, "joint": 1, "motor_per_joint": 9},
+                                               {"node": 2, "joint": 2, "motor_per_joint": -9}])",
+             R"("family": "ati_netcan", "base": 32, "counts_per_newton": 100, "counts_per_newton_metre": 5000,
+ "limit": [200, 200, 200, 6, 6, 6],
+ "matrix": [1,0,0,0,0,0, 0,1,0,0,0,0, 0,0,1,0,0,0, 0,0,0,1,0,0, 0,0,0,0,1,0, 0,0,0,0,0,1])")},
+        {"icub_two_joint_board, icub_strain",
+         bus(at_set, R"("family": "icub_two_joint_board",
+ "boards": [{"address": 1, "joints": [1, 2], "ticks_per_degree": [182.04, 182.04]}])",
+             R"("family": "icub_strain", "address": 13, "full_scale": [1500, 1500, 2000, 35, 35, 25])")},
+        {"icub_2foc, robotous_rft",
+         bus(at_set,
+             R"("family": "icub_2foc", "boards": [{"address": 1, "joint": 1}, {"address": 2, "joint": 2}])",
+             R"("family": "robotous_rft")")},
+        {"dbc, efforts", bus(at_set, R"("family": "dbc", "file": "joints.dbc", "boards": [
+ {"joint": 1, "position": {"message": "Joints", "signal": "First"}, "effort": {"message": "Efforts", "signal": "FirstTorque"}},
+ {"joint": 2, "position": {"message": "Joints", "signal": "Second"}, "effort": {"message": "Efforts", "signal": "SecondTorque"}}])",
+                             R"("family": "efforts", "quantity": "tau")")},
+    };
+}
+
+Arm small_arm() {
+    Arm arm = read_arm("small_arm/small_arm.urdf", "small_arm_loop.json");
+    arm.scenario.controller.rate_hz = 500;
+    arm.scenario.force_torque.emplace();
+    arm.scenario.force_torque->range = {100, 100, 100, 5, 5, 5};
+    arm.scenario.force_torque->noise = {0.1, 0.1, 0.1, 0.01, 0.01, 0.01};
+    return arm;
+}
+
+/// A way to stop a loop: `begin` is the tick of the fault.
+struct StopFault {
+    StopCause cause;
+    int ticks;           ///< from the fault to the stop, at most, beside the bus' delay
+    double speed;        ///< afterwards, of that before, at most
+    double distance_rad; ///< beside that at the speed before, until the stop and for 0.1 s, at most
+    std::function<LoopFault(int after)> fault;
+};
+
+std::vector<StopFault> stop_faults() {
+    const auto health = [](void (*spoil)(LoopInput&)) {
+        return [spoil](int) {
+            LoopFault fault;
+            spoil(fault.given);
+            return fault;
+        };
+    };
+    const auto frozen = std::make_shared<JointVector>(); // what the encoder shows
+    return {
+        {StopCause::requested, 1, 1.2, 0, health([](LoopInput& input) { input.stop_requested = true; })},
+        {StopCause::bus_lost, 1, 1.2, 0, health([](LoopInput& input) { input.bus_lost = true; })},
+        {StopCause::missed_deadlines, 11, 1.2, 0,
+         health([](LoopInput& input) { input.deadline_missed = true; })},
+        {StopCause::no_position, 6, 1.2, 0,
+         [](int) {
+             LoopFault fault;
+             fault.lost = true;
+             return fault;
+         }},
+        // the encoder is wrong by more than half a radian from then on, and so is gravity
+        {StopCause::following_error, 1, 1.6, 0.2,
+         [](int) {
+             LoopFault fault;
+             fault.reads = [](JointVector& position) { position[0] += 0.55; };
+             return fault;
+         }},
+        {StopCause::frozen_encoder, 6, 1.2, 0,
+         [frozen](int after) {
+             LoopFault fault;
+             fault.reads = [frozen, after](JointVector& position) {
+                 if (after <= 0) {
+                     *frozen = position;
+                 }
+                 position[0] = (*frozen)[0];
+             };
+             return fault;
+         }},
+    };
+}
+
+TEST_CASE(
+    "whatever stops a loop, over whichever devices: in time, without a kick, and the arm comes to rest") {
+    const TemporaryDirectory directory;
+    const Arm arm = small_arm();
+    for (const Family& family : families(directory)) {
+        const BusDescription bus = read_bus_description(directory.write("bus.json", family.text));
+        for (const StopFault& stop : stop_faults()) {
+            CAPTURE(family.name, name(stop.cause));
+            FaultyLoop loop(arm.robot, arm.scenario, bus);
+            loop.run_to(1.6);
+            REQUIRE(loop.loop().state() == LoopState::running);
+            loop.forget_peaks();
+            const double speed = loop.plant().truth().velocity.cwiseAbs().maxCoeff();
+            const int begin = loop.moving_tick();
+            int ticks = 0;
+            loop.run_to(3.6, [&](int tick) {
+                ticks += loop.loop().state() == LoopState::running ? 1 : 0;
+                return stop.fault(tick - begin);
+            });
+            const int most = stop.ticks + loop.delay_ticks();
+            CHECK(loop.loop().cause() == stop.cause);
+            CHECK(ticks <= most);
+            CHECK(loop.peak_step() < 0.1);
+            CHECK(loop.peak_speed() < stop.speed * speed);
+            CHECK(loop.peak_distance() < speed * (0.002 * most + 0.1) + stop.distance_rad);
+            CHECK(loop.braked());
+        }
+    }
+}
+
+/// How far a pendulum with a load that its rigid body does not know sinks after a stop, rad, and whether a
+/// model has learned it before.
+double sinks(const LoopModel* learned) {
+    Scenario scenario = pendulum_scenario();
+    scenario.payloads = {{0, 1, Eigen::Vector3d::Zero()}};
+    scenario.task = PointToPointTask{{JointVector::Constant(1, 0.3), JointVector::Constant(1, 0.7)}, 1, 0.5};
+    FaultyLoop loop(test_pendulum(), scenario, one_drive(at_sync), learned, {{0.5}, {}, StopMode::hold});
+    loop.run_to(13.3); // in a dwell
+    loop.forget_peaks();
+    loop.run_to(15.5, [](int) {
+        LoopFault fault;
+        fault.given.bus_lost = true;
+        return fault;
+    });
+    CHECK(loop.loop().cause() == StopCause::bus_lost);
+    return loop.peak_distance();
+}
+
+TEST_CASE("an arm that has learned its load holds it after a stop") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const LoopModel model{unlearned_model(engine, 1, 0.008, {"tau1"}, 30), "model", true};
+    const double nominal = sinks(nullptr), learned = sinks(&model);
+    CHECK(nominal > 0.02);
+    CHECK(learned < nominal / 3);
+}
+
+TEST_CASE("in a minute without faults no limit stops an arm, and no tick coasts", "[.long]") {
+    for (const auto& [arm, bus] : {std::pair{ur5(), "ur5_loop.json"}, std::pair{icub(), "icub_loop.json"}}) {
+        FaultyLoop loop(arm.robot, arm.scenario, bus_of(bus));
+        loop.run_to(95);
+        CHECK(loop.loop().state() == LoopState::running);
+        CHECK(loop.loop().counters().coasted == 0);
+    }
+}
+
+} // namespace faulty_loop_test

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/control/joint_watch.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace joint_watch_test {
+
+using namespace dfdyn::tools;
+
+constexpr double period_s = 0.002, quantum = 1e-4;
+
+SafeStopConfig limits() {
+    SafeStopConfig config;
+    config.following_error = JointVector::Constant(1, 0.1);
+    config.speed_limit = JointVector::Constant(1, 2);
+    config.torque_limit = JointVector::Constant(1, 50);
+    config.acceleration = JointVector::Constant(1, 100);
+    config.pressing_ticks = 20;
+    return config;
+}
+
+/// A joint's readings, in whole quanta, and what is thought of them.
+class Joint {
+  public:
+    StopCause tick(double position, double reference, double command = 0) {
+        const JointVector reading = JointVector::Constant(1, quantum * std::round(position / quantum));
+        const Reference target{JointVector::Constant(1, reference), JointVector::Zero(1),
+                               JointVector::Zero(1)};
+        feedback_.advance();
+        watch.read(reading, target.position, feedback_, {false});
+        feedback_.observe(0, reading, target, &watch.repeated());
+        watch.move(feedback_, JointVector::Constant(1, command));
+        return watch.cause();
+    }
+    StopCause tick(double position) { return tick(position, position); }
+
+    JointWatch watch{limits(), period_s, quantum};
+
+  private:
+    static DerivativeModel filter() {
+        DerivativeModel model;
+        model.noise_bound = quantum;
+        return model;
+    }
+    PositionFeedback feedback_{
+        {JointVector::Constant(1, 900), JointVector::Constant(1, 90)}, filter(), period_s};
+};
+
+TEST_CASE("an encoder that freezes on a moving joint is found at the fifth reading, and not used before") {
+    for (const double speed : {0.5, 1.0, -1.8}) {
+        CAPTURE(speed);
+        Joint joint;
+        double position = 0;
+        for (int tick = 0; tick <= 100; ++tick) { // from rest, as every motion
+            position += speed * tick / 100 * period_s;
+            REQUIRE(joint.tick(position) == StopCause::none);
+        }
+        for (int reading = 1; reading < 5; ++reading) {
+            CHECK(joint.tick(position, position + speed * period_s * reading) == StopCause::none);
+            CHECK(joint.watch.repeated()[0]);
+        }
+        CHECK(joint.tick(position, position + speed * period_s * 5) == StopCause::frozen_encoder);
+    }
+}
+
+TEST_CASE("an encoder that freezes on a joint at rest is found once the reference has moved on") {
+    Joint joint;
+    double reference = 0;
+    int late = 0;
+    while (joint.tick(0, reference) == StopCause::none) {
+        reference += 0.2 * period_s;
+        late += reference > 0.1 / 8 ? 1 : 0;
+        REQUIRE(late <= 6);
+    }
+    CHECK(joint.watch.cause() == StopCause::frozen_encoder);
+    CHECK(reference > 0.1 / 8);
+}
+
+TEST_CASE("joints that stand, stop at once, creep, or show one step in many are not frozen") {
+    Joint standing;
+    for (int tick = 0; tick < 1000; ++tick) {
+        CHECK(standing.tick(0.3) == StopCause::none);
+    }
+    Joint braking; // at 12 rad/s², from 1.5 rad/s
+    double speed = 1.5, position = 0;
+    for (int tick = 0; tick < 300; ++tick) {
+        speed = tick < 50 ? speed : std::max(0.0, speed - 12 * period_s);
+        position += speed * period_s;
+        CHECK(braking.tick(position) == StopCause::none);
+    }
+    Joint creeping; // a step every 8 readings
+    for (int tick = 0; tick < 2000; ++tick) {
+        CHECK(creeping.tick(quantum / 8 * tick) == StopCause::none);
+    }
+}
+
+TEST_CASE("a joint that is too fast is found at the third reading, one wrong reading is not") {
+    Joint joint;
+    for (int tick = 0; tick < 50; ++tick) {
+        REQUIRE(joint.tick(1.9 * period_s * tick + (tick == 30 ? 0.01 : 0)) == StopCause::none);
+    }
+    int readings = 0;
+    double position = 1.9 * period_s * 49;
+    do {
+        position += 2.2 * period_s;
+        ++readings;
+    } while (joint.tick(position) == StopCause::none);
+    CHECK(joint.watch.cause() == StopCause::overspeed);
+    CHECK(readings <= 12); // of them the filter's lag, then three
+}
+
+TEST_CASE("a joint that presses at its torque limit without moving stops, one that moves does not") {
+    Joint moving;
+    for (int tick = 0; tick < 100; ++tick) {
+        CHECK(moving.tick(0.8 * period_s * tick, 0.8 * period_s * tick, 50) == StopCause::none);
+    }
+    Joint pressing;
+    for (int tick = 0; tick < 20; ++tick) {
+        CHECK(pressing.tick(0.001 * (tick % 3), 0, -50) == StopCause::none);
+    }
+    CHECK(pressing.tick(0, 0, -50) == StopCause::torque_limit);
+}
+
+} // namespace joint_watch_test

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/control/position_feedback.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+
+namespace position_feedback_test {
+
+using namespace dfdyn::tools;
+
+constexpr double period_s = 0.002, speed = 1.5, kp = 900, kd = 90;
+
+PositionFeedback feedback() {
+    DerivativeModel filter;
+    filter.velocity_window = 10;
+    filter.noise_bound = 1e-6;
+    return {{JointVector::Constant(2, kp), JointVector::Constant(2, kd)},
+            filter,
+            period_s,
+            {JointVector::Constant(2, 3), JointVector::Constant(2, 100)}};
+}
+
+/// Both joints follow a reference of constant speed, 0.01 rad behind it.
+Reference reference(int tick) {
+    return {JointVector::Constant(2, speed * period_s * tick), JointVector::Constant(2, speed),
+            JointVector::Zero(2)};
+}
+JointVector position(int tick) { return reference(tick).position.array() - 0.01; }
+
+PositionFeedback after(int ticks) {
+    PositionFeedback result = feedback();
+    for (int tick = 0; tick < ticks; ++tick) {
+        result.advance();
+        result.observe(0, position(tick), reference(tick));
+    }
+    return result;
+}
+
+TEST_CASE("the velocity over a gap is that over the gap") {
+    PositionFeedback loop = after(20);
+    for (int tick = 20; tick < 23; ++tick) {
+        loop.advance(); // nothing arrives
+    }
+    loop.advance();
+    loop.observe(0, position(23), reference(23));
+    CHECK(loop.velocity()[0] == Approx(speed));
+    CHECK_FALSE(loop.regular());
+    loop.advance();
+    loop.observe(0, position(24), reference(24));
+    CHECK(loop.velocity()[0] == Approx(speed));
+    CHECK(loop.regular());
+}
+
+TEST_CASE("an older reading gives the torque of this tick, whatever its age") {
+    for (const int age : {1, 2, 5}) {
+        PositionFeedback loop = after(20);
+        const double before = loop.torque()[0];
+        for (int tick = 20; tick < 25; ++tick) {
+            loop.advance();
+        }
+        loop.observe(age, position(24 - age), reference(24 - age));
+        CHECK(loop.velocity()[0] == Approx(speed));
+        CHECK(loop.age(0) == age);
+        CHECK(loop.torque()[0] == Approx(before).epsilon(1e-9));
+        CHECK(loop.error()[0] == Approx(0.01));
+    }
+}
+
+TEST_CASE(
+    "without readings the torque stays where it was: the arm is taken to follow with the error it had") {
+    PositionFeedback loop = after(20);
+    const double before = loop.torque()[0];
+    for (int tick = 20; tick < 60; ++tick) {
+        loop.advance();
+        CHECK(loop.torque()[0] == Approx(before).epsilon(1e-9));
+        CHECK_FALSE(loop.complete());
+    }
+}
+
+TEST_CASE("an error that changes goes on changing for a bounded time, at no more than the joint's speed") {
+    for (const double rate : {0.1, -20.0}) {
+        CAPTURE(rate);
+        PositionFeedback loop = after(20);
+        JointVector where = position(19);
+        for (int tick = 20; tick < 22; ++tick) {
+            loop.advance();
+            where += JointVector::Constant(2, (speed - rate) * period_s);
+            loop.observe(0, where, reference(tick));
+        }
+        const double start = loop.error()[0];
+        for (int tick = 0; tick < 100; ++tick) {
+            loop.advance();
+        }
+        const double bounded = std::clamp(rate, -3.0, 3.0);
+        CHECK(loop.error()[0] - start ==
+              Approx(bounded * period_s * PositionFeedback::fade_ticks / 2).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("a joint whose reading is missing coasts alone") {
+    PositionFeedback loop = after(20);
+    const double before = loop.torque()[1];
+    loop.advance();
+    JointVector odd = position(20);
+    odd[1] += 1;
+    const std::vector<bool> missing{false, true};
+    loop.observe(0, odd, reference(20), &missing);
+    CHECK(loop.age(0) == 0);
+    CHECK(loop.age(1) == 1);
+    CHECK(loop.torque()[1] == Approx(before).epsilon(1e-9));
+    CHECK_FALSE(loop.complete());
+}
+
+TEST_CASE("a reading where no acceleration can have brought the joint is not regular") {
+    PositionFeedback loop = after(20);
+    loop.advance();
+    loop.observe(0, position(20).array() + 0.0003, reference(20)); // 100 rad/s² in 2 ms: 0.0004 rad
+    CHECK(loop.regular());
+    loop.advance();
+    loop.observe(0, position(21).array() + 0.01, reference(21));
+    CHECK_FALSE(loop.regular());
+}
+
+} // namespace position_feedback_test

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/control/sample_clock.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <optional>
+#include <random>
+
+namespace sample_clock_test {
+
+using dfdyn::tools::SampleClock;
+
+constexpr std::int64_t period = 2'000'000;
+
+/// A clock after ten regular samples; sample k is measured at k periods.
+class Line {
+  public:
+    Line() {
+        for (int k = 0; k < 10; ++k) {
+            REQUIRE(tick(k) == 0);
+        }
+    }
+    /// The next tick, with the sample of tick `k`, and the clock of the stamps `jump_ns` ahead.
+    std::optional<int> tick(int k, std::int64_t jump_ns = 0) {
+        clock.advance();
+        ++next;
+        return clock.place(k * period + jump_ns);
+    }
+    void silent_tick() {
+        clock.advance();
+        ++next;
+    }
+
+    SampleClock clock{period};
+    int next = 0; ///< tick to come
+};
+
+TEST_CASE("samples in time with the ticks are the expected ones, with jitter of up to half a period") {
+    DFDYN_SEEDED_ENGINE(engine);
+    std::uniform_int_distribution<std::int64_t> jitter(-period / 2, period / 2);
+    Line line;
+    for (int k = 10; k < 1000; ++k) {
+        CHECK(line.tick(k, jitter(engine)) == 0);
+    }
+}
+
+TEST_CASE("after a lost cycle the older sample is used at its own instant, then the expected one") {
+    Line line;
+    line.silent_tick(); // 10
+    CHECK(line.tick(10) == -1);
+    CHECK(line.tick(12) == 0);
+}
+
+TEST_CASE("samples that stay a tick older after a lost cycle are used as such") {
+    Line line;
+    line.silent_tick();
+    for (int k = 10; k < 50; ++k) {
+        CHECK(line.tick(k) == -1);
+    }
+}
+
+TEST_CASE("no sample is used twice, nor one that is too old to be extrapolated") {
+    Line line;
+    CHECK(line.tick(9) == std::nullopt);
+    CHECK(line.tick(9) == std::nullopt);
+    CHECK(line.tick(9) == std::nullopt);
+    CHECK(line.tick(9) == std::nullopt);
+    for (int k = 0; k < SampleClock::max_age; ++k) {
+        line.silent_tick();
+    }
+    CHECK(line.tick(line.next - SampleClock::max_age - 1) == std::nullopt);
+}
+
+TEST_CASE("the sample of a tick to come is recognised") {
+    Line line;
+    CHECK(line.tick(11) == 1); // a late tick
+    line.silent_tick();        // made up for at once
+    CHECK(line.tick(12) == 0);
+}
+
+TEST_CASE("stamps that jump are not believed until they have been consistent, then they are the expected") {
+    for (const std::int64_t jump_ns : {-1'000'000'000, -20'000'000, -4'000'000, 30'000'000, 1'000'000'000}) {
+        CAPTURE(jump_ns);
+        Line line;
+        for (int k = 0; k + 1 < SampleClock::adopt_after; ++k) {
+            CHECK(line.tick(line.next, jump_ns) == std::nullopt);
+        }
+        for (int k = 0; k < 100; ++k) {
+            CHECK(line.tick(line.next, jump_ns) == 0);
+        }
+        CHECK(line.tick(line.next) != 0); // and back
+    }
+}
+
+TEST_CASE("a single wrong stamp changes nothing") {
+    Line line;
+    CHECK(line.tick(10, -500'000'000) == std::nullopt);
+    CHECK(line.tick(11) == 0);
+}
+
+} // namespace sample_clock_test
