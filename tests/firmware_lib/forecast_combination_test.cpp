@@ -186,14 +186,16 @@ TEMPLATE_TEST_CASE("members of known noise weigh by it until they have been seen
 
 TEMPLATE_TEST_CASE("a member whose parameters are uncertain at an input counts less there", "", float,
                    double) {
-    Combination<TestType> combined = scaled_combination<TestType>(100);
+    const TestType factor =
+        GENERATE(Combination<TestType>::variance_factor, Combination<TestType>::calibrated_variance_factor);
+    Combination<TestType> combined(Extent<members>{}, Extent<outputs>{}, 100, noise<TestType>.data(), factor);
     Values<TestType> deviations = noise<TestType>;
     combined.weigh(deviations.data());
     const TestType before = combined.weights()[1];
     CHECK(before == Approx(1.0 / 3));
     deviations[1] = 2; // a variance of 3 of the parameters, besides 1 of the noise
     combined.weigh(deviations.data());
-    const double doubtful = 1 + 3 * static_cast<double>(Combination<TestType>::variance_factor);
+    const double doubtful = 1 + 3 * static_cast<double>(factor);
     CHECK(combined.weights()[1] == Approx(1 / (doubtful * doubtful) / (2 + 1 / (doubtful * doubtful))));
     CHECK(combined.weights()[3] == combined.weights()[5]);
     deviations[1] = std::numeric_limits<TestType>::infinity();
@@ -201,6 +203,27 @@ TEMPLATE_TEST_CASE("a member whose parameters are uncertain at an input counts l
     CHECK(combined.weights()[1] < TestType(1e-6));
     combined.weigh(noise<TestType>.data()); // of this input only: nothing of it stays
     CHECK(combined.weights()[1] == before);
+}
+
+TEST_CASE("how much variances weigh changes with the first error, and back within memories without any") {
+    const double unjudged = Combination<double>::calibrated_variance_factor;
+    Combination<double> combined({}, {}, 50, noise<double>.data(), unjudged);
+    Values<double> deviations = noise<double>;
+    deviations[1] = 2; // a variance of 3 of the parameters, besides 1 of the noise
+    const auto ratio = [&](double factor) { return 1 / (1 + 3 * factor) / (1 + 3 * factor); };
+    const auto weights = [&] {
+        combined.weigh(deviations.data());
+        return combined.weights()[1] / combined.weights()[3];
+    };
+    CHECK(weights() == Approx(ratio(unjudged)));
+    const std::array<double, outputs> measured{};
+    const Values<double> error{0.5, 1, 1, 1, 2, 1}; // as large as the noise
+    combined.learn(error.data(), measured.data());
+    CHECK(weights() == Approx(ratio(Combination<double>::variance_factor)));
+    for (int t = 0; t < 1000; ++t) {
+        combined.skip();
+    }
+    CHECK(weights() == Approx(ratio(unjudged)).epsilon(1e-3));
 }
 
 TEST_CASE("after a memory without samples the noise decides again, and the errors return with the next") {

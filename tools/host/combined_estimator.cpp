@@ -16,6 +16,7 @@ namespace dfdyn::tools {
 namespace {
 
 using Members = std::vector<CombinationMember>;
+using Combination = ForecastCombination<float, dynamic, dynamic>;
 
 /// Deviations of the members' noise, member by member.
 std::vector<float> noise_of(const Members& members) {
@@ -27,6 +28,13 @@ std::vector<float> noise_of(const Members& members) {
     return noise;
 }
 
+/// That of the paper's deviations if any member has them.
+float unjudged_factor_of(const Members& members) {
+    return std::ranges::all_of(members, &CombinationMember::calibrated)
+               ? Combination::calibrated_variance_factor
+               : Combination::variance_factor;
+}
+
 bool refused(Reason learning) { return learning == Reason::output_missing || is_fault(learning); }
 
 class CombinedEstimator final : public HostEstimator {
@@ -35,7 +43,8 @@ class CombinedEstimator final : public HostEstimator {
         : members_(std::move(members)), outputs_(outputs),
           combination_(Extent<dynamic>{static_cast<int>(members_.size())},
                        Extent<dynamic>{static_cast<int>(outputs)},
-                       static_cast<float>(combination_memory_s / sample_period_s), noise_of(members_).data()),
+                       static_cast<float>(combination_memory_s / sample_period_s), noise_of(members_).data(),
+                       unjudged_factor_of(members_)),
           period_(std::max(1L, std::lround(held_weights_period_s / sample_period_s))),
           predictions_(members_.size() * outputs), ahead_(predictions_.size()),
           deviations_(predictions_.size()), measured_(outputs), prediction_(outputs), deviation_(outputs) {
@@ -145,8 +154,8 @@ class CombinedEstimator final : public HostEstimator {
 
     /// With what the members predict by held weights.
     Cost cost() const override {
-        Cost cost = decltype(combination_)::cost(Extent<dynamic>{static_cast<int>(members_.size())},
-                                                 Extent<dynamic>{static_cast<int>(outputs_)});
+        Cost cost = Combination::cost(Extent<dynamic>{static_cast<int>(members_.size())},
+                                      Extent<dynamic>{static_cast<int>(outputs_)});
         for (const CombinationMember& member : members_) {
             const Cost one = member.estimator->cost();
             cost.predict += 2 * one.predict;
@@ -246,7 +255,7 @@ class CombinedEstimator final : public HostEstimator {
 
     Members members_;
     std::size_t outputs_;
-    ForecastCombination<float, dynamic, dynamic> combination_;
+    Combination combination_;
     long period_;         ///< of the held weights, samples
     long since_held_ = 0; ///< samples
     std::vector<HeldWeights<float, dynamic>> held_;

@@ -151,8 +151,8 @@ std::unique_ptr<HostEstimator> make_estimator(std::span<const TrainedModel> mode
     }
     std::vector<CombinationMember> members;
     for (const TrainedModel& model : models) {
-        members.push_back(
-            {make_estimator(model, from_prior), model.limits.innovation, model.outputs.noise_std});
+        members.push_back({make_estimator(model, from_prior), model.limits.innovation,
+                           model.outputs.noise_std, model.extrapolation.has_value()});
     }
     return combine(std::move(members), models.front().outputs.names.size(), models.front().sample_period_s);
 }

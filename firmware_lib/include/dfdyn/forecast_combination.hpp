@@ -15,20 +15,18 @@ namespace dfdyn {
 /// One prediction from those of several estimators ("members") of the same m outputs.
 ///
 /// Each output weighs each member in inverse proportion to the square of its expected square error: of its
-/// mean square error over about `memory` samples, plus `variance_factor` times the variance of its parameters
-/// at this input. After J. M. Bates and C. W. J. Granger, "The combination of forecasts" (1969), whose
-/// weights are in inverse proportion to the mean square error itself.
+/// mean square error over about `memory` samples, plus a multiple of the variance of its parameters at this
+/// input. After J. M. Bates and C. W. J. Granger, "The combination of forecasts" (1969), whose weights are in
+/// inverse proportion to the mean square error itself.
 ///
 /// Errors one step ahead are mostly tracking: they do not show what a member would do if it stopped learning.
 /// So `learn` takes also what each member predicts with weights that it had 0.2 to 0.4 s ago (`HeldWeights`);
 /// the mean of both squares counts. The variance decides where nothing is learned, on a motion that was not
-/// seen before. It counts more than once because it assumes white noise: with residuals of autocorrelation ρ,
-/// n samples carry the information of n (1 - ρ) / (1 + ρ) (ρ = 0.82 gives the factor 10). Chosen before
-/// standard deviations were calibrated away from the data (`Extrapolation`), which also counts correlation.
+/// seen before.
 ///
-/// The powers, the factor and a memory of 0.8 s were chosen on the UR5 recordings No5 and No6. Weights are in
-/// [0, 1] and sum to 1, so that the combination of finite predictions lies among them. An error counts for at
-/// most a hundred times the best member's, so that an absurd one is forgotten within five memories; without
+/// The powers and a memory of 0.8 s were chosen on the UR5 recordings No5 and No6. Weights are in [0, 1] and
+/// sum to 1, so that the combination of finite predictions lies among them. An error counts for at most a
+/// hundred times the best member's, so that an absurd one is forgotten within five memories; without
 /// `noise_std` that begins once the memory is full.
 ///
 ///     for each member j: estimate[j] = estimator[j].tick(sample, budget);   // into tables, member by member
@@ -37,19 +35,31 @@ namespace dfdyn {
 ///     if the sample was not refused: combination.learn(predictions, ahead, sample.output.data());
 ///     else: combination.skip();
 ///
-/// Cost: `cost()`; 3 c m + 3 scalars for c members. Never allocates.
+/// Cost: `cost()`; 3 c m + 5 scalars for c members. Never allocates.
 template <class Scalar, int members, int m>
 class ForecastCombination {
   public:
-    /// Times that the variance of a member's parameters counts.
+    /// Times that the variance of a member's parameters counts beside errors lately measured. It counts more
+    /// than once because it assumes white noise: with residuals of autocorrelation ρ, n samples carry the
+    /// information of n (1 - ρ) / (1 + ρ), and ρ = 0.82 gives the factor 10. Chosen on the UR5 recordings No5
+    /// and No6.
     static constexpr Scalar variance_factor = 10;
+    /// The same while no error has been measured lately, for deviations that count correlation and what is
+    /// unknown away from the data (`Extrapolation`). These bound 95 % of the errors; what they add to the
+    /// noise is about four times the mean square. Chosen on the UR5 recordings No5 and No6, where 0.15 to
+    /// 0.35 do as well, and on the servo's 00, 02 and 03, where it makes little difference.
+    static constexpr Scalar calibrated_variance_factor = Scalar(0.25);
 
     /// `memory`: samples, ≥ 1; a smaller one counts as 1. `noise_std`: deviation of each member's noise for
     /// each output, member by member, > 0, in the outputs' units; the errors to expect at the start. nullptr:
-    /// not known; members count alike until they have been seen to predict.
+    /// not known; members count alike until they have been seen to predict. `unjudged_factor`: times that the
+    /// variance of the members' parameters counts until errors have been measured, and some memories after
+    /// the last; ≥ 0.
     constexpr ForecastCombination(Extent<members> member_count, Extent<m> output_count, Scalar memory,
-                                  const Scalar* noise_std = nullptr) noexcept
+                                  const Scalar* noise_std = nullptr,
+                                  Scalar unjudged_factor = variance_factor) noexcept
         : members_(member_count), outputs_(output_count), memory_(memory > 1 ? memory : Scalar(1)),
+          unjudged_factor_(unjudged_factor > 0 ? unjudged_factor : Scalar(0)),
           noise_square_(Table::zeros(extent<size>(member_count * output_count))), mean_square_(noise_square_),
           weights_(noise_square_) {
         for (int i = 0; i < count() && noise_std != nullptr; ++i) {
@@ -61,7 +71,7 @@ class ForecastCombination {
     /// Back to what is expected at the start.
     constexpr void restart() noexcept {
         const bool known = noise_square_[0] > 0;
-        trust_ = 1;
+        set_trust(known ? Scalar(0) : Scalar(1));
         samples_ = known ? std::min(first_samples, memory_) : Scalar(0);
         for (int i = 0; i < count(); ++i) {
             mean_square_[i] = known ? noise_square_[i] : least;
@@ -84,7 +94,7 @@ class ForecastCombination {
         for (int i = 0; i < count(); ++i) {
             const Scalar variance = square(deviations[i], largest) - noise_square_[i];
             weights[i] =
-                std::clamp(mean_squares[i] + variance_factor * std::max(variance, Scalar(0)), least, largest);
+                std::clamp(mean_squares[i] + factor_ * std::max(variance, Scalar(0)), least, largest);
         }
         for (int k = 0; k < outputs_; ++k) {
             normalise(k, weights);
@@ -112,7 +122,7 @@ class ForecastCombination {
     /// for it with weights of a while ago; may be `predictions`. Then weighs by the errors alone.
     constexpr void learn(const Scalar* predictions, const Scalar* ahead, const Scalar* measured) noexcept {
         copy_mean_squares(mean_square_.data());
-        trust_ = 1;
+        set_trust(1);
         const bool scaled = samples_ >= memory_ || noise_square_[0] > 0; // it is known what is absurd
         samples_ = samples_ < memory_ ? samples_ + 1 : memory_;
         for (int k = 0; k < outputs_; ++k) {
@@ -131,7 +141,9 @@ class ForecastCombination {
     /// A tick that learns nothing: past errors count for less, the members' noise for more, until after a
     /// memory the noise and the variances decide. The last errors before a standstill say little about a
     /// motion that follows. Without `noise_std` it does nothing.
-    constexpr void skip() noexcept { trust_ *= noise_square_[0] > 0 ? 1 - 1 / memory_ : Scalar(1); }
+    constexpr void skip() noexcept {
+        set_trust(trust_ * (noise_square_[0] > 0 ? 1 - 1 / memory_ : Scalar(1)));
+    }
 
     /// `learn` by the errors of the predictions alone.
     constexpr void learn(const Scalar* predictions, const Scalar* measured) noexcept {
@@ -168,7 +180,7 @@ class ForecastCombination {
     /// Restores a snapshot of a combination of as many members and outputs, whole or not at all.
     [[nodiscard]] SnapshotResult restore(std::span<const std::byte> buffer) noexcept {
         const SnapshotResult result = read_snapshot(*this, identity(), buffer);
-        trust_ = 1;
+        set_trust(1);
         weigh();
         return result;
     }
@@ -214,6 +226,12 @@ class ForecastCombination {
         return (static_cast<std::uint32_t>(members_) << 16U) + static_cast<std::uint32_t>(outputs_);
     }
 
+    constexpr void set_trust(Scalar trust) noexcept {
+        trust_ = trust;
+        factor_ =
+            trust < 1 ? unjudged_factor_ + trust * (variance_factor - unjudged_factor_) : variance_factor;
+    }
+
     /// By past errors alone.
     constexpr void weigh() noexcept {
         std::copy(mean_square_.begin(), mean_square_.end(), weights_.begin());
@@ -242,9 +260,11 @@ class ForecastCombination {
     [[no_unique_address]] Extent<members> members_;
     [[no_unique_address]] Extent<m> outputs_;
     Scalar memory_;
-    Scalar samples_ = 0; ///< that the means are over, at most the memory
-    Scalar trust_ = 1;   ///< in the means, in [0, 1]; the rest is the noise's
-    Table noise_square_; ///< zero: not known
+    Scalar unjudged_factor_;
+    Scalar factor_ = variance_factor; ///< times that variance beyond the noise counts now
+    Scalar samples_ = 0;              ///< that the means are over, at most the memory
+    Scalar trust_ = 1;                ///< in the means, in [0, 1]; the rest is the noise's
+    Table noise_square_;              ///< zero: not known
     Table mean_square_;
     Table weights_;
 };

@@ -9,15 +9,18 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
+#include <vector>
 
 namespace unseen_motion_test {
 
 using namespace dfdyn::tools;
 using Eigen::VectorXd;
 
-Recording recording(const std::string& name) {
+Recording recording(const std::string& name, RowRange rows = {}) {
     ReadOptions options;
     options.outputs = OutputKind::motor_current;
+    options.rows = rows;
     return read_recording(std::filesystem::path(DFDYN_TEST_DATA_DIR) / "ur5_kufieta" / name, options);
 }
 
@@ -27,8 +30,8 @@ struct Outcome {
     VectorXd coverage; ///< share within two standard deviations
 };
 
-Outcome frozen(const TrainedModel& model, const Recording& learned, const Recording& unseen) {
-    const auto estimator = make_estimator(model, false);
+Outcome frozen(std::span<const TrainedModel> models, const Recording& learned, const Recording& unseen) {
+    const auto estimator = make_estimator(models, false);
     const std::size_t outputs = unseen.output.names.size();
     VectorXd mean = VectorXd::Zero(static_cast<Eigen::Index>(outputs));
     for (std::size_t row = 0; row < learned.row_count(); ++row) {
@@ -63,6 +66,16 @@ Outcome frozen(const TrainedModel& model, const Recording& learned, const Record
     return outcome;
 }
 
+RobotPhysics physics() {
+    return {dfdyn::tests::ur5(), {"viscous_friction", "coulomb_friction", "torque_offset"}, 0.05, {}};
+}
+
+TrainedModel trained(const Recording& learned, const ModelTraining& training) {
+    return train_model(prepare_training(std::span(&learned, 1), training), OutputKind::motor_current,
+                       training, {})
+        .model;
+}
+
 // This pair had been seen when the range in Extrapolation::parameter_doubt was chosen.
 TEST_CASE("P predicts a motion that a real arm has not shown it, and its deviation holds", "[.long]") {
     const Recording learned = recording("Movement_No5_Acc_slow_no_disturbance.csv");
@@ -71,23 +84,46 @@ TEST_CASE("P predicts a motion that a real arm has not shown it, and its deviati
     training.options.model = ModelClass::P;
     training.options.likelihood_rows = 500;
     training.options.starts = 2;
-    training.physics = RobotPhysics{
-        dfdyn::tests::ur5(), {"viscous_friction", "coulomb_friction", "torque_offset"}, 0.05, {}};
-    const auto train_on_it = [&] {
-        return train_model(prepare_training(std::span(&learned, 1), training), OutputKind::motor_current,
-                           training, {})
-            .model;
-    };
-    const Outcome calibrated = frozen(train_on_it(), learned, unseen);
+    training.physics = physics();
+    const Outcome calibrated = frozen(std::vector{trained(learned, training)}, learned, unseen);
     for (Eigen::Index k = 0; k < calibrated.error.size(); ++k) {
         CAPTURE(k, calibrated.error[k], calibrated.coverage[k]);
         CHECK(calibrated.error[k] < 1.2);
         CHECK(calibrated.coverage[k] > 0.9);
     }
     training.options.shrinkage = false;
-    const Outcome paper = frozen(train_on_it(), learned, unseen);
+    const Outcome paper = frozen(std::vector{trained(learned, training)}, learned, unseen);
     CHECK(paper.error.minCoeff() > 1.5);
     CHECK(paper.coverage.maxCoeff() < 0.9);
+}
+
+// These rows are among those that chose how much variances weigh.
+TEST_CASE("frozen, a combination is at most 5 % worse than its best member on more of the motion learned",
+          "[.long]") {
+    const std::string name = "Movement_No5_Acc_slow_no_disturbance.csv";
+    const Recording learned = recording(name, {0, 2200});
+    const Recording later = recording(name, {2200});
+    std::vector<TrainedModel> models;
+    for (const ModelClass structure : {ModelClass::NP, ModelClass::P, ModelClass::SPK}) {
+        ModelTraining training;
+        training.options.model = structure;
+        training.options.likelihood_rows = 300;
+        training.options.starts = 2;
+        training.options.refinement_evaluations = 20;
+        if (structure != ModelClass::NP) {
+            training.physics = physics();
+        }
+        models.push_back(trained(learned, training));
+    }
+    const VectorXd combined = frozen(models, learned, later).error;
+    VectorXd best = VectorXd::Constant(combined.size(), std::numeric_limits<double>::infinity());
+    for (const TrainedModel& model : models) {
+        best = best.cwiseMin(frozen({&model, 1}, learned, later).error);
+    }
+    for (Eigen::Index k = 0; k < best.size(); ++k) {
+        CAPTURE(k, combined[k], best[k]);
+        CHECK(combined[k] <= 1.05 * best[k]);
+    }
 }
 
 } // namespace unseen_motion_test
