@@ -56,7 +56,7 @@ one_run() {
 on_vcan() {
     local folder=$1 nominal
     local learned=(--model "$folder/model.json" --from-prior)
-    one_run "$first_core" "$folder/nominal" "${@:2}" -- &
+    one_run "$first_core" "$folder/nominal" "${@:2}" -- --observer-bandwidth 0 &
     nominal=$!
     one_run "$last_core" "$folder/learned" "${@:2}" -- "${learned[@]}"
     wait "$nominal"

@@ -16,6 +16,7 @@
 #include "tools/model/model_file.hpp"
 #include "tools/simulation/faults/fault_kind.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <map>
@@ -91,11 +92,45 @@ void show_changes(const LoopOptions& options, const ControlLoop& loop) {
     }
 }
 
+/// What makes the torque beside the feedback and the nominal rigid body.
+struct Controller {
+    std::string name;
+    bool observer = false;
+    bool learned = false;
+};
+
+/// Whether the user left the observer in: a bandwidth of 0 takes it out.
+bool has_observer(const LoopOptions& options) {
+    const std::vector<double>& given = options.limits.observer_bandwidth;
+    return given.empty() || std::ranges::any_of(given, [](double bandwidth) { return bandwidth > 0; });
+}
+
+/// Those that a simulation compares, the complete one last.
+std::vector<Controller> controllers(const LoopOptions& options) {
+    const bool observer = has_observer(options);
+    std::vector<Controller> all{{"nominal", false, false}};
+    if (observer) {
+        all.push_back({"observer", true, false});
+    }
+    if (!options.model.empty()) {
+        if (observer) {
+            all.push_back({"learned_alone", false, true});
+        }
+        all.push_back({"learned", observer, true});
+    }
+    return all;
+}
+
 /// Nothing where the loop stopped by itself.
-std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOptions& options, bool learned) {
-    ClosedLoop loop(parts.robot, parts.scenario, shown(options.scenario), learned ? &*parts.model : nullptr,
-                    parts.bus ? &*parts.bus : nullptr, options.limits);
-    const std::string name = learned ? "learned" : "nominal";
+std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOptions& options,
+                                        const Controller& controller) {
+    LoopLimits limits = options.limits;
+    if (!controller.observer) {
+        limits.observer_bandwidth = {0};
+    }
+    ClosedLoop loop(parts.robot, parts.scenario, shown(options.scenario),
+                    controller.learned ? &*parts.model : nullptr, parts.bus ? &*parts.bus : nullptr, limits);
+    const std::string& name = controller.name;
     LoopRecording recording = make_recording(parts, options);
     Tracking tracking;
     LoopPeaks peaks;
@@ -121,11 +156,8 @@ int simulate(const LoopOptions& options) {
     const LoopParts parts = read_parts(options);
     std::vector<TrackingRun> runs;
     bool stopped = false;
-    for (const bool learned : {false, true}) {
-        if (learned && !parts.model) {
-            break;
-        }
-        const std::optional<TrackingRun> run = simulate_run(parts, options, learned);
+    for (const Controller& controller : controllers(options)) {
+        const std::optional<TrackingRun> run = simulate_run(parts, options, controller);
         stopped = stopped || !run;
         if (run) {
             runs.push_back(*run);
@@ -152,7 +184,7 @@ int run_on_bus(const LoopOptions& options) {
     print_port(std::cout, port.counters());
     print_pace(std::cout, pace);
     show_changes(options, *loop);
-    const std::string name = parts.model ? "learned" : "nominal";
+    const std::string name = controllers(options).back().name;
     if (!options.folder.empty()) {
         log.recording.write(options.folder / (name + ".csv"));
     }
@@ -215,6 +247,14 @@ void add_loop_command(CLI::App& app, Command& chosen) {
         ->delimiter(',')
         ->check(CLI::PositiveNumber)
         ->type_name("V");
+    command
+        ->add_option(
+            "--observer-bandwidth", options->limits.observer_bandwidth,
+            "Of the disturbance observer, rad/s; one value, or one per joint; 0: no observer. None: what "
+            "leaves a phase margin of 30 degrees, at most 60")
+        ->delimiter(',')
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("B");
     command
         ->add_option("--stop", options->limits.mode,
                      "After a stop: hold the arm until told to end, or go limp 0.2 s after the brakes were "

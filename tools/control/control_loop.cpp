@@ -7,20 +7,34 @@
 
 namespace dfdyn::tools {
 
+namespace {
+
+DisturbanceObserver<double, dynamic> make_observer(const LoopConfig& config) {
+    const auto joints = static_cast<int>(config.torque_limit.size());
+    DisturbanceObserver<double, dynamic>::Settings settings{config.period_s,
+                                                            Storage<double, dynamic>::zeros({joints}),
+                                                            Storage<double, dynamic>::zeros({joints})};
+    for (int k = 0; k < joints && config.bandwidth.size() > 0; ++k) {
+        settings.bandwidth[k] = config.bandwidth[k];
+        settings.limit[k] = ControlLoop::observer_share * config.torque_limit[k];
+    }
+    return {{joints}, settings};
+}
+
+} // namespace
+
 ControlLoop::ControlLoop(LoopConfig config, FeedForward feed_forward, std::unique_ptr<Task> task)
     : config_(std::move(config)), feed_forward_(std::move(feed_forward)),
       feedback_(config_.gains, config_.filter, config_.period_s,
                 {config_.safe_stop.speed_limit, config_.safe_stop.acceleration}),
       clock_(std::llround(config_.period_s * 1e9)),
       watch_(config_.safe_stop, config_.period_s, config_.filter.noise_bound), safe_stop_(config_.safe_stop),
-      task_(std::move(task)), zero_(JointVector::Zero(config_.torque_limit.size())), error_(zero_),
-      command_(zero_), feedback_torque_(zero_), missing_(static_cast<std::size_t>(zero_.size())),
-      blind_(missing_.size()) {
-    references_.resize(
-        static_cast<std::size_t>(config_.knot_ticks + 1 + config_.delay_ticks + SampleClock::max_age));
-    for (int i = 0; i <= config_.knot_ticks; ++i) {
-        references_[static_cast<std::size_t>(i)] = task_->next();
-    }
+      task_(std::move(task)), observer_(make_observer(config_)),
+      zero_(JointVector::Zero(config_.torque_limit.size())), error_(zero_), command_(zero_), excess_(zero_),
+      feedback_torque_(zero_), missing_(static_cast<std::size_t>(zero_.size())), blind_(missing_.size()) {
+    references_.resize(static_cast<std::size_t>(1 + config_.delay_ticks + SampleClock::max_age));
+    references_.front() = task_->next();
+    commands_.resize(static_cast<std::size_t>(config_.delay_ticks) + 1);
 }
 
 const Reference& ControlLoop::measured_reference(int ago) const noexcept {
@@ -34,8 +48,7 @@ const JointVector& ControlLoop::tick(const LoopInput& input) {
     position_tick_ = input.position != nullptr ? counters_.ticks : position_tick_;
     if (state() == LoopState::running) { // the reference goes on with the time
         ++tick_;
-        references_[(tick_ + static_cast<std::size_t>(config_.knot_ticks)) % references_.size()] =
-            task_->next();
+        references_[tick_ % references_.size()] = task_->next();
     }
     sense(input);
     if (feedback_.position().size() > 0) {
@@ -58,19 +71,15 @@ void ControlLoop::sense(const LoopInput& input) {
     clock_.advance();
     feedback_.advance();
     exact_ = false;
-    torque_ = nullptr;
     if (input.position != nullptr) {
         const std::optional<int> place = clock_.place(input.time_ns);
         if (place && *place > 0) {
-            early_ = {counters_.ticks + static_cast<std::uint64_t>(*place), *input.position,
-                      input.torque != nullptr ? *input.torque : zero_, input.torque != nullptr};
+            early_ = {counters_.ticks + static_cast<std::uint64_t>(*place), *input.position};
         } else if (place) {
             take(-*place, *input.position, input.missing);
-            torque_ = exact_ ? input.torque : nullptr;
         }
     } else if (early_ && early_->tick == counters_.ticks) {
         take(0, early_->position, nullptr);
-        torque_ = early_->has_torque ? &early_->torque : nullptr;
     }
     if (state() == LoopState::running && !feedback_.complete()) {
         ++counters_.coasted;
@@ -93,35 +102,40 @@ void ControlLoop::take(int ticks_ago, const JointVector& position, const std::ve
 }
 
 void ControlLoop::follow() {
-    const auto period_ns = static_cast<double>(config_.period_s * 1e9);
-    const auto knot_ticks = static_cast<std::size_t>(config_.knot_ticks);
-    const std::size_t since_knot = tick_ % knot_ticks;
     if (!moved()) {
         start_ns_ = clock_.expected_ns();
         feed_forward_.begin(start_ns_, reference());
+        observer_.restart();
     }
-    const auto time_ns = [&](std::size_t tick) {
-        return start_ns_ + std::llround(static_cast<double>(tick) * period_ns);
-    };
     ++counters_.running;
-    if (since_knot == 0) {
-        if (exact_) {
-            feed_forward_.measured(time_ns(tick_), feedback_.position(), torque_);
-        }
-        feed_forward_.advance(time_ns(tick_ + knot_ticks),
-                              references_[(tick_ + knot_ticks) % references_.size()]);
-    } else {
-        feed_forward_.go_on();
-    }
-    const double share = static_cast<double>(since_knot) / static_cast<double>(knot_ticks);
-    const JointVector forward = feed_forward_.torque(share);
-    command_ = forward + feedback_torque();
+    const JointVector forward = feed_forward_.update(reference());
+    const JointVector wanted = forward + feedback_torque();
+    command_ = wanted;
     limit();
+    excess_ = wanted - command_;
     feedback_torque_ = command_ - forward;
+    feed_forward_.commanded(command_);
+    const auto period_ns = static_cast<double>(config_.period_s * 1e9);
+    feed_forward_.measured(start_ns_ + std::llround(static_cast<double>(tick_) * period_ns),
+                           exact_ ? &feedback_.position() : nullptr, command_then());
+    commands_[tick_ % commands_.size()] = command_;
+}
+
+const JointVector* ControlLoop::command_then() const noexcept {
+    const std::size_t ago = static_cast<std::size_t>(config_.delay_ticks) + 1; // held until the reading
+    return tick_ >= ago ? &commands_[(tick_ - ago) % commands_.size()] : nullptr;
+}
+
+JointVector ControlLoop::disturbance() {
+    if (feedback_.complete()) {
+        const JointVector torque = feedback_.torque(), rate = feedback_.error_rate();
+        observer_.update(torque.data(), feed_forward_.inertia().data(), rate.data(), excess_.data());
+    }
+    return Eigen::Map<const Eigen::VectorXd>(observer_.estimate().data(), zero_.size());
 }
 
 JointVector ControlLoop::feedback_torque() {
-    JointVector torque = feedback_.torque();
+    JointVector torque = feedback_.torque() + disturbance();
     if (moved() && !feedback_.regular()) {
         recovery_ = recovery_ticks;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/control/disturbance_observer.hpp"
 #include "tools/control/feed_forward.hpp"
 #include "tools/control/joint_watch.hpp"
 #include "tools/control/position_feedback.hpp"
@@ -21,6 +22,7 @@ struct LoopConfig {
     FeedbackGains gains;
     DerivativeModel filter;   ///< of the velocity
     JointVector torque_limit; ///< N·m, of every command
+    JointVector bandwidth;    ///< of the disturbance observer, rad/s, per joint; 0: none
     SafeStopConfig safe_stop;
 };
 
@@ -50,10 +52,13 @@ struct LoopCounters {
 /// PositionFeedback; bounded.
 ///
 /// It begins when the arm has positions, and stands where the reference begins. The feed-forward gets times
-/// of the loop's own grid. After a tick that was not regular (see PositionFeedback) the feedback's torque
-/// changes by at most `feedback_step` of the torque limit per tick, until `recovery_ticks` regular ones in a
-/// row did not need that: the correction that comes with the first reading after a gap is blended in. The
-/// limit acts on a few ticks and leaves the loop's gain and phase as they are while ticks are regular.
+/// of the loop's own grid, and learns from the commands: a torque sensor that lies costs no tracking. What
+/// feed-forward leaves to the feedback the disturbance observer takes over, at most `observer_share` of the
+/// torque limit; while positions are missing it keeps what it has found. After a tick that was not regular
+/// (see PositionFeedback) the feedback's torque changes by at most `feedback_step` of the torque limit per
+/// tick, until `recovery_ticks` regular ones in a row did not need that: the correction that comes with the
+/// first reading after a gap is blended in. The limit acts on a few ticks and leaves the loop's gain and
+/// phase as they are while ticks are regular.
 ///
 /// When it stops, every joint is given a reference that brakes from where it is, and how fast, to rest within
 /// `stop_time_s`. The command goes over, by at most a torque limit per `stop_time_s`, to
@@ -68,6 +73,7 @@ struct LoopCounters {
 class ControlLoop {
   public:
     static constexpr double feedback_step = 0.05;
+    static constexpr double observer_share = 0.3;
     static constexpr int recovery_ticks = 10;
     static constexpr double stop_time_s = 0.1;
     static constexpr int damping_ticks = 5;
@@ -100,17 +106,21 @@ class ControlLoop {
     const FeedForward& feed_forward() const noexcept { return feed_forward_; }
 
   private:
+    using Observer = DisturbanceObserver<double, dynamic>;
+
     /// A sample of a tick to come.
     struct EarlySample {
         std::uint64_t tick;
-        JointVector position, torque;
-        bool has_torque;
+        JointVector position;
     };
 
     void sense(const LoopInput& input);
     void take(int ticks_ago, const JointVector& position, const std::vector<bool>* missing);
     void follow();
     JointVector feedback_torque();
+    JointVector disturbance();
+    /// The command that was in effect at the instant of this tick's measurement; null before the first.
+    const JointVector* command_then() const noexcept;
     void hold();
     JointVector holding_torque();
     void begin_braking(Eigen::Index joint);
@@ -129,18 +139,20 @@ class ControlLoop {
     JointWatch watch_;
     SafeStop safe_stop_;
     std::unique_ptr<Task> task_;
-    std::vector<Reference> references_; ///< ring: from those of old measurements to that of the next knot
+    std::vector<Reference> references_; ///< ring: from those of old measurements to that of this tick
+    std::vector<JointVector> commands_; ///< ring, likewise
     std::size_t tick_ = 0;              ///< of the motion
     std::int64_t start_ns_ = 0;         ///< measurement of its first tick, on the loop's grid
+    Observer observer_;
     JointVector zero_, error_, command_;
+    JointVector excess_;          ///< what the limits took off the last command
     JointVector feedback_torque_; ///< part of the command that is not feed-forward
     int recovery_ = 0;            ///< regular ticks until the feedback is no longer limited
     std::optional<EarlySample> early_;
-    std::vector<bool> missing_;           ///< joints, at this tick
-    const JointVector* torque_ = nullptr; ///< measured at the instant expected; this tick
-    bool exact_ = false;                  ///< positions of all joints were, too
-    Reference braking_;                   ///< of joints that brake, or hold; empty before
-    std::vector<bool> blind_;             ///< joints that brake without readings
+    std::vector<bool> missing_; ///< joints, at this tick
+    bool exact_ = false;        ///< positions of all joints were, too
+    Reference braking_;         ///< of joints that brake, or hold; empty before
+    std::vector<bool> blind_;   ///< joints that brake without readings
     std::optional<std::uint64_t> stopped_tick_, brake_tick_;
     std::uint64_t position_tick_ = 0; ///< of the last sample
     bool told_ = false;               ///< to stop

@@ -9,16 +9,36 @@ namespace dfdyn::tools {
 
 namespace {
 
-Extent<dynamic> of(int size) { return Extent<dynamic>{size}; }
+using Torques = Storage<double, dynamic>;
+
+Torques torques(const JointVector& values) {
+    Torques result = Torques::zeros({static_cast<int>(values.size())});
+    std::ranges::copy(values, result.begin());
+    return result;
+}
+
+JointVector joint_vector(const Torques& values) {
+    return Eigen::Map<const Eigen::VectorXd>(values.data(), values.size());
+}
 
 } // namespace
 
 FeedForward::FeedForward(const Robot& nominal, const JointVector& rotor_inertia,
-                         std::optional<LearnedFeedForward> learned, double knot_period_s)
-    : dynamics_(nominal, rotor_inertia), learned_(std::move(learned)),
-      memory_(std::max(1, static_cast<int>(std::lround(1 / knot_period_s)))),
-      combination_(of(2), of(dynamics_.joint_count()), memory_),
-      forecasts_(2 * static_cast<std::size_t>(dynamics_.joint_count())) {}
+                         std::optional<LearnedFeedForward> learned, double period_s, int knot_ticks,
+                         const JointVector& limit)
+    : dynamics_(nominal, rotor_inertia), knot_ticks_(knot_ticks),
+      inertia_(JointVector::Zero(dynamics_.joint_count())) {
+    constexpr double cap_share = 0.5, full_scale_s = 0.05;
+    if (learned) {
+        learned_ = std::make_unique<LearnedFeedForward>(std::move(*learned));
+        core_.emplace(*learned_, Core::Settings{.period_ns = std::llround(period_s * 1e9),
+                                                .ticks_per_sample = knot_ticks,
+                                                .limit = torques(limit),
+                                                .cap = torques(cap_share * limit),
+                                                .rate = torques(limit / full_scale_s)});
+        reference_ = {torques(inertia_), torques(inertia_), torques(inertia_)};
+    }
+}
 
 JointVector FeedForward::nominal_torque(const Reference& reference) {
     dynamics_.configure(reference.position, configuration_);
@@ -31,55 +51,46 @@ JointVector FeedForward::gravity(const JointVector& position) {
 }
 
 void FeedForward::begin(std::int64_t time_ns, const Reference& start) {
-    combination_.restart();
-    judged_ = 0;
-    known_ = false;
-    if (learned_) {
-        learned_->begin(time_ns, start.position);
-    }
-    nominal_now_ = learned_now_ = from_ = to_ = nominal_torque(start);
-}
-
-void FeedForward::judge(const JointVector& torque) {
-    std::ranges::copy(nominal_now_, forecasts_.begin());
-    std::ranges::copy(learned_now_, forecasts_.begin() + nominal_now_.size());
-    combination_.learn(forecasts_.data(), torque.data());
-    ++judged_;
-}
-
-void FeedForward::measured(std::int64_t time_ns, const JointVector& position, const JointVector* torque) {
-    if (!learned_) {
-        return;
-    }
-    if (known_ && torque != nullptr) {
-        judge(*torque);
-    }
-    learned_->learn(time_ns, position, torque);
-}
-
-void FeedForward::go_on() {
-    if (learned_) {
-        learned_->go_on();
+    tick_ = 0;
+    if (core_) {
+        core_->begin(time_ns, start.position.data());
     }
 }
 
-void FeedForward::advance(std::int64_t next_ns, const Reference& next) {
-    from_ = to_;
-    nominal_now_ = to_ = nominal_torque(next);
-    known_ = learned_ && learned_->predict(next_ns, next.position, learned_now_);
-    if (known_ && trusted()) {
-        const JointVector share = learned_share();
-        to_ += share.cwiseProduct(learned_now_ - nominal_now_);
+JointVector FeedForward::update(const Reference& reference) {
+    const JointVector nominal = nominal_torque(reference);
+    if (tick_++ % knot_ticks_ == 0) {
+        inertia_ = dynamics_.mass_matrix(configuration_).diagonal();
+    }
+    if (!core_) {
+        return nominal;
+    }
+    std::ranges::copy(reference.position, reference_.position.begin());
+    std::ranges::copy(reference.velocity, reference_.velocity.begin());
+    std::ranges::copy(reference.acceleration, reference_.acceleration.begin());
+    return joint_vector(core_->update(reference_, nominal.data()));
+}
+
+void FeedForward::commanded(const JointVector& torque) {
+    if (core_) {
+        core_->commanded(torque.data());
+    }
+}
+
+void FeedForward::measured(std::int64_t time_ns, const JointVector* position, const JointVector* torque) {
+    if (core_) {
+        core_->measured(time_ns, position != nullptr ? position->data() : nullptr,
+                        torque != nullptr ? torque->data() : nullptr);
     }
 }
 
 JointVector FeedForward::holding(const Reference& reference) {
     const JointVector torque = nominal_torque(reference);
-    if (!trusted()) {
+    if (!core_) {
         return torque;
     }
     if (held_learned_.size() == 0) {
-        held_learned_ = to_ - nominal_now_;
+        held_learned_ = joint_vector(core_->learned_part());
     }
     JointVector learned;
     if (learned_->rest(reference.position, learned)) {
@@ -89,11 +100,7 @@ JointVector FeedForward::holding(const Reference& reference) {
 }
 
 JointVector FeedForward::learned_share() const {
-    if (!trusted()) {
-        return JointVector::Zero(dynamics_.joint_count());
-    }
-    return Eigen::Map<const Eigen::VectorXd>(combination_.weights() + dynamics_.joint_count(),
-                                             dynamics_.joint_count());
+    return core_ ? joint_vector(core_->share()) : JointVector::Zero(dynamics_.joint_count());
 }
 
 } // namespace dfdyn::tools

@@ -26,10 +26,6 @@ void check_model(const TrainedModel& model, int joints, const std::string& sourc
     }
 }
 
-std::span<const double> values(const JointVector& vector) {
-    return {vector.data(), static_cast<std::size_t>(vector.size())};
-}
-
 /// What suffices to learn a sample in `ticks` slices, in each of which as much may be left over as a slice
 /// cannot use.
 Budget share_of(const Cost& cost, int ticks) {
@@ -56,18 +52,18 @@ LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prio
     prediction_.resize(static_cast<std::size_t>(joints));
 }
 
-void LearnedFeedForward::begin(std::int64_t time_ns, const JointVector& position) {
+void LearnedFeedForward::begin(std::int64_t time_ns, const double* position) {
     begin_ns_ = time_ns;
     learner_->begin_recording();
     follower_->begin_recording();
     for (int lag = lags_; lag >= 0; --lag) {
-        follower_->tick({time_ns - lag * sample_period_ns_, values(position), {}, {}, {}});
+        follower_->tick({time_ns - lag * sample_period_ns_, of_joints(position), {}, {}, {}});
     }
 }
 
-void LearnedFeedForward::learn(std::int64_t time_ns, const JointVector& position, const JointVector* torque) {
-    const std::span<const double> output = torque != nullptr ? values(*torque) : std::span<const double>();
-    const Status status = learner_->tick({time_ns, values(position), {}, {}, output}, share_).status;
+void LearnedFeedForward::learn(std::int64_t time_ns, const double* position, const double* torque) {
+    const std::span<const double> output = torque != nullptr ? of_joints(torque) : std::span<const double>();
+    const Status status = learner_->tick({time_ns, of_joints(position), {}, {}, output}, share_).status;
     counters_.samples += torque != nullptr ? 1 : 0;
     if (status.learned() || status.learning == Reason::learning_in_progress) {
         ++counters_.learned;
@@ -106,15 +102,14 @@ std::int64_t LearnedFeedForward::tick_cost() const {
     return 2 * (cost.predict + cost.variance) + share_.operations;
 }
 
-bool LearnedFeedForward::predict(std::int64_t time_ns, const JointVector& reference, JointVector& torque) {
-    const Tick tick = follower_->tick({time_ns, values(reference), {}, {}, {}});
+bool LearnedFeedForward::predict(std::int64_t time_ns, const double* reference, double* torque) {
+    const Tick tick = follower_->tick({time_ns, of_joints(reference), {}, {}, {}});
     if (!tick.status.estimated()) {
         ++counters_.reference_unknown;
+        std::fill_n(torque, prediction_.size(), 0.0);
         return false;
     }
-    const bool within_bounds = follower_->predict_with(weights_, prediction_);
-    torque = Eigen::Map<const Eigen::VectorXf>(prediction_.data(), reference.size()).cast<double>();
-    return within_bounds && torque.allFinite();
+    return take_prediction(torque);
 }
 
 bool LearnedFeedForward::rest(const JointVector& position, JointVector& torque) {
@@ -122,14 +117,21 @@ bool LearnedFeedForward::rest(const JointVector& position, JointVector& torque) 
         follower_->begin_recording();
         rest_position_ = position;
     }
-    const Tick tick = follower_->tick({rest_lag_ * sample_period_ns_, values(rest_position_), {}, {}, {}});
+    const Tick tick =
+        follower_->tick({rest_lag_ * sample_period_ns_, of_joints(rest_position_.data()), {}, {}, {}});
     rest_lag_ = rest_lag_ < lags_ ? rest_lag_ + 1 : 0;
     if (rest_lag_ > 0 || !tick.status.estimated()) {
         return false;
     }
+    torque.resize(position.size());
+    return take_prediction(torque.data());
+}
+
+bool LearnedFeedForward::take_prediction(double* torque) {
     const bool within_bounds = follower_->predict_with(weights_, prediction_);
-    torque = Eigen::Map<const Eigen::VectorXf>(prediction_.data(), position.size()).cast<double>();
-    return within_bounds && torque.allFinite();
+    std::ranges::copy(prediction_, torque);
+    return within_bounds &&
+           std::ranges::all_of(prediction_, [](float value) { return std::isfinite(value); });
 }
 
 } // namespace dfdyn::tools

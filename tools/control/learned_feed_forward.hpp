@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/host/dynamic_storage.hpp"
 #include "tools/monitor/monitored_estimator.hpp"
 #include "tools/simulation/joint_vector.hpp"
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,9 +27,13 @@ struct LearningCounters {
 /// whose weights are always the first one's. So the command follows from what the arm is to do, free of the
 /// encoders' noise and lag, and what is learned from what it did.
 ///
-/// Learning a sample is spread over the control ticks until the next one: each does at most its share.
+/// Learning a sample is spread over the control ticks until the next one: each does at most its share. The
+/// host's counterpart of dfdyn::LearnedTorque (a dfdyn::TorqueLearner), for models of any size.
 class LearnedFeedForward {
   public:
+    using Scalar = double;
+    static constexpr int outputs = dynamic;
+
     /// `from_prior`: without the start that training computed. `ticks`: of control per sample. Throws
     /// InputError, naming `source`, for a model that is not of `joints` joints and their torques, or needs
     /// measured derivatives.
@@ -35,18 +41,21 @@ class LearnedFeedForward {
     LearnedFeedForward(const TrainedModel& model, bool from_prior, int joints, int ticks,
                        const std::string& source, const MonitorSetup* monitor = nullptr);
 
-    /// The arm rests at `position`, and has long since; `time_ns`: of now. Restarts both windows.
-    void begin(std::int64_t time_ns, const JointVector& position);
+    Extent<dynamic> output_count() const noexcept { return {static_cast<int>(prediction_.size())}; }
+
+    /// The arm rests at `position` (a value per joint, rad), and has long since; `time_ns`: of now. Restarts
+    /// both windows.
+    void begin(std::int64_t time_ns, const double* position);
 
     /// Begins to learn what was measured at one instant; `torque`: null where only the position was.
-    void learn(std::int64_t time_ns, const JointVector& position, const JointVector* torque);
+    void learn(std::int64_t time_ns, const double* position, const double* torque);
 
     /// Goes on learning it; once in each control tick.
     void go_on();
 
     /// What torque the reference takes at `time_ns`, a sample period after the last: true and N·m, or false
     /// where the model does not know.
-    bool predict(std::int64_t time_ns, const JointVector& reference, JointVector& torque);
+    bool predict(std::int64_t time_ns, const double* reference, double* torque);
 
     /// What torque holds the arm at rest at `position`, once the motion has ended: each call takes one of the
     /// window's samples; the call that completes it writes `torque`, N·m, of the position at the first of
@@ -61,6 +70,9 @@ class LearnedFeedForward {
 
   private:
     void take_over();
+    /// Of the follower's columns; false where it is beyond the model's bounds.
+    bool take_prediction(double* torque);
+    std::span<const double> of_joints(const double* values) const { return {values, prediction_.size()}; }
 
     std::int64_t sample_period_ns_;
     int lags_;

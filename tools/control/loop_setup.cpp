@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/control/loop_setup.hpp"
 
+#include "dfdyn/control/loop_margin.hpp"
 #include "tools/can/bus_wire.hpp"
 #include "tools/can/device_frames.hpp"
 #include "tools/can/torque_frames.hpp"
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numbers>
 
 namespace dfdyn::tools {
 
@@ -114,6 +116,29 @@ SafeStopConfig default_limits(const Robot& robot, const Scenario& scenario, cons
     return config;
 }
 
+JointVector default_bandwidth(const Robot& robot, const Scenario& scenario, const JointVector& start,
+                              int delay_ticks) {
+    constexpr double margin_rad = 30 * std::numbers::pi / 180, most = 60, window_share = 0.25;
+    const ControllerModel& controller = scenario.controller;
+    const double period_s = 1 / controller.rate_hz;
+    const ArmDynamics dynamics(robot, scenario.actuators.rotor_inertia);
+    ArmDynamics::Configuration configuration;
+    dynamics.configure(start, configuration);
+    JointVector bandwidth = dynamics.mass_matrix(configuration).diagonal();
+    for (Eigen::Index i = 0; i < bandwidth.size(); ++i) {
+        const double inertia = bandwidth[i];
+        bandwidth[i] = most;
+        for (const double times : {1.0, 2.0}) {
+            const JointLoop<double> loop{times * inertia, controller.position_gain[i],
+                                         controller.velocity_gain[i], (delay_ticks + 0.5) * period_s,
+                                         window_share * scenario.derivatives.velocity_window * period_s / 2};
+            bandwidth[i] =
+                std::min(bandwidth[i], LoopMargin(loop, inertia).largest_bandwidth(margin_rad, most));
+        }
+    }
+    return bandwidth;
+}
+
 std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenario& scenario,
                                                const std::string& source, const LoopModel* learned,
                                                int delay_ticks, const LoopLimits& limits) {
@@ -129,7 +154,11 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
     config.filter = scenario.derivatives;
     config.torque_limit = torque_limit(robot, scenario, source);
     const auto make = [&] { return make_task(scenario.task, robot, config.period_s, scenario.seed); };
-    config.safe_stop = default_limits(robot, scenario, config.torque_limit, make()->next().position);
+    const JointVector start = make()->next().position;
+    config.safe_stop = default_limits(robot, scenario, config.torque_limit, start);
+    config.bandwidth = limits.observer_bandwidth.empty()
+                           ? default_bandwidth(robot, scenario, start, delay_ticks)
+                           : per_joint(limits.observer_bandwidth, robot, "--observer-bandwidth");
     config.safe_stop.mode = limits.mode;
     if (!limits.following_error.empty()) {
         config.safe_stop.following_error = per_joint(limits.following_error, robot, "--following-error");
@@ -145,8 +174,8 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
         model.emplace(learned->model, learned->from_prior, joints, config.knot_ticks, learned->source,
                       &monitor);
     }
-    FeedForward feed_forward(robot, scenario.actuators.rotor_inertia, std::move(model),
-                             config.knot_ticks * config.period_s);
+    FeedForward feed_forward(robot, scenario.actuators.rotor_inertia, std::move(model), config.period_s,
+                             config.knot_ticks, config.torque_limit);
     std::unique_ptr<Task> task = make();
     return std::make_unique<ControlLoop>(std::move(config), std::move(feed_forward), std::move(task));
 }

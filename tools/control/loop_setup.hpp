@@ -24,6 +24,7 @@ struct LoopLimits {
     std::vector<double> following_error; ///< rad, m
     std::vector<double> speed;           ///< rad/s, m/s
     StopMode mode = StopMode::hold;
+    std::vector<double> observer_bandwidth; ///< rad/s; 0: no observer
 };
 
 /// Limits of a loop with these gains and torque limits:
@@ -34,6 +35,13 @@ struct LoopLimits {
 /// - pressing at the torque limit: 0.25 s. Other patience: SafeStopConfig.
 SafeStopConfig default_limits(const Robot& robot, const Scenario& scenario, const JointVector& torque_limit,
                               const JointVector& start);
+
+/// Bandwidth of the disturbance observer, rad/s per joint: the largest up to 60 that leaves a phase margin of
+/// 30 degrees (dfdyn::LoopMargin) at the joint's own inertia where the motion starts and at twice that, with
+/// `delay_ticks` of the bus, half a tick of holding, and a velocity as late as a window of a quarter of its
+/// greatest length makes it (slow motion has longer ones: then the loop's noise is below the window's bound).
+JointVector default_bandwidth(const Robot& robot, const Scenario& scenario, const JointVector& start,
+                              int delay_ticks);
 
 /// The loop that a scenario describes: task, gains and rate of its `controller` (of kind feed_forward),
 /// filter of its `derivatives`, torque limit of its `actuators` or else of the robot. The nominal rigid body

@@ -18,6 +18,7 @@ PositionFeedback::PositionFeedback(FeedbackGains gains, const DerivativeModel& f
     const auto count = static_cast<std::size_t>(joints);
     reading_tick_.resize(count * static_cast<std::size_t>(window_));
     reading_.resize(reading_tick_.size());
+    reference_.resize(reading_tick_.size());
     time_.resize(static_cast<std::size_t>(window_));
     held_.resize(count);
     newest_tick_.assign(count, std::numeric_limits<std::int32_t>::min());
@@ -26,14 +27,18 @@ PositionFeedback::PositionFeedback(FeedbackGains gains, const DerivativeModel& f
     newest_ = velocity_ = reading_error_ = reading_rate_ = JointVector::Zero(joints);
 }
 
-void PositionFeedback::push(Eigen::Index joint, std::int64_t tick, double position) {
+void PositionFeedback::push(Eigen::Index joint, std::int64_t tick, double position, double reference) {
     const auto j = static_cast<std::size_t>(joint);
     const auto first = static_cast<std::ptrdiff_t>(j) * window_;
-    std::copy_backward(reading_.begin() + first, reading_.begin() + first + window_ - 1,
-                       reading_.begin() + first + window_);
-    std::copy_backward(reading_tick_.begin() + first, reading_tick_.begin() + first + window_ - 1,
-                       reading_tick_.begin() + first + window_);
+    const auto age = [&](auto& values) {
+        std::copy_backward(values.begin() + first, values.begin() + first + window_ - 1,
+                           values.begin() + first + window_);
+    };
+    age(reading_);
+    age(reference_);
+    age(reading_tick_);
     reading_[static_cast<std::size_t>(first)] = position;
+    reference_[static_cast<std::size_t>(first)] = reference;
     reading_tick_[static_cast<std::size_t>(first)] = tick;
     held_[j] = std::min(held_[j] + 1, window_);
     newest_tick_[j] = tick;
@@ -44,9 +49,10 @@ void PositionFeedback::push(Eigen::Index joint, std::int64_t tick, double positi
         time_[static_cast<std::size_t>(i)] = -period_s_ * static_cast<double>(ago);
     }
     if (count > 1) {
-        velocity_[joint] =
-            AdaptiveWindow<double>(time_.data(), reading_.data() + first, 1, count, filter_.noise_bound)
-                .velocity();
+        const AdaptiveWindow<double> window(time_.data(), reading_.data() + first, 1, count,
+                                            filter_.noise_bound);
+        velocity_[joint] = window.velocity();
+        reading_rate_[joint] = window.slope_of(reference_.data() + first) - velocity_[joint];
     }
 }
 
@@ -73,10 +79,9 @@ void PositionFeedback::observe(int ticks_ago, const JointVector& position, const
         const bool believed = plausible(joint, tick, position[joint], reference);
         regular_[j] = next && believed;
         held_[j] = believed ? held_[j] : 0; // the velocity goes on until there are two readings
-        push(joint, tick, position[joint]);
+        push(joint, tick, position[joint], reference.position[joint]);
         observed_tick_[j] = tick_;
         reading_error_[joint] = reference.position[joint] - position[joint];
-        reading_rate_[joint] = reference.velocity[joint] - velocity_[joint];
     }
     if (position_.size() > 0 || std::ranges::all_of(held_, [](int held) { return held > 0; })) {
         position_ = newest_;
@@ -103,6 +108,14 @@ JointVector PositionFeedback::error() const {
     JointVector result(newest_.size());
     for (Eigen::Index joint = 0; joint < result.size(); ++joint) {
         result[joint] = error_at(joint, tick_);
+    }
+    return result;
+}
+
+JointVector PositionFeedback::error_rate() const {
+    JointVector result(newest_.size());
+    for (Eigen::Index joint = 0; joint < result.size(); ++joint) {
+        result[joint] = rate_at(joint, tick_);
     }
     return result;
 }

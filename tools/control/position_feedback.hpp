@@ -23,7 +23,8 @@ struct MotionBounds {
 /// Proportional and derivative feedback of the joints' positions, tick by tick. Every reading has its own
 /// tick. The velocity is that of the same readings at their own instants, by the adaptive window
 /// (dfdyn::AdaptiveWindow: the longest line, of at most `velocity_window` readings, that misses none of them
-/// by more than `noise_bound`), so the velocity over a gap is that over the gap.
+/// by more than `noise_bound`), so the velocity over a gap is that over the gap. The reference's velocity is
+/// taken over the same window: compared with that of now, the readings' delay would act as an inertia.
 ///
 /// A joint without a reading of this tick coasts on its tracking error: the arm goes on along the reference
 /// with the error that it had, and the error's rate, bounded by the joint's speed, falls linearly to 0
@@ -53,6 +54,8 @@ class PositionFeedback {
 
     /// Reference minus position at this tick, rad: measured, or coasted on.
     JointVector error() const;
+    /// How fast that changes, rad/s.
+    JointVector error_rate() const;
 
     /// Last readings; empty before the first of all joints.
     const JointVector& position() const noexcept { return position_; }
@@ -71,7 +74,7 @@ class PositionFeedback {
     const FeedbackGains& gains() const noexcept { return gains_; }
 
   private:
-    void push(Eigen::Index joint, std::int64_t tick, double position);
+    void push(Eigen::Index joint, std::int64_t tick, double position, double reference);
     bool plausible(Eigen::Index joint, std::int64_t tick, double position,
                    const Reference& reference) const noexcept;
     /// Error and its rate at `tick`, from the last reading of a joint.
@@ -86,6 +89,7 @@ class PositionFeedback {
     int window_;
     std::vector<std::int64_t> reading_tick_;   ///< window_ per joint, newest first
     std::vector<double> reading_;              ///< likewise
+    std::vector<double> reference_;            ///< of the same instants
     std::vector<double> time_;                 ///< of one joint's readings, relative to the newest
     std::vector<int> held_;                    ///< readings, per joint
     std::vector<std::int64_t> newest_tick_;    ///< of the last reading, per joint
