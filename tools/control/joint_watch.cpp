@@ -43,7 +43,7 @@ void JointWatch::repeat(Eigen::Index joint, double reference, double speed) noex
     }
     lowest_[joint] = std::min(lowest_[joint], reference);
     highest_[joint] = std::max(highest_[joint], reference);
-    const double tolerance = std::max(config_.following_error[joint] / 8, 8 * quantum_[joint]);
+    const double tolerance = std::max(config_.following_error[joint] / 16, 8 * quantum_[joint]);
     repeated_[j] = repeated_[j] || must_have_moved(joint);
     stuck_[j] = repeated_[j] || highest_[joint] - lowest_[joint] > tolerance ? stuck_[j] + 1 : 0;
     if (stuck_[j] > config_.frozen_patience) {

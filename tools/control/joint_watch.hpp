@@ -15,9 +15,9 @@ namespace dfdyn::tools {
 /// - frozen_encoder: the same reading, to the last bit, more than `frozen_patience` times in a row after the
 ///   joint must have moved. It must have where it was too fast before to have stopped within two
 ///   quantisation steps (the smallest step seen so far) and four noise bounds of the velocity's filter, at
-///   an eighth of `acceleration`. It also must have where the reference has since covered an eighth
-///   of the following error and eight quantisation steps. Where the speed shows it, the repeated readings are
-///   not used: see `repeated`.
+///   an eighth of `acceleration`. It also must have where the reference has since covered a sixteenth of the
+///   following error and eight quantisation steps. Where the speed shows it, the repeated readings are not
+///   used: see `repeated`.
 /// O(joints) per tick; no heap after construction.
 class JointWatch {
   public:

@@ -121,6 +121,21 @@ TEST_CASE("a scenario's fault strikes a simulated loop, and strikes it alike whe
     CHECK_THAT(silence.call("loop --help").out, ContainsSubstring("late_ticks and clock_jump"));
 }
 
+TEST_CASE("limits that are given stop a loop that is beyond them, and those that make no sense are refused") {
+    const Bench bench;
+    const Outcome error = bench.loop(simulate + bus + " --following-error 0.0001");
+    CHECK(error.status == 1);
+    CHECK_THAT(error.out, ContainsSubstring("stopped (following_error)"));
+    const Outcome speed = bench.loop(simulate + bus + " --speed-limit 20,0.1 --stop limp");
+    CHECK(speed.status == 1);
+    CHECK_THAT(speed.out, ContainsSubstring("stopped (overspeed of joint 2)"));
+    CHECK(bench.loop(simulate + bus + " --following-error 0.4 --speed-limit 15 --stop hold").status == 0);
+    CHECK_THAT(bench.refusal(simulate + " --speed-limit 1,2,3"),
+               ContainsSubstring("--speed-limit: expected 1 value, or one for each of 2 joints, found 3"));
+    CHECK(bench.loop(simulate + " --following-error 0").status == 2);
+    CHECK(bench.loop(simulate + " --stop soft").status == 2);
+}
+
 TEST_CASE("an interface that is not there is said, by the loop and by the plant") {
     const Bench bench;
     CHECK_THAT(bench.refusal(" --can nosuch0" + bus), ContainsSubstring("nosuch0"));

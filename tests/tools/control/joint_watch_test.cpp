@@ -72,11 +72,11 @@ TEST_CASE("an encoder that freezes on a joint at rest is found once the referenc
     int late = 0;
     while (joint.tick(0, reference) == StopCause::none) {
         reference += 0.2 * period_s;
-        late += reference > 0.1 / 8 ? 1 : 0;
+        late += reference > 0.1 / 16 ? 1 : 0;
         REQUIRE(late <= 6);
     }
     CHECK(joint.watch.cause() == StopCause::frozen_encoder);
-    CHECK(reference > 0.1 / 8);
+    CHECK(reference > 0.1 / 16);
 }
 
 TEST_CASE("joints that stand, stop at once, creep, or show one step in many are not frozen") {
