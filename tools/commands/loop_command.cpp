@@ -33,6 +33,7 @@ struct LoopOptions {
     bool simulate = false;
     bool from_prior = false;
     double duration_s = 0;
+    double window_s = 5;
     LoopLimits limits;
 };
 
@@ -93,7 +94,7 @@ void show_changes(const LoopOptions& options, const ControlLoop& loop) {
 }
 
 /// What makes the torque beside the feedback and the nominal rigid body.
-struct Controller {
+struct Contender {
     std::string name;
     bool observer = false;
     bool learned = false;
@@ -106,9 +107,9 @@ bool has_observer(const LoopOptions& options) {
 }
 
 /// Those that a simulation compares, the complete one last.
-std::vector<Controller> controllers(const LoopOptions& options) {
+std::vector<Contender> contenders(const LoopOptions& options) {
     const bool observer = has_observer(options);
-    std::vector<Controller> all{{"nominal", false, false}};
+    std::vector<Contender> all{{"nominal", false, false}};
     if (observer) {
         all.push_back({"observer", true, false});
     }
@@ -123,16 +124,16 @@ std::vector<Controller> controllers(const LoopOptions& options) {
 
 /// Nothing where the loop stopped by itself.
 std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOptions& options,
-                                        const Controller& controller) {
+                                        const Contender& contender) {
     LoopLimits limits = options.limits;
-    if (!controller.observer) {
+    if (!contender.observer) {
         limits.observer_bandwidth = {0};
     }
     ClosedLoop loop(parts.robot, parts.scenario, shown(options.scenario),
-                    controller.learned ? &*parts.model : nullptr, parts.bus ? &*parts.bus : nullptr, limits);
-    const std::string& name = controller.name;
+                    contender.learned ? &*parts.model : nullptr, parts.bus ? &*parts.bus : nullptr, limits);
+    const std::string& name = contender.name;
     LoopRecording recording = make_recording(parts, options);
-    Tracking tracking;
+    Tracking tracking(options.window_s);
     LoopPeaks peaks;
     Progress progress("simulating " + name, static_cast<std::size_t>(options.duration_s * 1000));
     loop.run_to(options.duration_s, [&](const ClosedLoopInstant& instant) {
@@ -156,8 +157,8 @@ int simulate(const LoopOptions& options) {
     const LoopParts parts = read_parts(options);
     std::vector<TrackingRun> runs;
     bool stopped = false;
-    for (const Controller& controller : controllers(options)) {
-        const std::optional<TrackingRun> run = simulate_run(parts, options, controller);
+    for (const Contender& contender : contenders(options)) {
+        const std::optional<TrackingRun> run = simulate_run(parts, options, contender);
         stopped = stopped || !run;
         if (run) {
             runs.push_back(*run);
@@ -177,14 +178,14 @@ int run_on_bus(const LoopOptions& options) {
     const auto loop =
         make_control_loop(parts.robot, parts.scenario, shown(options.scenario),
                           parts.model ? &*parts.model : nullptr, port.delay_ticks(), options.limits);
-    LoopLog log{Tracking(), make_recording(parts, options)};
+    LoopLog log{Tracking(options.window_s), make_recording(parts, options)};
     const PaceOutcome pace =
         run_loop(*loop, port, {options.interface, period_s, options.duration_s, stop_on_signals()}, log);
     print_loop(std::cout, *loop);
     print_port(std::cout, port.counters());
     print_pace(std::cout, pace);
     show_changes(options, *loop);
-    const std::string name = controllers(options).back().name;
+    const std::string name = contenders(options).back().name;
     if (!options.folder.empty()) {
         log.recording.write(options.folder / (name + ".csv"));
     }
@@ -232,6 +233,10 @@ void add_loop_command(CLI::App& app, Command& chosen) {
     command->add_flag("--simulate", options->simulate, "The arm is simulated, in simulated time");
     command->add_option("--duration", options->duration_s, "Seconds; with --can none: until Ctrl-C")
         ->check(CLI::PositiveNumber)
+        ->type_name("S");
+    command->add_option("--window", options->window_s, "Of the tracking table, seconds")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str()
         ->type_name("S");
     command
         ->add_option(

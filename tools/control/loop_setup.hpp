@@ -24,7 +24,7 @@ struct LoopLimits {
     std::vector<double> following_error; ///< rad, m
     std::vector<double> speed;           ///< rad/s, m/s
     StopMode mode = StopMode::hold;
-    std::vector<double> observer_bandwidth; ///< rad/s; 0: no observer
+    std::vector<double> observer_bandwidth{}; ///< rad/s; 0: no observer
 };
 
 /// Limits of a loop with these gains and torque limits:

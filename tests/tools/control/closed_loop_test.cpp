@@ -18,10 +18,17 @@ namespace closed_loop_test {
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
 
+LoopLimits without_observer() {
+    LoopLimits limits;
+    limits.observer_bandwidth = {0};
+    return limits;
+}
+
 /// Tracking errors of the pendulum, tick by tick, rad.
 std::vector<double> errors(const Scenario& scenario, double duration_s, const LoopModel* model = nullptr,
-                           const BusDescription* bus = nullptr) {
-    ClosedLoop loop(test_pendulum(), scenario, "test", model, bus);
+                           const BusDescription* bus = nullptr,
+                           const LoopLimits& limits = without_observer()) {
+    ClosedLoop loop(test_pendulum(), scenario, "test", model, bus, limits);
     std::vector<double> result;
     loop.run_to(duration_s, [&](const ClosedLoopInstant& instant) { result.push_back(instant.error[0]); });
     CHECK(loop.loop().state() == LoopState::running);
@@ -62,6 +69,16 @@ TEST_CASE("a loop that learns carries a payload that nobody told it of") {
     const std::vector<double> nominal = errors(loaded_scenario(), 12);
     const std::vector<double> learned = errors(loaded_scenario(), 12, &model);
     CHECK(rms(learned, 8000) < rms(nominal, 8000) / 3);
+}
+
+TEST_CASE("an observer takes an unknown payload over within a second, learning leaves it less to do") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const LoopModel model = random_model(engine);
+    const double nominal = rms(errors(loaded_scenario(), 12), 1000);
+    const std::vector<double> observed = errors(loaded_scenario(), 12, nullptr, nullptr, {});
+    const std::vector<double> learned = errors(loaded_scenario(), 12, &model, nullptr, {});
+    CHECK(rms(observed, 1000) < nominal / 10);
+    CHECK(rms(learned, 8000) < rms(observed, 8000));
 }
 
 TEST_CASE("frames between loop and arm cost no more than their quantisation, and a period where SYNC does") {

@@ -37,7 +37,7 @@ JointVector torque(const JointVector& position) {
 void learn(LearnedFeedForward& feed_forward, int first, int count, int ticks) {
     for (int tick = first; tick < first + count; ++tick) {
         const JointVector measured = torque(position(tick));
-        feed_forward.learn(tick * period, position(tick), &measured);
+        feed_forward.learn(tick * period, position(tick).data(), measured.data());
         for (int slice = 1; slice < ticks; ++slice) {
             feed_forward.go_on();
         }
@@ -48,8 +48,8 @@ void learn(LearnedFeedForward& feed_forward, int first, int count, int ticks) {
 std::vector<JointVector> follow(LearnedFeedForward& feed_forward, int first, int count) {
     std::vector<JointVector> predictions;
     for (int tick = first; tick < first + count; ++tick) {
-        JointVector predicted;
-        if (feed_forward.predict(tick * period, position(tick), predicted)) {
+        JointVector predicted(2);
+        if (feed_forward.predict(tick * period, position(tick).data(), predicted.data())) {
             predictions.push_back(predicted);
         }
     }
@@ -68,7 +68,7 @@ std::string refusal(const TrainedModel& model) {
 TEST_CASE("what was learned of measured positions is predicted for the reference's") {
     DFDYN_SEEDED_ENGINE(engine);
     LearnedFeedForward feed_forward(model_of(engine), true, 2, 8, "model");
-    feed_forward.begin(0, position(0));
+    feed_forward.begin(0, position(0).data());
     learn(feed_forward, 1, 1500, 8);
     const std::vector<JointVector> predicted = follow(feed_forward, 1, 300);
     REQUIRE(predicted.size() == 300);
@@ -88,7 +88,7 @@ TEST_CASE("learning in the slices of eight ticks gives what learning at once doe
     std::vector<std::vector<JointVector>> predictions;
     for (const int ticks : {1, 8}) {
         LearnedFeedForward feed_forward(model, true, 2, ticks, "model");
-        feed_forward.begin(0, position(0));
+        feed_forward.begin(0, position(0).data());
         learn(feed_forward, 1, 200, ticks);
         predictions.push_back(follow(feed_forward, 1, 50));
     }
@@ -107,14 +107,14 @@ TEST_CASE("with more ticks per sample each does less") {
 TEST_CASE("from the start the model knows an arm at rest; a refused sample changes nothing and is counted") {
     DFDYN_SEEDED_ENGINE(engine);
     LearnedFeedForward feed_forward(model_of(engine), true, 2, 8, "model");
-    feed_forward.begin(0, position(0));
+    feed_forward.begin(0, position(0).data());
     CHECK(follow(feed_forward, 1, 1).size() == 1);
     learn(feed_forward, 1, 100, 8);
     const std::uint64_t learned = feed_forward.counters().learned;
     JointVector absurd = position(101);
     absurd[1] = 1e9;
     const JointVector measured = torque(position(101));
-    feed_forward.learn(101 * period, absurd, &measured);
+    feed_forward.learn(101 * period, absurd.data(), measured.data());
     CHECK(feed_forward.counters().learned == learned);
     CHECK(feed_forward.counters().faults == 1);
     CHECK(feed_forward.counters().last_fault == dfdyn::Reason::position_out_of_range);
@@ -123,12 +123,12 @@ TEST_CASE("from the start the model knows an arm at rest; a refused sample chang
 TEST_CASE("a sample without torque is not learned, and the window of positions goes on over it") {
     DFDYN_SEEDED_ENGINE(engine);
     LearnedFeedForward feed_forward(model_of(engine), true, 2, 8, "model");
-    feed_forward.begin(0, position(0));
+    feed_forward.begin(0, position(0).data());
     learn(feed_forward, 1, 100, 8);
     const std::uint64_t learned = feed_forward.counters().learned;
     for (int tick = 101; tick < 201; ++tick) {
         const JointVector measured = torque(position(tick));
-        feed_forward.learn(tick * period, position(tick), tick % 2 == 0 ? &measured : nullptr);
+        feed_forward.learn(tick * period, position(tick).data(), tick % 2 == 0 ? measured.data() : nullptr);
         for (int slice = 1; slice < 8; ++slice) {
             feed_forward.go_on();
         }

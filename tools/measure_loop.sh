@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# measure_loop.sh DFDYN OUT: everything that can go wrong in a control loop, on both arms, in simulated time: prints the tables of
+# docs/results/loop.md. Models are those of loop_demo.sh, which begin with nothing learned; the faults are those of
+# tests/data/loop_faults, as they are for the UR5 and adapted in size for the iCub's arm. Beside each other: the nominal rigid
+# body, an observer, recursive least squares of rigid body and friction (model P, a memory of 8 s), the learned model alone, and
+# the complete loop (learned model and observer). Takes about 5 minutes; keeps what it ran in OUT.
+set -euo pipefail
+dfdyn=${1:?usage: measure_loop.sh DFDYN OUT}
+out=${2:?usage: measure_loop.sh DFDYN OUT}
+data=$(cd "$(dirname "${BASH_SOURCE[0]}")/../tests/data" && pwd)
+mkdir -p "$out"
+
+# models ARM URDF TIP: from half a minute under the nominal rigid body, on another motion and without payload.
+models() {
+    local arm=$1 robot=$data/robots/$2 model
+    sed '/"payloads"/d; s/"seed": /"seed": 1/' "$data/scenarios/${arm}_loop.json" >"$out/commissioning.json"
+    "$dfdyn" loop --simulate --robot "$robot" --scenario "$out/commissioning.json" --observer-bandwidth 0 --duration 30 \
+        -o "$out/$arm.commissioning" >/dev/null
+    for model in SPK P; do
+        "$dfdyn" train --robot "$robot" --tip "$3" --log "$out/$arm.commissioning/nominal.csv" --outputs tau --model "$model" \
+            --effects viscous_friction,coulomb_friction,rotor_inertia,torque_offset --own-motion --forgetting 0.999 \
+            --features 60 --likelihood-rows 500 --starts 4 --refinement 10 -o "$out/$arm.$model.json" >"$out/$arm.$model.txt" 2>&1
+    done
+}
+
+# scenario ARM FAULT: of that arm, with the fault.
+scenario() {
+    local faulty=$data/loop_faults/$2.json
+    if [[ $2 == none ]]; then
+        cat "$data/scenarios/$1_loop.json"
+    elif [[ $1 == ur5 ]]; then
+        cat "$faulty"
+    elif [[ $2 == payload_removed ]]; then
+        sed -E 's/("centre_m": [^}]*)\}, .*\]/\1, "removed_s": 40}]/' "$data/scenarios/$1_loop.json"
+    else
+        awk '/"faults"/, /\],$/' "$faulty" | sed 's/20, 20, 0/5, 5, 0/; s/"limit_nm": 40/"limit_nm": 4/' >"$out/faults"
+        sed "/\"encoders\"/{
+            r $out/faults
+            N
+        }" "$data/scenarios/$1_loop.json"
+    fi
+}
+
+# cells FAULT RUN_OF_SPK RUN_OF_P LIMIT...: a row of the table.
+cells() {
+    awk -v fault="$1" -v limits="${*:4}" '
+        function cell(value) { return value == "" ? "stopped" : sprintf("%.2f", value) }
+        BEGIN { split(limits, limit, " ") }
+        FNR == 1 { file++ }
+        file == 1 && $2 == "loop:" {
+            run = $1
+            match($0, /[a-z]+ \([a-z_]+\)/)
+            split(substr($0, RSTART, RLENGTH), end, " ")
+            ended[run] = end[1] == "running" ? "" : end[2]
+        }
+        file == 1 && $1 == "peaks:" && run == "learned" {
+            for (i = 8; $i ~ /^[0-9.]+,?$/; i++) { share = 100 * $i / limit[i - 7]; step = share > step ? share : step }
+        }
+        /^ +[0-9]+\.[0-9]+ / && $1 >= 10 {
+            if (file == 1) {
+                for (k = 2; k <= 5; k++) { if ($k > worst[k]) worst[k] = $k }
+                if ($5 / $2 > ratio) ratio = $5 / $2
+            } else if ($4 > least_squares) { least_squares = $4 }
+        }
+        END {
+            printf "| %s | %s | %s | %s | %s | %s | %s | %.1f | %s |\n", fault, cell(worst[2]), cell(worst[3]), cell(least_squares),
+                cell(worst[4]), cell(worst[5]), ratio == "" ? "-" : sprintf("%.2f", ratio), step,
+                ended["learned"]
+        }' "$2" "$3"
+}
+
+# table ARM URDF LIMIT...: all faults of an arm.
+table() {
+    local arm=$1 robot=$data/robots/$2 fault model
+    echo "| fault | nominal | observer | least squares | learned alone | learned | learned / nominal | step (%) | stopped by |"
+    echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |"
+    for fault in none $(cd "$data/loop_faults" && basename -s .json -- *.json); do
+        if [[ $arm == icub && $fault == torque_* ]]; then
+            continue # it has no torque sensors
+        fi
+        scenario "$arm" "$fault" >"$out/$arm.$fault.json"
+        for model in SPK P; do
+            "$dfdyn" loop --simulate --robot "$robot" --scenario "$out/$arm.$fault.json" --bus "$data/can/${arm}_loop.json" \
+                --model "$out/$arm.$model.json" --from-prior --duration 80.001 --window 1 >"$out/$arm.$fault.$model.run" 2>/dev/null || true
+        done
+        cells "$fault" "$out/$arm.$fault.SPK.run" "$out/$arm.$fault.P.run" "${@:3}"
+    done
+}
+
+models ur5 ur5/ur5_robot.urdf ee_link
+models icub icub_right_arm/icub_right_arm.urdf r_hand
+echo "UR5, 500 Hz, CiA 402 with SYNC: worst second, mrad"
+echo
+table ur5 ur5/ur5_robot.urdf 150 150 150 28 28 28
+echo
+echo "iCub's arm, 1 kHz, strain F/T: worst second, mrad"
+echo
+table icub icub_right_arm/icub_right_arm.urdf 30 30 15 15
