@@ -4,7 +4,7 @@
 # docs/results/loop.md. Models are those of loop_demo.sh, which begin with nothing learned; the faults are those of
 # tests/data/loop_faults, as they are for the UR5 and adapted in size for the iCub's arm. Beside each other: the nominal rigid
 # body, an observer, recursive least squares of rigid body and friction (model P, a memory of 8 s), the learned model alone, and
-# the complete loop (learned model and observer). Takes about 5 minutes; keeps what it ran in OUT.
+# the complete loop (learned model and observer). Takes about 10 minutes; keeps what it ran in OUT.
 set -euo pipefail
 dfdyn=${1:?usage: measure_loop.sh DFDYN OUT}
 out=${2:?usage: measure_loop.sh DFDYN OUT}
@@ -50,9 +50,8 @@ cells() {
         FNR == 1 { file++ }
         file == 1 && $2 == "loop:" {
             run = $1
-            match($0, /[a-z]+ \([a-z_]+\)/)
-            split(substr($0, RSTART, RLENGTH), end, " ")
-            ended[run] = end[1] == "running" ? "" : end[2]
+            match($0, /\([a-z_]+/)
+            ended[run] = substr($0, RSTART + 1, RLENGTH - 1)
         }
         file == 1 && $1 == "peaks:" && run == "learned" {
             for (i = 8; $i ~ /^[0-9.]+,?$/; i++) { share = 100 * $i / limit[i - 7]; step = share > step ? share : step }
@@ -61,18 +60,24 @@ cells() {
             if (file == 1) {
                 for (k = 2; k <= 5; k++) { if ($k > worst[k]) worst[k] = $k }
                 if ($5 / $2 > ratio) ratio = $5 / $2
-            } else if ($4 > least_squares) { least_squares = $4 }
+            } else if ($3 > least_squares) { least_squares = $3 }
         }
         END {
             printf "| %s | %s | %s | %s | %s | %s | %s | %.1f | %s |\n", fault, cell(worst[2]), cell(worst[3]), cell(least_squares),
                 cell(worst[4]), cell(worst[5]), ratio == "" ? "-" : sprintf("%.2f", ratio), step,
-                ended["learned"]
+                ended["learned"] == "none" ? "" : ended["learned"]
         }' "$2" "$3"
+}
+
+# run ARM URDF FAULT MODEL [OPTION...]: ends with a status where the loop stops by itself, as some shall.
+run() {
+    "$dfdyn" loop --simulate --robot "$2" --scenario "$out/$1.$3.json" --bus "$data/can/$1_loop.json" \
+        --model "$out/$1.$4.json" --from-prior --duration 80.001 --window 1 "${@:5}" >"$out/$1.$3.$4.run" 2>"$out/$1.$3.$4.error" || [[ $? -eq 1 ]]
 }
 
 # table ARM URDF LIMIT...: all faults of an arm.
 table() {
-    local arm=$1 robot=$data/robots/$2 fault model
+    local arm=$1 robot=$data/robots/$2 fault
     echo "| fault | nominal | observer | least squares | learned alone | learned | learned / nominal | step (%) | stopped by |"
     echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |"
     for fault in none $(cd "$data/loop_faults" && basename -s .json -- *.json); do
@@ -80,10 +85,8 @@ table() {
             continue # it has no torque sensors
         fi
         scenario "$arm" "$fault" >"$out/$arm.$fault.json"
-        for model in SPK P; do
-            "$dfdyn" loop --simulate --robot "$robot" --scenario "$out/$arm.$fault.json" --bus "$data/can/${arm}_loop.json" \
-                --model "$out/$arm.$model.json" --from-prior --duration 80.001 --window 1 >"$out/$arm.$fault.$model.run" 2>/dev/null || true
-        done
+        run "$arm" "$robot" "$fault" SPK
+        run "$arm" "$robot" "$fault" P --observer-bandwidth 0
         cells "$fault" "$out/$arm.$fault.SPK.run" "$out/$arm.$fault.P.run" "${@:3}"
     done
 }

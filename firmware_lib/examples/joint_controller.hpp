@@ -8,6 +8,7 @@
 #include "ur5_model.hpp" // constants, in flash
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 /// A controller to copy from, in the manner of ros2_control: `activate`, then `update` in each period.
@@ -73,10 +74,15 @@ class JointController {
             observer_.update(feedback.data(), inertia.data(), error_rate.data(), excess_.data());
         for (int k = 0; k < joints; ++k) {
             const float wanted = forward[k] + feedback[k] + disturbance[k];
-            effort_[k] = std::clamp(wanted, -gains_.limit, gains_.limit);
-            excess_[k] = wanted - effort_[k];
+            // a position that is no number must not reach the motors: feed-forward is always one
+            effort_[k] = std::isfinite(wanted) ? std::clamp(wanted, -gains_.limit, gains_.limit) : forward[k];
+            excess_[k] = std::isfinite(wanted) ? wanted - effort_[k] : 0;
         }
-        forward_.commanded(effort_.data());
+        const bool limited =
+            std::any_of(excess_.begin(), excess_.end(), [](float excess) { return excess != 0; });
+        if (!limited) { // else it is not what the motion takes
+            forward_.commanded(effort_.data());
+        }
         forward_.measured(state.time_ns, state.position.data(), before.data());
         return effort_;
     }

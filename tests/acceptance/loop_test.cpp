@@ -84,10 +84,9 @@ LoopModel trained(const Setting& setting) {
 }
 
 TrackingRun tracked(const Setting& setting, const std::string& name, const LoopModel* model,
-                    const LoopLimits& limits) {
-    constexpr double duration_s = 95.001;
+                    const LoopLimits& limits, double duration_s = 95.001, double window_s = 5) {
     ClosedLoop loop(setting.robot, setting.scenario, "scenario", model, &setting.bus, limits);
-    Tracking tracking;
+    Tracking tracking(window_s);
     loop.run_to(duration_s, [&](const ClosedLoopInstant& instant) {
         tracking.add(instant.time_s, instant.error, loop.loop().feed_forward().learned_share());
     });
@@ -95,14 +94,18 @@ TrackingRun tracked(const Setting& setting, const std::string& name, const LoopM
     return {name, tracking.windows()};
 }
 
+LoopLimits without_observer() {
+    LoopLimits limits;
+    limits.observer_bandwidth = {0};
+    return limits;
+}
+
 /// A payload from the begin, another one in mid-motion.
 void check_tracking(const Setting& arm) {
     REQUIRE(arm.scenario.payloads.size() == 2);
     REQUIRE(arm.scenario.payloads[1].attached_s == 65);
     const LoopModel model = trained(arm);
-    LoopLimits without_observer;
-    without_observer.observer_bandwidth = {0};
-    const TrackingRun nominal_run = tracked(arm, "nominal", nullptr, without_observer);
+    const TrackingRun nominal_run = tracked(arm, "nominal", nullptr, without_observer());
     const TrackingRun observer_run = tracked(arm, "observer", nullptr, {});
     const TrackingRun learned_run = tracked(arm, "learned", &model, {});
     REQUIRE(nominal_run.windows.size() == 19);
@@ -119,6 +122,23 @@ void check_tracking(const Setting& arm) {
     }
 }
 
+/// Second by second, with a fault at 40 s.
+void check_fault(const std::string& fault, double largest_rad_a_second_later) {
+    Setting arm = setting("ur5/ur5_robot.urdf", "ur5_loop.json");
+    const LoopModel model = trained(arm);
+    const std::string scenario = std::string(DFDYN_TEST_DATA_DIR) + "/loop_faults/" + fault + ".json";
+    arm.scenario = read_scenario(scenario, arm.robot);
+    const std::vector<TrackingWindow> nominal =
+        tracked(arm, "nominal", nullptr, without_observer(), 60.001, 1).windows;
+    const std::vector<TrackingWindow> learned = tracked(arm, "learned", &model, {}, 60.001, 1).windows;
+    REQUIRE(nominal.size() == 60);
+    for (std::size_t second = 0; second < nominal.size(); ++second) {
+        CAPTURE(fault, second, nominal[second].all, learned.at(second).all);
+        CHECK(learned[second].all <= 1.1 * nominal[second].all);
+        CHECK((second < 41 || learned[second].all < largest_rad_a_second_later));
+    }
+}
+
 } // namespace
 
 TEST_CASE("the UR5 under a loop that begins with nothing learned tracks twenty times better after a minute") {
@@ -127,4 +147,14 @@ TEST_CASE("the UR5 under a loop that begins with nothing learned tracks twenty t
 
 TEST_CASE("the iCub's arm under such a loop tracks twenty times better after a minute") {
     check_tracking(setting("icub_right_arm/icub_right_arm.urdf", "icub_loop.json"));
+}
+
+TEST_CASE(
+    "after friction has tripled the UR5 tracks within 3 mrad a second later, and never worse than nominal") {
+    check_fault("friction_step", 3e-3);
+}
+
+TEST_CASE("after a payload was taken off the UR5 tracks within 3 mrad a second later, and never worse than "
+          "nominal") {
+    check_fault("payload_removed", 3e-3);
 }

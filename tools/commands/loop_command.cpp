@@ -7,6 +7,7 @@
 #include "tools/common/error.hpp"
 #include "tools/common/number.hpp"
 #include "tools/common/progress.hpp"
+#include "tools/common/read_file.hpp"
 #include "tools/common/text.hpp"
 #include "tools/control/closed_loop.hpp"
 #include "tools/control/loop_peaks.hpp"
@@ -29,6 +30,7 @@ namespace {
 
 struct LoopOptions {
     std::filesystem::path robot, scenario, model, bus, folder;
+    std::filesystem::path restored, saved; ///< what was learned
     std::string interface;
     bool simulate = false;
     bool from_prior = false;
@@ -49,6 +51,17 @@ LoopParts read_parts(const LoopOptions& options) {
     parts.scenario = read_scenario(options.scenario, parts.robot);
     if (!options.model.empty()) {
         parts.model = LoopModel{read_model(options.model), shown(options.model), options.from_prior};
+    }
+    if (!options.restored.empty()) {
+        const std::string bytes = read_file(options.restored);
+        const auto whole = std::as_bytes(std::span(bytes));
+        parts.model->learned.assign(whole.begin(), whole.end());
+        parts.model->learned_source = shown(options.restored);
+        make_control_loop(parts.robot, parts.scenario, shown(options.scenario),
+                          &*parts.model); // fits, or throws
+    }
+    if (!options.saved.empty()) {
+        check_writable(options.saved);
     }
     if (!options.bus.empty()) {
         parts.bus = read_bus_description(options.bus);
@@ -90,6 +103,16 @@ void show_changes(const LoopOptions& options, const ControlLoop& loop) {
             write_file(options.folder / "changes.json",
                        changes_json(std::span(&changes, 1), MonitorSetup().false_alarm_hours));
         }
+    }
+}
+
+/// Not after a stop by itself: what was learned last may be the fault.
+void save_learned(const LoopOptions& options, const ControlLoop& loop) {
+    const LearnedFeedForward* const learned = loop.feed_forward().learned();
+    const bool sound = loop.state() == LoopState::running || loop.cause() == StopCause::requested;
+    if (learned != nullptr && sound && !options.saved.empty()) {
+        const std::vector<std::byte> snapshot = learned->snapshot();
+        write_file(options.saved, {reinterpret_cast<const char*>(snapshot.data()), snapshot.size()});
     }
 }
 
@@ -149,6 +172,9 @@ std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOption
     print_loop(std::cout, loop.loop());
     print_peaks(std::cout, peaks);
     show_changes(options, loop.loop());
+    if (contender.name == contenders(options).back().name) {
+        save_learned(options, loop.loop());
+    }
     return loop.loop().state() == LoopState::running ? std::optional(TrackingRun{name, tracking.windows()})
                                                      : std::nullopt;
 }
@@ -185,6 +211,7 @@ int run_on_bus(const LoopOptions& options) {
     print_port(std::cout, port.counters());
     print_pace(std::cout, pace);
     show_changes(options, *loop);
+    save_learned(options, *loop);
     const std::string name = contenders(options).back().name;
     if (!options.folder.empty()) {
         log.recording.write(options.folder / (name + ".csv"));
@@ -194,6 +221,9 @@ int run_on_bus(const LoopOptions& options) {
 }
 
 int run(const LoopOptions& options) {
+    if (options.model.empty() && !(options.restored.empty() && options.saved.empty())) {
+        throw InputError("loop: --restore and --save: expected --model, found none");
+    }
     if (options.simulate == !options.interface.empty()) {
         throw InputError("loop: expected one of --simulate and --can, found " +
                          std::string(options.simulate ? "both" : "none"));
@@ -228,6 +258,13 @@ void add_loop_command(CLI::App& app, Command& chosen) {
     command->add_option("--model", options->model, "Of the joints' torques; none: the rigid body alone")
         ->type_name("M.json");
     command->add_flag("--from-prior", options->from_prior, "The model begins with nothing learned");
+    command
+        ->add_option("--restore", options->restored,
+                     "Goes on from what an earlier run of the model had learned, as --save wrote it")
+        ->excludes("--from-prior")
+        ->type_name("FILE");
+    command->add_option("--save", options->saved, "Writes what has been learned at the end")
+        ->type_name("FILE");
     command->add_option("--bus", options->bus, "Devices on the bus: docs/can.md")->type_name("bus.json");
     command->add_option("--can", options->interface, "The arm is here")->type_name("IFACE");
     command->add_flag("--simulate", options->simulate, "The arm is simulated, in simulated time");

@@ -9,6 +9,16 @@ namespace dfdyn::tools {
 
 namespace {
 
+/// A position that is no number is none.
+bool has_position(const LoopInput& input) { return input.position != nullptr && input.position->allFinite(); }
+
+/// Whether what the feedback and the observer gave last is not to be trusted: something held the arm, or a
+/// reading was wrong.
+bool opposed(StopCause cause) {
+    return cause == StopCause::following_error || cause == StopCause::torque_limit ||
+           cause == StopCause::frozen_encoder;
+}
+
 DisturbanceObserver<double, dynamic> make_observer(const LoopConfig& config) {
     const auto joints = static_cast<int>(config.torque_limit.size());
     DisturbanceObserver<double, dynamic>::Settings settings{config.period_s,
@@ -45,7 +55,7 @@ const Reference& ControlLoop::measured_reference(int ago) const noexcept {
 const JointVector& ControlLoop::tick(const LoopInput& input) {
     ++counters_.ticks;
     told_ = told_ || input.stop_requested;
-    position_tick_ = input.position != nullptr ? counters_.ticks : position_tick_;
+    position_tick_ = has_position(input) ? counters_.ticks : position_tick_;
     if (state() == LoopState::running) { // the reference goes on with the time
         ++tick_;
         references_[tick_ % references_.size()] = task_->next();
@@ -71,7 +81,7 @@ void ControlLoop::sense(const LoopInput& input) {
     clock_.advance();
     feedback_.advance();
     exact_ = false;
-    if (input.position != nullptr) {
+    if (has_position(input)) {
         const std::optional<int> place = clock_.place(input.time_ns);
         if (place && *place > 0) {
             early_ = {counters_.ticks + static_cast<std::uint64_t>(*place), *input.position};
@@ -98,7 +108,7 @@ void ControlLoop::take(int ticks_ago, const JointVector& position, const std::ve
         missing_[joint] = missing_[joint] || watch_.repeated()[joint];
     }
     feedback_.observe(ticks_ago, position, reference, &missing_);
-    exact_ = ticks_ago == 0 && feedback_.complete();
+    exact_ = ticks_ago == 0 && feedback_.regular();
 }
 
 void ControlLoop::follow() {
@@ -109,44 +119,46 @@ void ControlLoop::follow() {
     }
     ++counters_.running;
     const JointVector forward = feed_forward_.update(reference());
-    const JointVector wanted = forward + feedback_torque();
-    command_ = wanted;
+    const JointVector wanted = feedback_.torque() + disturbance();
+    command_ = forward + after_gap(wanted);
     limit();
-    excess_ = wanted - command_;
+    excess_ = forward + wanted - command_;
     feedback_torque_ = command_ - forward;
-    feed_forward_.commanded(command_);
+    const bool full = excess_.isZero(0) && feedback_.regular(); // what the motion takes
+    if (full) {
+        feed_forward_.commanded(command_);
+    }
     const auto period_ns = static_cast<double>(config_.period_s * 1e9);
     feed_forward_.measured(start_ns_ + std::llround(static_cast<double>(tick_) * period_ns),
                            exact_ ? &feedback_.position() : nullptr, command_then());
-    commands_[tick_ % commands_.size()] = command_;
+    commands_[tick_ % commands_.size()] = full ? command_ : JointVector();
 }
 
 const JointVector* ControlLoop::command_then() const noexcept {
     const std::size_t ago = static_cast<std::size_t>(config_.delay_ticks) + 1; // held until the reading
-    return tick_ >= ago ? &commands_[(tick_ - ago) % commands_.size()] : nullptr;
+    const JointVector* const then = tick_ >= ago ? &commands_[(tick_ - ago) % commands_.size()] : nullptr;
+    return then != nullptr && then->size() > 0 ? then : nullptr;
 }
 
 JointVector ControlLoop::disturbance() {
-    if (feedback_.complete()) {
+    if (feedback_.regular()) {
         const JointVector torque = feedback_.torque(), rate = feedback_.error_rate();
         observer_.update(torque.data(), feed_forward_.inertia().data(), rate.data(), excess_.data());
     }
     return Eigen::Map<const Eigen::VectorXd>(observer_.estimate().data(), zero_.size());
 }
 
-JointVector ControlLoop::feedback_torque() {
-    JointVector torque = feedback_.torque() + disturbance();
+JointVector ControlLoop::after_gap(const JointVector& wanted) {
     if (moved() && !feedback_.regular()) {
         recovery_ = recovery_ticks;
     }
-    if (recovery_ > 0 && counters_.running > 1) {
-        const JointVector step = feedback_step * config_.torque_limit;
-        const JointVector limited =
-            torque.cwiseMin(feedback_torque_ + step).cwiseMax(feedback_torque_ - step);
-        recovery_ -= limited == torque ? 1 : 0;
-        torque = limited;
+    if (recovery_ == 0 || counters_.running == 1) {
+        return wanted;
     }
-    return torque;
+    const JointVector step = feedback_step * config_.torque_limit;
+    const JointVector limited = wanted.cwiseMin(feedback_torque_ + step).cwiseMax(feedback_torque_ - step);
+    recovery_ -= limited == wanted ? 1 : 0;
+    return limited;
 }
 
 void ControlLoop::hold() {
@@ -194,6 +206,9 @@ JointVector ControlLoop::holding_torque() {
         where.position[joint] = damped(joint) ? feedback_.position()[joint] : where.position[joint];
     }
     JointVector torque = feed_forward_.holding(where);
+    if (!opposed(safe_stop_.cause())) {
+        torque += Eigen::Map<const Eigen::VectorXd>(observer_.lasting().data(), torque.size());
+    }
     for (Eigen::Index joint = 0; joint < torque.size(); ++joint) {
         if (damped(joint)) {
             const double most = spring_share * config_.torque_limit[joint];
@@ -240,7 +255,11 @@ bool ControlLoop::done() const noexcept {
 void ControlLoop::limit() {
     const JointVector& most = config_.torque_limit;
     counters_.limited += (command_.array().abs() > most.array()).any() ? 1 : 0;
-    command_ = command_.cwiseMin(most).cwiseMax(-most);
+    for (Eigen::Index joint = 0; joint < command_.size();
+         ++joint) { // a value that is no number moves nothing
+        command_[joint] =
+            std::isfinite(command_[joint]) ? std::clamp(command_[joint], -most[joint], most[joint]) : 0;
+    }
 }
 
 } // namespace dfdyn::tools

@@ -63,7 +63,8 @@ struct LoopCounters {
 /// When it stops, every joint is given a reference that brakes from where it is, and how fast, to rest within
 /// `stop_time_s`. The command goes over, by at most a torque limit per `stop_time_s`, to
 /// - the torque that this takes, against gravity, by the nominal rigid body and what was learned
-///   (FeedForward::holding), and then holds the arm;
+///   (FeedForward::holding) and, unless something held the arm or a reading was wrong, observed, and then
+///   holds the arm;
 /// - for joints with a reading of the last `damping_ticks` ticks, whatever the cause, the position and
 ///   velocity gains' torque, the former with at most `spring_share` of the torque limit. Joints without are
 ///   not damped; when their readings come back they brake from where they are then.
@@ -117,9 +118,11 @@ class ControlLoop {
     void sense(const LoopInput& input);
     void take(int ticks_ago, const JointVector& position, const std::vector<bool>* missing);
     void follow();
-    JointVector feedback_torque();
+    /// What is `wanted` of feedback and observer, in steps as small as those after a gap must be.
+    JointVector after_gap(const JointVector& wanted);
     JointVector disturbance();
-    /// The command that was in effect at the instant of this tick's measurement; null before the first.
+    /// The command that was in effect at the instant of this tick's measurement; null before the first, and
+    /// where it was limited or followed from missing positions.
     const JointVector* command_then() const noexcept;
     void hold();
     JointVector holding_torque();
@@ -140,7 +143,7 @@ class ControlLoop {
     SafeStop safe_stop_;
     std::unique_ptr<Task> task_;
     std::vector<Reference> references_; ///< ring: from those of old measurements to that of this tick
-    std::vector<JointVector> commands_; ///< ring, likewise
+    std::vector<JointVector> commands_; ///< ring, likewise; empty: not what the motion took
     std::size_t tick_ = 0;              ///< of the motion
     std::int64_t start_ns_ = 0;         ///< measurement of its first tick, on the loop's grid
     Observer observer_;

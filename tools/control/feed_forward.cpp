@@ -26,15 +26,15 @@ JointVector joint_vector(const Torques& values) {
 FeedForward::FeedForward(const Robot& nominal, const JointVector& rotor_inertia,
                          std::optional<LearnedFeedForward> learned, double period_s, int knot_ticks,
                          const JointVector& limit)
-    : dynamics_(nominal, rotor_inertia), knot_ticks_(knot_ticks),
+    : dynamics_(nominal, rotor_inertia), knot_ticks_(knot_ticks), cap_(limit / 2),
       inertia_(JointVector::Zero(dynamics_.joint_count())) {
-    constexpr double cap_share = 0.5, full_scale_s = 0.05;
+    constexpr double full_scale_s = 0.05;
     if (learned) {
         learned_ = std::make_unique<LearnedFeedForward>(std::move(*learned));
         core_.emplace(*learned_, Core::Settings{.period_ns = std::llround(period_s * 1e9),
                                                 .ticks_per_sample = knot_ticks,
                                                 .limit = torques(limit),
-                                                .cap = torques(cap_share * limit),
+                                                .cap = torques(cap_),
                                                 .rate = torques(limit / full_scale_s)});
         reference_ = {torques(inertia_), torques(inertia_), torques(inertia_)};
     }
@@ -94,7 +94,8 @@ JointVector FeedForward::holding(const Reference& reference) {
     }
     JointVector learned;
     if (learned_->rest(reference.position, learned)) {
-        held_learned_ = learned_share().cwiseProduct(learned - gravity(reference.position));
+        const JointVector beyond = learned - gravity(reference.position);
+        held_learned_ = learned_share().cwiseProduct(beyond.cwiseMin(cap_).cwiseMax(-cap_));
     }
     return torque + held_learned_;
 }

@@ -58,6 +58,7 @@ class FeedForward {
     ArmDynamics dynamics_;
     ArmDynamics::Configuration configuration_;
     int knot_ticks_;
+    JointVector cap_; ///< of what is learned, N·m
     long tick_ = 0;
     std::unique_ptr<LearnedFeedForward> learned_; ///< stays where it is: the core refers to it
     std::optional<Core> core_;

@@ -97,6 +97,15 @@ void LearnedFeedForward::take_over() {
     }
 }
 
+bool LearnedFeedForward::restore(std::span<const std::byte> snapshot) {
+    const bool restored = learner_->restore(snapshot);
+    if (restored) {
+        in_progress_ = true;
+        take_over();
+    }
+    return restored;
+}
+
 std::int64_t LearnedFeedForward::tick_cost() const {
     const Cost cost = learner_->cost();
     return 2 * (cost.predict + cost.variance) + share_.operations;

@@ -5,6 +5,7 @@
 #include "tools/monitor/monitored_estimator.hpp"
 #include "tools/simulation/joint_vector.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -61,6 +62,11 @@ class LearnedFeedForward {
     /// window's samples; the call that completes it writes `torque`, N·m, of the position at the first of
     /// these calls, and returns true where the model knows it. Then the next window begins.
     bool rest(const JointVector& position, JointVector& torque);
+
+    /// What has been learned, to go on from at another start, in the firmware's format.
+    std::vector<std::byte> snapshot() const { return learner_->snapshot(); }
+    /// Back to that; false, and nothing changed, when it is not one of this model.
+    bool restore(std::span<const std::byte> snapshot);
 
     /// Multiply-adds of a control tick, at most.
     std::int64_t tick_cost() const;

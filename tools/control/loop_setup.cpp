@@ -116,11 +116,20 @@ SafeStopConfig default_limits(const Robot& robot, const Scenario& scenario, cons
     return config;
 }
 
+/// The filter of the velocity with a window as long as the scenario's, in readings of the loop.
+DerivativeModel loop_filter(const Scenario& scenario) {
+    DerivativeModel filter = scenario.derivatives;
+    const double readings = filter.velocity_window * scenario.controller.rate_hz / filter.rate_hz;
+    filter.velocity_window = std::max(2, static_cast<int>(std::lround(readings)));
+    filter.rate_hz = scenario.controller.rate_hz;
+    return filter;
+}
+
 JointVector default_bandwidth(const Robot& robot, const Scenario& scenario, const JointVector& start,
                               int delay_ticks) {
-    constexpr double margin_rad = 30 * std::numbers::pi / 180, most = 60, window_share = 0.25;
+    constexpr double margin_rad = 20 * std::numbers::pi / 180, most = 40, window_share = 0.5;
     const ControllerModel& controller = scenario.controller;
-    const double period_s = 1 / controller.rate_hz;
+    const DerivativeModel filter = loop_filter(scenario);
     const ArmDynamics dynamics(robot, scenario.actuators.rotor_inertia);
     ArmDynamics::Configuration configuration;
     dynamics.configure(start, configuration);
@@ -128,13 +137,25 @@ JointVector default_bandwidth(const Robot& robot, const Scenario& scenario, cons
     for (Eigen::Index i = 0; i < bandwidth.size(); ++i) {
         const double inertia = bandwidth[i];
         bandwidth[i] = most;
-        for (const double times : {1.0, 2.0}) {
+        for (const double times : {0.6, 1.0, 2.0}) {
             const JointLoop<double> loop{times * inertia, controller.position_gain[i],
-                                         controller.velocity_gain[i], (delay_ticks + 0.5) * period_s,
-                                         window_share * scenario.derivatives.velocity_window * period_s / 2};
+                                         controller.velocity_gain[i],
+                                         (delay_ticks + 0.5) / controller.rate_hz,
+                                         window_share * filter.velocity_window / filter.rate_hz / 2};
             bandwidth[i] =
                 std::min(bandwidth[i], LoopMargin(loop, inertia).largest_bandwidth(margin_rad, most));
         }
+    }
+    return bandwidth;
+}
+
+JointVector given_bandwidth(const std::vector<double>& given, const Robot& robot, double rate_hz) {
+    constexpr double largest_share = 0.2; // of the loop's rate
+    const JointVector bandwidth = per_joint(given, robot, "--observer-bandwidth");
+    if (bandwidth.maxCoeff() > largest_share * rate_hz) {
+        throw InputError("--observer-bandwidth: expected at most " + number_text(largest_share * rate_hz) +
+                         " rad/s for a loop of " + number_text(rate_hz) + " Hz, found " +
+                         number_text(bandwidth.maxCoeff()));
     }
     return bandwidth;
 }
@@ -151,14 +172,14 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
     config.period_s = 1 / controller.rate_hz;
     config.delay_ticks = delay_ticks;
     config.gains = {controller.position_gain, controller.velocity_gain};
-    config.filter = scenario.derivatives;
+    config.filter = loop_filter(scenario);
     config.torque_limit = torque_limit(robot, scenario, source);
     const auto make = [&] { return make_task(scenario.task, robot, config.period_s, scenario.seed); };
     const JointVector start = make()->next().position;
     config.safe_stop = default_limits(robot, scenario, config.torque_limit, start);
     config.bandwidth = limits.observer_bandwidth.empty()
                            ? default_bandwidth(robot, scenario, start, delay_ticks)
-                           : per_joint(limits.observer_bandwidth, robot, "--observer-bandwidth");
+                           : given_bandwidth(limits.observer_bandwidth, robot, controller.rate_hz);
     config.safe_stop.mode = limits.mode;
     if (!limits.following_error.empty()) {
         config.safe_stop.following_error = per_joint(limits.following_error, robot, "--following-error");
@@ -173,6 +194,10 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
         const MonitorSetup monitor = monitor_setup(learned->model, &robot, learned->source);
         model.emplace(learned->model, learned->from_prior, joints, config.knot_ticks, learned->source,
                       &monitor);
+        if (!learned->learned.empty() && !model->restore(learned->learned)) {
+            throw InputError(learned->learned_source + ": expected what " + learned->source +
+                             " has learned, whole, found something else");
+        }
     }
     FeedForward feed_forward(robot, scenario.actuators.rotor_inertia, std::move(model), config.period_s,
                              config.knot_ticks, config.torque_limit);

@@ -5,6 +5,7 @@
 #include "tools/control/control_loop.hpp"
 #include "tools/simulation/scenario.hpp"
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,8 +15,10 @@ namespace dfdyn::tools {
 /// A learned model for the loop to use.
 struct LoopModel {
     TrainedModel model;
-    std::string source;      ///< for messages
-    bool from_prior = false; ///< learn from nothing
+    std::string source;               ///< for messages
+    bool from_prior = false;          ///< learn from nothing
+    std::vector<std::byte> learned{}; ///< to go on from: a LearnedFeedForward::snapshot; empty: none
+    std::string learned_source{};     ///< for messages
 };
 
 /// Limits that a user sets; empty or none: the defaults of `default_limits`. A single value is that of all
@@ -36,10 +39,10 @@ struct LoopLimits {
 SafeStopConfig default_limits(const Robot& robot, const Scenario& scenario, const JointVector& torque_limit,
                               const JointVector& start);
 
-/// Bandwidth of the disturbance observer, rad/s per joint: the largest up to 60 that leaves a phase margin of
-/// 30 degrees (dfdyn::LoopMargin) at the joint's own inertia where the motion starts and at twice that, with
-/// `delay_ticks` of the bus, half a tick of holding, and a velocity as late as a window of a quarter of its
-/// greatest length makes it (slow motion has longer ones: then the loop's noise is below the window's bound).
+/// Bandwidth of the disturbance observer, rad/s per joint: the largest up to 40 that leaves a phase margin of
+/// 20 degrees (dfdyn::LoopMargin) at 0.6, 1 and 2 times the joint's own inertia where the motion starts, with
+/// `delay_ticks` of the bus, half a tick of holding, and half the greatest window of the velocity. Slower
+/// motion has longer windows, and less margin.
 JointVector default_bandwidth(const Robot& robot, const Scenario& scenario, const JointVector& start,
                               int delay_ticks);
 

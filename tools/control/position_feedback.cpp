@@ -91,17 +91,19 @@ void PositionFeedback::observe(int ticks_ago, const JointVector& position, const
 double PositionFeedback::error_at(Eigen::Index joint, std::int64_t tick) const noexcept {
     const auto ticks = static_cast<double>(
         std::clamp<std::int64_t>(tick - newest_tick_[static_cast<std::size_t>(joint)], 0, fade_ticks));
-    double rate = reading_rate_[joint];
-    if (bounds_.speed.size() > 0) {
-        rate = std::clamp(rate, -bounds_.speed[joint], bounds_.speed[joint]);
-    }
-    return reading_error_[joint] + rate * period_s_ * (ticks - ticks * ticks / (2 * fade_ticks));
+    return reading_error_[joint] +
+           bounded_rate(joint) * period_s_ * (ticks - ticks * ticks / (2 * fade_ticks));
 }
 
 double PositionFeedback::rate_at(Eigen::Index joint, std::int64_t tick) const noexcept {
     const auto ticks = static_cast<double>(
         std::clamp<std::int64_t>(tick - newest_tick_[static_cast<std::size_t>(joint)], 0, fade_ticks));
-    return reading_rate_[joint] * (1 - ticks / fade_ticks);
+    return bounded_rate(joint) * (1 - ticks / fade_ticks);
+}
+
+double PositionFeedback::bounded_rate(Eigen::Index joint) const noexcept {
+    const double rate = reading_rate_[joint];
+    return bounds_.speed.size() > 0 ? std::clamp(rate, -bounds_.speed[joint], bounds_.speed[joint]) : rate;
 }
 
 JointVector PositionFeedback::error() const {

@@ -80,6 +80,8 @@ class PositionFeedback {
     /// Error and its rate at `tick`, from the last reading of a joint.
     double error_at(Eigen::Index joint, std::int64_t tick) const noexcept;
     double rate_at(Eigen::Index joint, std::int64_t tick) const noexcept;
+    /// At the last reading, at most the joint's speed.
+    double bounded_rate(Eigen::Index joint) const noexcept;
 
     FeedbackGains gains_;
     DerivativeModel filter_;

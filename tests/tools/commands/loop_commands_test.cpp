@@ -77,6 +77,17 @@ TEST_CASE("a simulated loop is recorded, a model trained on that, and the loop w
          {"nominal.csv", "learned.csv", "tracking.csv", "tracking.svg", "tracking.html"}) {
         CHECK(std::filesystem::exists(bench.path("learned") + "/" + name));
     }
+
+    const std::string model = " --observer-bandwidth 0 --model " + bench.path("m.json");
+    const std::string saved = bench.path("learned.bin");
+    REQUIRE(bench.loop(simulate + bus + model + " --save " + saved).status == 0);
+    CHECK(bench.loop(simulate + bus + model + " --restore " + saved).status == 0);
+    CHECK_THAT(bench.refusal(simulate + model + " --restore " + log), ContainsSubstring("expected what"));
+}
+
+TEST_CASE("what was learned is saved and restored of a model only") {
+    const Bench bench;
+    CHECK_THAT(bench.refusal(simulate + " --save s.bin"), ContainsSubstring("expected --model, found none"));
 }
 
 TEST_CASE("the same call prints the same") {

@@ -8,12 +8,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace control_loop_test {
 
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
+
+/// So that what is held is the nominal weight alone.
+const LoopLimits no_observer{{}, {}, StopMode::hold, {0}};
 
 /// A loop about a pendulum that stands at the reference's start, tick by tick.
 class Bench {
@@ -59,7 +63,7 @@ TEST_CASE("no command is beyond the limit, and those at it are counted") {
 }
 
 TEST_CASE("a loop that loses its positions coasts, then goes over to the weight at the last one") {
-    Bench bench(pendulum_scenario());
+    Bench bench(pendulum_scenario(), no_observer);
     for (int tick = 0; tick < 50; ++tick) {
         bench.tick();
     }
@@ -223,7 +227,7 @@ TEST_CASE("every cause stops the loop within its patience, without a jump of the
                                     {StopCause::following_error, 0, {}, 0.6}};
     for (const Fault& fault : faults) {
         CAPTURE(name(fault.cause));
-        Bench bench(pendulum_scenario());
+        Bench bench(pendulum_scenario(), no_observer);
         for (int tick = 0; tick < 50; ++tick) {
             bench.tick();
         }
@@ -271,6 +275,24 @@ TEST_CASE("a loop is told what its scenario and model must have") {
     scenario.controller.kind = ControllerKind::computed_torque;
     CHECK(refusal(scenario, robot, nullptr) ==
           "s.json: controller.kind: expected feed_forward, found another");
+}
+
+TEST_CASE("a position that is no number moves nothing, and the loop goes on") {
+    Bench bench(pendulum_scenario());
+    for (int tick = 0; tick < 50; ++tick) {
+        bench.tick();
+    }
+    const double before = bench.tick();
+    const double position = bench.position()[0];
+    bench.position()[0] = std::numeric_limits<double>::quiet_NaN();
+    const double during = bench.tick();
+    CHECK(std::isfinite(during));
+    CHECK(std::abs(during) <= std::abs(before) + 1);
+    bench.position()[0] = position;
+    for (int tick = 0; tick < 50; ++tick) {
+        CHECK(std::abs(bench.tick()) <= 20);
+    }
+    CHECK(std::abs(bench.tick() - before) < 1);
 }
 
 } // namespace control_loop_test

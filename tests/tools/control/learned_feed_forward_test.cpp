@@ -7,6 +7,7 @@
 #include "tools/common/error.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace learned_feed_forward_test {
@@ -149,6 +150,22 @@ TEST_CASE("a model of something else than these joints' torques by their positio
     measured.input.derivatives = Derivatives::measured;
     CHECK(refusal(measured) == "m.json: expected a model of positions alone, found one that needs measured "
                                "derivatives (input STD)");
+}
+
+TEST_CASE("a model goes on from what it had learned at a snapshot, and from nothing else") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const TrainedModel model = model_of(engine);
+    LearnedFeedForward feed_forward(model, true, 2, 8, "model");
+    LearnedFeedForward other(model, true, 2, 8, "model");
+    feed_forward.begin(0, position(0).data());
+    other.begin(0, position(0).data());
+    learn(feed_forward, 1, 500, 8);
+    std::vector<std::byte> snapshot = feed_forward.snapshot();
+    REQUIRE(other.restore(snapshot));
+    other.begin(0, position(0).data());
+    CHECK(follow(other, 1, 50) == follow(feed_forward, 1, 50));
+    snapshot[snapshot.size() / 2] ^= std::byte{1};
+    CHECK_FALSE(other.restore(snapshot));
 }
 
 } // namespace learned_feed_forward_test

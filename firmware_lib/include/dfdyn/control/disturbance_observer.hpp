@@ -70,6 +70,9 @@ class DisturbanceObserver {
     /// N·m, to be added to feed-forward and feedback.
     [[nodiscard]] const Torques& estimate() const noexcept { return estimate_; }
 
+    /// The part of it that stays when the error does not change, N·m: what holds the arm when the loop ends.
+    [[nodiscard]] const Torques& lasting() const noexcept { return integral_; }
+
     /// Multiply-adds of `update`.
     [[nodiscard]] static constexpr std::int64_t cost(Extent<n> joint_count) noexcept {
         return std::int64_t{8} * joint_count;

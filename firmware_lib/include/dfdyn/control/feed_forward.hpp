@@ -67,7 +67,7 @@ class FeedForward {
 
     explicit FeedForward(Learner& learner, const Settings& settings) noexcept
         : learner_(&learner), joints_(learner.output_count()), settings_(settings),
-          judged_for_(static_cast<int>(settings.memory_s / sample_period_s(settings))),
+          judged_for_(std::max(1, static_cast<int>(settings.memory_s / sample_period_s(settings)))),
           combination_(Extent<2>{}, joints_, settings.memory_s / sample_period_s(settings)),
           forecasts_(Forecasts::zeros(extent<product(2, n)>(2 * joints_))), from_(Torques::zeros(joints_)),
           to_(from_), ahead_(from_), share_(from_), part_(from_), torque_(from_) {}
@@ -101,17 +101,19 @@ class FeedForward {
                                     Scalar(1));
         for (int k = 0; k < joints_; ++k) {
             const Scalar learned = from_[k] + way * (to_[k] - from_[k]);
-            torque_[k] = with_learned(k, bounded(nominal[k], settings_.limit[k]), learned);
+            const Scalar known_nominal = bounded(nominal[k], settings_.limit[k]);
+            torque_[k] = with_learned(k, known_nominal, learned);
             if (since_knot == 0) {
-                forecasts_[k] = nominal[k];
-                forecasts_[joints_ + k] = from_[k];
+                forecasts_[k] = known_nominal;
+                forecasts_[joints_ + k] = learned;
             }
         }
         at_knot_ = since_knot == 0;
         return torque_;
     }
 
-    /// What has been commanded in this tick, n values, N·m; after `update`. Values that are no numbers are
+    /// What has been commanded in this tick, n values, N·m; after `update`. Leave it out where the command is
+    /// not what the motion takes: at a limit, or while positions are missing. Values that are no numbers are
     /// not judged.
     void commanded(const Scalar* torque) noexcept {
         if (!at_knot_ || !known_) {

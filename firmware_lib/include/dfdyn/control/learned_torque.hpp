@@ -28,6 +28,7 @@ class LearnedTorque {
     using Estimator = dfdyn::Estimator<Model>;
     static constexpr int outputs = Model::outputs;
     static_assert(Model::joints == Model::outputs, "a model of the torques of all joints");
+    static_assert(Model::outputs != dynamic, "sizes of run time: see the tools");
 
     explicit LearnedTorque(const typename Model::Constants&&, int ticks) = delete;
 
@@ -72,7 +73,9 @@ class LearnedTorque {
     }
 
     /// The torque that the reference takes a sample period after the last call, N·m: `position` then, rad.
-    /// False, and zeros, where the model knows nothing, or what it knows is beyond its limits. A position
+    /// False, and zeros, while the window fills, where the input is out of range, or beyond the model's
+    /// limits. It does not fade away from the data, as an `Estimate` does: no variance is known here. What it
+    /// is worth, `FeedForward` judges. A position
     /// that is no number begins the reference's window anew.
     bool predict(std::int64_t time_ns, const Scalar* position, Scalar* torque) noexcept {
         bool known = true;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace dfdyn {
 
@@ -89,6 +90,10 @@ class LoopMargin {
         const Scalar imaginary =
             -loop_.position_gain * b / w - loop_.velocity_gain * b * sin(lag) + rate * w * cos(lag);
         const Scalar plant = loop_.inertia * w * w;
+        if (lag + w * loop_.delay_s >
+            std::numbers::pi_v<Scalar>) { // beyond it the angle is that of another turn
+            return {(real * real + imaginary * imaginary) / (plant * plant), -std::numbers::pi_v<Scalar>};
+        }
         return {(real * real + imaginary * imaginary) / (plant * plant),
                 atan2(imaginary, real) - w * loop_.delay_s};
     }
