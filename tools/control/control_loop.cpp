@@ -42,7 +42,7 @@ ControlLoop::ControlLoop(LoopConfig config, FeedForward feed_forward, std::uniqu
       task_(std::move(task)), observer_(make_observer(config_)),
       zero_(JointVector::Zero(config_.torque_limit.size())), error_(zero_), command_(zero_), excess_(zero_),
       feedback_torque_(zero_), missing_(static_cast<std::size_t>(zero_.size())), blind_(missing_.size()) {
-    references_.resize(static_cast<std::size_t>(1 + config_.delay_ticks + SampleClock::max_age));
+    references_.resize(std::size_t{1} + static_cast<std::size_t>(config_.delay_ticks) + SampleClock::max_age);
     references_.front() = task_->next();
     commands_.resize(static_cast<std::size_t>(config_.delay_ticks) + 1);
 }
@@ -156,7 +156,7 @@ JointVector ControlLoop::after_gap(const JointVector& wanted) {
         return wanted;
     }
     const JointVector step = feedback_step * config_.torque_limit;
-    const JointVector limited = wanted.cwiseMin(feedback_torque_ + step).cwiseMax(feedback_torque_ - step);
+    JointVector limited = wanted.cwiseMin(feedback_torque_ + step).cwiseMax(feedback_torque_ - step);
     recovery_ -= limited == wanted ? 1 : 0;
     return limited;
 }

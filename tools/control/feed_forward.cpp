@@ -58,7 +58,7 @@ void FeedForward::begin(std::int64_t time_ns, const Reference& start) {
 }
 
 JointVector FeedForward::update(const Reference& reference) {
-    const JointVector nominal = nominal_torque(reference);
+    JointVector nominal = nominal_torque(reference);
     if (tick_++ % knot_ticks_ == 0) {
         inertia_ = dynamics_.mass_matrix(configuration_).diagonal();
     }
@@ -85,7 +85,7 @@ void FeedForward::measured(std::int64_t time_ns, const JointVector* position, co
 }
 
 JointVector FeedForward::holding(const Reference& reference) {
-    const JointVector torque = nominal_torque(reference);
+    JointVector torque = nominal_torque(reference);
     if (!core_) {
         return torque;
     }

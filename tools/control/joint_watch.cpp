@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace dfdyn::tools {
 
-JointWatch::JointWatch(const SafeStopConfig& config, double period_s, double noise_bound)
-    : config_(config), period_s_(period_s), noise_bound_(noise_bound) {
+JointWatch::JointWatch(SafeStopConfig config, double period_s, double noise_bound)
+    : config_(std::move(config)), period_s_(period_s), noise_bound_(noise_bound) {
     const Eigen::Index joints = config_.following_error.size();
     const auto count = static_cast<std::size_t>(joints);
     reading_ = speed_ = lowest_ = highest_ = quantum_ = pressing_position_ = JointVector::Zero(joints);

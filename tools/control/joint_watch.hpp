@@ -21,7 +21,7 @@ namespace dfdyn::tools {
 /// O(joints) per tick; no heap after construction.
 class JointWatch {
   public:
-    JointWatch(const SafeStopConfig& config, double period_s, double noise_bound);
+    JointWatch(SafeStopConfig config, double period_s, double noise_bound);
 
     /// Looks at a new reading, before the feedback takes it; `reference`: position at the same instant.
     /// `missing`: joints without a reading, which are left out.

@@ -151,7 +151,7 @@ JointVector default_bandwidth(const Robot& robot, const Scenario& scenario, cons
 
 JointVector given_bandwidth(const std::vector<double>& given, const Robot& robot, double rate_hz) {
     constexpr double largest_share = 0.2; // of the loop's rate
-    const JointVector bandwidth = per_joint(given, robot, "--observer-bandwidth");
+    JointVector bandwidth = per_joint(given, robot, "--observer-bandwidth");
     if (bandwidth.maxCoeff() > largest_share * rate_hz) {
         throw InputError("--observer-bandwidth: expected at most " + number_text(largest_share * rate_hz) +
                          " rad/s for a loop of " + number_text(rate_hz) + " Hz, found " +

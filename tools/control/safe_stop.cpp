@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/control/safe_stop.hpp"
 
+#include <utility>
+
 namespace dfdyn::tools {
 
 const char* name(LoopState state) noexcept {
@@ -41,7 +43,7 @@ const char* name(StopCause cause) noexcept {
     return "unknown";
 }
 
-SafeStop::SafeStop(const SafeStopConfig& config) : config_(config) {}
+SafeStop::SafeStop(SafeStopConfig config) : config_(std::move(config)) {}
 
 void SafeStop::count(const TickHealth& health) {
     returning_ += !health.position_valid && health.returning ? 1 : 0;

@@ -68,7 +68,7 @@ struct TickHealth {
 /// `stopped`.
 class SafeStop {
   public:
-    explicit SafeStop(const SafeStopConfig& config);
+    explicit SafeStop(SafeStopConfig config);
 
     /// One tick; `error`: reference minus position, rad (looked at only where there has been a position).
     LoopState tick(const TickHealth& health, const JointVector& error);

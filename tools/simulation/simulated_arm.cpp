@@ -65,8 +65,8 @@ JointVector rotors(const ActuatorModel& actuators) {
 } // namespace
 
 SimulatedArm::SimulatedArm(const Robot& robot, const ActuatorModel& actuators, const JointVector& position,
-                           const JointLoads& loads)
-    : dynamics_(split(robot, actuators), rotors(actuators)), actuators_(actuators), loads_(loads) {
+                           JointLoads loads)
+    : dynamics_(split(robot, actuators), rotors(actuators)), actuators_(actuators), loads_(std::move(loads)) {
     for (const LuGreParameters& parameters : actuators.friction) {
         friction_.emplace_back(parameters);
     }

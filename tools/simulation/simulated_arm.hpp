@@ -46,7 +46,7 @@ class SimulatedArm {
     /// At rest at `position`, bristles relaxed, gears under the weight. Throws InputError as ArmDynamics
     /// does, and when a soft joint has no rotor or is prismatic.
     SimulatedArm(const Robot& robot, const ActuatorModel& actuators, const JointVector& position,
-                 const JointLoads& loads = {});
+                 JointLoads loads = {});
 
     /// Fixes a body to the last link, in that link's frame; the motion goes on.
     void attach(const InertialParameters& body);

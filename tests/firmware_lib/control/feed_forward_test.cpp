@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dfdyn/control/feed_forward.hpp"
 
+#include "tests/firmware_lib/control/joint.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 namespace feed_forward_test {
@@ -168,6 +171,69 @@ TEST_CASE("a position that was not measured is not learned") {
         run.forward.measured(0, nullptr, nullptr);
     }
     CHECK(run.learner.learned.size() == learned);
+}
+
+/// A joint under feedback and feed-forward that has to hold a load, tick by tick.
+class LoadedJoint {
+  public:
+    static constexpr double load = 10;
+
+    LoadedJoint() {
+        constexpr double start = 0;
+        forward_.begin(0, &start);
+    }
+
+    void go(double seconds, const std::function<double(double)>& forecast) {
+        constexpr int steps = 20;
+        largest_error = 0;
+        const auto end = tick_ + std::llround(seconds / period_s);
+        for (; tick_ < end; ++tick_) {
+            learner_.forecast = forecast(static_cast<double>(tick_) * period_s);
+            constexpr double nominal = 0;
+            const double command = forward_.update({}, &nominal)[0] + joint_.feedback();
+            forward_.commanded(&command);
+            const double position = joint_.position();
+            forward_.measured(tick_ * period_ns, &position, &command);
+            for (int i = 0; i < steps; ++i) {
+                joint_.advance(command - load);
+            }
+            largest_error = std::max(largest_error, std::abs(position));
+        }
+    }
+    [[nodiscard]] double share() const { return forward_.share()[0]; }
+
+    double largest_error = 0; ///< rad, of the last call of `go`
+
+  private:
+    ToldLearner learner_;
+    Forward forward_{learner_, settings};
+    ServoJoint joint_{{2, 800, 80, 0, 0}, period_s / 20};
+    std::int64_t tick_ = 0;
+};
+
+TEST_CASE(
+    "in a closed loop the right forecast takes over, and a wrong or a swaying one is left out in a second") {
+    const auto right = [](double /*time_s*/) { return LoadedJoint::load; };
+    const auto biased = [](double /*time_s*/) { return LoadedJoint::load + 40; };
+    const auto swaying = [](double time_s) {
+        return LoadedJoint::load + 40 * std::sin(2 * std::numbers::pi * time_s);
+    };
+    LoadedJoint joint;
+    joint.go(3, right);
+    CHECK(joint.share() > 0.95);
+    joint.go(1, right);
+    const double sag = LoadedJoint::load / 800; // under feedback alone
+    CHECK(joint.largest_error < sag / 10);
+    for (const auto& wrong :
+         {std::function<double(double)>(biased), std::function<double(double)>(swaying)}) {
+        LoadedJoint other;
+        other.go(3, right);
+        other.go(1, wrong);
+        CHECK(other.share() < 0.2);
+        CHECK(other.largest_error < 40.0 / 800 + sag); // what the wrong torque can do at most
+        other.go(1, wrong);
+        CHECK(other.largest_error < 3 * sag);
+    }
 }
 
 } // namespace feed_forward_test

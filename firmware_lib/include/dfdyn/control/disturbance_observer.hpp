@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 namespace dfdyn {
 
@@ -37,8 +38,8 @@ class DisturbanceObserver {
         Torques limit;     ///< of |estimate|, N·m; ≥ 0
     };
 
-    DisturbanceObserver(Extent<n> joint_count, const Settings& settings) noexcept
-        : joints_(joint_count), settings_(settings), integral_(Torques::zeros(joint_count)),
+    DisturbanceObserver(Extent<n> joint_count, Settings settings) noexcept
+        : joints_(joint_count), settings_(std::move(settings)), integral_(Torques::zeros(joint_count)),
           estimate_(integral_) {}
 
     /// As if nothing had been observed.
