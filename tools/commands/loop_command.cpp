@@ -240,6 +240,53 @@ int run(const LoopOptions& options) {
     return run_on_bus(options);
 }
 
+/// Options of what is learned, and from where.
+void add_model(CLI::App& command, LoopOptions& options) {
+    command.add_option("--model", options.model, "Of the joints' torques; none: the rigid body alone")
+        ->type_name("M.json");
+    command.add_flag("--from-prior", options.from_prior, "The model begins with nothing learned");
+    command
+        .add_option("--restore", options.restored,
+                    "Goes on from what an earlier run of the model had learned, as --save wrote it")
+        ->excludes("--from-prior")
+        ->type_name("FILE");
+    command.add_option("--save", options.saved, "Writes what has been learned at the end")->type_name("FILE");
+}
+
+/// Options of the limits within which the loop moves the arm.
+void add_limits(CLI::App& command, LoopLimits& limits) {
+    command
+        .add_option(
+            "--following-error", limits.following_error,
+            "Largest distance from the reference, rad (m); one value, or one per joint. None: that of "
+            "0.8 of the torque limit by the position gain")
+        ->delimiter(',')
+        ->check(CLI::PositiveNumber)
+        ->type_name("E");
+    command
+        .add_option("--speed-limit", limits.speed,
+                    "Largest speed, rad/s (m/s); one value, or one per joint. None: the robot's")
+        ->delimiter(',')
+        ->check(CLI::PositiveNumber)
+        ->type_name("V");
+    command
+        .add_option(
+            "--observer-bandwidth", limits.observer_bandwidth,
+            "Of the disturbance observer, rad/s; one value, or one per joint; 0: no observer. None: as "
+            "docs/control.md says, at most 40")
+        ->delimiter(',')
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("B");
+    command
+        .add_option("--stop", limits.mode,
+                    "After a stop: hold the arm until told to end, or go limp 0.2 s after the brakes were "
+                    "requested")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, StopMode>{{"hold", StopMode::hold}, {"limp", StopMode::limp}}))
+        ->default_str("hold")
+        ->type_name("hold|limp");
+}
+
 } // namespace
 
 void add_loop_command(CLI::App& app, Command& chosen) {
@@ -255,16 +302,7 @@ void add_loop_command(CLI::App& app, Command& chosen) {
                      "docs/scenario.md")
         ->required()
         ->type_name("S.json");
-    command->add_option("--model", options->model, "Of the joints' torques; none: the rigid body alone")
-        ->type_name("M.json");
-    command->add_flag("--from-prior", options->from_prior, "The model begins with nothing learned");
-    command
-        ->add_option("--restore", options->restored,
-                     "Goes on from what an earlier run of the model had learned, as --save wrote it")
-        ->excludes("--from-prior")
-        ->type_name("FILE");
-    command->add_option("--save", options->saved, "Writes what has been learned at the end")
-        ->type_name("FILE");
+    add_model(*command, *options);
     command->add_option("--bus", options->bus, "Devices on the bus: docs/can.md")->type_name("bus.json");
     command->add_option("--can", options->interface, "The arm is here")->type_name("IFACE");
     command->add_flag("--simulate", options->simulate, "The arm is simulated, in simulated time");
@@ -275,36 +313,7 @@ void add_loop_command(CLI::App& app, Command& chosen) {
         ->check(CLI::PositiveNumber)
         ->capture_default_str()
         ->type_name("S");
-    command
-        ->add_option(
-            "--following-error", options->limits.following_error,
-            "Largest distance from the reference, rad (m); one value, or one per joint. None: that of "
-            "0.8 of the torque limit by the position gain")
-        ->delimiter(',')
-        ->check(CLI::PositiveNumber)
-        ->type_name("E");
-    command
-        ->add_option("--speed-limit", options->limits.speed,
-                     "Largest speed, rad/s (m/s); one value, or one per joint. None: the robot's")
-        ->delimiter(',')
-        ->check(CLI::PositiveNumber)
-        ->type_name("V");
-    command
-        ->add_option(
-            "--observer-bandwidth", options->limits.observer_bandwidth,
-            "Of the disturbance observer, rad/s; one value, or one per joint; 0: no observer. None: what "
-            "leaves a phase margin of 30 degrees, at most 60")
-        ->delimiter(',')
-        ->check(CLI::NonNegativeNumber)
-        ->type_name("B");
-    command
-        ->add_option("--stop", options->limits.mode,
-                     "After a stop: hold the arm until told to end, or go limp 0.2 s after the brakes were "
-                     "requested")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, StopMode>{{"hold", StopMode::hold}, {"limp", StopMode::limp}}))
-        ->default_str("hold")
-        ->type_name("hold|limp");
+    add_limits(*command, options->limits);
     command
         ->add_option(
             "-o,--output", options->folder,
