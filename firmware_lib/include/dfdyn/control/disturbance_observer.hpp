@@ -19,12 +19,12 @@ namespace dfdyn {
 ///     d = b (∫ F dt + J de/dt),   so that   (J s² + D s + P)(s + b) e = s · disturbance.
 ///
 /// The feedback's own poles stay where they are, and one more comes, at -b. After K. Ohnishi, "A new servo
-/// method in mechatronics" (1987), written for the error, so that no acceleration is needed. It knows
-/// nothing: what comes back with every motion, friction above all, it finds anew each time, a time of 1/b
-/// late. That is what learning is for (`FeedForward`): what has been learned leaves the observer by itself.
+/// method in mechatronics" (1987), written for the error, so that no acceleration is needed. It has no
+/// memory: a disturbance that recurs with every motion, such as friction, is estimated anew each time with a
+/// lag of 1/b. `FeedForward` learns such disturbances from the commands; the estimate then returns to zero.
 ///
-/// What bandwidth a loop can bear, `LoopMargin` says. Against a wall or a hand the estimate rises to its
-/// limit.
+/// `LoopMargin` gives the bandwidth that a loop tolerates. When something blocks the joint, the estimate
+/// rises to its limit.
 ///
 /// Cost: 8 multiply-adds per joint and tick, 5 n + 1 scalars. Never allocates.
 template <class Scalar, int n>

@@ -23,14 +23,15 @@ concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename
     { learner.predict(time_ns, values, torque) } -> std::same_as<bool>;
 };
 
-/// The torque that the reference takes: the caller's nominal one, and more and more a learned one.
+/// Feed-forward torque for a reference: a blend of the caller's nominal torque and a learned one.
 ///
 /// The learner predicts once per sample period of its model (a *knot*) the torque of the knot to come, for
-/// the reference at constant acceleration until then; between knots it is interpolated. Joint by joint the
-/// torque that in the end had to be commanded decides whose forecast is used: `commanded` compares both with
-/// it at each knot, and they are combined as `ForecastCombination` does, over the last second. What is
-/// commanded contains the feedback, so the judge sees the tracking error, and no torque sensor can mislead
-/// it. Until a second has been judged the nominal torque is used alone.
+/// the reference at constant acceleration until then; between knots it is interpolated. `commanded` compares
+/// both forecasts with the torque that was finally commanded, joint by joint and knot by knot, and combines
+/// them as `ForecastCombination` does, over the last second. The command contains the feedback, so that the
+/// comparison sees the tracking error and does not depend on torque sensors. Errors that change faster than
+/// the feedback can follow do not appear in the command and are not seen. Until one second of comparisons is
+/// available, only the nominal torque is used.
 ///
 /// What is learned enters without a step: its share rises within `rise_s` and falls within `fall_s`, it adds
 /// at most `cap` to the nominal torque and changes by at most `rate`; the whole is within `limit`.
@@ -199,7 +200,7 @@ class FeedForward {
     std::int64_t tick_ = 0;
     int judged_ = 0;
     bool enabled_ = true;
-    bool known_ = false, next_known_ = false; ///< whether the learner had something to say of the two knots
+    bool known_ = false, next_known_ = false; ///< whether the learner could predict the two knots
     bool at_knot_ = false;
 };
 

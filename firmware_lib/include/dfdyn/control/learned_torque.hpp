@@ -10,10 +10,9 @@
 
 namespace dfdyn {
 
-/// The torque that a motion will take, learned while the arm moves: it learns from windows of measured
-/// positions and predicts at a window of the reference's. So what is predicted follows from what the arm
-/// shall do. The prediction of an `Estimator` alone is that of the motion *measured*: fed forward it would be
-/// positive feedback of the position error.
+/// Inverse dynamics learned while the arm moves and evaluated at the reference: it learns from windows of
+/// measured positions and predicts for a window of reference positions. The prediction of an `Estimator`
+/// alone is for the *measured* motion; as feed-forward it would be positive feedback of the position error.
 ///
 /// Beside the estimator it has a second window with its columns, and a copy of the learned weights, which
 /// changes whenever a sample has been learned: 2d m + p scalars and the windows, no second covariance.

@@ -28,7 +28,7 @@ struct JointLoop {
 template <class Scalar>
 class LoopMargin {
   public:
-    /// `observer_inertia`: that the observer reckons with, kg·m²; ≥ 0.
+    /// `observer_inertia`: the one given to the observer, kg·m²; ≥ 0.
     constexpr LoopMargin(const JointLoop<Scalar>& loop, Scalar observer_inertia) noexcept
         : loop_(loop), observer_inertia_(observer_inertia) {}
 
