@@ -43,7 +43,7 @@ test_long() { ctest --test-dir build/release --label-regex '^long$' --parallel "
 
 # clang++ has the sanitizers: it builds them in about three quarters of the time that g++ takes, and is the second compiler.
 test_sanitized() {
-    build asan-ubsan dfdyn_embedding dfdyn_firmware_headers dfdyn_firmware_tests dfdyn_hal_headers dfdyn_hal_tests
+    build asan-ubsan dfdyn_embedding dfdyn_linux_loop dfdyn_firmware_headers dfdyn_firmware_tests dfdyn_hal_headers dfdyn_hal_tests
     run_tests asan-ubsan --label-regex '^(firmware|hal|embedding|headers)$'
 }
 test_sanitized_tools() {
@@ -53,7 +53,7 @@ test_sanitized_tools() {
 
 # Optimised, unlike the sanitized build.
 test_clang() {
-    build clang dfdyn_embedding dfdyn_firmware_tests dfdyn_hal_tests
+    build clang dfdyn_embedding dfdyn_linux_loop dfdyn_firmware_tests dfdyn_hal_tests
     run_tests clang --label-regex '^(firmware|hal|embedding)$'
 }
 
