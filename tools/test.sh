@@ -43,8 +43,8 @@ test_long() { ctest --test-dir build/release --label-regex '^long$' --parallel "
 
 # clang++ has the sanitizers: it builds them in about three quarters of the time that g++ takes, and is the second compiler.
 test_sanitized() {
-    build asan-ubsan dfdyn_embedding dfdyn_linux_loop dfdyn_firmware_headers dfdyn_firmware_tests dfdyn_hal_headers dfdyn_hal_tests
-    run_tests asan-ubsan --label-regex '^(firmware|hal|embedding|headers)$'
+    build asan-ubsan dfdyn_embedding dfdyn_linux_loop dfdyn_firmware_tests dfdyn_hal_tests
+    run_tests asan-ubsan --label-regex '^(firmware|hal|embedding)$'
 }
 test_sanitized_tools() {
     build asan-ubsan dfdyn_tools_tests

@@ -59,6 +59,20 @@ void ArrivalClock::drained(std::int64_t newest_ns, std::int64_t now_ns, std::int
     drained_ns_ = now_ns;
 }
 
+void LoopPort::follow_ticks(std::int64_t tick_ns) noexcept {
+    constexpr std::int64_t longest_wait = 1000; // ticks
+    const std::int64_t jump_ns = tick_ns - next_tick_ns_.value_or(tick_ns);
+    ticks_across_ = std::max(ticks_across_ - 1, 0);
+    if (2 * std::abs(jump_ns) > period_ns_) {
+        set_ns_ += jump_ns;
+        // readings have to overtake those from before
+        const std::int64_t back = std::clamp<std::int64_t>(-jump_ns / period_ns_, 0, longest_wait);
+        ticks_across_ = delay_ticks_ + static_cast<int>(back);
+        ++counters_.clock_jumps;
+    }
+    next_tick_ns_ = tick_ns + period_ns_;
+}
+
 void LoopPort::follow_clock(const BusSample& sample, std::int64_t now_ns) noexcept {
     const std::int64_t age_ns = std::ranges::min(sample.position_age_ns);
     if (age_ns < std::numeric_limits<std::int64_t>::max()) {
@@ -82,11 +96,13 @@ bool LoopPort::find_missing(const BusSample& sample, std::int64_t now_ns) {
 }
 
 LoopInput LoopPort::sense(std::int64_t tick_ns, std::int64_t now_ns) {
+    follow_ticks(tick_ns);
     LoopInput input;
-    input.time_ns = tick_ns - delay_ticks_ * period_ns_;
+    const std::int64_t due_ns = tick_ns - delay_ticks_ * period_ns_;
+    input.time_ns = due_ns - set_ns_;
     input.bus_lost = bus_lost_;
     const std::optional<std::int64_t> instant =
-        timer_ ? std::optional(input.time_ns - clock_.correction_ns()) : moment_;
+        timer_ ? std::optional(due_ns - clock_.correction_ns()) : moment_;
     if (!instant) {
         ++counters_.incomplete;
         clock_.drained(now_ns);
@@ -96,7 +112,8 @@ LoopInput LoopPort::sense(std::int64_t tick_ns, std::int64_t now_ns) {
     const BusSample& sample = arm_->assemble(*instant, now_ns);
     const std::int64_t correction_ns = clock_.correction_ns();
     follow_clock(sample, now_ns);
-    const bool corrected = timer_ && clock_.correction_ns() != correction_ns; // the instant was a wrong one
+    // or the instant was a wrong one
+    const bool corrected = ticks_across_ > 0 || (timer_ && clock_.correction_ns() != correction_ns);
     if (!sample.valid()) {
         ++counters_.invalid;
         counters_.last_reason = sample.position_reason;
@@ -109,7 +126,7 @@ LoopInput LoopPort::sense(std::int64_t tick_ns, std::int64_t now_ns) {
         return input;
     }
     position_ = Eigen::Map<const Eigen::VectorXd>(sample.position.data(), position_.size());
-    input.time_ns = *instant + clock_.correction_ns();
+    input.time_ns = *instant + clock_.correction_ns() - set_ns_;
     input.position = &position_;
     input.missing = find_missing(sample, now_ns) ? &missing_ : nullptr;
     if (measures_torque_ && sample.output_valid()) {

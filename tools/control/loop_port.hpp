@@ -77,9 +77,11 @@ class LoopPort {
         }
     }
 
-    /// The measurements for the tick that was due at `tick_ns`; refers to this port. A joint is
-    /// missing in it whose value is held from the reading that the sample before had. Devices are returning
-    /// while they qualify, or while their clock is not believed or corrected (hal::Reason).
+    /// The measurements for the tick that was due at `tick_ns`; refers to this port. Call it once per tick: a
+    /// `tick_ns` that is off by more than half a period from the one before shows that the clock of both was
+    /// set, and the measurements go on in the time from before. A joint is missing in it whose value is held
+    /// from the reading that the sample before had. Devices are returning while they qualify, or while their
+    /// clock is not believed or corrected (hal::Reason).
     LoopInput sense(std::int64_t tick_ns, std::int64_t now_ns);
 
     /// Sends a command, which is kept as the torque of the next tick where the bus has no measured one.
@@ -97,6 +99,7 @@ class LoopPort {
     static constexpr std::int64_t request_period_ns = 100'000'000;
 
     void count(std::size_t frames) noexcept;
+    void follow_ticks(std::int64_t tick_ns) noexcept;
     void follow_clock(const BusSample& sample, std::int64_t now_ns) noexcept;
     bool find_missing(const BusSample& sample, std::int64_t now_ns);
 
@@ -110,6 +113,9 @@ class LoopPort {
     bool timer_, measures_torque_;
     int delay_ticks_;
     std::int64_t period_ns_, latency_ns_;
+    std::optional<std::int64_t> next_tick_ns_;
+    std::int64_t set_ns_ = 0; ///< by how much the ticks' clock was set since the first
+    int ticks_across_ = 0;    ///< to come, whose instant is not clearly after that
     ArrivalClock clock_;
     std::unique_ptr<BusArm> arm_;
     TorqueFrames commands_;

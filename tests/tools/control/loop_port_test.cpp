@@ -178,6 +178,31 @@ TEST_CASE("after a small jump of the bus' clock samples are on the clock of the 
     CHECK(line.port().counters().clock_jumps == 1);
 }
 
+TEST_CASE(
+    "a clock of ticks and stamps that is set by some periods leaves the measurements' times as they were") {
+    const std::string trigger = GENERATE(at_sync, at_set, at_timer);
+    const int periods = GENERATE(-4, -2, -1, 1, 2);
+    CAPTURE(trigger, periods);
+    Line line(one_drive(trigger));
+    int tick = 0;
+    for (; tick < 50; ++tick) {
+        line.tick(at(tick));
+    }
+    line.bus.time_ns += periods * period;
+    int used = 0;
+    for (int after = 0; after < 30; ++after, ++tick) {
+        const LoopInput input = line.tick(at(tick));
+        if (input.position != nullptr && input.missing == nullptr) {
+            ++used;
+            const std::int64_t measured = tick + 1 - line.port().delay_ticks(); // tick 0 was at one period
+            CHECK(input.time_ns == measured * period);
+            CHECK((*input.position)[0] == Approx(at(tick - line.port().delay_ticks())).margin(1e-5));
+        }
+    }
+    CHECK(used > 20);
+    CHECK(line.port().counters().clock_jumps == 1);
+}
+
 TEST_CASE("ticks for which no sample becomes complete are counted") {
     Line line(one_drive(at_set));
     for (int tick = 0; tick < 30; ++tick) {
