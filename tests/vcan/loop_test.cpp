@@ -34,7 +34,7 @@ std::string call(const std::string& arguments, const std::string& scenario = "")
 }
 
 /// Both programs print so many lines when they end.
-constexpr std::size_t loop_lines = 3, plant_lines = 2;
+constexpr std::size_t loop_lines = 4, plant_lines = 2;
 
 void pause(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
 
@@ -122,6 +122,48 @@ TEST_CASE("a plant loses the frames that its scenario's faults say, from their t
     CAPTURE(said);
     CHECK_THAT(said, ContainsSubstring("stopped (no_position)"));
     CHECK(std::abs(number_after(said, "ticks, ") - 155) < 15); // followed the reference, at 100 Hz
+}
+
+TEST_CASE("over three lost cycles and a loop that is late no command steps by a tenth of its limit",
+          "[virtual_time]") {
+    const TemporaryDirectory directory;
+    std::string text = file_content(data + "/scenarios/small_arm_loop.json");
+    const std::string place = R"("encoders")";
+    text.replace(text.find(place), place.size(),
+                 R"("faults": [{"kind": "cycles_lost", "cycles": 3, "at_s": 1}], "encoders")");
+    const std::string scenario = directory.write("s.json", text);
+    const std::string said = undisturbed([&] {
+        const Background plant(call("plant --can vcan0", scenario));
+        const Background loop(call("loop --can vcan0", scenario));
+        pause(2000);
+        loop.signal(SIGSTOP);
+        pause(25); // two and a half of its periods
+        loop.signal(SIGCONT);
+        pause(1000);
+        loop.signal(SIGINT);
+        return loop.output(loop_lines);
+    });
+    CAPTURE(said);
+    CHECK_THAT(said, ContainsSubstring("stopped (requested)"));
+    CHECK(number_after(said, "with joints missing, ") >= 3); // ticks whose sample was not believed
+    CHECK(number_after(said, "from tick to tick, by ") < 8); // limits: 80 and 40 N·m
+    CHECK(number_after(said, ", ", "by ") < 4);
+}
+
+TEST_CASE("a signal takes what a loop has learned out, and puts it back", "[virtual_time]") {
+    const std::string said = undisturbed([] {
+        const Background plant(call("plant --can vcan0"));
+        const Background loop(call("loop --can vcan0"));
+        pause(800);
+        for (int i = 0; i < 2; ++i) {
+            loop.signal(SIGUSR1);
+            pause(300);
+        }
+        loop.signal(SIGINT);
+        return loop.output(loop_lines);
+    });
+    CAPTURE(said);
+    CHECK_THAT(said, ContainsSubstring("stopped (requested)")); // whose default is to end a program
 }
 
 TEST_CASE("a loop whose interface goes down stops by itself, and says why", "[virtual_time]") {

@@ -190,11 +190,10 @@ int simulate(const LoopOptions& options) {
             runs.push_back(*run);
         }
     }
-    if (stopped) {
-        return 1;
+    if (!runs.empty()) {
+        show_tracking(parts, options, runs);
     }
-    show_tracking(parts, options, runs);
-    return 0;
+    return stopped ? 1 : 0;
 }
 
 int run_on_bus(const LoopOptions& options) {
@@ -205,9 +204,11 @@ int run_on_bus(const LoopOptions& options) {
         make_control_loop(parts.robot, parts.scenario, shown(options.scenario),
                           parts.model ? &*parts.model : nullptr, port.delay_ticks(), options.limits);
     LoopLog log{Tracking(options.window_s), make_recording(parts, options)};
-    const PaceOutcome pace =
-        run_loop(*loop, port, {options.interface, period_s, options.duration_s, stop_on_signals()}, log);
+    const PaceOutcome pace = run_loop(
+        *loop, port,
+        {options.interface, period_s, options.duration_s, stop_on_signals(), &toggle_on_signal()}, log);
     print_loop(std::cout, *loop);
+    print_peaks(std::cout, log.peaks);
     print_port(std::cout, port.counters());
     print_pace(std::cout, pace);
     show_changes(options, *loop);
@@ -278,6 +279,14 @@ void add_limits(CLI::App& command, LoopLimits& limits) {
         ->check(CLI::NonNegativeNumber)
         ->type_name("B");
     command
+        .add_option(
+            "--learned-limit", limits.learned_limit,
+            "What is learned adds at most this share of the torque limit to the rigid body's torque; one "
+            "value, or one per joint; 0: it is learned, not used. None: 0.5")
+        ->delimiter(',')
+        ->check(CLI::Range(0.0, 1.0))
+        ->type_name("F");
+    command
         .add_option("--stop", limits.mode,
                     "After a stop: hold the arm until told to end, or go limp 0.2 s after the brakes were "
                     "requested")
@@ -324,6 +333,8 @@ void add_loop_command(CLI::App& app, Command& chosen) {
         "Examples:\n"
         "  dfdyn loop --simulate --robot arm.urdf --scenario s.json --model m.json --duration 90 -o out\n"
         "  dfdyn loop --robot arm.urdf --scenario s.json --model m.json --bus bus.json --can can0\n"
+        "With --can the signal SIGUSR1 takes what is learned out of the torque, and back in, without a "
+        "step.\n"
         "Kinds of faults of a scenario: " +
         fault_kind_names("and") +
         ".\n"

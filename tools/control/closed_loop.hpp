@@ -41,6 +41,8 @@ class ClosedLoop {
     void run_to(double time_s, const std::function<void(const ClosedLoopInstant&)>& on_tick);
 
     const ControlLoop& loop() const noexcept { return *loop_; }
+    /// Uses what is learned, or leaves it out; see FeedForward.
+    void enable_learned(bool on) noexcept { loop_->enable_learned(on); }
     SimulatedPlant& plant() noexcept { return plant_; }
 
   private:

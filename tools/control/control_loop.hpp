@@ -106,6 +106,9 @@ class ControlLoop {
     const LoopCounters& counters() const noexcept { return counters_; }
     const FeedForward& feed_forward() const noexcept { return feed_forward_; }
 
+    /// Uses what is learned, or leaves it out; see FeedForward.
+    void enable_learned(bool on) noexcept { feed_forward_.enable_learned(on); }
+
   private:
     using Observer = DisturbanceObserver<double, dynamic>;
 

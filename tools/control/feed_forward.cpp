@@ -25,8 +25,8 @@ JointVector joint_vector(const Torques& values) {
 
 FeedForward::FeedForward(const Robot& nominal, const JointVector& rotor_inertia,
                          std::optional<LearnedFeedForward> learned, double period_s, int knot_ticks,
-                         const JointVector& limit)
-    : dynamics_(nominal, rotor_inertia), knot_ticks_(knot_ticks), cap_(limit / 2),
+                         const JointVector& limit, const JointVector& learned_limit)
+    : dynamics_(nominal, rotor_inertia), knot_ticks_(knot_ticks), cap_(learned_limit),
       inertia_(JointVector::Zero(dynamics_.joint_count())) {
     constexpr double full_scale_s = 0.05;
     if (learned) {
@@ -48,6 +48,12 @@ JointVector FeedForward::nominal_torque(const Reference& reference) {
 JointVector FeedForward::gravity(const JointVector& position) {
     const JointVector rest = JointVector::Zero(position.size());
     return nominal_torque({position, rest, rest});
+}
+
+void FeedForward::enable_learned(bool on) noexcept {
+    if (core_) {
+        core_->enable(on);
+    }
 }
 
 void FeedForward::begin(std::int64_t time_ns, const Reference& start) {

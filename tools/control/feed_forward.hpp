@@ -12,14 +12,17 @@
 namespace dfdyn::tools {
 
 /// The torque that the reference takes: of the nominal rigid body, and of a learned model beside it, as
-/// dfdyn::FeedForward puts them together. What is learned adds at most half the torque limit, within 0.05 s.
+/// dfdyn::FeedForward puts them together. What is learned changes by the torque limit in 0.05 s at most.
 class FeedForward {
   public:
     /// `learned`: none, or a model; `knot_ticks`: ticks of its sample period. `limit`: of each joint's
-    /// torque, N·m.
+    /// torque, N·m; `learned_limit`: of what is learned beside the nominal rigid body.
     FeedForward(const Robot& nominal, const JointVector& rotor_inertia,
                 std::optional<LearnedFeedForward> learned, double period_s, int knot_ticks,
-                const JointVector& limit);
+                const JointVector& limit, const JointVector& learned_limit);
+
+    /// Uses what is learned, or leaves it out; without a step in either case. It is learned in both.
+    void enable_learned(bool on) noexcept;
 
     /// The motion begins at `start`, at rest.
     void begin(std::int64_t time_ns, const Reference& start);

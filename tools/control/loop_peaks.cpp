@@ -24,19 +24,27 @@ std::string listed(const JointVector& values, int decimals) {
 
 } // namespace
 
-void LoopPeaks::add(const JointVector& command, const JointVector& velocity) {
+void LoopPeaks::add(const JointVector& command) {
     if (last_command_.size() > 0) {
         raise(torque_step_, (command - last_command_).cwiseAbs());
     }
-    raise(speed_, velocity.cwiseAbs());
     last_command_ = command;
 }
 
+void LoopPeaks::add(const JointVector& command, const JointVector& velocity) {
+    add(command);
+    raise(speed_, velocity.cwiseAbs());
+}
+
 void print_peaks(std::ostream& out, const LoopPeaks& peaks) {
-    if (peaks.torque_step().size() > 0) {
-        out << "peaks: command, from tick to tick, by " << listed(peaks.torque_step(), 1)
-            << " N·m; joints at " << listed(peaks.speed(), 2) << " rad/s\n";
+    if (peaks.torque_step().size() == 0) {
+        return;
     }
+    out << "peaks: command, from tick to tick, by " << listed(peaks.torque_step(), 1) << " N·m";
+    if (peaks.speed().size() > 0) {
+        out << "; joints at " << listed(peaks.speed(), 2) << " rad/s";
+    }
+    out << '\n';
 }
 
 } // namespace dfdyn::tools

@@ -7,15 +7,17 @@
 
 namespace dfdyn::tools {
 
-/// The hardest that a simulated arm was treated, joint by joint.
+/// The hardest that an arm was treated, joint by joint.
 class LoopPeaks {
   public:
-    /// One tick: its command (N·m), and the true velocity (rad/s) when it began.
+    /// The command of one tick, N·m.
+    void add(const JointVector& command);
+    /// The same, and the true velocity (rad/s) when the tick began.
     void add(const JointVector& command, const JointVector& velocity);
 
     /// N·m, from one tick's command to the next one's; empty before the second.
     const JointVector& torque_step() const noexcept { return torque_step_; }
-    /// rad/s; empty before the first.
+    /// rad/s; empty where none was known.
     const JointVector& speed() const noexcept { return speed_; }
 
   private:

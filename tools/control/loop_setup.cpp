@@ -199,8 +199,13 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
                              " has learned, whole, found something else");
         }
     }
+    JointVector learned_limit = config.torque_limit / 2;
+    if (!limits.learned_limit.empty()) {
+        learned_limit =
+            per_joint(limits.learned_limit, robot, "--learned-limit").cwiseProduct(config.torque_limit);
+    }
     FeedForward feed_forward(robot, scenario.actuators.rotor_inertia, std::move(model), config.period_s,
-                             config.knot_ticks, config.torque_limit);
+                             config.knot_ticks, config.torque_limit, learned_limit);
     std::unique_ptr<Task> task = make();
     return std::make_unique<ControlLoop>(std::move(config), std::move(feed_forward), std::move(task));
 }

@@ -28,6 +28,7 @@ struct LoopLimits {
     std::vector<double> speed;           ///< rad/s, m/s
     StopMode mode = StopMode::hold;
     std::vector<double> observer_bandwidth{}; ///< rad/s; 0: no observer
+    std::vector<double> learned_limit{}; ///< shares of the torque limit that is added to the rigid body's
 };
 
 /// Limits of a loop with these gains and torque limits:

@@ -49,6 +49,7 @@ PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, 
         LoopInput input = port.sense(due_ns, bus.now_ns());
         input.deadline_missed = missed;
         input.stop_requested = over;
+        loop.enable_learned(run.learned_off == nullptr || !*run.learned_off);
         const JointVector& torque = loop.tick(input);
         if (loop.state() == LoopState::running) {
             log.tracking.add(run.period_s * static_cast<double>(loop.counters().running - 1), loop.error(),
@@ -56,6 +57,7 @@ PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, 
             log.recording.add(input);
         }
         if (loop.state() != LoopState::waiting) {
+            log.peaks.add(torque);
             port.send(bus, torque);
         }
         if (loop.brake_requested() && !brakes) {

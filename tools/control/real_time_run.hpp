@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/control/loop_peaks.hpp"
 #include "tools/control/loop_port.hpp"
 #include "tools/control/loop_recording.hpp"
 #include "tools/control/pace.hpp"
@@ -18,6 +19,8 @@ struct RealTimeRun {
     double period_s = 0.001;
     double duration_s = 0;         ///< 0: until `stop`
     const std::atomic<bool>& stop; ///< becomes true at a signal
+    const std::atomic<bool>* learned_off =
+        nullptr; ///< of a loop: while it is true what is learned is not used
 };
 
 struct PaceOutcome {
@@ -29,6 +32,7 @@ struct PaceOutcome {
 struct LoopLog {
     Tracking tracking; ///< by measured positions
     LoopRecording recording;
+    LoopPeaks peaks{}; ///< of the commands
 };
 
 /// Runs `loop` on a CAN interface, a tick per period, each at an absolute time, until it is done; a stop is

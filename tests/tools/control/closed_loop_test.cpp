@@ -81,6 +81,41 @@ TEST_CASE("an observer takes an unknown payload over within a second, learning l
     CHECK(rms(learned, 8000) < rms(observed, 8000));
 }
 
+TEST_CASE("where what is learned may add nothing the arm moves as without it, and it is learned") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const LoopModel model = random_model(engine);
+    LoopLimits limits = without_observer();
+    limits.learned_limit = {0};
+    ClosedLoop loop(test_pendulum(), loaded_scenario(), "test", &model, nullptr, limits);
+    std::vector<double> shadowed;
+    loop.run_to(5, [&](const ClosedLoopInstant& instant) { shadowed.push_back(instant.error[0]); });
+    CHECK(shadowed == errors(loaded_scenario(), 5));
+    CHECK(loop.loop().feed_forward().learned_share()[0] > 0.5);
+}
+
+TEST_CASE("what is learned is taken out of a running loop, and put back, without a step") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const LoopModel model = random_model(engine);
+    ClosedLoop loop(test_pendulum(), loaded_scenario(), "test", &model, nullptr, without_observer());
+    double command = 0, step = 0;
+    const auto run_to = [&](double time_s) {
+        loop.run_to(time_s, [&](const ClosedLoopInstant& instant) {
+            step = std::max(step, std::abs(instant.command[0] - command));
+            command = instant.command[0];
+        });
+        return loop.loop().feed_forward().learned_share()[0];
+    };
+    CHECK(run_to(8) > 0.9);
+    step = 0;
+    CHECK(run_to(9) > 0.9);
+    const double usual = step;
+    loop.enable_learned(false);
+    CHECK(run_to(9.3) == 0);
+    loop.enable_learned(true);
+    CHECK(run_to(10) > 0.9);
+    CHECK(step < usual + 0.4); // N·m, of 20
+}
+
 TEST_CASE("frames between loop and arm cost no more than their quantisation, and a period where SYNC does") {
     const double direct = rms(errors(loaded_scenario(), 4), 0);
     const BusDescription by_sync = one_drive(at_sync);

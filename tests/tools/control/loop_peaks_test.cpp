@@ -29,4 +29,13 @@ TEST_CASE("peaks are the largest step between two commands, and the largest spee
     CHECK(text.str() == "peaks: command, from tick to tick, by 12.0, 3.0 N·m; joints at 3.00, 0.30 rad/s\n");
 }
 
+TEST_CASE("where no speed is known the peaks are those of the commands") {
+    LoopPeaks peaks;
+    peaks.add(JointVector::Constant(1, 2));
+    peaks.add(JointVector::Constant(1, -3));
+    std::ostringstream text;
+    print_peaks(text, peaks);
+    CHECK(text.str() == "peaks: command, from tick to tick, by 5.0 N·m\n");
+}
+
 } // namespace loop_peaks_test
