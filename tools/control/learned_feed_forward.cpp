@@ -26,6 +26,15 @@ void check_model(const TrainedModel& model, int joints, const std::string& sourc
     }
 }
 
+/// The model with less patience: an arm that has changed is to be learned at once. The share of what is
+/// learned is judged each second anyway, so that learning a push of half a second costs little.
+TrainedModel impatient(TrainedModel model) {
+    constexpr double patience_s = 0.5;
+    const int samples = static_cast<int>(std::ceil(patience_s / model.sample_period_s));
+    model.limits.innovation_patience = std::min(model.limits.innovation_patience, samples);
+    return model;
+}
+
 /// What suffices to learn a sample in `ticks` slices, in each of which as much may be left over as a slice
 /// cannot use.
 Budget share_of(const Cost& cost, int ticks) {
@@ -39,7 +48,7 @@ LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prio
     : sample_period_ns_(std::llround(model.sample_period_s * 1e9)),
       lags_(std::max(model.input.lags, model.physics ? model.physics->motion.lags : 0)) {
     check_model(model, joints, source);
-    learner_ = make_estimator(model, from_prior);
+    learner_ = make_estimator(impatient(model), from_prior);
     if (monitor != nullptr) {
         auto watched = monitored(std::move(learner_), *monitor);
         monitor_ = watched.get();
