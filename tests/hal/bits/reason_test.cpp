@@ -41,6 +41,8 @@ constexpr std::pair<int, const char*> published_reasons[] = {
     {51, "wrong_length"},
     {52, "wrong_frame_type"},
     {53, "id_collision"},
+    {60, "full_scale_contradicted"},
+    {61, "device_restarted"},
 };
 
 } // namespace

@@ -19,7 +19,7 @@ StrainBoard left_arm_board() {
     StrainBoard board(0x0D);
     board.decode(frame_of(0x2D0, {0x18, 0x00, 0x05, 0xDC}));
     board.decode(frame_of(0x2D0, {0x18, 0x01, 0x05, 0xDC}));
-    board.decode(frame_of(0x2D0, {0x18, 0x12, 0x07, 0xD0})); // of regulation set 1
+    board.decode(frame_of(0x2D0, {0x18, 0x02, 0x07, 0xD0}));
     board.decode(frame_of(0x2D0, {0x18, 0x03, 0x00, 0x23}));
     board.decode(frame_of(0x2D0, {0x18, 0x04, 0x00, 0x23}));
     board.decode(frame_of(0x2D0, {0x18, 0x05, 0x00, 0x19}));
@@ -69,6 +69,50 @@ TEST_CASE("a strain board gives no wrench before all six full scales are known a
         CHECK(board.wrench(some_force, some_torque).reason == Reason::full_scale_implausible);
     }
     CHECK(board.full_scale().changed() == 3);
+}
+
+TEST_CASE("a reply about another set of a strain board's calibration changes nothing, and is counted") {
+    StrainBoard board = left_arm_board();
+    for (std::uint8_t channel = 0; channel < 6; ++channel) {
+        const auto of_set_two = static_cast<std::uint8_t>(0x20 | channel);
+        board.decode(frame_of(0x2D0, {0x18, of_set_two, 0x01, 0xF4}));
+    }
+    CHECK(board.wrench(some_force, some_torque).reason == Reason::ok);
+    CHECK(board.wrench(some_force, some_torque).value[0] == Approx(750));
+    CHECK(board.other_sets() == 6);
+    CHECK(board.last_other_set() == 2);
+    StrainBoard fresh(0x0D); // nor does it make a full scale known
+    for (int channel = 0; channel < 6; ++channel) {
+        fresh.decode(fresh.encode_full_scale(channel, 500, 1));
+    }
+    CHECK(fresh.full_scale().reason() == Reason::waiting_for_full_scale);
+    fresh.use_calibration_set(1);
+    for (int channel = 0; channel < 6; ++channel) {
+        fresh.decode(fresh.encode_full_scale(channel, 500, 1));
+    }
+    CHECK(fresh.full_scale().reason() == Reason::ok);
+}
+
+TEST_CASE("a reply that says the same of another set is no disagreement") {
+    StrainBoard board = left_arm_board();
+    board.decode(board.encode_full_scale(3, 35, 1));
+    CHECK(board.other_sets() == 0);
+}
+
+TEST_CASE("a strain board that contradicts its description gives no wrench until it agrees") {
+    StrainBoard board(0x0D);
+    const double described[] = {1500, 1500, 2000, 35, 35, 25};
+    for (int channel = 0; channel < 6; ++channel) {
+        board.describe_full_scale(channel, described[channel]);
+    }
+    CHECK(board.wrench(some_force, some_torque).reason == Reason::ok);
+    board.decode(board.encode_full_scale(0, 500));
+    CHECK(board.wrench(some_force, some_torque).reason == Reason::full_scale_contradicted);
+    board.decode(board.encode_full_scale(1, 1500));
+    CHECK(board.wrench(some_force, some_torque).reason == Reason::full_scale_contradicted);
+    board.decode(board.encode_full_scale(0, 1500));
+    CHECK(board.wrench(some_force, some_torque).reason == Reason::ok);
+    CHECK(board.wrench(some_force, some_torque).value[0] == Approx(750));
 }
 
 TEST_CASE("a strain board is asked for a full scale, and its other answers are nothing") {

@@ -38,9 +38,41 @@ TEST_CASE("a full scale that cannot be is refused, also before all are known") {
         gate.report(1, wrong);
         CHECK(gate.reason() == Reason::full_scale_implausible);
         gate.report(1, 1500); // asked again
+        CHECK(gate.reason() == Reason::full_scale_contradicted);
+        gate.report(0, 1500);
+        gate.report(2, 35);
         CHECK(gate.reason() == Reason::ok);
         CHECK(gate.changed() == 2);
     }
+}
+
+TEST_CASE("a full scale that changes is in doubt until all channels are told again, and agree") {
+    Gate gate = complete_gate();
+    gate.report(0, 500);
+    CHECK(gate.reason() == Reason::full_scale_contradicted);
+    gate.report(1, 1500);
+    CHECK(gate.reason() == Reason::full_scale_contradicted);
+    gate.report(0, 1500); // the other again: from the start
+    gate.report(2, 35);
+    CHECK(gate.reason() == Reason::full_scale_contradicted);
+    gate.report(1, 1500);
+    CHECK(gate.reason() == Reason::ok);
+    CHECK(gate[0] == 1500);
+}
+
+TEST_CASE("full scales that are described are never replaced") {
+    Gate gate({{{10, 5000}, {10, 5000}, {0.5, 500}}});
+    gate.describe(0, 1500);
+    gate.describe(1, 1500);
+    gate.describe(2, 35);
+    CHECK(gate.reason() == Reason::ok);
+    gate.report(1, 500);
+    gate.report(0, 1500);
+    CHECK(gate.reason() == Reason::full_scale_contradicted);
+    CHECK(gate[1] == 1500);
+    CHECK(gate.changed() == 1);
+    gate.report(1, 1500);
+    CHECK(gate.reason() == Reason::ok);
 }
 
 TEST_CASE("a channel that the sensor does not have is ignored") {

@@ -49,11 +49,13 @@ enum class Reason : std::uint8_t {
     /// The full scale that the sensor reported, or the calibration given, cannot be: 0, a default, not a
     /// number.
     full_scale_implausible = 41,
-    /// The device itself says that its encoder is in error.
+    /// The device itself says that its encoder is in error. Ends when it says otherwise.
     encoder_fault = 42,
-    /// The device itself reports a fault. Cure: read its error code; clear the fault.
+    /// The device itself reports a fault. Ends when it reports none. Cure: read its error code; clear the
+    /// fault.
     device_fault = 43,
-    /// The device is not in its operational state. Cure: start the node.
+    /// The device is not in its operational state. Ends with its heartbeat of that state, or where it sends
+    /// none with the next values. Cure: start the node.
     device_not_operational = 44,
     /// The device's heartbeat is missing, which must say that the values are good. Cure: enable it.
     heartbeat_missing = 45,
@@ -64,7 +66,8 @@ enum class Reason : std::uint8_t {
     time_not_increasing = 47,
     /// The operating system or the controller dropped frames. Cure: read more often; a larger buffer.
     frames_lost = 48,
-    /// The controller is bus-off. Cure: find the fault on the bus; let it restart (restart-ms).
+    /// The controller is bus-off. Ends with its restart, or with the next frame that it receives. Cure: find
+    /// the fault on the bus; let it restart (restart-ms).
     bus_off = 49,
     /// The interface is down or gone.
     interface_down = 50,
@@ -75,10 +78,17 @@ enum class Reason : std::uint8_t {
     /// Frames of one identifier come faster than one device sends them: two devices share it. Cure: give one
     /// of them another.
     id_collision = 53,
+
+    /// The sensor reported another full scale than described, or than before. Ends when it agrees with its
+    /// description, or without one when it has reported all channels again. Cure: ask for all of them; check
+    /// which set of its calibration is in use.
+    full_scale_contradicted = 60,
+    /// The device restarted between two values: its zero may have moved. It must qualify again.
+    device_restarted = 61,
 };
 
 /// One past the largest number of a reason; sizes tables indexed by it.
-inline constexpr int reason_count = 54;
+inline constexpr int reason_count = 62;
 
 struct NamedReason {
     Reason reason;
@@ -116,6 +126,8 @@ inline constexpr NamedReason reason_names[] = {
     {Reason::wrong_length, "wrong_length"},
     {Reason::wrong_frame_type, "wrong_frame_type"},
     {Reason::id_collision, "id_collision"},
+    {Reason::full_scale_contradicted, "full_scale_contradicted"},
+    {Reason::device_restarted, "device_restarted"},
 };
 
 /// The reason's name as written in reports and logs ("ok" for none). O(number of reasons).

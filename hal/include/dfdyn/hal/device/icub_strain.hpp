@@ -15,12 +15,16 @@ namespace dfdyn::hal::icub {
 /// | 0x30A + 16 A | 6 or 7 | force x y z: u16 little-endian, offset binary (0x8000 is 0) |
 /// | 0x30B + 16 A | 6 or 7 | torque x y z, likewise |
 /// | 0x200 + A, to the board | 2 | 0x18, channel: asks for a full scale |
-/// | 0x200 + 16 A, from it | 4 | 0x18, channel (low nibble), full scale (N, N·m) u16 big-endian |
+/// | 0x200 + 16 A, from it | 4 | 0x18, set and channel (nibbles), full scale (N, N·m) u16 big-endian |
 ///
 /// The seventh byte comes only while a strain gauge is saturated; the board then sends its last good wrench
 /// once more, so that such a frame is old whatever its time. A gauge takes part in all six values. No wrench
 /// before all six full scales are known: ask for them with `request_full_scale` until `full_scale().reason()`
 /// is ok.
+///
+/// A strain2 has several sets of calibration. A reply counts only if it is about the set in use, which is
+/// number 0 in requests and replies, or about `use_calibration_set`. One about another set, which some other
+/// program asked for, is counted (`other_sets`) and changes nothing.
 class StrainBoard {
   public:
     using FullScale = FullScaleGate<6>;
@@ -70,11 +74,24 @@ class StrainBoard {
 
     [[nodiscard]] constexpr const FullScale& full_scale() const noexcept { return full_scale_; }
 
-    /// The board's answer to such a request.
-    [[nodiscard]] Frame encode_full_scale(int channel, double full_scale) const noexcept {
+    /// The full scale of a channel, 0 … 5, as described: reports of the board have to agree with it.
+    constexpr void describe_full_scale(int channel, double full_scale) noexcept {
+        full_scale_.describe(channel, full_scale);
+    }
+
+    /// The number of the set in use, where the board's replies name it: 1 … 15; 0: they do not.
+    constexpr void use_calibration_set(int set) noexcept { set_ = set; }
+
+    /// How many full scales of other sets, different from those in use, were reported, and the last one's
+    /// set.
+    [[nodiscard]] constexpr std::uint64_t other_sets() const noexcept { return other_sets_; }
+    [[nodiscard]] constexpr int last_other_set() const noexcept { return last_other_set_; }
+
+    /// The board's answer to such a request, about a set of its calibration.
+    [[nodiscard]] Frame encode_full_scale(int channel, double full_scale, int set = 0) const noexcept {
         Frame frame = make_frame(reply_id(), 4);
         frame.data[0] = get_full_scale;
-        frame.data[1] = static_cast<std::uint8_t>(channel);
+        frame.data[1] = static_cast<std::uint8_t>(set << 4 | channel);
         store_big(frame.data.data() + 2, hal::saturated<std::uint16_t>(full_scale));
         return frame;
     }
@@ -131,12 +148,23 @@ class StrainBoard {
         if (const Reason fault = check_form(frame, 4); fault != Reason::ok) {
             return rejected(fault);
         }
-        full_scale_.report(frame.data[1] & 0x0F, load_big<std::uint16_t>(frame.data.data() + 2));
+        const int set = frame.data[1] >> 4;
+        const int channel = frame.data[1] & 0x0F;
+        const double value = load_big<std::uint16_t>(frame.data.data() + 2);
+        if (set == 0 || set == set_) {
+            full_scale_.report(channel, value);
+        } else if (!full_scale_.agrees(channel, value)) {
+            ++other_sets_;
+            last_other_set_ = set;
+        }
         return status(full_scale_.reason());
     }
 
     int address_;
     FullScale full_scale_;
+    int set_ = 0;
+    int last_other_set_ = 0;
+    std::uint64_t other_sets_ = 0;
 };
 
 static_assert(WrenchSource<StrainBoard>);

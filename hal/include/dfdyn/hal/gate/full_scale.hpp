@@ -10,8 +10,11 @@
 
 namespace dfdyn::hal {
 
-/// The full scales of a sensor's channels, as the sensor reports them. Gives none until all are known and can
-/// be: with a full scale of 0 a wrench looks healthy and is nothing, with a default it is off by a factor.
+/// The full scales of a sensor's channels, as described or as the sensor reports them. Gives none until all
+/// are known and can be: with a full scale of 0 a wrench looks healthy and is nothing, with a default or with
+/// that of another calibration it is off by a factor. So a report never replaces one silently:
+/// - where it contradicts the description, there is none until a report of that channel agrees with it;
+/// - where it contradicts an earlier report, there is none until all channels were reported again, alike.
 template <int channels>
 class FullScaleGate {
   public:
@@ -23,39 +26,74 @@ class FullScaleGate {
 
     explicit constexpr FullScaleGate(const Ranges& plausible) noexcept : plausible_(plausible) {}
 
-    /// Channel 0 … channels-1; another is ignored. The last report counts.
+    /// Of the sensor's description. Channel 0 … channels-1; another is ignored.
+    constexpr void describe(int channel, double full_scale) noexcept {
+        if (has(channel)) {
+            channel_[static_cast<std::size_t>(channel)] = {full_scale, true, true, false};
+        }
+    }
+
+    /// Of the sensor itself; channels likewise.
     constexpr void report(int channel, double full_scale) noexcept {
-        if (channel < 0 || channel >= channels) {
+        if (!has(channel)) {
             return;
         }
-        const auto index = static_cast<std::size_t>(channel);
-        changed_ += known_[index] && value_[index] != full_scale ? 1U : 0U;
-        known_[index] = true;
-        value_[index] = full_scale;
+        Channel& mine = channel_[static_cast<std::size_t>(channel)];
+        const bool agrees = !mine.known || mine.value == full_scale;
+        changed_ += agrees ? 0U : 1U;
+        if (mine.described) {
+            mine.in_doubt = !agrees;
+            return;
+        }
+        for (Channel& other : channel_) {
+            other.in_doubt = other.in_doubt || (!agrees && !other.described);
+        }
+        mine = {full_scale, true, false, false};
     }
 
     [[nodiscard]] constexpr Reason reason() const noexcept {
         Reason reason = Reason::ok;
-        for (std::size_t i = 0; i < value_.size(); ++i) {
-            if (!known_[i]) {
+        for (std::size_t i = 0; i < channel_.size(); ++i) {
+            const Channel& one = channel_[i];
+            if (!one.known) {
                 reason = Reason::waiting_for_full_scale;
-            } else if (!(value_[i] >= plausible_[i].lowest && value_[i] <= plausible_[i].highest)) {
+            } else if (!(one.value >= plausible_[i].lowest && one.value <= plausible_[i].highest)) {
                 return Reason::full_scale_implausible;
+            } else if (one.in_doubt && reason == Reason::ok) {
+                reason = Reason::full_scale_contradicted;
             }
         }
         return reason;
     }
 
     /// Of a channel; meaningful while `reason()` is ok.
-    [[nodiscard]] constexpr double operator[](std::size_t channel) const noexcept { return value_[channel]; }
+    [[nodiscard]] constexpr double operator[](std::size_t channel) const noexcept {
+        return channel_[channel].value;
+    }
 
-    /// How often a full scale was reported anew with another value.
+    /// Whether a channel has a full scale, and this one.
+    [[nodiscard]] constexpr bool agrees(int channel, double full_scale) const noexcept {
+        return has(channel) && channel_[static_cast<std::size_t>(channel)].known &&
+               channel_[static_cast<std::size_t>(channel)].value == full_scale;
+    }
+
+    /// How often a full scale was reported that differs from the one before, or from the description.
     [[nodiscard]] constexpr std::uint64_t changed() const noexcept { return changed_; }
 
   private:
+    struct Channel {
+        double value = 0;
+        bool known = false;
+        bool described = false;
+        bool in_doubt = false; ///< contradicted, and not reported again since
+    };
+
+    [[nodiscard]] static constexpr bool has(int channel) noexcept {
+        return channel >= 0 && channel < channels;
+    }
+
     Ranges plausible_;
-    std::array<double, static_cast<std::size_t>(channels)> value_{};
-    std::array<bool, static_cast<std::size_t>(channels)> known_{};
+    std::array<Channel, static_cast<std::size_t>(channels)> channel_{};
     std::uint64_t changed_ = 0;
 };
 
