@@ -109,6 +109,15 @@ std::span<const Frame> SocketCanBus::drain(std::span<Frame> into) noexcept {
     return into.first(count);
 }
 
+void SocketCanBus::wait(std::int64_t timeout_ns) const noexcept {
+    constexpr std::int64_t nanoseconds_per_s = 1'000'000'000;
+    const timespec timeout{static_cast<time_t>(timeout_ns / nanoseconds_per_s),
+                           static_cast<long>(timeout_ns % nanoseconds_per_s)};
+    // A socket of an interface that is down has no frames and is always ready, with an error.
+    pollfd waiting{state_ == BusState::interface_down ? -1 : descriptor_, POLLIN, 0};
+    ::ppoll(&waiting, 1, &timeout, nullptr);
+}
+
 /// One read: at most one frame.
 SocketCanBus::Reading SocketCanBus::read_frame(Frame& frame) noexcept {
     canfd_frame raw{};
@@ -134,7 +143,7 @@ SocketCanBus::Reading SocketCanBus::read_frame(Frame& frame) noexcept {
     frame.origin = origin_of(message.msg_flags);
     stamp(message, frame);
     ++counters_.received;
-    note_error_frame(frame, state_, counters_);
+    note_frame(frame, state_, counters_);
     return Reading::frame;
 }
 

@@ -11,7 +11,7 @@ namespace {
 using dfdyn::hal::BusCounters;
 using dfdyn::hal::BusState;
 using dfdyn::hal::Frame;
-using dfdyn::hal::note_error_frame;
+using dfdyn::hal::note_frame;
 
 struct Bytes {
     std::uint8_t controller = 0;      ///< data[1]
@@ -33,7 +33,7 @@ Frame error_frame(std::uint32_t classes, Bytes bytes = {}) {
 BusState state_after(BusState before, const std::vector<Frame>& frames) {
     BusCounters counters;
     for (const Frame& frame : frames) {
-        note_error_frame(frame, before, counters);
+        note_frame(frame, before, counters);
     }
     return before;
 }
@@ -106,13 +106,13 @@ TEST_CASE("each class of error frame counts as what it is and moves the state on
         CAPTURE(expected.classes, int(expected.bytes.controller));
         BusState state = BusState::active;
         BusCounters counters;
-        note_error_frame(error_frame(expected.classes, expected.bytes), state, counters);
+        note_frame(error_frame(expected.classes, expected.bytes), state, counters);
         CHECK(state == expected.state);
         CHECK(counted(counters) == expected.counters);
     }
 }
 
-TEST_CASE("a controller comes back from every level, and from bus-off only when it says so") {
+TEST_CASE("a controller comes back from every level, and from bus-off when it says so") {
     const Frame active = error_frame(0x004, {.controller = 0x40});
     const Frame warning = error_frame(0x004, {.controller = 0x08});
     const Frame passive = error_frame(0x004, {.controller = 0x20});
@@ -133,7 +133,7 @@ TEST_CASE("bus-off that is reported twice happened once") {
     BusState state = BusState::active;
     BusCounters counters;
     for (const std::uint32_t classes : {0x040U, 0x040U, 0x100U, 0x040U}) {
-        note_error_frame(error_frame(classes), state, counters);
+        note_frame(error_frame(classes), state, counters);
     }
     CHECK(state == BusState::off);
     CHECK(counters.bus_off == 2);
@@ -141,12 +141,24 @@ TEST_CASE("bus-off that is reported twice happened once") {
     CHECK(counters.error_frames == 4);
 }
 
-TEST_CASE("a frame that is no error frame says nothing about the bus, whatever its identifier") {
+TEST_CASE("what is received ends bus-off, what this computer sends does not") {
+    Frame data;
+    data.id = 0x281;
+    CHECK(state_after(BusState::off, {data}) == BusState::active);
+    CHECK(state_after(BusState::active, {error_frame(0x040), data, error_frame(0x040)}) == BusState::off);
+    CHECK(state_after(BusState::interface_down, {data}) == BusState::interface_down);
+    for (const auto own : {dfdyn::hal::Origin::this_socket, dfdyn::hal::Origin::this_host}) {
+        data.origin = own;
+        CHECK(state_after(BusState::off, {data}) == BusState::off);
+    }
+}
+
+TEST_CASE("a frame that is no error frame says nothing else about the bus, whatever its identifier") {
     Frame frame = error_frame(0x040, {.controller = 0xff});
     frame.error = false;
     BusState state = BusState::warning;
     BusCounters counters;
-    note_error_frame(frame, state, counters);
+    note_frame(frame, state, counters);
     CHECK(state == BusState::warning);
     CHECK(counted(counters).empty());
 }

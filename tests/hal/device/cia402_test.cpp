@@ -60,14 +60,55 @@ TEST_CASE("a synchronous drive measures at the SYNC before") {
 
 TEST_CASE("a drive that is not operational has no values") {
     Cia402Drive drive(elbow_config());
-    for (const std::uint8_t state :
-         {std::uint8_t{0}, std::uint8_t{4}, std::uint8_t{127}}) { // boot-up, stopped, pre-operational
+    for (const std::uint8_t state : {std::uint8_t{4}, std::uint8_t{127}}) { // stopped, pre-operational
         CHECK(drive.decode(frame_of(0x705, {state})).reason == Reason::device_not_operational);
         CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::device_not_operational);
         CHECK(drive.decode(frame_of(0x485, {0, 0})).joint[0].effort_reason == Reason::device_not_operational);
         CHECK(drive.decode(frame_of(0x705, {5})).reason == Reason::ok);
         CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::ok);
     }
+}
+
+TEST_CASE(
+    "a boot-up of a drive without heartbeat ends with its PDOs, which only an operational drive sends") {
+    Cia402Drive drive(elbow_config());
+    CHECK(drive.decode(frame_of(0x705, {0})).reason == Reason::device_not_operational);
+    CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::ok);
+    const Frame torque = frame_of(0x485, {1, 0}, 7 * ms);
+    CHECK(drive.decode(torque).joint[0].effort_reason == Reason::ok);
+    // in the middle: its zero may be another one now, so that it must show itself anew
+    CHECK(drive.decode(frame_of(0x705, {0})).reason == Reason::device_restarted);
+    CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::device_restarted);
+    CHECK(drive.decode(torque).joint[0].effort_reason == Reason::device_restarted);
+    CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::ok);
+    CHECK(drive.decode(torque).joint[0].effort_reason == Reason::ok);
+}
+
+TEST_CASE("a boot-up of a drive with heartbeat ends with the heartbeat of an operational drive") {
+    Cia402Drive::Config config = elbow_config();
+    config.heartbeat_timeout_ns = 100 * ms;
+    Cia402Drive drive(config);
+    drive.decode(frame_of(0x705, {0}));
+    CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::device_not_operational);
+    drive.decode(frame_of(0x705, {5}));
+    CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::ok);
+}
+
+TEST_CASE("a state that nobody repeats is forgotten where no heartbeat is expected") {
+    Cia402Drive drive(elbow_config());
+    drive.decode(frame_of(0x705, {127}));
+    CHECK(drive.decode(at_time(minus_two, 2'900 * ms)).joint[0].position_reason ==
+          Reason::device_not_operational);
+    CHECK(drive.decode(at_time(minus_two, 3'100 * ms)).joint[0].position_reason == Reason::ok);
+}
+
+TEST_CASE("a drive that restarts has no emergency any more") {
+    Cia402Drive drive(elbow_config());
+    drive.decode(frame_of(0x085, {0x05, 0x73, 0, 0, 0, 0, 0, 0}));
+    CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::encoder_fault);
+    drive.decode(frame_of(0x705, {0}));
+    drive.decode(minus_two);
+    CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::ok);
 }
 
 TEST_CASE("a drive whose heartbeat is expected is believed only while it beats") {
@@ -100,7 +141,7 @@ TEST_CASE("a drive's frames have exactly their lengths") {
     const Cia402Drive drive(elbow_config());
     CHECK(rejects_malformed(drive, minus_two, {8}));
     CHECK(rejects_malformed(drive, frame_of(0x485, {1, 2}), {2}));
-    CHECK(rejects_malformed(drive, frame_of(0x705, {5}), {1}));
+    CHECK(rejects_malformed(drive, frame_of(0x705, {5}), {1}, Kind::nothing)); // a guard's request
     CHECK(rejects_malformed(drive, frame_of(0x085, {0, 0, 0, 0, 0, 0, 0, 0}), {8}));
     CHECK(rejects_malformed(drive, frame_of(0x080, {}), {0, 1}));
     for (const std::uint32_t id : {0x284U, 0x185U, 0x084U, 0x704U, 0x385U}) {

@@ -22,7 +22,17 @@ OdriveAxis shoulder() {
 
 const Frame half_a_turn = frame_of(0x069, {0x00, 0x00, 0x00, 0x3F, 1, 2, 3, 4}, 1000 * ms); // 0.5
 const Frame healthy = frame_of(0x061, {0, 0, 0, 0, 8, 0, 0, 0x80}, 900 * ms);
-const Frame encoder_error = frame_of(0x061, {0, 0, 0, 0, 8, 0, 1, 0}, 900 * ms);
+/// ENCODER_FAILED in the error word and the encoder's flag: what firmware 0.5 sends.
+const Frame encoder_error = frame_of(0x061, {0, 1, 0, 0, 1, 0, 1, 0}, 900 * ms);
+/// Byte 6 of firmware 0.6 is Trajectory_Done; of 0.5 it is the encoder's flag, which never comes alone.
+const Frame byte_six = frame_of(0x061, {0, 0, 0, 0, 8, 0, 1, 0}, 900 * ms);
+const Frame no_estimate = frame_of(0x069, {0, 0, 0, 0, 0, 0, 0, 0}, 1000 * ms);
+
+Reason with(OdriveFirmware firmware, const Frame& heartbeat) {
+    OdriveAxis axis({.node = 3, .firmware = firmware});
+    axis.decode(heartbeat);
+    return axis.decode(half_a_turn).joint[0].position_reason;
+}
 
 TEST_CASE("an ODrive's estimate is in turns of the motor") {
     OdriveAxis axis = shoulder();
@@ -46,6 +56,47 @@ TEST_CASE("an ODrive's estimate is good only while the heartbeat says so") {
     CHECK(axis.decode(at_time(half_a_turn, 1151 * ms)).joint[0].position_reason == Reason::heartbeat_missing);
 }
 
+TEST_CASE("a finished trajectory of an ODrive with firmware 0.6 is no fault, without saying which firmware") {
+    CHECK(with(OdriveFirmware::any, byte_six) == Reason::ok);
+    CHECK(with(OdriveFirmware::v0_6, byte_six) == Reason::ok);
+    CHECK(with(OdriveFirmware::v0_5, byte_six) == Reason::encoder_fault);
+}
+
+TEST_CASE("an ODrive's estimates are refused while any bit of its error word is set, in every firmware") {
+    for (const OdriveFirmware firmware : {OdriveFirmware::any, OdriveFirmware::v0_5, OdriveFirmware::v0_6}) {
+        for (int bit = 0; bit < 32; ++bit) {
+            Frame heartbeat = healthy;
+            heartbeat.data[static_cast<std::size_t>(bit / 8)] = static_cast<std::uint8_t>(1U << bit % 8);
+            CAPTURE(bit);
+            CHECK(is_fault(with(firmware, heartbeat)));
+        }
+        CHECK(with(firmware, healthy) == Reason::ok);
+    }
+    const Frame missing_estimate = frame_of(0x061, {8, 0, 0, 0, 1, 0, 0, 0}, 900 * ms);
+    const Frame motor_failed = frame_of(0x061, {0x40, 0, 0, 0, 1, 1, 0, 0}, 900 * ms);
+    CHECK(with(OdriveFirmware::any, missing_estimate) == Reason::encoder_fault);
+    CHECK(with(OdriveFirmware::v0_6, missing_estimate) == Reason::encoder_fault);
+    CHECK(with(OdriveFirmware::any, motor_failed) == Reason::device_fault);
+    CHECK(with(OdriveFirmware::v0_6, encoder_error) ==
+          Reason::device_fault); // there 0x100 is an over-voltage
+}
+
+TEST_CASE("an ODrive's 0.0 after another estimate is a lost one, before the heartbeat says so") {
+    OdriveAxis axis = shoulder();
+    axis.decode(healthy);
+    CHECK(axis.decode(no_estimate).joint[0].position_reason == Reason::ok); // at the start: it must qualify
+    CHECK(axis.decode(half_a_turn).joint[0].position_reason == Reason::ok);
+    CHECK(axis.decode(no_estimate).joint[0].position_reason == Reason::encoder_fault);
+    CHECK(axis.decode(no_estimate).joint[0].raw_zero);
+    CHECK(axis.decode(half_a_turn).joint[0].position_reason == Reason::ok);
+}
+
+TEST_CASE("a request for an ODrive's estimate is no frame of the ODrive") {
+    Frame request = half_a_turn;
+    request.remote = true;
+    CHECK(shoulder().decode(request).kind == Kind::nothing);
+}
+
 TEST_CASE("what an ODrive sends for an estimate it does not have is a zero, or no number") {
     OdriveAxis axis = shoulder();
     axis.decode(healthy);
@@ -55,8 +106,8 @@ TEST_CASE("what an ODrive sends for an estimate it does not have is a zero, or n
 }
 
 TEST_CASE("an ODrive's frames have exactly eight bytes") {
-    CHECK(rejects_malformed(shoulder(), half_a_turn, {8}));
-    CHECK(rejects_malformed(shoulder(), healthy, {8}));
+    CHECK(rejects_malformed(shoulder(), half_a_turn, {8}, Kind::nothing));
+    CHECK(rejects_malformed(shoulder(), healthy, {8}, Kind::nothing));
     for (const std::uint32_t id : {0x009U, 0x06AU, 0x049U, 0x041U}) {
         CHECK(shoulder().decode(frame_of(id, {0, 0, 0, 0, 0, 0, 0, 0})).kind == Kind::nothing);
         CHECK_FALSE(shoulder().claims(id));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <utility>
 
 namespace dfdyn::tests {
 
@@ -29,9 +30,10 @@ inline hal::Frame with_length(hal::Frame frame, int length) {
 }
 
 /// Variants of a frame that no device sends on its identifier: other lengths, remote, CAN FD. `nothing` are
-/// those that are not on the identifier at all: extended, error.
+/// those that are not on the identifier at all: extended, error. `request`: what a remote frame is.
 template <class Device>
-bool rejects_malformed(Device device, const hal::Frame& good, std::initializer_list<int> lengths) {
+bool rejects_malformed(Device device, const hal::Frame& good, std::initializer_list<int> lengths,
+                       hal::Decoded::Kind request = hal::Decoded::Kind::rejected) {
     using Kind = hal::Decoded::Kind;
     bool all = true;
     for (int length = 0; length <= 8; ++length) {
@@ -44,9 +46,10 @@ bool rejects_malformed(Device device, const hal::Frame& good, std::initializer_l
     remote.remote = true;
     hal::Frame flexible = good;
     flexible.fd = true;
-    for (const hal::Frame& wrong : {remote, flexible}) {
+    for (const auto& [wrong, kind] : {std::pair(remote, request), std::pair(flexible, Kind::rejected)}) {
         const hal::Decoded decoded = Device(device).decode(wrong);
-        all = all && decoded.kind == Kind::rejected && decoded.reason == hal::Reason::wrong_frame_type;
+        all = all && decoded.kind == kind &&
+              (kind == Kind::nothing || decoded.reason == hal::Reason::wrong_frame_type);
     }
     hal::Frame extended = good;
     extended.extended = true;

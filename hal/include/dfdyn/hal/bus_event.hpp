@@ -70,13 +70,17 @@ constexpr BusState state_after(const Frame& frame, std::uint32_t details, BusSta
 
 } // namespace detail
 
-/// Takes note of what the error frame `frame` says: counts each of its classes and moves `state`. A
-/// controller that is bus-off and reports it again has not gone bus-off twice. Lost arbitration, missing
-/// acknowledgements and errors on the wire are counted and leave the state alone: the controller itself tells
-/// when they are too many. Unknown classes count as an error frame and nothing else. Does nothing with a
-/// frame that is no error frame.
-constexpr void note_error_frame(const Frame& frame, BusState& state, BusCounters& counters) noexcept {
+/// Takes note of what `frame` says about the controller: counts each class of an error frame and moves
+/// `state`. A controller that is bus-off and reports it again has not gone bus-off twice. Lost arbitration,
+/// missing acknowledgements and errors on the wire are counted and leave the state alone: the controller
+/// itself reports when they are too many. Unknown classes count as an error frame and nothing else.
+///
+/// A frame from the bus ends bus-off: a controller that is bus-off receives nothing, and not every driver
+/// reports the restart.
+constexpr void note_frame(const Frame& frame, BusState& state, BusCounters& counters) noexcept {
     if (!frame.error) {
+        const bool back = state == BusState::off && frame.origin == Origin::remote;
+        state = back ? BusState::active : state;
         return;
     }
     const auto has = [&](std::uint32_t classes) { return (frame.id & classes) != 0; };

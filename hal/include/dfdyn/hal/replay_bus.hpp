@@ -69,7 +69,7 @@ class ReplayBus {
             ++count;
             ++counters_.received;
             counters_.dropped += next_.dropped_before;
-            note_error_frame(next_.frame, state_, counters_);
+            note_frame(next_.frame, state_, counters_);
             fetch();
         }
         counters_.saturated_drains += count == into.size() && is_due() ? 1 : 0;

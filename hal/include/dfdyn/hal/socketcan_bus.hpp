@@ -34,9 +34,9 @@ struct SocketCanOptions {
     bool receive_own = false;           ///< hand out what this bus itself sent, once it is on the wire
 };
 
-/// A CAN interface of Linux (`Bus`), classic or FD. Opens in its constructor; from then on no call allocates,
-/// waits or throws, and each makes a bounded number of system calls: `drain` one read per frame of room,
-/// beside readings of the clock.
+/// A CAN interface of Linux (`Bus`), classic or FD. Opens in its constructor; from then on no call allocates
+/// or throws, none but `wait` waits, and each makes a bounded number of system calls: `drain` one read per
+/// frame of room, beside readings of the clock.
 ///
 /// **Clock.** `now_ns` is CLOCK_MONOTONIC. The kernel stamps a frame at reception, in the interrupt, by the
 /// wall clock (CLOCK_REALTIME); on reading, the stamp moves by the difference that the two clocks have then,
@@ -60,6 +60,10 @@ class SocketCanBus {
     SocketCanBus& operator=(const SocketCanBus&) = delete;
 
     std::span<const Frame> drain(std::span<Frame> into) noexcept;
+
+    /// Sleeps until a frame waits, a signal comes or `timeout_ns` has passed, whichever is first: for
+    /// programs that have nothing else to do. The only call that waits.
+    void wait(std::int64_t timeout_ns) const noexcept;
 
     /// Hands `frame` to the kernel's queue; a full queue (ENOBUFS) refuses it at once. That happens early:
     /// the queue of a CAN interface holds 10 frames, unless `ip link set IFACE txqueuelen 100` made it

@@ -6,6 +6,7 @@
 #include "dfdyn/hal/device/heartbeat.hpp"
 
 #include <optional>
+#include <utility>
 
 namespace dfdyn::hal {
 
@@ -20,9 +21,16 @@ namespace dfdyn::hal {
 /// | 0x200 + N | 2 | to the drive: target torque (0x6071), in the unit of 0x6077 |
 /// | 0x700 + N | 1 | heartbeat: 0 boot-up, 4 stopped, 5 operational, 127 pre-operational |
 ///
-/// Scaling is per axis and arbitrary: it is in the signals. Values carry `device_not_operational` after a
-/// heartbeat of another state; positions carry `encoder_fault` after an EMCY of a sensor (0x73xx), efforts
-/// `device_fault` after any EMCY; to the EMCY 0.
+/// Scaling is per axis and arbitrary: it is in the signals.
+///
+/// Values carry `device_not_operational` after a heartbeat of another state, until one of the operational
+/// state. Many drives send no heartbeat, but every drive a boot-up: without `heartbeat_timeout_ns` the next
+/// PDO ends it, because a drive sends PDOs only while it is operational (CiA 301). The first value after a
+/// boot-up that interrupts PDOs carries `device_restarted`.
+///
+/// Positions carry `encoder_fault` after an EMCY of a sensor (0x73xx), efforts `device_fault` after any EMCY,
+/// until the EMCY 0 or a boot-up. An effort at an end of its bits carries `output_saturated`. A remote frame
+/// on the heartbeat's identifier is a master's request (node guarding) and is ignored.
 class Cia402Drive {
   public:
     static constexpr int joints = 1;
@@ -159,7 +167,7 @@ class Cia402Drive {
     [[nodiscard]] constexpr std::uint32_t emcy_id() const noexcept { return 0x080 + node(); }
     [[nodiscard]] constexpr std::uint32_t heartbeat_id() const noexcept { return 0x700 + node(); }
 
-    [[nodiscard]] constexpr Decoded decode_pdo(const Frame& frame) const noexcept {
+    constexpr Decoded decode_pdo(const Frame& frame) noexcept {
         const bool positions = frame.id == position_id();
         if (const Reason fault =
                 check_form(frame, positions ? config_.position_length : config_.effort_length);
@@ -174,14 +182,22 @@ class Cia402Drive {
         value.stamp_ns = config_.synchronous && synchronised_ ? sync_ns_ : frame.stamp_ns;
         const Reason condition = heartbeat_.reason(frame.stamp_ns);
         const std::span<const std::uint8_t> data(frame.data.data(), frame.length);
+        sending_ = true;
         if (positions) {
+            const bool restarted = std::exchange(position_restarted_, false);
             value.position_reason = encoder_fault_ ? Reason::encoder_fault : condition;
+            value.position_reason = restarted ? Reason::device_restarted : value.position_reason;
             value.raw_zero = config_.position.extract_raw(data) == 0;
             value.position_rad = config_.position.extract(data);
         }
         if (has_effort() && frame.id == effort_id()) {
+            const bool restarted = std::exchange(effort_restarted_, false);
             value.effort_reason = device_fault_ ? Reason::device_fault : condition;
+            value.effort_reason = restarted ? Reason::device_restarted : value.effort_reason;
             value.effort = config_.effort.extract(data);
+            if (value.effort_reason == Reason::ok && config_.effort.is_at_end(data)) {
+                value.effort_reason = Reason::output_saturated;
+            }
         }
         return decoded;
     }
@@ -201,13 +217,27 @@ class Cia402Drive {
     }
 
     constexpr Decoded decode_heartbeat(const Frame& frame) noexcept {
+        if (frame.remote) {
+            return {};
+        }
         if (const Reason fault = check_form(frame, 1); fault != Reason::ok) {
             return rejected(fault);
+        }
+        if (frame.data[0] == static_cast<std::uint8_t>(State::boot_up)) {
+            return boot_up(frame.stamp_ns);
         }
         const bool operational = (frame.data[0] & 0x7F) == static_cast<std::uint8_t>(State::operational);
         const Reason condition = operational ? Reason::ok : Reason::device_not_operational;
         heartbeat_.heard(frame.stamp_ns, condition);
         return status(condition);
+    }
+
+    constexpr Decoded boot_up(std::int64_t stamp_ns) noexcept {
+        heartbeat_.heard(stamp_ns, heartbeat_.expected() ? Reason::device_not_operational : Reason::ok);
+        const bool interrupts = sending_;
+        position_restarted_ = effort_restarted_ = interrupts;
+        sending_ = encoder_fault_ = device_fault_ = false;
+        return status(interrupts ? Reason::device_restarted : Reason::device_not_operational);
     }
 
     constexpr Decoded decode_emcy(const Frame& frame) noexcept {
@@ -228,6 +258,9 @@ class Cia402Drive {
     bool synchronised_ = false;
     bool encoder_fault_ = false;
     bool device_fault_ = false;
+    bool sending_ = false;            ///< a PDO has come since the last boot-up
+    bool position_restarted_ = false; ///< the drive has booted since its last position
+    bool effort_restarted_ = false;
 };
 
 static_assert(JointSource<Cia402Drive>);

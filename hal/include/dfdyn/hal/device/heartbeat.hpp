@@ -8,9 +8,12 @@
 namespace dfdyn::hal {
 
 /// What a device says of itself in its heartbeat, and whether it still says it. With a timeout of 0 no
-/// heartbeat is expected; one that comes counts all the same.
+/// heartbeat is expected; one that comes counts for `unexpected_lifetime_ns`, so that a single frame of a
+/// device that sends no heartbeat does not refuse its values for ever.
 class Heartbeat {
   public:
+    static constexpr std::int64_t unexpected_lifetime_ns = 3'000'000'000;
+
     explicit constexpr Heartbeat(std::int64_t timeout_ns) noexcept : timeout_ns_(timeout_ns) {}
 
     constexpr void heard(std::int64_t stamp_ns, Reason condition) noexcept {
@@ -21,9 +24,14 @@ class Heartbeat {
 
     /// For a value measured at `stamp_ns`.
     [[nodiscard]] constexpr Reason reason(std::int64_t stamp_ns) const noexcept {
-        const bool missing = !heard_ || stamp_ns - stamp_ns_ > timeout_ns_;
-        return timeout_ns_ > 0 && missing ? Reason::heartbeat_missing : condition_;
+        const std::int64_t age_ns = stamp_ns - stamp_ns_;
+        if (!expected()) {
+            return age_ns > unexpected_lifetime_ns ? Reason::ok : condition_;
+        }
+        return !heard_ || age_ns > timeout_ns_ ? Reason::heartbeat_missing : condition_;
     }
+
+    [[nodiscard]] constexpr bool expected() const noexcept { return timeout_ns_ > 0; }
 
   private:
     std::int64_t timeout_ns_;

@@ -17,7 +17,8 @@ namespace dfdyn::hal::icub {
 /// | 0x103 + 16 A STATUS | 8 | mode, encoder errors, PWM (2 bytes), fault word (4 bytes) |
 ///
 /// From a STATUS with encoder errors on, positions carry `encoder_fault`; from one with a fault word that is
-/// not 0, currents carry `device_fault`; to the next without.
+/// not 0, currents carry `device_fault`; to the next without. A current at an end of its 16 bits carries
+/// `output_saturated`.
 class FocBoard {
   public:
     static constexpr int joints = 1;
@@ -31,6 +32,8 @@ class FocBoard {
     };
 
     explicit constexpr FocBoard(const Config& config) noexcept : config_(config) {}
+
+    [[nodiscard]] constexpr const Config& config() const noexcept { return config_; }
 
     [[nodiscard]] constexpr bool claims(std::uint32_t id) const noexcept {
         return id == id_of(motion_type) || id == id_of(status_type);
@@ -86,8 +89,11 @@ class FocBoard {
         value.position_reason = encoder_fault_ ? Reason::encoder_fault : Reason::ok;
         value.raw_zero = counts == 0;
         value.position_rad = counts * radians_per_count / config_.motor_per_joint + config_.zero_rad;
-        value.effort_reason = device_fault_ ? Reason::device_fault : Reason::ok;
-        value.effort = 1e-3 * load_little<std::int16_t>(frame.data.data());
+        const auto current_mA = load_little<std::int16_t>(frame.data.data());
+        value.effort_reason = device_fault_           ? Reason::device_fault
+                              : is_at_end(current_mA) ? Reason::output_saturated
+                                                      : Reason::ok;
+        value.effort = 1e-3 * current_mA;
         return decoded;
     }
 

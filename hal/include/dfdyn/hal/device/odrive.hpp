@@ -9,15 +9,26 @@
 
 namespace dfdyn::hal {
 
+/// Which firmware an ODrive has: they use byte 6 of the heartbeat, and the bits of the error word, for
+/// different things.
+enum class OdriveFirmware : std::uint8_t {
+    any,  ///< decides by what both have in common: in both, no encoder is in error while the error word is 0
+    v0_5, ///< 0.5.1 to 0.5.6
+    v0_6  ///< 0.6 and later: ODrive Pro, S1, Micro
+};
+
 /// An ODrive axis that speaks CANSimple.
 ///
 /// | id (N: node) | length | content, little-endian |
 /// | --- | --- | --- |
 /// | 32 N + 0x09 | 8 | encoder estimates: position (turns), velocity (turns/s), float |
-/// | 32 N + 0x01 | 8 | heartbeat: axis error u32, state, motor error, encoder error, controller status |
+/// | 32 N + 0x01 | 8 | heartbeat of 0.5: axis error u32, state, flags: motor, encoder, controller |
+/// | 32 N + 0x01 | 8 | heartbeat of 0.6: axis error u32, state, result of the procedure, trajectory done |
 ///
-/// An estimate that the axis does not have is sent as 0.0, so positions are good only while the heartbeat
-/// says that the encoder is.
+/// An estimate that the axis does not have is sent as 0.0. So positions are good only while the heartbeat's
+/// error word is 0, and a 0.0 that follows another estimate carries `encoder_fault`: the heartbeat comes
+/// later. A fault ends with the first heartbeat without (`clear_errors`). Remote frames are the host's
+/// requests and are ignored.
 class OdriveAxis {
   public:
     static constexpr int joints = 1;
@@ -28,16 +39,22 @@ class OdriveAxis {
         double motor_per_joint = 1;                      ///< transmission, with its sign
         double zero_rad = 0;                             ///< of the joint where the estimate is 0
         std::int64_t heartbeat_timeout_ns = 250'000'000; ///< it comes every 100 ms by default
+        OdriveFirmware firmware = OdriveFirmware::any;
     };
 
     explicit constexpr OdriveAxis(const Config& config) noexcept
         : config_(config), heartbeat_(config.heartbeat_timeout_ns) {}
+
+    [[nodiscard]] constexpr const Config& config() const noexcept { return config_; }
 
     [[nodiscard]] constexpr bool claims(std::uint32_t id) const noexcept {
         return id == id_of(estimates_command) || id == id_of(heartbeat_command);
     }
 
     Decoded decode(const Frame& frame) noexcept {
+        if (frame.remote) {
+            return {};
+        }
         if (has_id(frame, id_of(estimates_command))) {
             return decode_estimates(frame);
         }
@@ -53,8 +70,10 @@ class OdriveAxis {
         return frames;
     }
 
+    /// Of firmware 0.5.
     [[nodiscard]] constexpr Frame encode_heartbeat(bool encoder_error) const noexcept {
         Frame frame = make_frame(id_of(heartbeat_command), 8);
+        store_little(frame.data.data(), encoder_error ? encoder_failed : 0U);
         frame.data[encoder_error_byte] = encoder_error ? 1 : 0;
         return frame;
     }
@@ -62,14 +81,17 @@ class OdriveAxis {
   private:
     static constexpr std::uint32_t heartbeat_command = 0x01;
     static constexpr std::uint32_t estimates_command = 0x09;
-    static constexpr std::size_t encoder_error_byte = 6;
+    static constexpr std::size_t encoder_error_byte = 6;       ///< of 0.5
+    static constexpr std::uint32_t encoder_failed = 0x100;     ///< bits of the error word: of 0.5
+    static constexpr std::uint32_t unknown_position = 0x80000; ///< of 0.5
+    static constexpr std::uint32_t missing_estimate = 0x8;     ///< of 0.6; 0.5 does not use it
     static constexpr double radians_per_turn = 2 * std::numbers::pi;
 
     [[nodiscard]] constexpr std::uint32_t id_of(std::uint32_t command) const noexcept {
         return static_cast<std::uint32_t>(config_.node) << 5 | command;
     }
 
-    [[nodiscard]] Decoded decode_estimates(const Frame& frame) const noexcept {
+    Decoded decode_estimates(const Frame& frame) noexcept {
         if (const Reason fault = check_form(frame, 8); fault != Reason::ok) {
             return rejected(fault);
         }
@@ -80,9 +102,12 @@ class OdriveAxis {
         JointValue& value = decoded.joint[0];
         value.joint = config_.joint;
         value.stamp_ns = frame.stamp_ns;
-        value.position_reason =
-            std::isfinite(turns) ? heartbeat_.reason(frame.stamp_ns) : Reason::position_out_of_range;
         value.raw_zero = turns == 0;
+        const bool lost = value.raw_zero && moved_;
+        moved_ = !value.raw_zero;
+        value.position_reason = !std::isfinite(turns) ? Reason::position_out_of_range
+                                : lost                ? Reason::encoder_fault
+                                                      : heartbeat_.reason(frame.stamp_ns);
         value.position_rad = turns * radians_per_turn / config_.motor_per_joint + config_.zero_rad;
         return decoded;
     }
@@ -91,13 +116,32 @@ class OdriveAxis {
         if (const Reason fault = check_form(frame, 8); fault != Reason::ok) {
             return rejected(fault);
         }
-        const Reason condition = frame.data[encoder_error_byte] != 0 ? Reason::encoder_fault : Reason::ok;
+        const Reason condition = condition_of(frame);
         heartbeat_.heard(frame.stamp_ns, condition);
         return status(condition);
     }
 
+    [[nodiscard]] constexpr Reason condition_of(const Frame& heartbeat) const noexcept {
+        const auto error = load_little<std::uint32_t>(heartbeat.data.data());
+        const bool flag = heartbeat.data[encoder_error_byte] != 0;
+        bool encoder = false;
+        switch (config_.firmware) {
+        case OdriveFirmware::any:
+            encoder = (error & missing_estimate) != 0 || (flag && (error & encoder_failed) != 0);
+            break;
+        case OdriveFirmware::v0_5:
+            encoder = flag || (error & (encoder_failed | unknown_position)) != 0;
+            break;
+        case OdriveFirmware::v0_6:
+            encoder = (error & missing_estimate) != 0;
+            break;
+        }
+        return encoder ? Reason::encoder_fault : error != 0 ? Reason::device_fault : Reason::ok;
+    }
+
     Config config_;
     Heartbeat heartbeat_;
+    bool moved_ = false; ///< the last estimate was not 0
 };
 
 static_assert(JointSource<OdriveAxis>);
