@@ -33,14 +33,26 @@ class Cursor {
         return *this;
     }
 
-    /// To the begin of the next line; texts in quotes may go over lines.
+    /// To the begin of the next line; texts in quotes may go over lines. A quote after a backslash belongs to
+    /// its text, unless the statement ends right after it: a text may also end with a backslash.
     void skip_line() {
+        Cursor quote = *this;
         for (bool quoted = false; !at_end();) {
             const char character = rest_.front();
-            quoted = quoted != (character == '"');
+            if (quoted && rest_.starts_with("\\\"") && !ends_statement(rest_.substr(2))) {
+                skip(2);
+                continue;
+            }
+            if (character == '"') {
+                quoted = !quoted;
+                quote = *this;
+            }
             skip(1);
             if (character == '\n' && !quoted) {
                 return;
+            }
+            if (at_end() && quoted) {
+                quote.refuse("a text that ends with \"", "the end of the file");
             }
         }
     }
@@ -119,6 +131,10 @@ class Cursor {
     }
 
   private:
+    static bool ends_statement(std::string_view text) {
+        return text.starts_with(';') && (text.size() == 1 || text[1] == '\n' || text[1] == '\r');
+    }
+
     void skip(std::size_t count) {
         for (const char character : rest_.substr(0, count)) {
             column_ = character == '\n' ? 1 : column_ + 1;
@@ -148,6 +164,8 @@ class Parser {
                 signal();
             } else if (cursor_.accept("SIG_VALTYPE_ ")) {
                 value_type();
+            } else if (cursor_.accept("SG_MUL_VAL_ ")) {
+                multiplexed_values();
             }
             cursor_.skip_line();
         }
@@ -193,21 +211,42 @@ class Parser {
         if (message.find(read.name) != nullptr) {
             at_name.refuse("a signal's name that the message does not have yet");
         }
-        multiplexing(message, read);
+        multiplexing(read);
         cursor_.expect(":");
         layout(message, read.signal);
         scaling(read);
         message.signals.push_back(std::move(read));
     }
 
-    void multiplexing(const DbcMessage& message, DbcSignal& read) {
-        if (cursor_.accept("M")) {
-            read.multiplexor = true;
-            if (message.multiplexor() != nullptr) {
-                cursor_.refuse("one multiplexor in a message");
-            }
-        } else if (cursor_.accept("m")) {
+    /// `M`, `m3`, or `m3M`: it is multiplexed, and a multiplexor of others.
+    void multiplexing(DbcSignal& read) {
+        if (cursor_.accept("m")) {
             read.multiplex = cursor_.whole("a multiplexor's value", 0xFFFFFFFF);
+        }
+        read.multiplexor = cursor_.accept("M");
+    }
+
+    /// `SG_MUL_VAL_ 641 NAME MULTIPLEXOR 0-3, 7-7;` Among the new symbols (NS_) the word stands alone.
+    void multiplexed_values() {
+        cursor_.skip_blanks();
+        if (cursor_.at_line_end()) {
+            return;
+        }
+        const auto id = static_cast<std::uint32_t>(cursor_.whole("an identifier", 0xFFFFFFFF));
+        const std::string name = cursor_.name("a signal's name");
+        const std::string multiplexor = cursor_.name("a multiplexor's name");
+        std::vector<DbcValueRange> ranges;
+        do {
+            DbcValueRange range;
+            range.first = cursor_.whole("a multiplexor's value", 0xFFFFFFFF);
+            cursor_.expect("-");
+            range.last = cursor_.whole("a multiplexor's value", 0xFFFFFFFF);
+            ranges.push_back(range);
+        } while (cursor_.accept(","));
+        DbcMessage* const message = find(id & ~extended_bit, (id & extended_bit) != 0);
+        if (DbcSignal* const found = message == nullptr ? nullptr : signal_of(*message, name)) {
+            found->multiplexed_by = multiplexor;
+            found->multiplex_ranges = std::move(ranges);
         }
     }
 
@@ -300,9 +339,14 @@ auto find_named(const Items& items, std::string_view name) {
 
 const DbcSignal* DbcMessage::find(std::string_view signal) const { return find_named(signals, signal); }
 
-const DbcSignal* DbcMessage::multiplexor() const {
+const DbcSignal* DbcMessage::multiplexor_of(const DbcSignal& signal) const {
+    if (!signal.multiplexed_by.empty()) {
+        const DbcSignal* const named = find(signal.multiplexed_by);
+        return named != nullptr && named->multiplexor ? named : nullptr;
+    }
     const auto found = std::ranges::find_if(signals, &DbcSignal::multiplexor);
-    return found == signals.end() ? nullptr : &*found;
+    const bool only_one = std::ranges::count_if(signals, &DbcSignal::multiplexor) == 1;
+    return only_one && &*found != &signal ? &*found : nullptr;
 }
 
 const DbcMessage* Dbc::find(std::string_view message) const { return find_named(messages, message); }

@@ -20,8 +20,8 @@ hal::Frame empty_frame(const DbcField& field) {
     hal::Frame frame = hal::make_frame(field.id, field.length);
     frame.extended = field.extended;
     frame.fd = field.length > 8;
-    if (field.multiplexor) {
-        field.multiplexor->insert_raw(data_of(frame), field.multiplex);
+    for (const DbcCondition& condition : field.conditions) {
+        condition.multiplexor.insert_raw(data_of(frame), condition.ranges.front().first);
     }
     return frame;
 }
@@ -36,6 +36,23 @@ std::int32_t folded(std::uint64_t raw) {
 
 } // namespace
 
+bool DbcCondition::holds(const hal::Frame& frame) const noexcept {
+    const std::uint64_t raw = multiplexor.extract_raw(data_of(frame));
+    return std::ranges::any_of(
+        ranges, [raw](const DbcValueRange& range) { return raw >= range.first && raw <= range.last; });
+}
+
+bool DbcCondition::excludes(const DbcCondition& other) const noexcept {
+    const auto overlaps = [&](const DbcValueRange& mine) {
+        return std::ranges::any_of(other.ranges, [&](const DbcValueRange& its) {
+            return mine.first <= its.last && its.first <= mine.last;
+        });
+    };
+    return multiplexor.start_bit == other.multiplexor.start_bit &&
+           multiplexor.length == other.multiplexor.length &&
+           multiplexor.byte_order == other.multiplexor.byte_order && std::ranges::none_of(ranges, overlaps);
+}
+
 bool DbcField::is_in(const hal::Frame& frame) const noexcept {
     return !frame.error && frame.extended == extended && frame.id == id;
 }
@@ -48,12 +65,16 @@ hal::Reason DbcField::check(const hal::Frame& frame) const noexcept {
 }
 
 bool DbcField::is_there(const hal::Frame& frame) const noexcept {
-    return !multiplexor || multiplexor->extract_raw(data_of(frame)) == multiplex;
+    return std::ranges::all_of(conditions,
+                               [&](const DbcCondition& condition) { return condition.holds(frame); });
 }
 
 bool DbcField::shares_frames_with(const DbcField& other) const noexcept {
-    const bool excluded = multiplexor && other.multiplexor && multiplex != other.multiplex;
-    return id == other.id && extended == other.extended && !excluded;
+    const auto excluded = [&](const DbcCondition& mine) {
+        return std::ranges::any_of(other.conditions,
+                                   [&](const DbcCondition& its) { return mine.excludes(its); });
+    };
+    return id == other.id && extended == other.extended && std::ranges::none_of(conditions, excluded);
 }
 
 std::uint64_t DbcField::raw(const hal::Frame& frame) const noexcept {
@@ -66,19 +87,7 @@ bool DbcField::is_void(double value) const noexcept {
     return !std::isfinite(value) || (limits && (value < limits->lowest || value > limits->highest));
 }
 
-bool DbcField::is_at_end(const hal::Frame& frame) const noexcept {
-    const std::uint64_t ones = signal.length >= 64 ? ~0ULL : (1ULL << signal.length) - 1;
-    switch (signal.encoding) {
-    case hal::Encoding::unsigned_integer:
-        return raw(frame) == 0 || raw(frame) == ones;
-    case hal::Encoding::signed_integer:
-        return raw(frame) == ones >> 1U || raw(frame) == (ones >> 1U) + 1;
-    case hal::Encoding::float32:
-    case hal::Encoding::float64:
-        break;
-    }
-    return false;
-}
+bool DbcField::is_at_end(const hal::Frame& frame) const noexcept { return signal.is_at_end(data_of(frame)); }
 
 std::size_t encode_fields(std::span<const DbcValue> values, std::span<hal::Frame> into) noexcept {
     std::size_t count = 0;
@@ -86,7 +95,7 @@ std::size_t encode_fields(std::span<const DbcValue> values, std::span<hal::Frame
         for (const DbcValue& value : values) {
             const bool there = std::ranges::any_of(
                 into.first(count), [&](const hal::Frame& frame) { return carries(frame, *value.field); });
-            if (value.field->multiplexor.has_value() == multiplexed && !there && count < into.size()) {
+            if (!value.field->conditions.empty() == multiplexed && !there && count < into.size()) {
                 into[count] = empty_frame(*value.field);
                 ++count;
             }
@@ -132,8 +141,11 @@ hal::Decoded DbcJoint::decode(const hal::Frame& frame) const noexcept {
     }
     if (effort && config_.effort->is_there(frame)) {
         value.effort = config_.effort->value(frame);
-        value.effort_reason =
-            config_.effort->is_void(value.effort) ? hal::Reason::output_out_of_range : hal::Reason::ok;
+        // A magnitude of 0 is the lowest that its bits can show, and no saturation.
+        const bool saturated = config_.effort->is_at_end(frame) && value.effort != 0;
+        value.effort_reason = config_.effort->is_void(value.effort) ? hal::Reason::output_out_of_range
+                              : saturated                           ? hal::Reason::output_saturated
+                                                                    : hal::Reason::ok;
     }
     return decoded;
 }

@@ -4,12 +4,23 @@
 #include "dfdyn/hal/bits.hpp"
 #include "dfdyn/hal/device/decoded.hpp"
 #include "dfdyn/hal/gate/range.hpp"
+#include "tools/can/dbc.hpp"
 
 #include <array>
 #include <optional>
 #include <span>
 
 namespace dfdyn::tools {
+
+/// What makes a multiplexed value be in a frame: the multiplexor's raw value is in one of the ranges.
+struct DbcCondition {
+    hal::Signal multiplexor;
+    std::vector<DbcValueRange> ranges;
+
+    [[nodiscard]] bool holds(const hal::Frame& frame) const noexcept;
+    /// Whether no frame can meet both: of one multiplexor, without a common value.
+    [[nodiscard]] bool excludes(const DbcCondition& other) const noexcept;
+};
 
 /// A value in the frames of a user's DBC file, in the arm's unit: the factor and offset of `signal`, and
 /// `limits`, include the user's own.
@@ -18,9 +29,8 @@ struct DbcField {
     bool extended = false;
     int length = 0; ///< of the message, bytes
     hal::Signal signal;
-    std::optional<hal::Range> limits;       ///< of the DBC file; beyond them the signal says something else
-    std::optional<hal::Signal> multiplexor; ///< the value is there where this has the raw value `multiplex`
-    std::uint64_t multiplex = 0;
+    std::optional<hal::Range> limits;     ///< of the DBC file; beyond them the signal says something else
+    std::vector<DbcCondition> conditions; ///< the value is there where all hold; none: in every frame
 
     /// Whether the frame is of this message, whatever its form.
     [[nodiscard]] bool is_in(const hal::Frame& frame) const noexcept;

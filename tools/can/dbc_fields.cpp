@@ -59,6 +59,28 @@ const DbcSignal& signal_of(const JsonReader& field, const DbcMessage& message) {
     return *signal;
 }
 
+/// What makes a signal be in a frame of its message, from its own multiplexor to the outermost one.
+std::vector<DbcCondition> conditions_of(const JsonReader& field, const DbcMessage& message,
+                                        const DbcSignal& signal) {
+    std::vector<DbcCondition> conditions;
+    const DbcSignal* current = &signal;
+    while (current->multiplex || !current->multiplexed_by.empty()) {
+        const DbcSignal* const multiplexor = message.multiplexor_of(*current);
+        if (multiplexor == nullptr || conditions.size() == message.signals.size()) {
+            throw field.error("signal",
+                              "a signal whose multiplexor is known: the only one of its message, or the one "
+                              "that SG_MUL_VAL_ names",
+                              in_quotes(current->name) + " of " + message.name);
+        }
+        conditions.push_back({multiplexor->signal, current->multiplex_ranges});
+        if (conditions.back().ranges.empty()) {
+            conditions.back().ranges.push_back({*current->multiplex, *current->multiplex});
+        }
+        current = multiplexor;
+    }
+    return conditions;
+}
+
 /// `{"message": "Drive1", "signal": "Position", "scale": 1, "offset": 0}`: in the arm's unit the value is
 /// unit · (scale · what the DBC file says + offset).
 DbcField read_field(const JsonReader& field, const Dbc& dbc, double unit) {
@@ -74,17 +96,9 @@ DbcField read_field(const JsonReader& field, const Dbc& dbc, double unit) {
                     message.length,
                     signal.signal,
                     limits_of(signal, scale, offset),
-                    std::nullopt,
-                    0};
+                    conditions_of(field, message, signal)};
     result.signal.factor *= scale;
     result.signal.offset = result.signal.offset * scale + offset;
-    if (signal.multiplex) {
-        if (message.multiplexor() == nullptr) {
-            throw field.error("signal", "a message with a multiplexor", "none in " + message.name);
-        }
-        result.multiplexor = message.multiplexor()->signal;
-        result.multiplex = *signal.multiplex;
-    }
     return result;
 }
 

@@ -237,6 +237,48 @@ TEST_CASE("a sensor in two variants of one message is paired, limited and seen t
     CHECK(sensor.wrench(moved[0], moved[1]).raw != raw); // it is seen to move
 }
 
+TEST_CASE("a joint in a page of a page of a message is read there, and nowhere else") {
+    const std::string dbc = "BO_ 288 Drive: 8 A\n"
+                            " SG_ Page M : 0|8@1+ (1,0) [0|0] \"\" B\n"
+                            " SG_ Axis m2M : 8|8@1+ (1,0) [0|0] \"\" B\n"
+                            " SG_ Q m1 : 16|32@1- (0.001,0) [0|0] \"rad\" B\n"
+                            "BO_ 289 Effort: 2 A\n"
+                            " SG_ I : 0|16@1- (0.001,0) [0|0] \"A\" B\n";
+    const std::string pages = "SG_MUL_VAL_ 288 Axis Page 2-2;\nSG_MUL_VAL_ 288 Q Axis 1-1, 4-6;\n";
+    const std::string bus =
+        R"({"schema": "dfdyn.bus/1", "bit_rate": 1000000, "sample_rate_hz": 100, "trigger": {"on": "timer"},
+            "joints": {"family": "dbc", "file": "arm.dbc", "boards": [{"joint": 1,
+              "position": {"message": "Drive", "signal": "Q"}, "effort": {"message": "Effort", "signal": "I"}}]},
+            "output": {"family": "efforts", "quantity": "i"}})";
+    const TemporaryDirectory directory;
+    const auto path = directory.write("bus.json", bus);
+    directory.write("arm.dbc", dbc + pages);
+    const BusDescription description = read_bus_description(path);
+    Frame frame = DeviceFrames(description).joints(std::vector<double>{0.5}, std::vector<double>{1}).front();
+    CHECK(frame.data[0] == 2);
+    CHECK(frame.data[1] == 1);
+    const auto position = [&](std::uint8_t page, std::uint8_t axis) {
+        Joints joints(description);
+        frame.data[0] = page;
+        frame.data[1] = axis;
+        joints.take(frame);
+        return joints.value[0];
+    };
+    for (const std::uint8_t axis : std::array<std::uint8_t, 3>{1, 4, 6}) {
+        CHECK(position(2, axis).position_reason == Reason::ok);
+        CHECK(position(2, axis).position_rad == Approx(0.5));
+        CHECK(position(3, axis).position_reason == Reason::waiting_for_position);
+    }
+    CHECK(position(2, 2).position_reason == Reason::waiting_for_position);
+    CHECK(position(2, 7).position_reason == Reason::waiting_for_position);
+    directory.write("arm.dbc", dbc); // which of the two multiplexors is Q's?
+    CHECK_THROWS_WITH(read_bus_description(path),
+                      EndsWith("position.signal: expected a signal whose multiplexor is known: the only one "
+                               "of its message, or the one that SG_MUL_VAL_ names, found \"Q\" of Drive"));
+    directory.write("arm.dbc", dbc + "SG_MUL_VAL_ 288 Axis Q 2-2;\nSG_MUL_VAL_ 288 Q Axis 1-1;\n");
+    CHECK_THROWS_AS(read_bus_description(path), InputError);
+}
+
 TEST_CASE("bits are where cantools has them") {
     // The example of the cantools manual: 250.1 K, 3.2 m, enabled is C0 01 40; with 250.55 K C0 06 E0.
     const Dbc dbc = parse_dbc(R"(BO_ 496 ExampleMessage: 8 PCM1

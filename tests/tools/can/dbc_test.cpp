@@ -59,7 +59,7 @@ TEST_CASE("a DBC file's messages are read with byte order, sign, scale, unit, mu
     const DbcMessage& message = *dbc.find("Long");
     CHECK(message.extended);
     CHECK(message.id == 0x18FEF1FE);
-    CHECK(message.multiplexor() == message.find("mode"));
+    CHECK(message.multiplexor_of(*message.find("b")) == message.find("mode"));
     CHECK(message.find("b")->multiplex == 1U);
     CHECK_FALSE(message.find("mode")->multiplex);
     CHECK(value_of(dbc, "Long", "b", {1, 0, 0, 0x80, 0x3F, 0, 0, 0}) == 1);
@@ -81,6 +81,42 @@ TEST_CASE("the repository's own DBC files are read whole") {
     CHECK(odrive.messages.front().signals.front().signal.encoding == dfdyn::hal::Encoding::float32);
 }
 
+TEST_CASE("a quote in a comment of a DBC file changes nothing about what follows") {
+    const std::string before = "BO_ 1 A: 8 B\n SG_ a : 0|32@1- (1,0) [0|0] \"\" B\n";
+    const std::string after = "\nSIG_VALTYPE_ 1 a : 1;\n";
+    for (const std::string comment : {
+             R"(CM_ SG_ 1 a "in \"turns\" of the motor";)",
+             R"(CM_ SG_ 1 a "in \"turns";)",
+             R"(CM_ SG_ 1 a "\"";)",
+             R"(CM_ "from C:\arm\";)",
+             "CM_ \"two lines,\n \\\"quoted\\\"\";",
+             R"(VAL_ 1 a 0 "say \"no\"" 1 "yes" ;)",
+         }) {
+        CAPTURE(comment);
+        const Dbc dbc = parse_dbc(before + comment + after, "x.dbc");
+        CHECK(dbc.find("A")->find("a")->signal.encoding == dfdyn::hal::Encoding::float32);
+    }
+}
+
+TEST_CASE("extended multiplexing of a DBC file is read") {
+    const Dbc dbc = parse_dbc("NS_ :\n\tSG_MUL_VAL_\n"
+                              "BO_ 1 A: 8 B\n"
+                              " SG_ page M : 0|8@1+ (1,0) [0|0] \"\" B\n"
+                              " SG_ axis m2M : 8|8@1+ (1,0) [0|0] \"\" B\n"
+                              " SG_ q m1 : 16|16@1- (1,0) [0|0] \"\" B\n"
+                              " SG_ t m3 : 16|16@1- (1,0) [0|0] \"\" B\n"
+                              "SG_MUL_VAL_ 1 axis page 2-2;\n"
+                              "SG_MUL_VAL_ 1 q axis 1-1, 4-6;\n",
+                              "x.dbc");
+    const DbcMessage& message = *dbc.find("A");
+    CHECK(message.multiplexor_of(*message.find("q")) == message.find("axis"));
+    CHECK(message.multiplexor_of(*message.find("axis")) == message.find("page"));
+    REQUIRE(message.find("q")->multiplex_ranges.size() == 2);
+    CHECK(message.find("q")->multiplex_ranges[1].first == 4);
+    CHECK(message.find("q")->multiplex_ranges[1].last == 6);
+    CHECK(message.multiplexor_of(*message.find("t")) == nullptr); // page or axis
+}
+
 TEST_CASE("what is wrong in a DBC file is told with line and column") {
     struct Wrong {
         const char* text;
@@ -99,7 +135,10 @@ TEST_CASE("what is wrong in a DBC file is told with line and column") {
         {"BO_ 1 A: 2 B\n SG_ a : 0|8@1* (1,0) [0|0] \"\" B\n", R"(x.dbc:2:15: expected "+", found "*")"},
         {"BO_ 1 A: 2 B\n SG_ a : 0|8@1+ (0,0) [0|0] \"\" B\n", "x.dbc:2:18: expected a factor that is not 0"},
         {"BO_ 1 A: 2 B\n SG_ a : 0|8@1+ (1,0) [0|0] \"rad\n", "x.dbc:2:30: expected a text that ends with"},
-        {"BO_ 1 A: 2 B\n SG_ a m0M : 0|8@1+ (1,0) [0|0] \"\" B\n", R"(x.dbc:2:10: expected ":", found "M")"},
+        {"BO_ 1 A: 2 B\nCM_ \"a comment\nwithout end;\n",
+         "x.dbc:2:5: expected a text that ends with \", found the end of the file"},
+        {"BO_ 1 A: 2 B\n SG_ a m0 : 0|8@1+ (1,0) [0|0] \"\" B\nSG_MUL_VAL_ 1 a m 0;\n",
+         R"(x.dbc:3:20: expected "-", found ";")"},
         {"BO_ 1 A: 2 B\n SG_ a : 0|8@1+ (1,0) [0|0] \"\" B\nSIG_VALTYPE_ 1 a : 1;\n",
          "x.dbc:3:14: expected a signal of 32 bits, found 8"},
         {"SIG_VALTYPE_ 1 a : 1;\n", "x.dbc:1:14: expected a signal of a message above"},
