@@ -5,6 +5,7 @@
 #include "tools/common/error.hpp"
 #include "tools/common/text.hpp"
 
+#include <iostream>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -40,8 +41,14 @@ bool CandumpLog::read(hal::ReplayEntry& entry) {
     while (const auto text = lines_.next()) {
         const hal::CandumpLine line = hal::parse_candump_line(*text);
         if (line.kind == Kind::malformed) {
-            throw InputError(place() + ":" + std::to_string(line.column) + ": expected " +
-                             std::string(hal::expected(line.fault)) + ", found " + found_text(line.found));
+            const std::string fault = place() + ":" + std::to_string(line.column) + ": expected " +
+                                      std::string(hal::expected(line.fault)) + ", found " +
+                                      found_text(line.found);
+            if (lines_.terminated()) {
+                throw InputError(fault);
+            }
+            torn_line_ = fault + "; the last line is torn and left out";
+            return false;
         }
         if (line.kind == Kind::nothing || !is_chosen(line.interface)) {
             continue;
@@ -67,5 +74,11 @@ bool CandumpLog::is_chosen(std::string_view interface) {
 }
 
 std::string CandumpLog::place() const { return shown(path_) + ":" + std::to_string(lines_.line_number()); }
+
+void warn_of_torn_line(const CandumpLog& log) {
+    if (!log.torn_line().empty()) {
+        std::cerr << "warning: " << log.torn_line() << '\n';
+    }
+}
 
 } // namespace dfdyn::tools

@@ -23,8 +23,12 @@ class CandumpLog {
     /// the file cannot be opened.
     explicit CandumpLog(const std::filesystem::path& path, std::string interface = {});
 
-    /// The next frame; false at the end, and for good where the log becomes unreadable.
+    /// The next frame; false at the end, and for good where the log becomes unreadable. A last line that is
+    /// malformed and has no end was torn when the recording was killed: it is left out, see `torn_line`.
     bool next(hal::ReplayEntry& entry) noexcept;
+
+    /// A warning that names the torn last line, once it was met; else empty.
+    const std::string& torn_line() const noexcept { return torn_line_; }
 
     /// Throws the InputError, with line and column, that ended the reading early, if one did.
     void check() const;
@@ -38,7 +42,11 @@ class CandumpLog {
     std::string interface_;
     bool is_only_one_; ///< the log may not have another interface
     LineReader lines_;
+    std::string torn_line_;
     std::exception_ptr fault_;
 };
+
+/// Writes the warning about a torn last line to stderr, if there is one.
+void warn_of_torn_line(const CandumpLog& log);
 
 } // namespace dfdyn::tools

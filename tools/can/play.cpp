@@ -42,6 +42,7 @@ class Player {
             play_frame(entry.frame);
         }
         log_.check();
+        warn_of_torn_line(log_);
         outcome_.sent = bus_.counters().sent;
         outcome_.backward_stamps = times_.backward_stamps();
         outcome_.median_lateness_us = lateness_.median_us();

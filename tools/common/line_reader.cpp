@@ -75,6 +75,7 @@ bool LineReader::fill() {
 std::string_view LineReader::take(std::size_t length, std::size_t terminator) {
     std::string_view line(buffer_.data() + begin_, length);
     begin_ += length + terminator;
+    terminated_ = terminator > 0;
     ++line_number_;
     if (line.ends_with('\r')) {
         line.remove_suffix(1);

@@ -31,6 +31,9 @@ class LineReader {
     /// Number of the line that `next` returned last, from 1; 0 before the first.
     std::size_t line_number() const noexcept { return line_number_; }
 
+    /// Whether the line that `next` returned last has an end: only the last one of a file may lack it.
+    bool terminated() const noexcept { return terminated_; }
+
   private:
     bool fill();
     InputError too_long(std::size_t line_number) const;
@@ -42,6 +45,7 @@ class LineReader {
     std::size_t begin_ = 0; ///< unread bytes are buffer_[begin_, end_)
     std::size_t end_ = 0;
     std::size_t line_number_ = 0;
+    bool terminated_ = true;
 };
 
 } // namespace dfdyn::tools

@@ -109,6 +109,26 @@ TEST_CASE("a malformed line ends the log for good, and says where and what") {
     }
 }
 
+TEST_CASE("a last line that was torn costs that line, wherever it was torn") {
+    const std::string last = "(1.000200) can0 003#0102030405060708";
+    for (std::size_t length = 1; length <= last.size(); ++length) {
+        CAPTURE(length);
+        const TemporaryDirectory directory;
+        const auto path = directory.write("run.log", "(1.000000) can0 001#\n(1.000100) can0 002#\n" +
+                                                         last.substr(0, length));
+        CandumpLog log(path);
+        const Ids ids = ids_of(log);
+        CHECK_NOTHROW(log.check());
+        CHECK((ids == Ids{1, 2} || ids == Ids{1, 2, 3}));
+        if (ids.size() == 2) {
+            CHECK_THAT(log.torn_line(), Catch::Matchers::StartsWith(path.string() + ":3:") &&
+                                            Catch::Matchers::EndsWith("is torn and left out"));
+        }
+        CHECK(log.torn_line().empty() == (ids.size() == 3));
+        CHECK((length < last.size() || ids.size() == 3)); // only the line's end is missing
+    }
+}
+
 TEST_CASE("a log that cannot be opened or read is refused") {
     const TemporaryDirectory directory;
     const std::string path = directory.path().string();
