@@ -9,14 +9,14 @@
 
 namespace dfdyn::tools {
 
-FrameRecorder::FrameRecorder(const std::filesystem::path& path, std::string interface)
-    : file_(path), interface_(std::move(interface)) {}
+FrameWriter::FrameWriter(std::ostream& out, std::string interface)
+    : out_(out), interface_(std::move(interface)) {}
 
-void FrameRecorder::write(const hal::Frame& frame, std::uint64_t dropped) {
+void FrameWriter::write(const hal::Frame& frame, std::uint64_t dropped) {
     if (dropped > 0) {
         dropped_ += dropped;
-        file_.stream() << "DROPCOUNT: dropped " << dropped << (dropped == 1 ? " CAN frame" : " CAN frames")
-                       << " on '" << interface_ << "' socket (total drops " << dropped_ << ")\n";
+        out_ << "DROPCOUNT: dropped " << dropped << (dropped == 1 ? " CAN frame" : " CAN frames") << " on '"
+             << interface_ << "' socket (total drops " << dropped_ << ")\n";
     }
     hal::CandumpText text;
     const std::string_view line =
@@ -24,7 +24,7 @@ void FrameRecorder::write(const hal::Frame& frame, std::uint64_t dropped) {
     if (line.empty()) {
         throw std::logic_error("a frame that no log can hold");
     }
-    file_.stream() << line << '\n';
+    out_ << line << '\n';
 }
 
 } // namespace dfdyn::tools

@@ -20,14 +20,15 @@
 
 #include <algorithm>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <optional>
-#include <string_view>
 
 namespace dfdyn::tools {
 
 namespace {
+
+/// Of --can, for the figures of the summary and the report: what has no end needs a bound.
+constexpr std::size_t kept_live_ticks = 32'768;
 
 struct ReplayOptions {
     std::vector<std::filesystem::path> models; ///< several: combined
@@ -140,8 +141,12 @@ std::vector<ReplayedBus> replay_bus(const ReplayOptions& options, std::span<cons
     HostEstimator& estimator = *replaying.estimator;
     std::vector<ReplayedBus> replayed;
     if (options.live()) {
-        replayed.push_back(replay_interface(estimator, models, description, options.can,
-                                            options.chosen_horizon(), stop_on_signals()));
+        ReplayCsvFile csv(options.csv, models.front());
+        InterfaceOptions can = options.can;
+        can.memory = {kept_live_ticks, options.csv.empty() ? nullptr : &csv};
+        replayed.push_back(replay_interface(estimator, models, description, can, options.chosen_horizon(),
+                                            stop_on_signals()));
+        csv.flush();
         replaying.collect(replayed.back().replayed);
     }
     for (const std::filesystem::path& log : options.recordings.logs) {
@@ -155,7 +160,7 @@ std::vector<ReplayedBus> replay_bus(const ReplayOptions& options, std::span<cons
 void write_results(const ReplayOptions& options, std::span<const TrainedModel> models,
                    const Replaying& replaying, std::span<const ReplayedRecording> replayed) {
     const ReplaySummary summary = summarise(models, *replaying.estimator, replayed, options.chosen_horizon());
-    if (!options.csv.empty()) {
+    if (!options.csv.empty() && !options.live()) {
         AtomicFile file(options.csv);
         write_replay_csv(file.stream(), models.front(), replayed);
         file.commit();
@@ -169,23 +174,18 @@ void write_results(const ReplayOptions& options, std::span<const TrainedModel> m
     }
 }
 
-bool predicted(const ReplayedRecording& replayed) {
-    return std::ranges::any_of(replayed.status, [](const Status& status) { return status.predicted(); });
-}
+bool predicted(const ReplayedRecording& replayed) { return replayed.totals.predicted > 0; }
 
 /// Says on stderr why a recording gave no prediction: the most frequent reason.
 void explain_no_prediction(const ReplayedRecording& replayed) {
-    std::map<std::string_view, std::size_t> counts;
-    for (std::size_t tick = 0; tick < replayed.status.size(); ++tick) {
-        ++counts[reason_name(replayed, tick)];
-    }
+    const auto& counts = replayed.totals.reasons;
     std::cerr << shown(replayed.source) << ": nothing was predicted: ";
     if (counts.empty()) {
         std::cerr << "it has no ticks\n";
         return;
     }
     const auto most = std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
-    std::cerr << most->second << " of " << replayed.status.size() << " ticks " << most->first
+    std::cerr << most->second << " of " << replayed.totals.ticks << " ticks " << most->first
               << "; check that units, sample period and columns are those of the model's training\n";
 }
 
@@ -257,8 +257,10 @@ void add_replay_command(CLI::App& app, Command& chosen) {
         ->type_name("S");
     command->add_option("--record", options->can.record, "Log of what --can receives")->type_name("L.log");
     command
-        ->add_option("-o,--output", options->csv,
-                     "One row per tick: measured, predicted, deviation, nis, learned, status")
+        ->add_option(
+            "-o,--output", options->csv,
+            "One row per tick: measured, predicted, deviation, nis, learned, status. With --can it is "
+            "written as the ticks come, and there at any time")
         ->type_name("OUT.csv");
     command->add_option("--report", options->report, "Self-contained page with curves and figures")
         ->type_name("R.html");

@@ -187,6 +187,46 @@ std::ostream& AtomicFile::stream() noexcept { return implementation_->stream(); 
 
 void AtomicFile::commit() { implementation_->commit(); }
 
+class GrowingFile::Implementation {
+  public:
+    explicit Implementation(const fs::path& target) : buffer_(target), stream_(&buffer_) {
+        ignore_file_size_signal();
+        descriptor_ = ::open(target.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+        if (descriptor_ < 0) {
+            throw system_error(target, "cannot write", errno);
+        }
+        buffer_.attach(descriptor_);
+        stream_.imbue(std::locale::classic());
+        stream_.exceptions(std::ios::badbit);
+    }
+
+    ~Implementation() {
+        try {
+            stream_.flush();
+        } catch (const std::exception& error) { // whoever has to know flushes before
+            static_cast<void>(error);
+        }
+        ::close(descriptor_);
+    }
+
+    Implementation(const Implementation&) = delete;
+    Implementation& operator=(const Implementation&) = delete;
+
+    std::ostream& stream() noexcept { return stream_; }
+
+  private:
+    int descriptor_ = -1;
+    DescriptorBuffer buffer_;
+    std::ostream stream_;
+};
+
+GrowingFile::GrowingFile(const fs::path& target)
+    : implementation_(std::make_unique<Implementation>(target)) {}
+
+GrowingFile::~GrowingFile() = default;
+
+std::ostream& GrowingFile::stream() noexcept { return implementation_->stream(); }
+
 void check_writable(const fs::path& target) {
     struct stat status {};
     if (::stat(target.c_str(), &status) != 0 || S_ISREG(status.st_mode)) {

@@ -35,6 +35,24 @@ class AtomicFile {
     std::unique_ptr<Implementation> implementation_;
 };
 
+/// A file that is written as the work goes on, for work that a person ends or that runs for days: what was
+/// flushed is there, whatever ends the program.
+class GrowingFile {
+  public:
+    /// Makes the file, or empties it. Throws InputError with path and the system's reason.
+    explicit GrowingFile(const std::filesystem::path& target);
+    ~GrowingFile();
+    GrowingFile(const GrowingFile&) = delete;
+    GrowingFile& operator=(const GrowingFile&) = delete;
+
+    /// As of AtomicFile.
+    std::ostream& stream() noexcept;
+
+  private:
+    class Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
 /// Throws InputError as the constructor of AtomicFile for `target` does, so that a long work fails before it
 /// begins. Leaves nothing behind; pipes and devices are not opened.
 void check_writable(const std::filesystem::path& target);

@@ -28,6 +28,10 @@ void HorizonError::skip() {
     ++ticks_;
 }
 
+void HorizonError::forget_before(std::size_t tick) {
+    std::erase_if(indices_, [tick](const HorizonIndex& index) { return index.tick < tick; });
+}
+
 void HorizonError::add_to(Model& model, const HostEstimator& estimator, std::span<const double> measured) {
     estimator.predict_with(model.weights, prediction_);
     for (std::size_t k = 0; k < outputs_; ++k) {

@@ -30,6 +30,9 @@ class HorizonError {
     /// Adds a tick without a prediction: no horizon reaches across it.
     void skip();
 
+    /// Forgets the indices of ticks before `tick`.
+    void forget_before(std::size_t tick);
+
     const std::vector<HorizonIndex>& indices() const noexcept { return indices_; }
 
   private:

@@ -56,13 +56,60 @@ std::string_view reason_name(const ReplayedRecording& replayed, std::size_t tick
     return bus != hal::Reason::ok ? hal::name(bus) : name(replayed.status[tick].reason());
 }
 
-Replayer::Replayer(HostEstimator& estimator, std::string source, std::size_t outputs, std::size_t horizon)
+Replayer::Replayer(HostEstimator& estimator, std::string source, std::size_t outputs, std::size_t horizon,
+                   const ReplayMemory& memory)
     : estimator_(estimator), outputs_(outputs), horizon_(horizon),
-      errors_(std::max<std::size_t>(horizon, 1), outputs, estimator.weight_count()) {
+      errors_(std::max<std::size_t>(horizon, 1), outputs, estimator.weight_count()), memory_(memory) {
     replayed_.source = std::move(source);
+    for_each_column(
+        [&](auto& column, std::size_t width) { // writes to it: only so the system gives the memory
+            column.resize(2 * memory.kept_ticks * width);
+            column.clear();
+        });
+}
+
+template <class Use>
+void Replayer::for_each_column(Use use) {
+    use(replayed_.time_s, 1);
+    use(replayed_.measured, outputs_);
+    use(replayed_.predicted, outputs_);
+    use(replayed_.standard_deviation, outputs_);
+    use(replayed_.normalised_innovation_squared, 1);
+    use(replayed_.status, 1);
+    use(replayed_.bus_reason, 1);
+    use(replayed_.duration_us, 1);
 }
 
 void Replayer::tick(double time_s, const MeasuredSample& sample) {
+    estimate(time_s, sample);
+    complete_tick();
+}
+
+void Replayer::tick(double time_s, const MeasuredSample& sample, hal::Reason output) {
+    estimate(time_s, sample);
+    replayed_.bus_reason.push_back(replayed_.status.back().estimated() ? output : hal::Reason::ok);
+    complete_tick();
+}
+
+void Replayer::skip(double time_s, hal::Reason position) {
+    Tick tick;
+    tick.status.prediction = Reason::gap; // what the estimator will make of it
+    replayed_.time_s.push_back(time_s);
+    append(tick, {});
+    replayed_.bus_reason.push_back(position);
+    errors_.skip();
+    complete_tick();
+}
+
+ReplayedRecording Replayer::finish() {
+    replayed_.horizon = errors_.indices();
+    for (HorizonIndex& index : replayed_.horizon) {
+        index.tick -= replayed_.forgotten;
+    }
+    return std::move(replayed_);
+}
+
+void Replayer::estimate(double time_s, const MeasuredSample& sample) {
     const Tick tick = estimator_.tick(sample);
     replayed_.clock_origin_s = time_s - 1e-9 * static_cast<double>(sample.time_ns);
     replayed_.time_s.push_back(time_s);
@@ -74,23 +121,25 @@ void Replayer::tick(double time_s, const MeasuredSample& sample) {
     }
 }
 
-void Replayer::tick(double time_s, const MeasuredSample& sample, hal::Reason output) {
-    tick(time_s, sample);
-    replayed_.bus_reason.push_back(replayed_.status.back().estimated() ? output : hal::Reason::ok);
-}
-
-void Replayer::skip(double time_s, hal::Reason position) {
-    Tick tick;
-    tick.status.prediction = Reason::gap; // what the estimator will make of it
-    replayed_.time_s.push_back(time_s);
-    append(tick, {});
-    replayed_.bus_reason.push_back(position);
-    errors_.skip();
-}
-
-ReplayedRecording Replayer::finish() {
-    replayed_.horizon = errors_.indices();
-    return std::move(replayed_);
+/// Counts the last tick, hands it on, and forgets the oldest ones where there are too many.
+void Replayer::complete_tick() {
+    const std::size_t last = replayed_.time_s.size() - 1;
+    ReplayTotals& totals = replayed_.totals;
+    ++totals.ticks;
+    totals.predicted += replayed_.status[last].predicted() ? 1 : 0;
+    totals.learned += replayed_.status[last].learned() ? 1 : 0;
+    ++totals.reasons[reason_name(replayed_, last)];
+    if (memory_.sink != nullptr) {
+        memory_.sink->take(replayed_, last);
+    }
+    if (memory_.kept_ticks > 0 && replayed_.time_s.size() == 2 * memory_.kept_ticks) {
+        for_each_column([&](auto& column, std::size_t width) {
+            const auto count = std::min(memory_.kept_ticks * width, column.size());
+            column.erase(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(count));
+        });
+        replayed_.forgotten += memory_.kept_ticks;
+        errors_.forget_before(replayed_.forgotten);
+    }
 }
 
 void Replayer::append(const Tick& tick, std::span<const double> output) {

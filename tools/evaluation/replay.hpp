@@ -8,12 +8,19 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace dfdyn::tools {
+
+/// Counts over all ticks of a replay.
+struct ReplayTotals {
+    std::size_t ticks = 0, predicted = 0, learned = 0;
+    std::map<std::string_view, std::size_t> reasons; ///< how often each `reason_name` occurred
+};
 
 /// What the embedded estimator did with one recording, tick by tick. Vectors over ticks; those of outputs row
 /// by row.
@@ -32,6 +39,24 @@ struct ReplayedRecording {
     /// Of the models' rigid bodies with friction: the robot file's inertia, then identified inertia; ticks ×
     /// m each, NaN where the motion is not known. Empty: there are none.
     std::vector<std::vector<double>> rigid_body;
+    ReplayTotals totals;
+    std::size_t forgotten = 0; ///< ticks before the first one of the vectors, see ReplayMemory
+};
+
+/// Gets each tick of a replay as it is done.
+class TickSink {
+  public:
+    virtual ~TickSink() = default;
+    virtual void take(const ReplayedRecording& replayed, std::size_t tick) = 0;
+    /// There is time to write out what it holds back.
+    virtual void flush() = 0;
+};
+
+/// How much of a replay is kept. A replay without end needs a bound: its memory is then taken once, at the
+/// start.
+struct ReplayMemory {
+    std::size_t kept_ticks = 0; ///< at least that many of the last ticks, at most twice as many; 0: all
+    TickSink* sink = nullptr;   ///< of every tick; null: none
 };
 
 /// The one reason worth reporting of a tick ("ok" for none): the bus' if there is one, else the estimator's.
@@ -47,7 +72,8 @@ bool needs_derivatives(const TrainedModel& model);
 class Replayer {
   public:
     /// `horizon`: T of the index ε, 0 for none.
-    Replayer(HostEstimator& estimator, std::string source, std::size_t outputs, std::size_t horizon);
+    Replayer(HostEstimator& estimator, std::string source, std::size_t outputs, std::size_t horizon,
+             const ReplayMemory& memory = {});
 
     /// One tick. `sample.output` is empty where nothing was measured.
     void tick(double time_s, const MeasuredSample& sample);
@@ -56,17 +82,20 @@ class Replayer {
     /// A tick for which a bus has no positions.
     void skip(double time_s, hal::Reason position);
 
-    std::size_t ticks() const noexcept { return replayed_.time_s.size(); }
-
-    /// All of it; call once, last.
+    /// All that is kept; call once, last.
     ReplayedRecording finish();
 
   private:
+    void estimate(double time_s, const MeasuredSample& sample);
     void append(const Tick& tick, std::span<const double> output);
+    void complete_tick();
+    template <class Use>
+    void for_each_column(Use use);
 
     HostEstimator& estimator_;
     std::size_t outputs_, horizon_;
     HorizonError errors_;
+    ReplayMemory memory_;
     ReplayedRecording replayed_;
 };
 

@@ -59,8 +59,9 @@ void print(std::ostream& out, const char* what, std::uint64_t count) {
 } // namespace
 
 CanReplayer::CanReplayer(HostEstimator& estimator, std::span<const TrainedModel> models,
-                         const BusDescription& description, std::string source, std::size_t horizon)
-    : replayer_(estimator, std::move(source), models.front().outputs.names.size(), horizon),
+                         const BusDescription& description, std::string source, std::size_t horizon,
+                         const ReplayMemory& memory)
+    : replayer_(estimator, std::move(source), models.front().outputs.names.size(), horizon, memory),
       sampler_(description, [this](const BusSample& sample) { tick(sample); }) {
     for (const TrainedModel& model : models) {
         check_fit(model, description);
@@ -102,6 +103,7 @@ ReplayedBus replay_log(HostEstimator& estimator, std::span<const TrainedModel> m
         }
     }
     frames.check();
+    warn_of_torn_line(frames);
     if (!replayer.sampler().started()) {
         throw InputError(shown(log) + ": expected frames, found none");
     }

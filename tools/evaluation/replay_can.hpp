@@ -30,7 +30,8 @@ class CanReplayer {
     /// Throws InputError where joints, outputs or rate of the description are not those of the models, or a
     /// model needs measured derivatives. Keeps references to the estimator.
     CanReplayer(HostEstimator& estimator, std::span<const TrainedModel> models,
-                const BusDescription& description, std::string source, std::size_t horizon);
+                const BusDescription& description, std::string source, std::size_t horizon,
+                const ReplayMemory& memory = {});
     CanReplayer(const CanReplayer&) = delete;
     CanReplayer& operator=(const CanReplayer&) = delete;
 

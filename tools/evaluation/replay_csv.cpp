@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/evaluation/replay_csv.hpp"
 
-#include "tools/recording/csv_writer.hpp"
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -39,6 +39,23 @@ void write_replay_csv(std::ostream& out, const TrainedModel& model,
         for (std::size_t tick = 0; tick < recording.time_s.size(); ++tick) {
             write_row(writer, recording, tick, model.outputs.names.size());
         }
+    }
+}
+
+ReplayCsvFile::ReplayCsvFile(std::filesystem::path path, const TrainedModel& model)
+    : path_(std::move(path)), model_(model) {}
+
+void ReplayCsvFile::take(const ReplayedRecording& replayed, std::size_t tick) {
+    if (!writer_) {
+        file_.emplace(path_);
+        writer_.emplace(file_->stream(), column_names(model_));
+    }
+    write_row(*writer_, replayed, tick, model_.outputs.names.size());
+}
+
+void ReplayCsvFile::flush() {
+    if (file_) {
+        file_->stream().flush();
     }
 }
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/common/atomic_file.hpp"
 #include "tools/evaluation/replay.hpp"
+#include "tools/recording/csv_writer.hpp"
 
+#include <filesystem>
+#include <optional>
 #include <ostream>
 #include <span>
 
@@ -13,5 +17,21 @@ namespace dfdyn::tools {
 /// Recordings follow one another; where one begins, t starts again.
 void write_replay_csv(std::ostream& out, const TrainedModel& model,
                       std::span<const ReplayedRecording> recordings);
+
+/// Writes such a table as the ticks come: the file appears with the first one, and what was flushed stays
+/// whatever ends the program. Keeps a reference to `model`.
+class ReplayCsvFile final : public TickSink {
+  public:
+    ReplayCsvFile(std::filesystem::path path, const TrainedModel& model);
+
+    void take(const ReplayedRecording& replayed, std::size_t tick) override;
+    void flush() override;
+
+  private:
+    std::filesystem::path path_;
+    const TrainedModel& model_;
+    std::optional<GrowingFile> file_;
+    std::optional<CsvWriter> writer_;
+};
 
 } // namespace dfdyn::tools

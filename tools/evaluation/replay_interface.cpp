@@ -3,13 +3,13 @@
 
 #include "dfdyn/hal/socketcan_bus.hpp"
 #include "tools/can/frame_recorder.hpp"
+#include "tools/common/atomic_file.hpp"
 #include "tools/common/error.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
-#include <thread>
+#include <optional>
 
 namespace dfdyn::tools {
 
@@ -19,11 +19,9 @@ namespace {
 class Reception {
   public:
     Reception(const InterfaceOptions& options, BusSampler& sampler)
-        : sampler_(sampler), bus_({.interface = options.interface}), end_ns_(end_of(options)) {
-        if (!options.record.empty()) {
-            recorder_.emplace(options.record, options.interface);
-        }
-    }
+        : options_(options), sampler_(sampler), bus_({.interface = options.interface}),
+          end_ns_(options.duration_s > 0 ? bus_.now_ns() + std::llround(1e9 * options.duration_s)
+                                         : std::numeric_limits<std::int64_t>::max()) {}
 
     void run(const std::atomic<bool>& stop) {
         while (!stop && bus_.now_ns() < end_ns_) {
@@ -31,9 +29,7 @@ class Reception {
             if (!take_one()) {
                 nothing_came();
             }
-        }
-        if (recorder_ && sampler_.started()) {
-            recorder_->commit();
+            flush();
         }
     }
 
@@ -43,34 +39,45 @@ class Reception {
     /// A frame reaches us within this after its stamp, nearly always.
     static constexpr std::int64_t delivery_ns = 5'000'000;
     static constexpr std::int64_t request_period_ns = 100'000'000;
-    static constexpr std::chrono::microseconds pause{200};
-
-    std::int64_t end_of(const InterfaceOptions& options) const {
-        return options.duration_s > 0 ? bus_.now_ns() + std::llround(1e9 * options.duration_s)
-                                      : std::numeric_limits<std::int64_t>::max();
-    }
+    static constexpr std::int64_t flush_period_ns = 250'000'000;
+    /// While samples become due without frames, and without any.
+    static constexpr std::int64_t short_wait_ns = 5'000'000;
+    static constexpr std::int64_t long_wait_ns = 100'000'000;
 
     /// One frame at a time, so that the bus' state is that at this frame, as in a recording.
     bool take_one() {
         const std::span<const hal::Frame> frames = bus_.drain(room_);
         for (hal::Frame frame : frames) {
             frame.stamp_ns = std::max(frame.stamp_ns, passed_ns_ + 1);
-            if (recorder_) {
-                recorder_->write(frame, bus_.counters().dropped - dropped_);
-            }
+            record(frame);
             dropped_ = bus_.counters().dropped;
             sampler_.take(frame, bus_.state(), bus_.counters());
+            silent_from_ns_ = bus_.now_ns() + BusSampler::longest_silence_ns + delivery_ns;
         }
         return !frames.empty();
     }
 
+    /// The log is made once there is something for it.
+    void record(const hal::Frame& frame) {
+        if (options_.record.empty()) {
+            return;
+        }
+        if (!writer_) {
+            file_.emplace(options_.record);
+            writer_.emplace(file_->stream(), options_.interface);
+        }
+        writer_->write(frame, bus_.counters().dropped - dropped_);
+    }
+
     /// What the passing time alone makes due. A frame that is even later is given a later stamp.
     void nothing_came() {
+        const std::int64_t now_ns = bus_.now_ns();
         if (sampler_.started()) {
-            passed_ns_ = std::max(passed_ns_, bus_.now_ns() - delivery_ns);
+            passed_ns_ = std::max(passed_ns_, now_ns - delivery_ns);
             sampler_.advance_to(passed_ns_);
         }
-        std::this_thread::sleep_for(pause);
+        const bool samples_become_due = sampler_.started() && now_ns < silent_from_ns_;
+        bus_.wait(std::min(samples_become_due ? short_wait_ns : long_wait_ns, end_ns_ - now_ns));
     }
 
     void request() {
@@ -83,14 +90,31 @@ class Reception {
         }
     }
 
+    void flush() {
+        if (bus_.now_ns() < next_flush_ns_) {
+            return;
+        }
+        next_flush_ns_ = bus_.now_ns() + flush_period_ns;
+        if (file_) {
+            file_->stream().flush();
+        }
+        if (options_.memory.sink != nullptr) {
+            options_.memory.sink->flush();
+        }
+    }
+
+    const InterfaceOptions& options_;
     BusSampler& sampler_;
     hal::SocketCanBus bus_;
     std::int64_t end_ns_;
-    std::optional<FrameRecorder> recorder_;
+    std::optional<GrowingFile> file_;
+    std::optional<FrameWriter> writer_;
     std::array<hal::Frame, 1> room_{};
     std::uint64_t dropped_ = 0;
     std::int64_t passed_ns_ = std::numeric_limits<std::int64_t>::min();
+    std::int64_t silent_from_ns_ = 0; ///< no sample becomes due after it without a frame
     std::int64_t next_request_ns_ = 0;
+    std::int64_t next_flush_ns_ = 0;
 };
 
 } // namespace
@@ -99,7 +123,7 @@ ReplayedBus replay_interface(HostEstimator& estimator, std::span<const TrainedMo
                              const BusDescription& description, const InterfaceOptions& options,
                              std::size_t horizon, const std::atomic<bool>& stop) {
     try {
-        CanReplayer replayer(estimator, models, description, options.interface, horizon);
+        CanReplayer replayer(estimator, models, description, options.interface, horizon, options.memory);
         Reception reception(options, replayer.sampler());
         reception.run(stop);
         if (!replayer.sampler().started()) {

@@ -13,19 +13,15 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
-#include <map>
 
 namespace dfdyn::tools {
 
 namespace {
 
-std::vector<std::pair<std::string, std::size_t>> count_refusals(const ReplayedRecording& replayed) {
-    std::map<std::string, std::size_t> counts;
-    for (std::size_t tick = 0; tick < replayed.status.size(); ++tick) {
-        ++counts[std::string(reason_name(replayed, tick))];
-    }
-    counts.erase(name(Reason::ok));
-    return {counts.begin(), counts.end()};
+std::vector<std::pair<std::string, std::size_t>> refusals_of(const ReplayTotals& totals) {
+    std::vector<std::pair<std::string, std::size_t>> refusals(totals.reasons.begin(), totals.reasons.end());
+    std::erase_if(refusals, [](const auto& entry) { return entry.first == name(Reason::ok); });
+    return refusals;
 }
 
 RecordingFigures figures_of(const ReplayedRecording& replayed, const TrainedModel& model) {
@@ -33,12 +29,11 @@ RecordingFigures figures_of(const ReplayedRecording& replayed, const TrainedMode
     const std::size_t ticks = replayed.time_s.size();
     RecordingFigures figures;
     figures.name = std::filesystem::path(replayed.source).filename().string();
-    figures.ticks = ticks;
-    for (const Status& status : replayed.status) {
-        figures.predicted += status.predicted() ? 1 : 0;
-        figures.learned += status.learned() ? 1 : 0;
-    }
-    figures.refusals = count_refusals(replayed);
+    figures.ticks = replayed.totals.ticks;
+    figures.forgotten = replayed.forgotten;
+    figures.predicted = replayed.totals.predicted;
+    figures.learned = replayed.totals.learned;
+    figures.refusals = refusals_of(replayed.totals);
     for (std::size_t k = 0; k < outputs; ++k) {
         figures.normalised_error.push_back(normalised_error(replayed, outputs, k, 0, ticks));
         figures.normalised_error_second_half.push_back(
@@ -124,7 +119,10 @@ ReplaySummary summarise(std::span<const TrainedModel> models, const HostEstimato
         summary.learned = summary.learned || summary.recordings.back().learned > 0;
     }
     summary.no_rigid_body = reason_without_rigid_body(models, replayed);
-    const std::vector<double> durations = durations_of(replayed, summary.learned);
+    std::vector<double> durations = durations_of(replayed, summary.learned);
+    if (durations.empty()) { // it has learned, but none of the last ticks
+        durations = durations_of(replayed, false);
+    }
     if (!durations.empty()) {
         summary.median_us = median(durations);
         summary.p99_us = quantile(durations, 0.99);
@@ -140,6 +138,10 @@ void print_summary(std::ostream& out, const ReplaySummary& summary) {
             << " predicted, " << recording.learned << " learned\n";
         for (const auto& [reason, count] : recording.refusals) {
             out << "  " << count << " x " << reason << '\n';
+        }
+        if (recording.forgotten > 0) {
+            out << "  the figures below are of the last " << recording.ticks - recording.forgotten
+                << " ticks\n";
         }
         print_line(out, "", summary.outputs);
         print_values(out, "nRMSE, one step", recording.normalised_error);

@@ -15,6 +15,7 @@ namespace dfdyn::tools {
 struct RecordingFigures {
     std::string name; ///< file name without folders
     std::size_t ticks = 0, predicted = 0, learned = 0;
+    std::size_t forgotten = 0; ///< ticks that count above, and in none of the figures below
     std::vector<std::pair<std::string, std::size_t>> refusals; ///< reasons other than ok, and how often
     std::vector<double> within_two_deviations;                 ///< share of ticks
     std::vector<double> normalised_error;                      ///< one-step nRMSE over all ticks

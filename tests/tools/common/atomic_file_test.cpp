@@ -25,6 +25,7 @@ namespace {
 using dfdyn::tests::file_content;
 using dfdyn::tests::TemporaryDirectory;
 using dfdyn::tools::AtomicFile;
+using dfdyn::tools::GrowingFile;
 using dfdyn::tools::InputError;
 using dfdyn::tools::write_file;
 
@@ -386,6 +387,21 @@ TEST_CASE("AtomicFile refuses a seventeenth file at once, and has room again aft
     }
     write_file(base, "x");
     CHECK(directory.file_count() == 1);
+}
+
+TEST_CASE("GrowingFile shows what was flushed at once, in place of what was there") {
+    const TemporaryDirectory directory;
+    const auto target = directory.write("out.csv", "what was there before, and is longer");
+    {
+        GrowingFile file(target);
+        file.stream() << "t,q\n" << 0.5;
+        CHECK(file_content(target).empty());
+        file.stream().flush();
+        CHECK(file_content(target) == "t,q\n0.5");
+        file.stream() << ",1\n";
+    }
+    CHECK(file_content(target) == "t,q\n0.5,1\n");
+    CHECK_THROWS_AS(GrowingFile(directory.path()), InputError);
 }
 
 TEST_CASE("make_folder makes what is missing and leaves what is there") {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tests/support/allocation_guard.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/support/small_model.hpp"
@@ -75,6 +76,75 @@ TEST_CASE("a recording that does not fit the model is refused") {
     other.position.names = joint_names("q", 3);
     CHECK_THROWS_WITH(replay_of(model, other, 0),
                       "run.csv: expected positions of 2 joints as the model has, found 3");
+}
+
+TEST_CASE("a replay without end keeps its last ticks, counts and hands on all, in the memory of its start") {
+    class Counter final : public TickSink {
+      public:
+        void take(const ReplayedRecording& replayed, std::size_t tick) override {
+            in_order_ = in_order_ && replayed.time_s.at(tick) > last_s_ && replayed.bus_reason.size() > tick;
+            last_s_ = replayed.time_s[tick];
+            ++count_;
+        }
+        void flush() override {}
+
+        std::size_t count_ = 0;
+        double last_s_ = -1;
+        bool in_order_ = true;
+    };
+    std::mt19937_64 engine(1);
+    const TrainedModel model = small_model(engine, InputKind::DFR);
+    const Recording recording = moving_arm(2'000);
+    const auto estimator = make_estimator(model, true);
+    Counter counter;
+    Replayer replayer(*estimator, "can0", 6, 0, {100, &counter});
+    std::uint64_t allocations = 0; // the estimator's own, for each tick, are released with it
+    std::uint64_t releases = 0;
+    for (std::size_t row = 0; row < recording.row_count(); ++row) {
+        const dfdyn::tests::AllocationGuard guard;
+        if (row % 10 == 3) {
+            replayer.skip(recording.time_s[row], dfdyn::hal::Reason::position_stale);
+        } else {
+            replayer.tick(recording.time_s[row], sample_at(recording, row), dfdyn::hal::Reason::ok);
+        }
+        const dfdyn::tests::HeapCalls calls = guard.calls();
+        allocations += row > 20 ? calls.allocations : 0; // by then every reason has been seen
+        releases += row > 20 ? calls.releases : 0;
+    }
+    CHECK(allocations == releases);
+    CHECK(counter.count_ == 2'000);
+    CHECK(counter.in_order_);
+    const ReplayedRecording replayed = replayer.finish();
+    CHECK(replayed.totals.ticks == 2'000);
+    CHECK(replayed.totals.reasons.at("position_stale") == 200);
+    CHECK(replayed.time_s.size() + replayed.forgotten == 2'000);
+    CHECK(replayed.time_s.size() >= 100);
+    CHECK(replayed.time_s.size() < 200);
+    CHECK(replayed.predicted.size() == 6 * replayed.time_s.size());
+    CHECK(replayed.time_s.back() == recording.time_s.back());
+}
+
+TEST_CASE("a replay of bounded length keeps the indices of its last ticks") {
+    std::mt19937_64 engine(1);
+    const TrainedModel model = small_model(engine, InputKind::DFR);
+    const Recording recording = moving_arm(300);
+    const auto estimator = make_estimator(model, true);
+    const auto bounded_estimator = make_estimator(model, true);
+    Replayer all(*estimator, "can0", 6, 5);
+    Replayer bounded(*bounded_estimator, "can0", 6, 5, {50, nullptr});
+    for (std::size_t row = 0; row < recording.row_count(); ++row) {
+        all.tick(recording.time_s[row], sample_at(recording, row));
+        bounded.tick(recording.time_s[row], sample_at(recording, row));
+    }
+    const ReplayedRecording expected = all.finish();
+    const ReplayedRecording found = bounded.finish();
+    REQUIRE(!found.horizon.empty());
+    for (const HorizonIndex& index : found.horizon) {
+        const auto same =
+            std::ranges::find(expected.horizon, index.tick + found.forgotten, &HorizonIndex::tick);
+        REQUIRE(same != expected.horizon.end());
+        CHECK(same->epsilon == index.epsilon);
+    }
 }
 
 TEST_CASE("the normalised error is that of its definition, over predicted ticks only") {

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// A live replay as a program that somebody leaves alone for a week, or kills.
+#include "tests/support/catch.hpp"
+#include "tests/tools/can/bus_support.hpp"
+#include "tests/vcan/peer.hpp"
+#include "tools/common/error.hpp"
+#include "tools/evaluation/replay_csv.hpp"
+#include "tools/evaluation/replay_interface.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace {
+
+using namespace dfdyn::tools;
+using dfdyn::tests::file_content;
+using dfdyn::tests::IcubLog;
+
+/// Replays what comes over vcan0 until it is killed.
+[[noreturn]] void replay_for_ever(const IcubLog& log, const std::filesystem::path& csv,
+                                  const std::filesystem::path& record) {
+    const std::atomic<bool> stop = false;
+    const auto estimator = make_estimator(log.model, true);
+    ReplayCsvFile sink(csv, log.model);
+    replay_interface(*estimator, {&log.model, 1}, log.bus, {"vcan0", 0, record, {1000, &sink}}, 0, stop);
+    ::_exit(1);
+}
+
+} // namespace
+
+TEST_CASE("what a live replay wrote before it was killed is there, whole but for its last line") {
+    const IcubLog log(100, 100); // 1 s
+    const auto csv = log.directory.path() / "out.csv";
+    const auto record = log.directory.path() / "recorded.log";
+    const long receivers = dfdyn::tests::receivers();
+    const pid_t child = ::fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+        replay_for_ever(log, csv, record);
+    }
+    CHECK(dfdyn::tests::wait_for_receivers(receivers));
+    dfdyn::tests::run(std::string(DFDYN_PROGRAM) + " play --log " + log.path.string() + " --can vcan0");
+    std::this_thread::sleep_for(std::chrono::milliseconds(600)); // it flushes four times a second
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+
+    const std::string rows = file_content(csv);
+    CHECK_THAT(rows, Catch::Matchers::StartsWith("t,fx,fx_pred,fx_std,"));
+    CHECK(std::ranges::count(rows, '\n') > 90);
+    const auto estimator = make_estimator(log.model, true);
+    const ReplayedBus again = replay_log(*estimator, {&log.model, 1}, log.bus, record, "", 0);
+    CHECK(again.bus.frames == 4 * 100 + 6);
+}
+
+TEST_CASE("a live replay on a silent bus sleeps") {
+    const IcubLog log(10, 100);
+    const auto estimator = make_estimator(log.model, true);
+    const std::atomic<bool> stop = false;
+    rusage before{};
+    ::getrusage(RUSAGE_THREAD, &before);
+    CHECK_THROWS_AS(replay_interface(*estimator, {&log.model, 1}, log.bus, {"vcan0", 1.0, {}, {}}, 0, stop),
+                    InputError);
+    rusage after{};
+    ::getrusage(RUSAGE_THREAD, &after);
+    CHECK(after.ru_nvcsw - before.ru_nvcsw < 50); // ten a second
+}
