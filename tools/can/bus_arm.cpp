@@ -83,15 +83,21 @@ class BusArmOf final : public BusArm {
     const hal::AssemblyCounters& counters() const override { return assembly_.counters(); }
     const hal::BusWatch& bus() const override { return assembly_.bus(0); }
 
+    const AnySensor* sensor() const override {
+        if constexpr (std::is_same_v<Output, Wrenches>) {
+            return &assembly_.output().source();
+        } else {
+            return nullptr;
+        }
+    }
+
     std::vector<hal::Frame> requests() const override {
         std::vector<hal::Frame> frames;
-        if constexpr (std::is_same_v<Output, Wrenches>) {
-            const auto* strain = std::get_if<hal::icub::StrainBoard>(&assembly_.output().source().device());
-            const bool ask =
-                strain != nullptr && strain->full_scale().reason() == hal::Reason::waiting_for_full_scale;
-            for (int channel = 0; ask && channel < 6; ++channel) {
-                frames.push_back(strain->request_full_scale(channel));
-            }
+        const auto* strain =
+            sensor() != nullptr ? std::get_if<hal::icub::StrainBoard>(&sensor()->device()) : nullptr;
+        const bool ask = strain != nullptr && strain->full_scale().reason() != hal::Reason::ok;
+        for (int channel = 0; ask && channel < 6; ++channel) {
+            frames.push_back(strain->request_full_scale(channel));
         }
         return frames;
     }

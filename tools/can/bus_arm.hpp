@@ -43,7 +43,10 @@ class BusArm {
     virtual const hal::AssemblyCounters& counters() const = 0;
     virtual const hal::BusWatch& bus() const = 0;
 
-    /// What to send so that the sensor tells its full scales; none when it has, or needs not.
+    /// The sensor, with what it has reported; null where the joints measure the outputs.
+    virtual const AnySensor* sensor() const = 0;
+
+    /// What to send so that the sensor reports its full scales; none when they are known and not in doubt.
     virtual std::vector<hal::Frame> requests() const = 0;
 
     /// A standard identifier that two devices would send.

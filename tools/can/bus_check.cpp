@@ -6,51 +6,65 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace dfdyn::tools {
 
 namespace {
 
-double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
-
 std::span<const hal::Frame> span_of(const hal::FrameList& list) {
     return std::span(list.frame).first(static_cast<std::size_t>(list.count));
 }
 
+/// How far apart the positions (rad) lie at which a board's encoder begins anew: a turn of it; 0 where it
+/// does not.
+double encoder_turn_rad(const AnyBoard& board) {
+    constexpr double turn_rad = 2 * std::numbers::pi;
+    if (const auto* foc = std::get_if<hal::icub::FocBoard>(&board.device())) {
+        return turn_rad / std::abs(foc->config().motor_per_joint);
+    }
+    if (const auto* odrive = std::get_if<hal::OdriveAxis>(&board.device())) {
+        return turn_rad / std::abs(odrive->config().motor_per_joint);
+    }
+    return turn_rad;
+}
+
 } // namespace
 
-double BusStream::rate_hz() const {
-    return count > 1 && last_ns > first_ns ? static_cast<double>(count - 1) / seconds(last_ns - first_ns) : 0;
-}
-
-double BusStream::jitter_s() const {
-    if (count < 3 || last_ns == first_ns) {
-        return 0;
+BusCheck::BusCheck(std::optional<BusDescription> description) : description_(std::move(description)) {
+    if (description_) {
+        describe();
     }
-    const double mean_s = 1 / rate_hz();
-    return std::sqrt(
-        std::max(0.0, interval_square_sum_s2 / static_cast<double>(count - 1) - mean_s * mean_s));
 }
 
-BusCheck::BusCheck(BusDescription description)
-    : description_(std::move(description)), arm_(make_bus_arm(description_)) {
-    BusDescription joints = description_;
+/// What the description says of each identifier and joint.
+void BusCheck::describe() {
+    arm_ = make_bus_arm(*description_);
+    boards_ = description_->boards;
+    BusDescription joints = *description_;
     joints.sensor.reset(); // which need not be able to send
     const DeviceFrames devices(joints);
     const std::vector<double> zeros(static_cast<std::size_t>(joints.joint_count));
-    expect(devices.joints(zeros, zeros), description_.joints.rate_hz);
+    expect(devices.joints(zeros, zeros), description_->joints.rate_hz);
     if (const std::optional<hal::Frame> sync = devices.sync()) {
-        expect({&*sync, 1}, description_.joints.rate_hz);
+        expect({&*sync, 1}, description_->joints.rate_hz);
     }
-    if (description_.sensor) {
-        const hal::FrameList frames = description_.sensor->encode({});
-        expect(span_of(frames), description_.output.rate_hz);
+    if (description_->sensor) {
+        const hal::FrameList frames = description_->sensor->encode({});
+        expect(span_of(frames), description_->output.rate_hz);
         name_sender(span_of(frames), "sensor");
     }
-    for (const BusBoard& board : description_.boards) {
+    joints_.resize(zeros.size());
+    restarts_.resize(zeros.size());
+    position_keys_.resize(zeros.size());
+    for (const BusBoard& board : description_->boards) {
         for (const int joint : board.joint) {
             if (joint != hal::unused_joint) {
-                name_sender(span_of(board.board.encode({})), "joint " + std::to_string(joint + 1));
+                const hal::FrameList frames = board.board.encode({});
+                const hal::Frame& position = frames.frame.front();
+                name_sender(span_of(frames), "joint " + std::to_string(joint + 1));
+                position_keys_.at(static_cast<std::size_t>(joint)) = {position.extended, position.id};
+                joints_.at(static_cast<std::size_t>(joint)) = ValueWatch(encoder_turn_rad(board.board));
             }
         }
     }
@@ -77,59 +91,103 @@ void BusCheck::expect(std::span<const hal::Frame> frames, double rate_hz) {
 
 bool BusCheck::claimed(const hal::Frame& frame) const {
     const auto claims = [&](const BusBoard& board) { return board.board.claims(frame.id); };
-    return !frame.extended && (std::ranges::any_of(description_.boards, claims) ||
-                               (description_.sensor && description_.sensor->claims(frame.id)));
+    return description_ && !frame.extended &&
+           (std::ranges::any_of(boards_, claims) ||
+            (description_->sensor && description_->sensor->claims(frame.id)));
 }
 
 /// Of the host, on the identifier on which the sensor answers.
 bool BusCheck::is_request(const hal::Frame& frame) const {
-    const auto* ati =
-        description_.sensor ? std::get_if<hal::AtiNetcan>(&description_.sensor->device()) : nullptr;
+    const auto* ati = description_ && description_->sensor
+                          ? std::get_if<hal::AtiNetcan>(&description_->sensor->device())
+                          : nullptr;
     return ati != nullptr && hal::has_id(frame, ati->poll().id) && frame.length == 0;
 }
 
-void BusCheck::update(hal::BusState state, const hal::BusCounters& counters, std::int64_t now_ns) {
-    first_ns_ = started_ ? first_ns_ : now_ns;
-    last_ns_ = now_ns;
-    started_ = true;
+void BusCheck::update(hal::BusState state, const hal::BusCounters& counters) {
     state_ = state;
     worst_ = std::max(worst_, state);
     counters_ = counters;
-    arm_->update(state, counters);
+    if (arm_) {
+        arm_->update(state, counters);
+    }
 }
 
-void BusCheck::take(const hal::Frame& frame, std::int64_t now_ns) {
+/// The bus has been watched until then.
+void BusCheck::pass(std::int64_t time_ns) {
+    first_ns_ = started_ ? first_ns_ : time_ns;
+    last_ns_ = started_ ? std::max(last_ns_, time_ns) : time_ns;
+    started_ = true;
+}
+
+void BusCheck::take(const hal::Frame& frame) {
     if (frame.error) {
         return;
     }
-    bits_ += frame_bits(frame);
-    const std::uint64_t rejected = arm_->bus().rejected.count();
-    arm_->take(frame, now_ns);
-    if (!is_request(frame)) {
-        count(frame, arm_->bus().rejected.count() != rejected);
+    for (const StreamClock::Timed& timed : clock_.take(frame)) {
+        take(timed);
     }
-    assemble(now_ns);
 }
 
-void BusCheck::count(const hal::Frame& frame, bool rejected) {
-    const BusStreamKey key{frame.extended, frame.id};
-    if (streams_.size() >= most_streams && !streams_.contains(key)) {
+void BusCheck::finish() {
+    for (const StreamClock::Timed& timed : clock_.finish()) {
+        take(timed);
+    }
+}
+
+void BusCheck::take(const StreamClock::Timed& timed) {
+    const hal::Frame& frame = timed.frame;
+    bits_ += frame_bits(frame);
+    from_host_ += frame.origin == hal::Origin::this_host ? 1 : 0;
+    BusStream* const stream = is_request(frame) ? nullptr : stream_of(frame);
+    if (timed.stray) {
         return;
     }
-    BusStream& stream = streams_[key];
-    if (stream.count == 0) {
-        stream.known = stream.known || claimed(frame);
-        stream.first_ns = stream.last_ns = frame.stamp_ns;
+    pass(frame.stamp_ns);
+    if (stream != nullptr) {
+        stream->take(frame, frame_bits(frame));
     }
-    const std::int64_t interval_ns = frame.stamp_ns - stream.last_ns;
-    stream.not_increasing += stream.count > 0 && interval_ns <= 0 ? 1 : 0;
-    ++stream.count;
-    stream.longest_gap_ns = std::max(stream.longest_gap_ns, interval_ns);
-    stream.interval_square_sum_s2 += seconds(interval_ns) * seconds(interval_ns);
-    stream.last_ns = std::max(stream.last_ns, frame.stamp_ns);
-    stream.bits += frame_bits(frame);
-    stream.length = frame.length;
-    stream.rejected += rejected ? 1 : 0;
+    if (!arm_) {
+        return;
+    }
+    const std::uint64_t rejected = arm_->bus().rejected.count();
+    arm_->take(frame, last_ns_);
+    if (stream != nullptr && arm_->bus().rejected.count() != rejected) {
+        ++stream->rejected;
+    }
+    watch_joints(frame);
+    assemble(last_ns_);
+}
+
+void BusCheck::watch_joints(const hal::Frame& frame) {
+    for (BusBoard& board : boards_) {
+        const hal::Decoded decoded = board.board.decode(frame);
+        if (decoded.kind == hal::Decoded::Kind::status && decoded.reason == hal::Reason::device_restarted) {
+            ++restarts_.at(static_cast<std::size_t>(std::max(board.joint[0], 0)));
+        }
+        for (int i = 0; i < decoded.joints; ++i) {
+            const hal::JointValue& value = decoded.joint.at(static_cast<std::size_t>(i));
+            if (value.joint >= 0 && value.joint < static_cast<int>(joints_.size())) {
+                joints_[static_cast<std::size_t>(value.joint)].take(value);
+            }
+        }
+    }
+}
+
+/// Null where there is no room for another one.
+BusStream* BusCheck::stream_of(const hal::Frame& frame) {
+    const BusStreamKey key{frame.extended, frame.id};
+    const auto found = streams_.find(key);
+    if (found != streams_.end() && found->second.count > 0) {
+        return &found->second;
+    }
+    if (found == streams_.end() && streams_.size() >= most_streams) {
+        return nullptr;
+    }
+    BusStream& stream = streams_[key];
+    stream.known = stream.known || claimed(frame);
+    stream.infers = !description_;
+    return &stream;
 }
 
 /// What the devices say of themselves, at the sample rate.
@@ -137,7 +195,7 @@ void BusCheck::assemble(std::int64_t now_ns) {
     if (now_ns < next_sample_ns_) {
         return;
     }
-    next_sample_ns_ = now_ns + description_.sample_period_ns();
+    next_sample_ns_ = now_ns + description_->sample_period_ns();
     const BusSample& sample = arm_->assemble(now_ns, now_ns);
     ++samples_;
     last_position_ = sample.position_reason;
@@ -148,6 +206,17 @@ void BusCheck::assemble(std::int64_t now_ns) {
     }
 }
 
+const BusStream* BusCheck::position_stream(std::size_t joint) const {
+    const auto found = streams_.find(position_keys_.at(joint));
+    return found == streams_.end() ? nullptr : &found->second;
+}
+
+std::uint64_t BusCheck::device_losses() const noexcept {
+    const std::uint64_t own = counters_.dropped + counters_.controller_overruns;
+    const std::uint64_t all = arm_ ? arm_->bus().health.losses() : 0;
+    return all > own ? all - own : 0;
+}
+
 std::uint64_t BusCheck::refused(hal::Reason reason) const {
     return refused_.at(static_cast<std::size_t>(reason));
 }
@@ -156,18 +225,29 @@ bool BusCheck::still(hal::Reason reason) const {
     return samples_ > 0 && (last_position_ == reason || last_output_ == reason);
 }
 
-double BusCheck::age_s(const BusStream& stream) const { return seconds(last_ns_ - stream.last_ns); }
+double BusCheck::age_s(const BusStream& stream) const { return seconds_of(last_ns_ - stream.last_ns); }
 
-double BusCheck::duration_s() const { return seconds(last_ns_ - first_ns_); }
+bool BusCheck::dropped_all_missing() const {
+    std::uint64_t missing = 0;
+    for (const auto& [key, stream] : streams_) {
+        missing += stream.missing();
+    }
+    const std::uint64_t dropped = counters_.dropped + counters_.controller_overruns;
+    return dropped > 0 && 2 * missing <= 3 * dropped; // with what would be missing by chance
+}
 
-double BusCheck::load() const { return duration_s() > 0 ? bits_ / duration_s() / description_.bit_rate : 0; }
+double BusCheck::duration_s() const { return seconds_of(last_ns_ - first_ns_); }
+
+double BusCheck::load() const {
+    return duration_s() > 0 && bit_rate() > 0 ? bits_ / duration_s() / bit_rate() : 0;
+}
 
 double BusCheck::expected_load() const {
     double bits_per_s = 0;
     for (const auto& [key, stream] : streams_) {
         bits_per_s += stream.expected_bits;
     }
-    return bits_per_s / description_.bit_rate;
+    return bit_rate() > 0 ? bits_per_s / bit_rate() : 0;
 }
 
 } // namespace dfdyn::tools

@@ -74,14 +74,27 @@ BusBoard read_foc_board(const JsonReader& board) {
     return one_joint(hal::icub::FocBoard(config), config.joint);
 }
 
-BusBoard read_odrive(const JsonReader& board, std::int64_t heartbeat_timeout_ns) {
+hal::OdriveFirmware read_firmware(const JsonReader& joints) {
+    const std::string firmware = joints.has("firmware") ? joints.text("firmware") : "";
+    if (firmware == "0.5") {
+        return hal::OdriveFirmware::v0_5;
+    }
+    if (firmware == "0.6") {
+        return hal::OdriveFirmware::v0_6;
+    }
+    if (joints.has("firmware")) {
+        throw joints.error("firmware", R"("0.5" or "0.6")", in_quotes(firmware));
+    }
+    return hal::OdriveFirmware::any;
+}
+
+/// `config`: what is the same for all axes of a bus.
+BusBoard read_odrive(const JsonReader& board, hal::OdriveAxis::Config config) {
     board.allow_only(Names{"node", "joint", "motor_per_joint", "zero_rad"});
-    hal::OdriveAxis::Config config;
     config.node = board.whole_number("node", 0, 63);
     config.joint = joint_of(board);
     config.motor_per_joint = ratio_or(board, "motor_per_joint", 1);
     config.zero_rad = zero_rad(board);
-    config.heartbeat_timeout_ns = heartbeat_timeout_ns;
     return one_joint(hal::OdriveAxis(config), config.joint);
 }
 
@@ -142,8 +155,9 @@ std::array<double, 6> limit_or(const JsonReader& reader, double force, double to
 }
 
 DescribedWrenchSensor read_strain(const JsonReader& output) {
-    allow_only(output, sensor_fields, {"address", "full_scale"});
+    allow_only(output, sensor_fields, {"address", "full_scale", "calibration_set"});
     hal::icub::StrainBoard board(output.whole_number("address", 1, 14));
+    board.use_calibration_set(output.whole_or("calibration_set", 0, 0, 15));
     std::array<double, 6> limit = limit_or(output, 10'000, 1'000); // of any board of this kind
     if (output.has("full_scale")) {
         const std::vector<int> full_scales = output.whole_numbers("full_scale", 1, 0xFFFF);
@@ -152,7 +166,7 @@ DescribedWrenchSensor read_strain(const JsonReader& output) {
         }
         for (int channel = 0; channel < 6; ++channel) {
             const double full_scale = full_scales[static_cast<std::size_t>(channel)];
-            board.decode(board.encode_full_scale(channel, full_scale));
+            board.describe_full_scale(channel, full_scale);
             limit[static_cast<std::size_t>(channel)] = full_scale;
         }
         if (board.full_scale().reason() != hal::Reason::ok) {
@@ -248,11 +262,12 @@ void read_boards(const JsonReader& joints, const std::filesystem::path& folder, 
         for_each_board(
             joints, [&](const JsonReader& board) { return read_drive(board, config); }, description.boards);
     } else if (family == "odrive") {
-        allow_only(joints, joint_fields, {"heartbeat_timeout_s"});
-        const std::int64_t timeout_ns = nanoseconds_or(joints, "heartbeat_timeout_s", 0.25);
+        allow_only(joints, joint_fields, {"heartbeat_timeout_s", "firmware"});
+        hal::OdriveAxis::Config config;
+        config.heartbeat_timeout_ns = nanoseconds_or(joints, "heartbeat_timeout_s", 0.25);
+        config.firmware = read_firmware(joints);
         for_each_board(
-            joints, [&](const JsonReader& board) { return read_odrive(board, timeout_ns); },
-            description.boards);
+            joints, [&](const JsonReader& board) { return read_odrive(board, config); }, description.boards);
     } else if (family == "dbc") {
         allow_only(joints, joint_fields, {"file"});
         const Dbc dbc = read_dbc(folder / joints.text("file"));

@@ -45,8 +45,8 @@ std::string strangers(const BusCheck& check) {
             ++identifiers;
         }
     }
-    const double share =
-        check.duration_s() > 0 ? bits / check.duration_s() / check.description().bit_rate : 0;
+    const double possible_bits = check.duration_s() * check.bit_rate();
+    const double share = possible_bits > 0 ? bits / possible_bits : 0;
     return share > largest_unknown_load
                ? percent(share) + " of the bit rate on " + std::to_string(identifiers) +
                      " identifiers that nobody described, first " + first
@@ -62,10 +62,20 @@ std::string errors(const BusCheck& check) {
 }
 
 std::string jumps(const BusCheck& check) {
-    const hal::ClockGate& clock = check.watch().clock;
-    return clock.refused() == 0 ? ""
-                                : counted(clock.refused(), " stamps behind or ahead of the others") +
-                                      (clock.adopted() > 0 ? "; they stayed so" : "");
+    const StreamClock& clock = check.clock();
+    std::string text;
+    if (clock.steps() > 0) {
+        const double step_s = 1e-9 * static_cast<double>(clock.largest_step_ns());
+        text = "all stamps go " + number_text(std::abs(step_s)) + " s " + (step_s < 0 ? "back" : "ahead") +
+               " at once" +
+               (clock.steps() > 1 ? ", or less, " + std::to_string(clock.steps()) + " times" : "") +
+               (step_s < 0 ? "" : " (or the whole bus was silent for so long)");
+    }
+    if (clock.strays() > 0) {
+        text +=
+            (text.empty() ? "" : "; ") + counted(clock.strays(), " stamps far from those before and after");
+    }
+    return text;
 }
 
 std::string repeated_times(const BusCheck& check) {
@@ -121,11 +131,7 @@ constexpr std::array<BusRule, 12> bus_rules{{
      "ip -details -statistics link show IFACE: dropped, overrun",
      "read more often and at a real-time priority; filters; a larger receive buffer (net.core.rmem_max)"},
     {"device_lost_frames", "a device lost messages",
-     [](const BusCheck& check) {
-         const std::uint64_t own = check.counters().dropped + check.counters().controller_overruns;
-         const std::uint64_t all = check.watch().health.losses();
-         return all > own ? counted(all - own, " times a device said so") : "";
-     },
+     [](const BusCheck& check) { return counted(check.device_losses(), " times a device said so"); },
      "read the device's status", "send less to it; lower the load"},
     {"interface_down", "the interface went down",
      [](const BusCheck& check) { return counted(check.counters().interface_down, " times down"); },
@@ -145,7 +151,7 @@ struct DeviceRule {
     const char* fix;
 };
 
-constexpr std::array<DeviceRule, 12> device_rules{{
+constexpr std::array<DeviceRule, 13> device_rules{{
     {hal::Reason::encoder_fault, DeviceRule::ever, "encoder_fault",
      "a board says that its encoder is in error", "read the board's status",
      "check the encoder and its cable"},
@@ -178,9 +184,18 @@ constexpr std::array<DeviceRule, 12> device_rules{{
      "the sensor has not told its full scale, without which its values mean nothing",
      "ask it: cansend IFACE ID#1800, and 01 to 05",
      "dfdyn replay --can asks by itself; or full_scale in the description"},
+    {hal::Reason::full_scale_contradicted, DeviceRule::ever, "full_scale_contradicted",
+     "the sensor reports another full scale than described, or than before",
+     "ask the sensor for the full scale of each channel: cansend IFACE ID#1800, and 01 to 05",
+     "the full scales of the set in use in the description; let nobody change the set while the arm runs"},
     {hal::Reason::full_scale_implausible, DeviceRule::ever, "full_scale", "the sensor's full scale cannot be",
      "ask the sensor for the full scale of each channel", "correct it in the sensor or the description"},
 }};
+
+/// A source also qualifies after each gap.
+bool may_be_zero(const BusCheck& check) {
+    return check.sensor() != nullptr || std::ranges::any_of(check.joints(), &ValueWatch::at_zero);
+}
 
 bool holds(const DeviceRule& rule, const BusCheck& check) {
     const std::uint64_t refused = check.refused(rule.reason);
@@ -188,7 +203,7 @@ bool holds(const DeviceRule& rule, const BusCheck& check) {
     case DeviceRule::often:
         return static_cast<double>(refused) > least_refused * static_cast<double>(check.samples());
     case DeviceRule::at_end:
-        return check.still(rule.reason);
+        return check.still(rule.reason) && (rule.reason != hal::Reason::qualifying || may_be_zero(check));
     case DeviceRule::ever:
         break;
     }
@@ -208,8 +223,13 @@ std::vector<BusFinding> bus_findings(const BusCheck& check) {
         return findings; // which of the sources is silent says nothing
     }
     std::ranges::move(source_findings(check), std::back_inserter(findings));
+    std::ranges::move(value_findings(check), std::back_inserter(findings));
+    const bool sensor = check.sensor() != nullptr;
     for (const DeviceRule& rule : device_rules) {
-        if (holds(rule, check)) {
+        // Efforts have their own rules, of each joint.
+        const bool of_sensor =
+            rule.reason == hal::Reason::output_saturated || rule.reason == hal::Reason::output_frozen;
+        if (holds(rule, check) && (sensor || !of_sensor)) {
             findings.push_back({rule.name, rule.what,
                                 std::to_string(check.refused(rule.reason)) + " of " +
                                     std::to_string(check.samples()) + " samples: " + hal::name(rule.reason),

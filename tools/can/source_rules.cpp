@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace dfdyn::tools {
 
@@ -18,6 +17,9 @@ constexpr double largest_gap = 3;      ///< periods
 constexpr double largest_jitter = 0.4; ///< of the period
 constexpr double silent_periods = 10;  ///< before the end
 constexpr double enough_frames = 20;
+constexpr double jitter_of_two = 0.25;   ///< of the period: what two senders of an identifier make of it
+constexpr double least_missing = 0.0005; ///< of the frames; below it a loss is not worth a word
+constexpr std::uint64_t least_missing_frames = 3;
 
 struct Source {
     const BusStreamKey& key;
@@ -26,6 +28,8 @@ struct Source {
 
     double ratio() const { return stream.rate_hz() / stream.expected_hz; }
     double periods(double time_s) const { return time_s * stream.expected_hz; }
+    double gap_periods() const { return periods(1e-9 * static_cast<double>(stream.longest_gap_ns)); }
+    double jitter_periods() const { return periods(stream.jitter_s()); }
     bool silent() const { return stream.expected_hz > 0 && stream.count == 0; }
     bool stopped() const {
         return stream.expected_hz > 0 && stream.count > 0 && periods(check.age_s(stream)) > silent_periods;
@@ -33,6 +37,24 @@ struct Source {
     /// It sends, and long enough to be judged.
     bool runs() const {
         return stream.expected_hz > 0 && static_cast<double>(stream.count) > enough_frames && !stopped();
+    }
+    bool is_described() const { return runs() && !stream.infers; }
+    bool collides() const {
+        return is_described() &&
+               (ratio() > rate_of_two || (ratio() > largest_rate && jitter_periods() > jitter_of_two));
+    }
+    /// Some frames of a sender that keeps its period are missing. What this computer dropped itself is known
+    /// from elsewhere.
+    bool loses() const {
+        return runs() && !collides() && !check.dropped_all_missing() &&
+               stream.missing() >= least_missing_frames && stream.missing_share() >= least_missing &&
+               (stream.several || stream.is_regular());
+    }
+    bool slow() const { return is_described() && ratio() < least_rate && !loses() && !has_gaps(); }
+    /// A pause that scattered losses do not explain.
+    bool has_gaps() const {
+        return runs() && !collides() && gap_periods() > (loses() ? BusStream::gap_periods : largest_gap) &&
+               stream.is_regular();
     }
     bool keeps_rate() const { return runs() && ratio() >= least_rate && ratio() <= largest_rate; }
 };
@@ -64,7 +86,7 @@ struct Rule {
     const char* fix;
 };
 
-constexpr std::array<Rule, 9> rules{{
+constexpr std::array<Rule, 10> rules{{
     {"wrong_identifier", "is not sent; another identifier is, just so",
      [](const Source& s) { return s.silent() && impostor(s) != nullptr; },
      [](const Source& s) {
@@ -86,25 +108,28 @@ constexpr std::array<Rule, 9> rules{{
      "candump -n 1 IFACE,ID:MASK waits for one frame of it",
      "check the device's power and cable: no bus error tells of a node that is gone"},
     {"id_collision", "is sent too often: two devices may share the identifier",
-     [](const Source& s) { return s.runs() && s.ratio() > rate_of_two; }, rates,
+     [](const Source& s) { return s.collides(); }, rates,
      "unplug the device: frames that still come are another's",
      "give one of the two another identifier; or correct rate_hz in the description"},
     {"fast_source", "is sent more often than described",
-     [](const Source& s) { return s.runs() && s.ratio() > largest_rate && s.ratio() <= rate_of_two; }, rates,
+     [](const Source& s) { return s.is_described() && s.ratio() > largest_rate && !s.collides(); }, rates,
      "ask the device for its period", "correct rate_hz in the description, or the device's period"},
-    {"slow_source", "is sent too seldom, or frames are lost",
-     [](const Source& s) { return s.runs() && s.ratio() < least_rate; },
+    {"slow_source", "is sent too seldom", [](const Source& s) { return s.slow(); },
      [](const Source& s) {
          return rates(s) +
                 formatted("; longest pause %.3g ms", 1e-6 * static_cast<double>(s.stream.longest_gap_ns));
      },
-     "even intervals (candump -t d IFACE,ID:MASK) mean a slow device, gaps of whole periods lost frames",
-     "set the device's period, or rate_hz; against losses lower the load, or read at a real-time priority"},
-    {"gaps", "has gaps",
+     "even intervals (candump -t d IFACE,ID:MASK) mean a slow device",
+     "set the device's period, or rate_hz in the description"},
+    {"lost_frames", "loses frames", [](const Source& s) { return s.loses(); },
      [](const Source& s) {
-         return s.keeps_rate() &&
-                s.periods(1e-9 * static_cast<double>(s.stream.longest_gap_ns)) > largest_gap;
+         return percent(s.stream.missing_share()) + ": " + std::to_string(s.stream.missing()) + " of " +
+                std::to_string(s.stream.missing() + s.stream.count) +
+                " frames are missing in a sequence of " + formatted("%.4g frames/s", s.stream.expected_hz);
      },
+     "a second computer on the bus: if it has the frames, this one loses them",
+     "lower the load, read at a real-time priority; check cable and connectors, and the device's own errors"},
+    {"gaps", "has gaps", [](const Source& s) { return s.has_gaps(); },
      [](const Source& s) {
          return formatted("%.3g ms without a frame", 1e-6 * static_cast<double>(s.stream.longest_gap_ns)) +
                 formatted(", where they come every %.3g ms", 1e3 / s.stream.expected_hz);
@@ -113,8 +138,8 @@ constexpr std::array<Rule, 9> rules{{
      "read at a real-time priority, lower the load; else look for a loose cable or a device that restarts"},
     {"jitter", "comes unsteadily",
      [](const Source& s) {
-         return s.keeps_rate() && !s.stream.several && s.periods(s.stream.jitter_s()) > largest_jitter &&
-                s.periods(1e-9 * static_cast<double>(s.stream.longest_gap_ns)) <= largest_gap;
+         return s.keeps_rate() && !s.stream.several && !s.collides() && !s.loses() && !s.has_gaps() &&
+                s.jitter_periods() > largest_jitter;
      },
      [](const Source& s) {
          return formatted("intervals of standard deviation %.3g ms", 1e3 * s.stream.jitter_s()) +
@@ -140,12 +165,6 @@ std::string with_id(std::string text, const BusStreamKey& key) {
 }
 
 } // namespace
-
-std::string id_text(const BusStreamKey& key) {
-    std::array<char, 16> text{};
-    std::snprintf(text.data(), text.size(), key.first ? "0x%08X" : "0x%03X", key.second);
-    return text.data();
-}
 
 std::vector<BusFinding> source_findings(const BusCheck& check) {
     std::vector<BusFinding> findings;

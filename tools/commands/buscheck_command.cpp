@@ -8,12 +8,12 @@
 #include "tools/common/error.hpp"
 #include "tools/common/text.hpp"
 
+#include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <memory>
-#include <thread>
+#include <optional>
 
 namespace dfdyn::tools {
 
@@ -35,6 +35,7 @@ void check_log(const BusCheckOptions& options, BusCheck& check) {
         check.take(bus, room);
     }
     log.check();
+    warn_of_torn_line(log);
     if (bus.counters().received == 0) {
         throw InputError(shown(options.log) + ": expected frames, found none");
     }
@@ -47,7 +48,7 @@ void check_interface(const BusCheckOptions& options, BusCheck& check) try {
     const std::int64_t end_ns = bus.now_ns() + std::llround(options.duration_s * 1e9);
     while (!stop && bus.now_ns() < end_ns) {
         if (!check.take(bus, room)) {
-            std::this_thread::sleep_for(std::chrono::microseconds(200));
+            bus.wait(std::min<std::int64_t>(100'000'000, end_ns - bus.now_ns()));
         }
     }
     constexpr int drains_at_end = 16; // what came before the end and waits
@@ -62,8 +63,9 @@ int run(const BusCheckOptions& options) {
         throw InputError("buscheck: expected one of --can and --log, found " +
                          std::string(options.log.empty() ? "none" : "both"));
     }
-    BusCheck check(read_bus_description(options.bus));
+    BusCheck check(options.bus.empty() ? std::nullopt : std::optional(read_bus_description(options.bus)));
     options.log.empty() ? check_interface(options, check) : check_log(options, check);
+    check.finish();
     const std::vector<BusFinding> findings = bus_findings(check);
     print_bus_check(std::cout, check, findings);
     return findings.empty() ? 0 : 1;
@@ -75,8 +77,10 @@ void add_buscheck_command(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<BusCheckOptions>();
     CLI::App* command = app.add_subcommand(
         "buscheck", "Looks at a CAN bus, or a log of one: who sends, how steadily, what is wrong");
-    command->add_option("--bus", options->bus, "What should be there: docs/can.md")
-        ->required()
+    command
+        ->add_option(
+            "--bus", options->bus,
+            "What should be there: docs/can.md. Without: counts, timing, losses and error frames only")
         ->type_name("B.json");
     command->add_option("--can", options->interface, "Look there; nothing is sent")->type_name("IFACE");
     command->add_option("--log", options->log, "Or into a log of candump -L")->type_name("L.log");
@@ -87,6 +91,7 @@ void add_buscheck_command(CLI::App& app, Command& chosen) {
         ->capture_default_str()
         ->type_name("S");
     command->footer("Example:\n  dfdyn buscheck --can can0 --bus bus.json --duration 5\n"
+                    "  dfdyn buscheck --log run.log\n"
                     "Exit status: 0 nothing is wrong, 1 there are findings, 2 bad usage or input.");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }

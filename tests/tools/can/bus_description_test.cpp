@@ -96,6 +96,8 @@ TEST_CASE("what a bus description cannot be is refused by field, expectation and
          "output.full_scale: expected full scales that a sensor of an arm can have, N and N·m, found others"},
         {"icub_arm_strain.json", "\"address\": 13", "\"address\": 13, \"pair_window_s\": 0.001",
          "output.pair_window_s: expected less than a period of the sensor, 0.001, found 0.001"},
+        {"icub_arm_strain.json", "\"address\": 13", "\"address\": 13, \"calibration_set\": 16",
+         "output.calibration_set: expected a whole number from 0 to 15, found \"16\""},
         {"icub_arm_strain.json", "\"bit_rate\"", "\"bitrate\"",
          "field \"bitrate\": expected one of schema, bit_rate, sample_rate_hz, trigger, joints, output, "
          "found "
