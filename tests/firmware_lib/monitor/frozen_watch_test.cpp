@@ -78,4 +78,34 @@ TEST_CASE("An arm that stands as a whole repeats without evidence", "[monitor]")
     CHECK(watch.evidence(1) < 15);
 }
 
+TEST_CASE("A joint that stands and trembles by a count is not frozen when the others move on", "[monitor]") {
+    DFDYN_SEEDED_ENGINE(engine);
+    FrozenWatch<float, 2> watch({}, 2);
+    double phase = 0, tremble = 0;
+    const auto run = [&](int ticks, bool first_moves, bool second_moves, bool trembles) {
+        float most = 0;
+        double rest = std::sin(1.7 * phase);
+        for (int tick = 0; tick < ticks; ++tick) {
+            phase += first_moves ? 0.01 : 0;
+            rest = second_moves ? std::sin(1.7 * phase) : rest;
+            tremble = trembles ? static_cast<double>(engine() % 2) : tremble;
+            const auto count = [&](double angle) {
+                return static_cast<float>(count_rad * (std::round(angle / count_rad) + tremble));
+            };
+            const std::array<float, 2> position{count(std::sin(phase)), count(rest)};
+            watch.add(position.data(), nullptr);
+            most = std::max(most, watch.evidence(1));
+        }
+        return most;
+    };
+    CHECK(run(3000, true, true, false) < 15);
+    CHECK(run(60000, false, false, true) < 15); // ten minutes
+    CHECK(run(300, true, false, false) < 15);
+    run(1000, true, true, false);
+    while (std::abs(std::cos(1.7 * phase)) < 0.7 || std::abs(std::cos(phase)) < 0.5) {
+        run(1, true, true, false);
+    }
+    CHECK(run(600, true, false, false) > 15); // stopped dead
+}
+
 } // namespace frozen_watch_test
