@@ -37,6 +37,7 @@ struct LoopOptions {
     double duration_s = 0;
     double window_s = 5;
     LoopLimits limits;
+    std::vector<std::string> on_finding; ///< cause=action
 };
 
 struct LoopParts {
@@ -221,7 +222,11 @@ int run_on_bus(const LoopOptions& options) {
     return loop->cause() == StopCause::requested ? 0 : 1;
 }
 
-int run(const LoopOptions& options) {
+int run(LoopOptions& options) {
+    options.limits.actions = FindingActions(options.on_finding, "--on-finding");
+    if (options.model.empty() && !options.on_finding.empty()) {
+        throw InputError("loop: --on-finding: expected --model, found none");
+    }
     if (options.model.empty() && !(options.restored.empty() && options.saved.empty())) {
         throw InputError("loop: --restore and --save: expected --model, found none");
     }
@@ -252,6 +257,12 @@ void add_model(CLI::App& command, LoopOptions& options) {
         ->excludes("--from-prior")
         ->type_name("FILE");
     command.add_option("--save", options.saved, "Writes what has been learned at the end")->type_name("FILE");
+    command
+        .add_option("--on-finding", options.on_finding,
+                    "What to do when the learner's monitor names a change, as CAUSE=ACTION,...: report (the "
+                    "default), relearn, compensate (bias_moved) or stop; causes: docs/control.md")
+        ->delimiter(',')
+        ->type_name("CAUSE=ACTION");
 }
 
 /// Options of the limits within which the loop moves the arm.

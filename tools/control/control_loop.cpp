@@ -9,13 +9,17 @@ namespace dfdyn::tools {
 
 namespace {
 
+constexpr std::size_t most_actions = 64;
+
 /// A position that is no number is none.
 bool has_position(const LoopInput& input) { return input.position != nullptr && input.position->allFinite(); }
 
 /// Whether what the feedback and the observer gave last is not to be trusted: something held the arm, or a
 /// reading was wrong.
-bool opposed(StopCause cause) {
-    return cause == StopCause::following_error || cause == StopCause::torque_limit ||
+bool opposed(StopCause cause, const std::vector<TakenAction>& actions) {
+    const bool pushed = cause == StopCause::finding && !actions.empty() &&
+                        (actions.back().cause == Cause::contact || actions.back().cause == Cause::frozen);
+    return pushed || cause == StopCause::following_error || cause == StopCause::torque_limit ||
            cause == StopCause::frozen_encoder;
 }
 
@@ -45,6 +49,7 @@ ControlLoop::ControlLoop(LoopConfig config, FeedForward feed_forward, std::uniqu
     references_.resize(std::size_t{1} + static_cast<std::size_t>(config_.delay_ticks) + SampleClock::max_age);
     references_.front() = task_->next();
     commands_.resize(static_cast<std::size_t>(config_.delay_ticks) + 1);
+    actions_.reserve(most_actions + 1); // and the one that stops the loop
 }
 
 const Reference& ControlLoop::measured_reference(int ago) const noexcept {
@@ -65,8 +70,10 @@ const JointVector& ControlLoop::tick(const LoopInput& input) {
         error_ = feedback_.error();
         watch_.move(feedback_, command_);
     }
+    const bool found = !actions_.empty() && actions_.back().action == FindingAction::stop;
+    const StopCause joint = watch_.cause() == StopCause::none && found ? StopCause::finding : watch_.cause();
     const LoopState state = safe_stop_.tick({feedback_.complete(), input.deadline_missed, input.bus_lost,
-                                             input.stop_requested, input.returning, watch_.cause()},
+                                             input.stop_requested, input.returning, joint},
                                             error_);
     if (state == LoopState::running) {
         follow();
@@ -132,6 +139,31 @@ void ControlLoop::follow() {
     feed_forward_.measured(start_ns_ + std::llround(static_cast<double>(tick_) * period_ns),
                            exact_ ? &feedback_.position() : nullptr, command_then());
     commands_[tick_ % commands_.size()] = full ? command_ : JointVector();
+    act();
+}
+
+void ControlLoop::act() {
+    const Verdict* const verdict = feed_forward_.take_verdict();
+    if (verdict == nullptr) {
+        return;
+    }
+    const FindingAction action = config_.actions.of(verdict->cause);
+    const bool again = verdict->number == acted_number_ && verdict->cause == acted_on_;
+    if (action == FindingAction::report || again ||
+        verdict->confidence < FindingActions::least_confidence(action)) {
+        return;
+    }
+    acted_number_ = verdict->number;
+    acted_on_ = verdict->cause;
+    if (actions_.size() < most_actions || action == FindingAction::stop) {
+        const double time_s = config_.period_s * static_cast<double>(tick_);
+        actions_.push_back({time_s, verdict->cause, verdict->joint, action});
+    }
+    if (action == FindingAction::relearn) {
+        feed_forward_.relearn();
+    } else if (action == FindingAction::compensate) {
+        feed_forward_.compensate(verdict->moved);
+    }
 }
 
 const JointVector* ControlLoop::command_then() const noexcept {
@@ -206,7 +238,7 @@ JointVector ControlLoop::holding_torque() {
         where.position[joint] = damped(joint) ? feedback_.position()[joint] : where.position[joint];
     }
     JointVector torque = feed_forward_.holding(where);
-    if (!opposed(safe_stop_.cause())) {
+    if (!opposed(safe_stop_.cause(), actions_)) {
         torque += Eigen::Map<const Eigen::VectorXd>(observer_.lasting().data(), torque.size());
     }
     for (Eigen::Index joint = 0; joint < torque.size(); ++joint) {

@@ -3,6 +3,7 @@
 
 #include "dfdyn/control/disturbance_observer.hpp"
 #include "tools/control/feed_forward.hpp"
+#include "tools/control/finding_actions.hpp"
 #include "tools/control/joint_watch.hpp"
 #include "tools/control/position_feedback.hpp"
 #include "tools/control/safe_stop.hpp"
@@ -24,6 +25,7 @@ struct LoopConfig {
     JointVector torque_limit; ///< N·m, of every command
     JointVector bandwidth;    ///< of the disturbance observer, rad/s, per joint; 0: none
     SafeStopConfig safe_stop;
+    FindingActions actions; ///< on what the learner's monitor finds
 };
 
 /// What there is to know at one tick.
@@ -91,6 +93,8 @@ class ControlLoop {
     StopCause cause() const noexcept { return safe_stop_.cause(); }
     /// Joint, from 0, that the causes overspeed, torque_limit and frozen_encoder are about.
     Eigen::Index stopped_by() const noexcept { return watch_.joint(); }
+    /// Actions other than to report that were taken on findings, the first 64.
+    const std::vector<TakenAction>& actions() const noexcept { return actions_; }
     /// Whether the program should close the arm's brakes; once true it stays so.
     bool brake_requested() const noexcept { return brake_tick_.has_value(); }
     /// Whether the torque has ended: in StopMode::limp, after the brakes had time to close.
@@ -121,6 +125,8 @@ class ControlLoop {
     void sense(const LoopInput& input);
     void take(int ticks_ago, const JointVector& position, const std::vector<bool>* missing);
     void follow();
+    /// On what the monitor has found, once per change and cause.
+    void act();
     /// What is `wanted` of feedback and observer, in steps as small as those after a gap must be.
     JointVector after_gap(const JointVector& wanted);
     JointVector disturbance();
@@ -162,6 +168,9 @@ class ControlLoop {
     std::optional<std::uint64_t> stopped_tick_, brake_tick_;
     std::uint64_t position_tick_ = 0; ///< of the last sample
     bool told_ = false;               ///< to stop
+    std::vector<TakenAction> actions_;
+    std::size_t acted_number_ = 0;    ///< of the change that was acted on last …
+    Cause acted_on_ = Cause::unknown; ///< … and for which cause
     LoopCounters counters_;
 };
 

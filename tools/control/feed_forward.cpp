@@ -26,7 +26,8 @@ JointVector joint_vector(const Torques& values) {
 FeedForward::FeedForward(const Robot& nominal, const JointVector& rotor_inertia,
                          std::optional<LearnedFeedForward> learned, double period_s, int knot_ticks,
                          const JointVector& limit, const JointVector& learned_limit)
-    : dynamics_(nominal, rotor_inertia), knot_ticks_(knot_ticks), cap_(learned_limit),
+    : dynamics_(nominal, rotor_inertia), knot_ticks_(knot_ticks), cap_(learned_limit), period_s_(period_s),
+      compensation_(JointVector::Zero(limit.size())), wanted_compensation_(compensation_),
       inertia_(JointVector::Zero(dynamics_.joint_count())) {
     constexpr double full_scale_s = 0.05;
     if (learned) {
@@ -42,7 +43,12 @@ FeedForward::FeedForward(const Robot& nominal, const JointVector& rotor_inertia,
 
 JointVector FeedForward::nominal_torque(const Reference& reference) {
     dynamics_.configure(reference.position, configuration_);
-    return dynamics_.inverse(configuration_, reference.velocity, reference.acceleration);
+    return dynamics_.inverse(configuration_, reference.velocity, reference.acceleration) + compensation_;
+}
+
+void FeedForward::compensate(std::span<const double> torque) {
+    wanted_compensation_ += Eigen::Map<const Eigen::VectorXd>(torque.data(), wanted_compensation_.size());
+    wanted_compensation_ = wanted_compensation_.cwiseMin(cap_).cwiseMax(-cap_);
 }
 
 JointVector FeedForward::gravity(const JointVector& position) {
@@ -64,6 +70,7 @@ void FeedForward::begin(std::int64_t time_ns, const Reference& start) {
 }
 
 JointVector FeedForward::update(const Reference& reference) {
+    compensation_ += period_s_ / compensation_s * (wanted_compensation_ - compensation_);
     JointVector nominal = nominal_torque(reference);
     if (tick_++ % knot_ticks_ == 0) {
         inertia_ = dynamics_.mass_matrix(configuration_).diagonal();

@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 
 namespace dfdyn::tools {
 
@@ -49,6 +50,20 @@ class FeedForward {
     /// evaluation of the model at most; until the first it is that of the motion.
     JointVector holding(const Reference& reference);
 
+    /// The monitor's last verdict, once; null: none.
+    const Verdict* take_verdict() { return learned_ ? learned_->take_verdict() : nullptr; }
+
+    /// What has been learned is to follow what is measured from now on.
+    void relearn() {
+        if (learned_) {
+            learned_->relearn();
+        }
+    }
+
+    /// Adds `torque` to the nominal torque for good, gradually (time constant `compensation_s`); at most as
+    /// much as what is learned may add. N·m, a value per joint.
+    void compensate(std::span<const double> torque);
+
     /// Share of the learned model in each joint's torque, 0 … 1.
     JointVector learned_share() const;
     const LearnedFeedForward* learned() const { return learned_.get(); }
@@ -56,12 +71,16 @@ class FeedForward {
   private:
     using Core = dfdyn::FeedForward<LearnedFeedForward>;
 
+    static constexpr double compensation_s = 0.5;
+
     JointVector nominal_torque(const Reference& reference);
 
     ArmDynamics dynamics_;
     ArmDynamics::Configuration configuration_;
     int knot_ticks_;
     JointVector cap_; ///< of what is learned, N·m
+    double period_s_;
+    JointVector compensation_, wanted_compensation_; ///< N·m: present, in the end
     long tick_ = 0;
     std::unique_ptr<LearnedFeedForward> learned_; ///< stays where it is: the core refers to it
     std::optional<Core> core_;

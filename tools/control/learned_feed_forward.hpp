@@ -71,6 +71,10 @@ class LearnedFeedForward {
     /// Multiply-adds of a control tick, at most.
     std::int64_t tick_cost() const;
     const LearningCounters& counters() const noexcept { return counters_; }
+    /// The monitor's last verdict, once; null: none.
+    const Verdict* take_verdict() { return monitor_ != nullptr ? monitor_->take_verdict() : nullptr; }
+    /// The arm has changed: see HostEstimator::relearn.
+    void relearn() { learner_->relearn(); }
     /// What the monitor found so far, with times since `begin`.
     RecordedChanges changes() const;
 
@@ -83,8 +87,8 @@ class LearnedFeedForward {
     std::int64_t sample_period_ns_;
     int lags_;
     std::unique_ptr<HostEstimator> learner_, follower_;
-    const MonitoredEstimator* monitor_ = nullptr; ///< the learner, if it is watched
-    Budget share_;                                ///< of a control tick
+    MonitoredEstimator* monitor_ = nullptr; ///< the learner, if it is watched
+    Budget share_;                          ///< of a control tick
     std::int64_t begin_ns_ = 0;
     bool in_progress_ = false; ///< the learner knows more than `weights_`
     std::vector<float> weights_, prediction_;

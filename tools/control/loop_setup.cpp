@@ -181,6 +181,7 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
                            ? default_bandwidth(robot, scenario, start, delay_ticks)
                            : given_bandwidth(limits.observer_bandwidth, robot, controller.rate_hz);
     config.safe_stop.mode = limits.mode;
+    config.actions = limits.actions;
     if (!limits.following_error.empty()) {
         config.safe_stop.following_error = per_joint(limits.following_error, robot, "--following-error");
     }

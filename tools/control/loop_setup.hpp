@@ -29,6 +29,7 @@ struct LoopLimits {
     StopMode mode = StopMode::hold;
     std::vector<double> observer_bandwidth{}; ///< rad/s; 0: no observer
     std::vector<double> learned_limit{}; ///< shares of the torque limit that is added to the rigid body's
+    FindingActions actions{};
 };
 
 /// Limits of a loop with these gains and torque limits:

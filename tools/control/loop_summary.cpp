@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/control/loop_summary.hpp"
 
+#include "tools/common/number.hpp"
+
+#include <string>
+#include <vector>
+
 namespace dfdyn::tools {
 
 namespace {
@@ -15,6 +20,19 @@ void print_learning(std::ostream& out, const LearnedFeedForward& learned) {
     out << "; at most " << learned.tick_cost() << " multiply-adds per tick\n";
 }
 
+/// As "friction_changed at joint 3".
+std::string described(const TakenAction& taken) {
+    const std::string at = taken.joint < 0 ? "" : " at joint " + std::to_string(taken.joint + 1);
+    return dfdyn::name(taken.cause) + at;
+}
+
+void print_actions(std::ostream& out, const std::vector<TakenAction>& actions) {
+    for (const TakenAction& taken : actions) {
+        out << "action: " << formatted("%.2f", taken.time_s) << " s: " << name(taken.action) << ", on "
+            << described(taken) << '\n';
+    }
+}
+
 } // namespace
 
 void print_loop(std::ostream& out, const ControlLoop& loop) {
@@ -22,7 +40,9 @@ void print_loop(std::ostream& out, const ControlLoop& loop) {
     out << "loop: " << counters.ticks << " ticks, " << counters.running << " followed the reference, "
         << counters.coasted << " of them without position; " << counters.limited << " at a torque limit; "
         << name(loop.state()) << " (" << name(loop.cause());
-    if (loop.cause() >= StopCause::overspeed) {
+    if (loop.cause() == StopCause::finding) {
+        out << ": " << described(loop.actions().back());
+    } else if (loop.cause() >= StopCause::overspeed) {
         out << " of joint " << loop.stopped_by() + 1;
     }
     out << ')' << (loop.brake_requested() ? ", brakes requested" : "") << (loop.limp() ? ", limp" : "")
@@ -30,6 +50,7 @@ void print_loop(std::ostream& out, const ControlLoop& loop) {
     if (const LearnedFeedForward* const learned = loop.feed_forward().learned()) {
         print_learning(out, *learned);
     }
+    print_actions(out, loop.actions());
 }
 
 void print_port(std::ostream& out, const PortCounters& counters) {

@@ -9,7 +9,7 @@
 
 namespace dfdyn::tools {
 
-/// What a loop did, why it stopped, and what it learned: one or two lines.
+/// What a loop did, why it stopped, and what it learned: one or two lines, and one per action on a finding.
 void print_loop(std::ostream& out, const ControlLoop& loop);
 
 /// What came over the bus, and what was wrong with it: one line.

@@ -39,6 +39,8 @@ const char* name(StopCause cause) noexcept {
         return "torque_limit";
     case StopCause::frozen_encoder:
         return "frozen_encoder";
+    case StopCause::finding:
+        return "finding";
     }
     return "unknown";
 }

@@ -26,6 +26,7 @@ enum class StopCause : std::uint8_t {
     overspeed,        ///< a joint is faster than allowed
     torque_limit,     ///< a joint pressed at its torque limit, and did not move
     frozen_encoder,   ///< a joint's reading repeats while the joint must have moved
+    finding,          ///< the learner's monitor named a change whose action is to stop
 };
 
 const char* name(LoopState state) noexcept;

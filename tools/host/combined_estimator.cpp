@@ -116,6 +116,11 @@ class CombinedEstimator final : public HostEstimator {
         }
     }
 
+    void relearn() override {
+        for (CombinationMember& member : members_) {
+            member.estimator->relearn();
+        }
+    }
     void begin_recording() override {
         std::ranges::for_each(members_,
                               [](CombinationMember& member) { member.estimator->begin_recording(); });

@@ -83,6 +83,7 @@ class EstimatorOf final : public HostEstimator {
         estimator_.regression().copy_weights(weights.data());
     }
 
+    void relearn() override { estimator_.relearn(); }
     void begin_recording() override { estimator_.restart_window(); }
 
     std::vector<std::byte> snapshot() const override {

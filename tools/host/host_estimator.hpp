@@ -57,6 +57,10 @@ class HostEstimator {
     /// While nothing is left to learn.
     virtual void copy_weights(std::span<float> weights) const = 0;
 
+    /// The arm is known to have changed (see Estimator::relearn); an estimator that does not learn on its own
+    /// ignores it.
+    virtual void relearn() {}
+
     /// Begins a recording: the window restarts, what has been learned stays.
     virtual void begin_recording() = 0;
 

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -74,6 +75,7 @@ class Monitored final : public MonitoredEstimator {
           monitor_(constants_), held_(Extent<dynamic>{static_cast<int>(estimator_->weight_count())}),
           held_prediction_(setup.outputs.size()), position_(setup.chain.joints.size()),
           output_(setup.outputs.size()), changes_(kept, monitor_.change()) {
+        verdict_.moved.resize(setup.outputs.size());
         renew();
     }
 
@@ -97,6 +99,7 @@ class Monitored final : public MonitoredEstimator {
     }
     std::size_t weight_count() const override { return estimator_->weight_count(); }
     void copy_weights(std::span<float> weights) const override { estimator_->copy_weights(weights); }
+    void relearn() override { estimator_->relearn(); }
     void begin_recording() override {
         estimator_->begin_recording();
         monitor_.restart();
@@ -126,6 +129,10 @@ class Monitored final : public MonitoredEstimator {
         return taken;
     }
 
+    const Verdict* take_verdict() override {
+        return std::exchange(verdict_is_new_, false) ? &verdict_ : nullptr;
+    }
+
   private:
     static constexpr std::size_t kept = 256; ///< changes; older ones are forgotten
 
@@ -151,6 +158,20 @@ class Monitored final : public MonitoredEstimator {
         count_ += known_ && count_ > 0 ? 0 : 1;
         changes_[(count_ - 1) % kept] = monitor_.change();
         known_ = monitor_.changing();
+        take_down(monitor_.change());
+    }
+
+    void take_down(const typename HostMonitor<Arm>::Change& change) {
+        const int joints = static_cast<int>(position_.size());
+        verdict_.number = count_;
+        verdict_.cause = change.cause;
+        verdict_.confidence = static_cast<double>(change.confidence);
+        verdict_.joint = change.where < joints ? change.where : change.where - joints;
+        for (std::size_t k = 0; k < verdict_.moved.size(); ++k) {
+            const auto moved = static_cast<double>(change.bias[static_cast<int>(k)]);
+            verdict_.moved[k] = change.cause == Cause::bias ? moved : 0;
+        }
+        verdict_is_new_ = true;
     }
 
     /// When it is due and the estimator has nothing left to learn.
@@ -170,6 +191,8 @@ class Monitored final : public MonitoredEstimator {
     std::vector<typename HostMonitor<Arm>::Change> changes_;
     std::size_t count_ = 0; ///< of them, those forgotten included
     bool known_ = false;    ///< the last of them is the present one
+    Verdict verdict_;
+    bool verdict_is_new_ = false;
 };
 
 } // namespace

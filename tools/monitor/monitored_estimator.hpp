@@ -25,6 +25,15 @@ struct MonitorSetup {
 /// `source`, when there is neither, or the robot has not the model's joints or sensor.
 MonitorSetup monitor_setup(const TrainedModel& model, const Robot* robot, const std::string& source);
 
+/// A verdict on a change, for who acts on it.
+struct Verdict {
+    std::size_t number = 0; ///< of the change, from 1
+    Cause cause = Cause::unknown;
+    double confidence = 0;     ///< 0 … 1
+    int joint = -1;            ///< from 0; -1: none in particular
+    std::vector<double> moved; ///< by how much each output's offset moved; of a bias, else zeros
+};
+
 /// An estimator with a monitor (dfdyn::Monitor) beside it.
 class MonitoredEstimator : public HostEstimator {
   public:
@@ -32,6 +41,9 @@ class MonitoredEstimator : public HostEstimator {
     virtual std::vector<NamedChange> changes() const = 0;
     /// Likewise, and takes them.
     virtual std::vector<NamedChange> take_changes() = 0;
+    /// The last verdict, once: null if there was none since the last call. It lives until the next tick;
+    /// nothing is allocated.
+    virtual const Verdict* take_verdict() = 0;
 };
 
 std::unique_ptr<MonitoredEstimator> monitored(std::unique_ptr<HostEstimator> estimator,

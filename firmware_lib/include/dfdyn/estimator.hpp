@@ -114,6 +114,10 @@ class Estimator {
         counters_ = {};
     }
 
+    /// The arm is known to have changed: the next tick with a budget begins to take the covariance back to
+    /// the prior's, so that the weights, which stay, soon follow what is measured from now on.
+    void relearn() noexcept { gate_.report_change(); }
+
     /// Begins a new recording or motion: the window and the clock start again, what has been learned stays.
     void restart_window() noexcept {
         regression_.restart();

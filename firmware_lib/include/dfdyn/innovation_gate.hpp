@@ -80,6 +80,13 @@ class InnovationGate {
     /// Whether the arm has been found to have changed and `take_change` has not reported it yet.
     [[nodiscard]] constexpr bool change_pending() const noexcept { return change_pending_; }
 
+    /// The arm is known to have changed, from elsewhere: goes on as if it had been found here.
+    constexpr void report_change() noexcept {
+        change_pending_ = true;
+        changed_ = patience_ > 0;
+        count_ = changed_ ? settling * patience_ : count_;
+    }
+
     /// Reports a change of the arm once.
     constexpr bool take_change() noexcept {
         const bool pending = change_pending_;

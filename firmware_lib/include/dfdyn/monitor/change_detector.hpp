@@ -30,7 +30,8 @@ inline constexpr int departure_count = 6;
 /// - burst: log(e²/2²) of each innovation of e > 2 deviations, all outputs together, less 2 per block; a
 ///   block counts `burst_limit` at most.
 /// So no single block raises an alarm. A standing joint's torque is anywhere within its friction: blocks of
-/// joints below the lowest class of speed are not evidence, and where no joint moves, no sum changes.
+/// joints below the lowest class of speed are not evidence; their sums, and where no joint moves all, fall by
+/// `standing_drift` per block, as usual blocks make them fall.
 ///
 /// The alarm is at a limit that each kind's own excursions set (`ExcursionTail`), so that all kinds together
 /// exceed theirs at most once in `blocks_between_false_alarms` while innovations stay as they were. The onset
@@ -50,6 +51,7 @@ class ChangeDetector {
     static constexpr Scalar burst_from = 2;
     static constexpr Scalar burst_drift = 2;
     static constexpr Scalar burst_limit = 12;
+    static constexpr Scalar standing_drift = Scalar(0.5);
     /// The limits are for so many times fewer false alarms than asked for: tails of real arms' sums are a bit
     /// heavier than exponential (docs/monitor.md: measured).
     static constexpr Scalar caution = 20;
@@ -201,17 +203,17 @@ class ChangeDetector {
 
     /// A standing joint's torque, anywhere within its friction, is evidence of nothing.
     void pass_over(int k) noexcept {
-        rise(k, 0);
+        rise(k, -standing_drift);
         for (int sign = 0; sign < 2; ++sign) {
-            rise(outputs_ + 2 * k + sign, 0);
-            rise(3 * outputs_ + 2 * k + sign, 0);
+            rise(outputs_ + 2 * k + sign, -standing_drift);
+            rise(3 * outputs_ + 2 * k + sign, -standing_drift);
         }
     }
 
     /// Nothing has been measured; time goes on.
     void stand() noexcept {
         for (int index = 5 * outputs_; index < sums_.size(); ++index) {
-            rise(index, 0);
+            rise(index, -standing_drift);
         }
         since_onset_ += alarm_ ? 1 : 0;
     }
