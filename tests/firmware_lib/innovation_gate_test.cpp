@@ -75,6 +75,15 @@ TEST_CASE("an arm that has changed is reported once and learned until plausible 
     CHECK(gate.judge(1e6F * pushed) == 0);
 }
 
+TEST_CASE("a change that is known from elsewhere is reported once, and its samples are learned as they are") {
+    Gate gate(1, patience);
+    REQUIRE(gate.judge(pushed) == 0);
+    gate.report_change();
+    CHECK(gate.judge(pushed) == 1);
+    CHECK(gate.take_change());
+    CHECK_FALSE(gate.take_change());
+}
+
 TEST_CASE("plausible samples at reversals delay a change by their number and do not begin the wait anew") {
     Gate gate(limit, patience);
     int refused = 0;
