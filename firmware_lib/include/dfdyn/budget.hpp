@@ -8,10 +8,10 @@
 
 namespace dfdyn {
 
-/// How much learning one tick may do, in multiply-adds: one per product or quotient, with the sum that takes
-/// it up, and `function_cost` per square root, exponential, logarithm or hyperbolic tangent. The costs of the
-/// parts are constant expressions of the sizes (`Estimator::cost()`), so that a loop can be given a share of
-/// its period.
+/// How much learning one tick may do, in multiply-adds. One product or quotient, with the sum that follows
+/// it, counts as one. A square root, exponential, logarithm or hyperbolic tangent counts as `function_cost`.
+/// The costs of all parts are constant expressions of the sizes (`Estimator::cost()`), so a control loop can
+/// assign a share of its period to learning.
 struct Budget {
     std::int64_t operations = 0;
 
@@ -20,7 +20,8 @@ struct Budget {
 
     [[nodiscard]] constexpr bool affords(std::int64_t cost) const noexcept { return cost <= operations; }
 
-    /// Takes `cost` if it is there.
+    /// Subtracts `cost` and returns true if the budget affords it; otherwise returns false and changes
+    /// nothing.
     constexpr bool spend(std::int64_t cost) noexcept {
         if (!affords(cost)) {
             return false;
@@ -30,37 +31,41 @@ struct Budget {
     }
 };
 
-/// A call of an elementary function, in multiply-adds.
+/// Cost of one call of an elementary function, in multiply-adds.
 inline constexpr int function_cost = 30;
 
-/// The cost of a tick's parts, in multiply-adds; the time they take is these numbers times a factor of the
-/// machine.
+/// Cost of the parts of a tick, in multiply-adds. Execution time is proportional to these numbers; the factor
+/// depends on the machine.
 struct Cost {
     std::int64_t
-        predict; ///< input, features, weights, estimate: the most of any tick, of one with a measurement
-    /// A separate variance, in ticks that do not learn their own sample at once: the most, with a sample in
-    /// hand.
+        /// Input, features, weights and estimate: maximum over all ticks, reached with a measurement.
+        predict;
+    /// A separate computation of the variance, in ticks that do not learn their own sample at once: maximum,
+    /// reached while an earlier sample is being learned.
     std::int64_t variance;
     std::int64_t learn;  ///< learning one sample, without forgetting
-    std::int64_t forget; ///< what forgetting adds to that, at most
+    std::int64_t forget; ///< maximum that forgetting adds to `learn`
     std::int64_t
-        largest_step; ///< the largest part that learning is sliced into: a smaller budget may not get on
-    /// What it takes, within the budget and before the next sample, when the arm is found to have changed.
+        /// Largest indivisible part of learning. With a smaller budget learning may never finish.
+        largest_step;
+    /// Resetting the covariance after a change of the arm, within the budget and before the next sample is
+    /// learned.
     std::int64_t reset_covariance = 0;
 };
 
-/// Bytes of stack for the registers that a part's calls save, at most.
+/// Maximum stack bytes for the registers that the calls of one part save.
 ///
-/// What grows with sizes in the bytes of stack is what the code keeps there; the numbers beside it are those
-/// of g++ 12 -O3 on the Cortex-M, measured, with some room (firmware_lib/examples/cortex_m/parts.cpp holds
-/// every part to them). What an interrupt pushes comes on top.
+/// The bytes of stack that depend on sizes are the data that the code keeps there. The constants added to
+/// them were measured with g++ 12 -O3 on the Cortex-M and rounded up;
+/// firmware_lib/examples/cortex_m/parts.cpp checks every part against them. The frame that an interrupt
+/// pushes is not included.
 inline constexpr std::int64_t frame_bytes = 128;
 
-/// The bytes that an estimator takes.
+/// Memory of an estimator, in bytes.
 struct Footprint {
     std::int64_t state_bytes;    ///< RAM: the estimator itself
-    std::int64_t constant_bytes; ///< flash: the constants, and where learning starts
-    std::int64_t stack_bytes;    ///< of any of its calls, at most
+    std::int64_t constant_bytes; ///< flash: the constants and the initial state of learning
+    std::int64_t stack_bytes;    ///< maximum over all calls
 };
 
 } // namespace dfdyn

@@ -10,8 +10,8 @@ namespace dfdyn {
 
 namespace detail {
 
-/// Remainder of each half byte under the reflected polynomial 0xEDB88320: 64 bytes of flash, and a quarter of
-/// the steps of a loop over bits.
+/// Remainder of each half byte under the reflected polynomial 0xEDB88320. The table takes 64 bytes of flash
+/// and a quarter of the steps of a loop over bits.
 constexpr std::array<std::uint32_t, 16> crc32_half_bytes() noexcept {
     std::array<std::uint32_t, 16> table{};
     for (std::uint32_t half = 0; half < table.size(); ++half) {
@@ -28,8 +28,8 @@ inline constexpr std::array<std::uint32_t, 16> crc32_table = crc32_half_bytes();
 
 } // namespace detail
 
-/// Returns the CRC-32 (ISO 3309, reflected 0xEDB88320) of `bytes`. `crc` is that of the bytes before them, so
-/// that a checksum can be computed piece by piece: crc32(ab) = crc32(b, crc32(a)). O(bytes).
+/// Returns the CRC-32 (ISO 3309, reflected 0xEDB88320) of `bytes`. `crc` is the checksum of the preceding
+/// bytes, so that a checksum can be computed in pieces: crc32(ab) = crc32(b, crc32(a)). O(bytes).
 constexpr std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t crc = 0) noexcept {
     crc = ~crc;
     for (const std::byte byte : bytes) {
@@ -40,7 +40,7 @@ constexpr std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t cr
     return ~crc;
 }
 
-/// The same of one number's bytes, in the machine's byte order.
+/// Returns the CRC-32 of the bytes of one number, in the machine's byte order.
 template <class T>
 std::uint32_t crc32_of(const T& number, std::uint32_t crc) noexcept {
     return crc32(std::as_bytes(std::span(&number, 1)), crc);

@@ -13,19 +13,19 @@
 
 namespace dfdyn {
 
-/// Second-order autoregression of a scalar series of mean zero, in lattice form, learned online.
+/// Second-order autoregression of a zero-mean scalar series, in lattice form, learned online.
 ///
-/// The reflection coefficients are those of J. P. Burg, "Maximum entropy spectral analysis" (1975), over an
-/// exponential memory: 2 E[f b] / E[f² + b²] of the forward and backward errors of each stage. They are below
-/// 1 in magnitude whatever the data, so that the autoregression is stable. A value beyond `outlier` times the
-/// root mean square counts as that much.
+/// The reflection coefficients are those of J. P. Burg, "Maximum entropy spectral analysis" (1975), with
+/// exponential memory: 2 E[f b] / E[f² + b²], where f and b are the forward and backward errors of a stage.
+/// Their magnitude is below 1 for any data, so the autoregression is stable. Values beyond `outlier` times
+/// the root mean square are clipped to that bound.
 template <class Scalar>
 class LatticePredictor {
   public:
     static constexpr Scalar outlier = 10;
-    static constexpr int cost = 2 * function_cost + 26; ///< multiply-adds of `add` and `next`, at most
+    static constexpr int cost = 2 * function_cost + 26; ///< multiply-adds of `add` plus `next`, maximum
 
-    /// `scale`: root mean square to expect, > 0, in the series' unit.
+    /// Sets both stages to zero coefficients. `scale`: expected root mean square, > 0, in the series' unit.
     constexpr void reset(Scalar scale) noexcept {
         const Scalar square = std::clamp(scale * scale, least, largest);
         cross_[0] = cross_[1] = 0;
@@ -33,15 +33,16 @@ class LatticePredictor {
         restart();
     }
 
-    /// Forgets the last values: the next one follows none of them.
+    /// Forgets the last values, so that the next value is the first of a new segment. Keeps the coefficients.
     constexpr void restart() noexcept { last_ = backward_ = 0; }
 
-    /// Expected next value; 0 after a restart.
+    /// Returns the forecast of the next value; 0 after a restart.
     [[nodiscard]] constexpr Scalar next() const noexcept {
         return reflection(0) * last_ + reflection(1) * backward_;
     }
 
-    /// Appends a finite value. `seen`: values since the restart, ≥ 0; `samples`: size of the memory, ≥ 1.
+    /// Appends a finite value. `seen`: number of values since the restart, ≥ 0; `samples`: memory of the
+    /// means, ≥ 1.
     constexpr void add(Scalar value, int seen, Scalar samples) noexcept {
         const Scalar x = limited(value, power_[0]);
         Scalar backward = 0;
@@ -56,10 +57,10 @@ class LatticePredictor {
         last_ = x;
     }
 
-    /// Autocorrelation at a lag of one sample, in (-1, 1).
+    /// Returns the autocorrelation at a lag of one sample, in (-1, 1).
     [[nodiscard]] constexpr Scalar correlation() const noexcept { return reflection(0); }
 
-    /// `value`, at most `outlier` times the root of `mean_square` in magnitude.
+    /// Returns `value` clipped to ± `outlier` times the square root of `mean_square`.
     [[nodiscard]] static constexpr Scalar limited(Scalar value, Scalar mean_square) noexcept {
         using std::sqrt;
         const Scalar bound = outlier * sqrt(mean_square);
@@ -74,11 +75,11 @@ class LatticePredictor {
         }
     }
 
-    static constexpr Scalar least = Scalar(1e-30);  ///< mean square: no series is smaller than this …
-    static constexpr Scalar largest = Scalar(1e30); ///< … nor larger than this
+    static constexpr Scalar least = Scalar(1e-30);  ///< smallest mean square
+    static constexpr Scalar largest = Scalar(1e30); ///< largest mean square
 
   private:
-    static constexpr Scalar closest = Scalar(0.999); ///< to 1 that a coefficient comes
+    static constexpr Scalar closest = Scalar(0.999); ///< largest magnitude of a coefficient
 
     [[nodiscard]] constexpr Scalar reflection(int stage) const noexcept {
         return std::clamp(cross_[stage] / power_[stage], -closest, closest);
@@ -91,37 +92,38 @@ class LatticePredictor {
             std::clamp(cross_[stage] + (forward * backward - cross_[stage]) / samples, -largest, largest);
     }
 
-    Scalar last_, backward_;     ///< the last value, and its backward error of the first stage
-    Scalar cross_[2], power_[2]; ///< mean products and mean squares of both stages' errors
+    Scalar last_, backward_;     ///< last value, and its backward error of the first stage
+    Scalar cross_[2], power_[2]; ///< means of f b and of (f² + b²) / 2, per stage
 };
 
-/// One-step forecast of m measured outputs from a model's prediction and the past measurements: for fault
+/// One-step forecast of m measured outputs from a model's prediction and the past measurements, for fault
 /// detection and display.
 ///
-/// **Never feed a forecast forward.** It follows the measured outputs, an external contact's force included;
-/// fed forward it would be positive feedback. What to feed forward is a prediction for the reference:
-/// `FeedForward`.
+/// **Never feed a forecast forward.** It follows the measured outputs, including the force of an external
+/// contact. As feed-forward it would be positive feedback. Feed forward a prediction for the reference
+/// instead: `FeedForward`.
 ///
-/// A model's errors are coloured: at 125 Hz, and more so at 1 kHz, most of an error is that of the sample
-/// before, so that y(t-1) alone may err less than the model. Each output has two forecasts and a weight w:
-///  - a: the model's prediction and a second-order autoregression of its own residual;
-///  - b: the last measurement and a second-order autoregression of its differences;
-///  - b + w (a - b) with w in [0, 1], the least-squares weight over the memory (C. W. J. Granger and
-///    R. Ramanathan, "Improved methods of combining forecasts", 1984).
+/// A model's errors are coloured: at 125 Hz, and more so at 1 kHz, most of an error repeats that of the
+/// previous sample. The last output y(t-1) alone can therefore have a smaller error than the model. Each
+/// output has two forecasts and a weight w:
+///  - a: the model's prediction plus a second-order autoregression of its own residual;
+///  - b: the last measurement plus a second-order autoregression of its differences;
+///  - forecast: b + w (a - b), with w in [0, 1] the least-squares weight over the memory (C. W. J. Granger
+///    and R. Ramanathan, "Improved methods of combining forecasts", 1984).
 ///
-///     estimate = estimator.tick(sample, budget);
-///     const Scalar* prediction = estimate.status.estimated() ? estimate.prediction.data() : nullptr;
-///     if (prediction) residual.forecast(prediction, one_step); // of the measurement of this tick
-///     if (sample.output_valid) residual.learn(prediction, sample.output.data());
-///     else residual.restart();
+///      estimate = estimator.tick(sample, budget);
+///      const Scalar* prediction = estimate.status.estimated() ? estimate.prediction.data() : nullptr;
+///      if (prediction) residual.forecast(prediction, one_step); // of the measurement of this tick
+///      if (sample.output_valid) residual.learn(prediction, sample.output.data());
+///      else residual.restart();
 ///
-/// A refused sample with a finite measurement, as of a contact, may be learned: no value counts for more than
-/// ten times the root mean square. Cost: `cost()`; 15 m scalars. Never allocates.
+/// A refused sample with a finite measurement, for example during a contact, may be learned: every value is
+/// clipped to ten times the root mean square. Cost: `cost()`; 15 m scalars. Never allocates.
 template <class Scalar, int m>
 class ColouredResidual {
   public:
-    /// `memory`: samples, ≥ 1 (smaller counts as 1). `noise_std`: m deviations of the model's noise, > 0, in
-    /// the outputs' units; they only set the scale of the start.
+    /// `memory`: samples, ≥ 1 (smaller values count as 1). `noise_std`: standard deviations of the model's
+    /// noise, m values > 0, in the outputs' units; they only set the initial scale.
     constexpr ColouredResidual(Extent<m> output_count, Scalar memory, const Scalar* noise_std) noexcept
         : outputs_(output_count), memory_(memory > 1 ? memory : 1), lines_(Lines::zeros(output_count)) {
         for (int k = 0; k < outputs_; ++k) {
@@ -132,7 +134,8 @@ class ColouredResidual {
         }
     }
 
-    /// After a gap, or without a usable measurement: forgets the last samples, keeps the coefficients.
+    /// Forgets the last samples and keeps the coefficients. Call it after a gap or without a usable
+    /// measurement.
     constexpr void restart() noexcept {
         measurements_ = 0;
         for (Line& line : lines_) {
@@ -141,17 +144,17 @@ class ColouredResidual {
         restart_residuals();
     }
 
-    /// Forecasts the measurement of this tick, before `learn`: m values into `one_step`, in the outputs'
-    /// units. The prediction itself where nothing has been measured since a restart. `prediction`: m finite
-    /// values.
+    /// Forecasts the measurement of this tick; call it before `learn`. Writes m values into `one_step`, in
+    /// the outputs' units. Without a measurement since the last restart the forecast is the prediction.
+    /// `prediction`: m finite values.
     constexpr void forecast(const Scalar* prediction, Scalar* one_step) const noexcept {
         for (int k = 0; k < outputs_; ++k) {
             one_step[k] = measurements_ == 0 ? prediction[k] : parts_of(lines_[k], prediction[k]).forecast;
         }
     }
 
-    /// Learns from the m measured outputs of this tick. `prediction`: m finite values, or nullptr where
-    /// nothing was predicted. A measurement or error that is not finite, or beyond 1e15, restarts instead.
+    /// Learns from the m measured outputs of this tick. `prediction`: m finite values, or nullptr without a
+    /// prediction. Restarts instead if a measurement or an error is not finite or exceeds 1e15.
     constexpr void learn(const Scalar* prediction, const Scalar* measured) noexcept {
         for (int k = 0; k < outputs_; ++k) {
             if (!usable(measured[k]) || (prediction != nullptr && !usable(measured[k] - prediction[k]))) {
@@ -177,24 +180,25 @@ class ColouredResidual {
         residuals_ = prediction == nullptr ? 0 : std::min(residuals_ + 1, 2);
     }
 
-    /// Autocorrelation of an output's residual at a lag of one sample, in (-1, 1).
+    /// Returns the autocorrelation of an output's residual at a lag of one sample, in (-1, 1).
     [[nodiscard]] constexpr Scalar correlation(int output) const noexcept {
         return lines_[output].residual.correlation();
     }
 
-    /// Multiply-adds of a tick that forecasts and learns, at most.
+    /// Returns the maximum multiply-adds of a tick that forecasts and learns.
     [[nodiscard]] static constexpr std::int64_t cost(Extent<m> output_count) noexcept {
         return std::int64_t{output_count} * (2 * LatticePredictor<Scalar>::cost + 2 * function_cost + 24);
     }
 
     [[nodiscard]] std::size_t snapshot_bytes() const noexcept { return dfdyn::snapshot_bytes(*this); }
 
-    /// Writes the coefficients to the front of `buffer`, of at least `snapshot_bytes()`.
+    /// Writes the coefficients to the front of `buffer`, which holds at least `snapshot_bytes()`.
     [[nodiscard]] SnapshotResult snapshot(std::span<std::byte> buffer) const noexcept {
         return write_snapshot(*this, identity(), buffer);
     }
 
-    /// Restores the coefficients of an object of as many outputs and restarts; whole or not at all.
+    /// Restores the coefficients of an object with the same number of outputs, and restarts. A rejected
+    /// snapshot changes nothing.
     [[nodiscard]] SnapshotResult restore(std::span<const std::byte> buffer) noexcept {
         const SnapshotResult result = read_snapshot(*this, identity(), buffer);
         if (result == SnapshotResult::ok) {
@@ -221,14 +225,14 @@ class ColouredResidual {
 
     struct Line {
         LatticePredictor<Scalar> residual, difference;
-        Scalar last;                  ///< measurement
-        Scalar agreement, gap_square; ///< means of (y - b)(a - b) and (a - b)²; their ratio is the weight
+        Scalar last;                  ///< last measurement
+        Scalar agreement, gap_square; ///< means of (y - b)(a - b) and (a - b)²; their ratio is w
     };
     using Lines = Storage<Line, m>;
 
     struct Parts {
         Scalar by_output; ///< b
-        Scalar gap;       ///< a - b, limited
+        Scalar gap;       ///< a - b, clipped
         Scalar forecast;
     };
 
@@ -254,7 +258,7 @@ class ColouredResidual {
     constexpr void learn_residual(Line& line, Scalar prediction, Scalar measured) noexcept {
         if (measurements_ > 0) {
             const auto [b, gap, forecast] = parts_of(line, prediction);
-            // Beyond the gap's own bound an error says no more about the weight.
+            // Clipped like the gap: a larger error carries no more information about the weight.
             const Scalar error = LatticePredictor<Scalar>::limited(measured - b, line.gap_square);
             line.gap_square =
                 std::clamp(line.gap_square + (gap * gap - line.gap_square) / samples_, least, largest);
@@ -270,12 +274,12 @@ class ColouredResidual {
 
     [[no_unique_address]] Extent<m> outputs_;
     Scalar memory_;
-    Scalar samples_ = first_samples; ///< that the means are over, at most the memory
-    int measurements_ = 0;           ///< in a row until now, at most 3
-    int residuals_ = 0;              ///< in a row until now, at most 2
+    Scalar samples_ = first_samples; ///< memory of the means so far, at most `memory_`
+    int measurements_ = 0;           ///< consecutive, at most 3
+    int residuals_ = 0;              ///< consecutive, at most 2
     Lines lines_;
 
-    static constexpr Scalar first_samples = 2; ///< that the scale of the start counts for
+    static constexpr Scalar first_samples = 2; ///< weight of the initial scale
 };
 
 } // namespace dfdyn

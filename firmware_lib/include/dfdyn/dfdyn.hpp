@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Everything an embedding needs; each header also stands alone.
+// Includes the whole library; each header can also be included by itself.
+//
+// In all comments "the paper" is D. Romeres, M. Zorzi, R. Camoriano, S. Traversaro and A. Chiuso,
+// "Derivative-free online learning of inverse dynamics models", IEEE Trans. Control Systems Technology 28(3),
+// 2020.
 #include "dfdyn/control/disturbance_observer.hpp"
 #include "dfdyn/control/feed_forward.hpp"
 #include "dfdyn/control/learned_torque.hpp"

@@ -5,8 +5,8 @@
 
 namespace dfdyn {
 
-/// Marks a size that only the host's tools know at run time. Firmware never uses it: every size is then a
-/// template argument and the whole state is one object of constant size.
+/// Marks a size that is known only at run time, in the host's tools. Firmware never uses it: every size is a
+/// template argument, and the whole state is one object of constant size.
 inline constexpr int dynamic = -1;
 
 /// A size. Fixed sizes take no memory and fold to constants.
@@ -23,7 +23,7 @@ struct Extent<dynamic> {
     constexpr operator int() const noexcept { return value; }
 };
 
-/// Makes an extent from a number; for a fixed extent the number must be that value and is ignored.
+/// Makes an extent from a number. For a fixed extent the number must equal its value and is ignored.
 template <int value>
 constexpr Extent<value> extent([[maybe_unused]] int number) noexcept {
     if constexpr (value == dynamic) {
@@ -33,7 +33,7 @@ constexpr Extent<value> extent([[maybe_unused]] int number) noexcept {
     }
 }
 
-/// Products and sums of template sizes, `dynamic` if any operand is.
+/// Product and sum of template sizes; `dynamic` if an operand is `dynamic`.
 constexpr int product(int a, int b) noexcept { return a == dynamic || b == dynamic ? dynamic : a * b; }
 
 constexpr int sum(int a, int b) noexcept { return a == dynamic || b == dynamic ? dynamic : a + b; }

@@ -5,20 +5,22 @@
 
 namespace dfdyn {
 
-/// What a model knows of the outputs away from its data; `dfdyn train` measures it. All zero, also absent:
-/// predictions and standard deviations are the paper's.
+/// Measured properties of the outputs for predictions away from the data; `dfdyn train` computes them. If all
+/// are zero or absent, predictions and standard deviations are those of the paper.
 template <class Scalar, int m>
 struct ExtrapolationConstants {
-    /// 1 / (trace(P) / 2d), P of the start: the inverse of φ'Pφ, in units of the noise's variance, at a φ
-    /// that has nothing in common with the data. 0 for a model without features.
+    /// 1 / (trace(P) / 2d) with the initial P: inverse of the variance φ'Pφ far from the data, in units of
+    /// the noise variance. 0 for a model without features.
     Scalar inverse_far_variance = 0;
-    Storage<Scalar, m> extra_noise{};    ///< variance near the data beyond the noise's, in its units; ≥ 0
-    Storage<Scalar, m> prior_variance{}; ///< of what features add, where nothing is known, in the same units
-    /// Number of successive samples that teach the physics' parameters as much as one would with white noise:
-    /// times that their variance counts. ≥ 1; 0: not measured, it counts once.
+    /// variance near the data beyond the noise, in units of the noise variance; ≥ 0
+    Storage<Scalar, m> extra_noise{};
+    /// prior variance of the features' part of an output, in units of the noise variance
+    Storage<Scalar, m> prior_variance{};
+    /// Factor on the variance of the physics' parameters: the number of correlated samples that carry the
+    /// information of one sample with white noise. ≥ 1; 0: not measured, the factor is 1.
     Scalar parameter_variance_factor = 0;
-    /// Of an output about its offset, where nothing is known, in units of the noise's variance; read with
-    /// parameter_variance_factor.
+    /// Prior variance of each output about its offset, in units of the noise variance; used with
+    /// `parameter_variance_factor`.
     Storage<Scalar, m> output_variance{};
 
     [[nodiscard]] constexpr bool measured() const noexcept {
@@ -26,20 +28,21 @@ struct ExtrapolationConstants {
     }
 };
 
-/// How much of a prediction by features to doubt at one φ.
+/// Reduction of a prediction, and growth of its variance, at one φ away from the data.
 ///
-/// The novelty t = φ'Pφ / (its value far from all data), at most 1, is near 0 where the data are and 1 where
-/// no row learned resembles φ. There the features' part of the prediction is noise as large as the weights:
-/// unlike a kernel, finitely many features never fade out. It is therefore weighted by 1 / (1 + (2t)^6),
-/// which is 1 to single precision below t = 0.03, 0.996 at 0.2, and 0.015 at 1. The variance of its error is
-/// the output's own prior variance times 4t / (1 + 3t): the odds of novelty count four times, because
-/// residuals of real arms are correlated in time and teach less than as many independent ones. Shape and
-/// constants were chosen on two motions of one measured arm and on a servo (see docs/extrapolation.md).
+/// The novelty t = φ'Pφ / (its value far from all data), at most 1, is near 0 close to the data and 1 where
+/// no learned row resembles φ. There the features' part of the prediction is noise as large as the weights:
+/// unlike a kernel, finitely many features never fade out. That part is therefore multiplied by 1 / (1 +
+/// (2t)^6), which is 1 to single precision below t = 0.03, 0.996 at 0.2, and 0.015 at 1. The variance of its
+/// error is the output's prior variance times 4t / (1 + 3t): the odds of novelty are multiplied by four,
+/// because residuals of real arms are correlated in time and carry less information than independent ones.
+/// Form and constants were chosen on two motions of one measured arm and on a servo (see
+/// docs/extrapolation.md).
 ///
-/// The variance of the physics' parameters counts `parameter_variance_factor` times, for the same reason.
-/// Where the data have not determined what the physics says, it exceeds all that the output can do: a
-/// prediction is weighted by 1 / (1 + s^2), s being this variance over that of the output times 3. For a
-/// output uniform between ±r that is r². 7 multiply-adds, and 9 for each output.
+/// For the same reason the variance of the physics' parameters is multiplied by `parameter_variance_factor`.
+/// Where the data have not determined the physics, this variance exceeds the range of the output. A
+/// prediction is multiplied by 1 / (1 + s²), where s is this variance divided by three times the output's
+/// variance; for an output uniform in ±r that product is r². Cost: 7 multiply-adds, and 9 per output.
 template <class Scalar>
 class Extrapolation {
   public:
@@ -57,14 +60,14 @@ class Extrapolation {
         unknown_ = (t + t + t + t) / (1 + t + t + t);
     }
 
-    /// Share of the features' part that a prediction is better without, in [0, 1).
+    /// Returns the fraction by which the features' part is reduced, in [0, 1).
     [[nodiscard]] constexpr Scalar doubt() const noexcept { return doubt_; }
 
-    /// Share of the output's own variance that is not known here, in [0, 1].
+    /// Returns the fraction of the output's prior variance that applies at this φ, in [0, 1].
     [[nodiscard]] constexpr Scalar unknown() const noexcept { return unknown_; }
 
-    /// Share of a whole prediction that it is better without, in [0, 1]: what the physics' parameters leave
-    /// undetermined at this input. `ratio` and `feature_variance` as for variance().
+    /// Returns the fraction by which the whole prediction is reduced, in [0, 1], because the physics'
+    /// parameters are undetermined at this input. `ratio` and `feature_variance`: see variance().
     [[nodiscard]] constexpr Scalar parameter_doubt(Scalar ratio, Scalar feature_variance,
                                                    Scalar output_variance) const noexcept {
         const Scalar range_square = 3 * output_variance;
@@ -76,21 +79,21 @@ class Extrapolation {
         return output_variance > 0 ? doubt : Scalar(0);
     }
 
-    /// The variance of a measurement about the prediction. `ratio`: 1 + that of the predicted mean by P,
-    /// of which the features' part is `feature_variance`; the rest is that of the physics' parameters, which
-    /// counts at most for the output's own.
+    /// Returns the variance of a measurement about the prediction. `ratio`: 1 + the variance of the predicted
+    /// mean by P. `feature_variance`: the features' part of it; the rest belongs to the physics' parameters
+    /// and counts at most as the output's own variance.
     [[nodiscard]] constexpr Scalar variance(Scalar ratio, Scalar feature_variance, Scalar extra_noise,
                                             Scalar prior_variance,
                                             Scalar output_variance = 0) const noexcept {
         const Scalar rest = of_parameters(ratio, feature_variance);
         const Scalar bounded = output_variance > 0 && !(rest < output_variance) ? output_variance : rest;
-        const Scalar not_finite = ratio - ratio; // 0 otherwise. NOLINT(misc-redundant-expression)
+        const Scalar not_finite = ratio - ratio; // 0 if finite. NOLINT(misc-redundant-expression)
         const Scalar calibrated = 1 + extra_noise + bounded + prior_variance * unknown_ + not_finite;
         return measured_ ? calibrated : ratio;
     }
 
   private:
-    static constexpr Scalar largest_share = Scalar(1e6); ///< s is at most that, so that its square is finite
+    static constexpr Scalar largest_share = Scalar(1e6); ///< bound of s, so that s² is finite
     static constexpr Scalar unlimited = Scalar(1e30);
 
     [[nodiscard]] constexpr Scalar of_parameters(Scalar ratio, Scalar feature_variance) const noexcept {

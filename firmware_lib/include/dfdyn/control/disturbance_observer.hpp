@@ -10,21 +10,21 @@
 
 namespace dfdyn {
 
-/// Finds the torque that feed-forward leaves to the feedback, and takes it over, joint by joint.
+/// Estimates, per joint, the torque that the feed-forward leaves to the feedback, and takes it over.
 ///
-/// With a feedback F = P e + D de/dt of the tracking error e, a feed-forward that is right but for a
-/// disturbance, and the joint's inertia J, the disturbance is what F and this observer give less what the
-/// error's acceleration takes; low-passed with the bandwidth b:
+/// Let F = P e + D de/dt be the feedback of the tracking error e, and J the inertia of the joint. If the
+/// feed-forward is exact up to a disturbance, the disturbance is the sum of F and this observer's torque
+/// minus the torque that accelerates the error. Low-pass filtered with bandwidth b:
 ///
 ///     d = b (∫ F dt + J de/dt),   so that   (J s² + D s + P)(s + b) e = s · disturbance.
 ///
-/// The feedback's own poles stay where they are, and one more comes, at -b. After K. Ohnishi, "A new servo
-/// method in mechatronics" (1987), written for the error, so that no acceleration is needed. It has no
-/// memory: a disturbance that recurs with every motion, such as friction, is estimated anew each time with a
-/// lag of 1/b. `FeedForward` learns such disturbances from the commands; the estimate then returns to zero.
+/// The poles of the feedback stay in place, and a pole at -b is added. After K. Ohnishi, "A new servo method
+/// in mechatronics" (1987), written for the error, so that no acceleration is needed. The observer has no
+/// memory: a disturbance that repeats with every motion, such as friction, is estimated each time with a lag
+/// of 1/b. `FeedForward` learns such disturbances from the commands; the estimate then returns to zero.
 ///
-/// `LoopMargin` gives the bandwidth that a loop tolerates. When something blocks the joint, the estimate
-/// rises to its limit.
+/// `LoopMargin` gives the bandwidth that a loop tolerates. If the joint is blocked, the estimate rises to its
+/// limit.
 ///
 /// Cost: 8 multiply-adds per joint and tick, 5 n + 1 scalars. Never allocates.
 template <class Scalar, int n>
@@ -33,26 +33,30 @@ class DisturbanceObserver {
     using Torques = Storage<Scalar, n>;
 
     struct Settings {
-        Scalar period_s;   ///< of a tick; > 0
-        Torques bandwidth; ///< of each joint, rad/s; ≥ 0, and below 1 / period
-        Torques limit;     ///< of |estimate|, N·m; ≥ 0
+        Scalar period_s;   ///< of a control tick; > 0
+        Torques bandwidth; ///< per joint, rad/s; ≥ 0 and below 1 / period
+        Torques limit;     ///< of |estimate|, per joint, N·m; ≥ 0
     };
 
     DisturbanceObserver(Extent<n> joint_count, Settings settings) noexcept
         : joints_(joint_count), settings_(std::move(settings)), integral_(Torques::zeros(joint_count)),
           estimate_(integral_) {}
 
-    /// As if nothing had been observed.
+    /// Returns to the initial state: no estimate, no past.
     void restart() noexcept {
         for (int k = 0; k < joints_; ++k) {
             integral_[k] = estimate_[k] = 0;
         }
     }
 
-    /// One tick, of n values each. `feedback`: its torque in this tick, N·m. `inertia`: kg·m², about; 0 where
-    /// unknown, which costs damping. `error_rate`: of the tracking error, rad/s. `excess`: what the limits
-    /// took off the last command, N·m: an estimate does not grow against a limit. A value that is no number
-    /// leaves the joint's estimate as it is.
+    /// Performs one tick and returns the estimate, N·m. All arguments have n values:
+    ///  - `feedback`: torque of the feedback in this tick, N·m;
+    ///  - `inertia`: approximate inertia, kg·m²; 0 if unknown, at the expense of damping;
+    ///  - `error_rate`: rate of the tracking error, rad/s;
+    ///  - `excess`: torque that the limits removed from the last command, N·m. An estimate does not grow
+    ///    against a limit (anti-windup).
+    ///
+    /// A NaN or infinite value leaves the estimate of its joint unchanged.
     const Torques& update(const Scalar* feedback, const Scalar* inertia, const Scalar* error_rate,
                           const Scalar* excess) noexcept {
         for (int k = 0; k < joints_; ++k) {
@@ -68,10 +72,11 @@ class DisturbanceObserver {
         return estimate_;
     }
 
-    /// N·m, to be added to feed-forward and feedback.
+    /// Returns the torque to add to feed-forward and feedback, N·m.
     [[nodiscard]] const Torques& estimate() const noexcept { return estimate_; }
 
-    /// The part of it that stays when the error does not change, N·m: what holds the arm when the loop ends.
+    /// Returns the part of the estimate that remains while the error is constant, N·m: the torque that holds
+    /// the arm when the loop ends.
     [[nodiscard]] const Torques& lasting() const noexcept { return integral_; }
 
     /// Multiply-adds of `update`.

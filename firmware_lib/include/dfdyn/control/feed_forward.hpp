@@ -12,7 +12,7 @@
 
 namespace dfdyn {
 
-/// What a `FeedForward` learns with; see `LearnedTorque` for what the calls mean.
+/// A learner that `FeedForward` can use; `LearnedTorque` documents the calls.
 template <class L>
 concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename L::Scalar* values,
                                  typename L::Scalar* torque) {
@@ -23,27 +23,28 @@ concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename
     { learner.predict(time_ns, values, torque) } -> std::same_as<bool>;
 };
 
-/// Feed-forward torque for a reference: a blend of the caller's nominal torque and a learned one.
+/// Feed-forward torque for a reference: a blend of the caller's nominal torque and a learned torque.
 ///
-/// The learner predicts once per sample period of its model (a *knot*) the torque of the knot to come, for
-/// the reference at constant acceleration until then; between knots it is interpolated. `commanded` compares
-/// both forecasts with the torque that was finally commanded, joint by joint and knot by knot, and combines
-/// them as `ForecastCombination` does, over the last second. The command contains the feedback, so that the
-/// comparison sees the tracking error and does not depend on torque sensors. Errors that change faster than
-/// the feedback can follow do not appear in the command and are not seen. Until one second of comparisons is
+/// Once per sample period of its model (a *knot*) the learner predicts the torque of the next knot, for the
+/// reference extrapolated at constant acceleration. Between knots the torque is interpolated. `commanded`
+/// compares both forecasts with the torque that was finally commanded, per joint and knot. The forecasts are
+/// combined as in `ForecastCombination`, over the last second. The command contains the feedback, so the
+/// comparison includes the tracking error and needs no torque sensor. Errors that change faster than the
+/// feedback can follow do not appear in the command and are not detected. Until one second of comparisons is
 /// available, only the nominal torque is used.
 ///
-/// What is learned enters without a step: its share rises within `rise_s` and falls within `fall_s`, it adds
-/// at most `cap` to the nominal torque and changes by at most `rate`; the whole is within `limit`.
+/// The learned part changes without steps: its share rises within `rise_s` and falls within `fall_s`. It adds
+/// at most `cap` to the nominal torque and changes at most at `rate`. The total stays within `limit`.
 ///
 ///     begin(now, position);                              // the arm rests at the reference's start
 ///     each control tick:
 ///         torque = update(reference, nominal) + feedback + observer;  limited
 ///         commanded(torque);
-///         measured(time, position, torque that was in effect then);   // or nullptr for it
+///         measured(time, position, torque that was in effect then);   // nullptr if unknown
 ///
-/// Learn from the command that was in effect when the position was read rather than from a torque sensor: a
-/// sensor's offset or scale then costs nothing. Cost per tick: the learner's, and 20 n at a knot, 12 n else.
+/// Learn from the command that was in effect when the position was read rather than from a torque sensor:
+/// offset and scale errors of a sensor then have no effect. Cost per tick: the learner's, plus 20 n
+/// multiply-adds at a knot and 12 n otherwise.
 template <TorqueLearner Learner>
 class FeedForward {
   public:
@@ -52,18 +53,19 @@ class FeedForward {
     using Torques = Storage<Scalar, n>;
 
     struct Settings {
-        std::int64_t period_ns; ///< of a control tick, > 0
-        int ticks_per_sample;   ///< control ticks of a sample period of the model, ≥ 1
-        Torques limit;          ///< N·m, of each joint's torque, > 0
-        Torques cap;            ///< N·m, of what is learned beyond the nominal torque, ≥ 0
-        Torques rate;           ///< N·m/s, of that; > 0
+        std::int64_t period_ns; ///< control period, > 0
+        int ticks_per_sample;   ///< control ticks per sample period of the model, ≥ 1
+        Torques limit;          ///< of each joint's torque, N·m, > 0
+        Torques cap;            ///< of the learned part beyond the nominal torque, N·m, ≥ 0
+        Torques rate;           ///< of change of the learned part, N·m/s, > 0
         Scalar rise_s = Scalar(0.5);
         Scalar fall_s = Scalar(0.2);
-        Scalar memory_s = 1; ///< over which the forecasts are judged, ≥ a sample period
+        Scalar memory_s = 1; ///< memory of the comparison, ≥ one sample period
     };
 
-    /// Ticks by which the interpolation runs ahead: a command is held for a tick, so half a tick late in the
-    /// mean, and the torque that was learned with a position had been held before it.
+    /// Ticks by which the interpolation leads. A command is held for a tick, so on average it acts half a
+    /// tick late. The torque that was learned with a position had also been held before that position was
+    /// read.
     static constexpr Scalar lead = 1;
 
     explicit FeedForward(Learner& learner, const Settings& settings) noexcept
@@ -73,7 +75,7 @@ class FeedForward {
           forecasts_(Forecasts::zeros(extent<product(2, n)>(2 * joints_))), from_(Torques::zeros(joints_)),
           to_(from_), ahead_(from_), share_(from_), part_(from_), torque_(from_) {}
 
-    /// The arm rests at `position` (n values, rad) and is about to move from there.
+    /// Starts a motion. The arm rests at `position` (n values, rad).
     void begin(std::int64_t time_ns, const Scalar* position) noexcept {
         knot_ns_ = time_ns;
         tick_ = 0;
@@ -86,12 +88,12 @@ class FeedForward {
         known_ = next_known_ = false;
     }
 
-    /// Uses what is learned, or leaves it out; without a step in either case. It is learned in both.
+    /// Includes or excludes the learned part in the torque, without a step. Learning continues in both cases.
     void enable(bool on) noexcept { enabled_ = on; }
     [[nodiscard]] bool enabled() const noexcept { return enabled_; }
 
-    /// Feed-forward torque of this tick, N·m: `reference` and `nominal` (n values, N·m; zeros if there is no
-    /// model) of now. A nominal torque that is no number counts as 0.
+    /// Returns the feed-forward torque of this tick, N·m, for the present `reference` and `nominal` torque (n
+    /// values, N·m; zeros without a model). A nominal torque that is NaN or infinite counts as 0.
     const Torques& update(const Reference<Scalar, n>& reference, const Scalar* nominal) noexcept {
         const int since_knot = static_cast<int>(tick_++ % settings_.ticks_per_sample);
         if (since_knot == 0) {
@@ -113,9 +115,9 @@ class FeedForward {
         return torque_;
     }
 
-    /// What has been commanded in this tick, n values, N·m; after `update`. Leave it out where the command is
-    /// not what the motion takes: at a limit, or while positions are missing. Values that are no numbers are
-    /// not judged.
+    /// Compares the forecasts with the torque commanded in this tick (n values, N·m). Call it after `update`.
+    /// Do not call it if the command is not the torque that the motion needs: at a limit, or while positions
+    /// are missing. NaN or infinite values are not compared.
     void commanded(const Scalar* torque) noexcept {
         if (!at_knot_ || !known_) {
             return;
@@ -129,9 +131,10 @@ class FeedForward {
         judged_ = std::min(judged_ + 1, judged_for_);
     }
 
-    /// The newest measured position, n values, rad, and the torque that was in effect then, N·m; nullptr for
-    /// what is not known. In every tick after `update`: at a knot it is learned, between knots learning goes
-    /// on. `time_ns`: of the measurement, a whole number of control ticks after `begin`.
+    /// Passes the newest measured position (n values, rad) and the torque that was in effect at that time (n
+    /// values, N·m); nullptr if unknown. Call it in every tick, after `update`: a sample is taken at each
+    /// knot, and learning continues between knots. `time_ns`: time of the measurement, a whole number of
+    /// control ticks after `begin`.
     void measured(std::int64_t time_ns, const Scalar* position, const Scalar* torque) noexcept {
         if (at_knot_ && position != nullptr) {
             learner_->learn(time_ns, position, torque);
@@ -140,9 +143,9 @@ class FeedForward {
         }
     }
 
-    /// Share of the learned forecast in each joint's torque, 0 … 1.
+    /// Returns the share of the learned forecast in each joint's torque, 0 … 1.
     [[nodiscard]] const Torques& share() const noexcept { return share_; }
-    /// What has been learned and is in the torque now, N·m.
+    /// Returns the learned part of the present torque, N·m.
     [[nodiscard]] const Torques& learned_part() const noexcept { return part_; }
     [[nodiscard]] const Learner& learner() const noexcept { return *learner_; }
 
@@ -171,7 +174,7 @@ class FeedForward {
         next_known_ = learner_->predict(knot_ns_, ahead_.data(), to_.data());
     }
 
-    /// The share that the judge gives the learner.
+    /// Returns the share that the forecast combination assigns to the learner.
     [[nodiscard]] Scalar earned_share(int k) const noexcept {
         const bool trusted = enabled_ && known_ && next_known_ && judged_ >= judged_for_;
         return trusted ? combination_.weights()[joints_ + k] : Scalar(0);
@@ -190,17 +193,17 @@ class FeedForward {
     Learner* learner_;
     [[no_unique_address]] Extent<n> joints_;
     Settings settings_;
-    int judged_for_; ///< knots that make the learner trusted
+    int judged_for_; ///< knots with a comparison until the learner is used
     ForecastCombination<Scalar, 2, n> combination_;
-    Forecasts forecasts_; ///< for this knot: the nominal torque, then the learned one
-    Torques from_, to_;   ///< learned, of this knot and the next
+    Forecasts forecasts_; ///< for the present knot: the nominal torque, then the learned one
+    Torques from_, to_;   ///< learned torque of the present and of the next knot
     Torques ahead_;
     Torques share_, part_, torque_;
-    std::int64_t knot_ns_ = 0; ///< the next
+    std::int64_t knot_ns_ = 0; ///< time of the next knot
     std::int64_t tick_ = 0;
     int judged_ = 0;
     bool enabled_ = true;
-    bool known_ = false, next_known_ = false; ///< whether the learner could predict the two knots
+    bool known_ = false, next_known_ = false; ///< whether the learner could predict each of the two knots
     bool at_knot_ = false;
 };
 

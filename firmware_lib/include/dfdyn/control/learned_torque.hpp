@@ -10,15 +10,17 @@
 
 namespace dfdyn {
 
-/// Inverse dynamics learned while the arm moves and evaluated at the reference: it learns from windows of
+/// Inverse dynamics learned while the arm moves and evaluated at the reference: learns from windows of
 /// measured positions and predicts for a window of reference positions. The prediction of an `Estimator`
 /// alone is for the *measured* motion; as feed-forward it would be positive feedback of the position error.
 ///
-/// Beside the estimator it has a second window with its columns, and a copy of the learned weights, which
-/// changes whenever a sample has been learned: 2d m + p scalars and the windows, no second covariance.
+/// In addition to the estimator it contains a second window with its columns, and a copy of the learned
+/// weights that is updated after each learned sample: 2d m + p scalars and the windows, but no second
+/// covariance.
 ///
-/// Samples come a sample period of the model apart; learning one is spread over the control ticks until the
-/// next. `tick_cost()` bounds every call. Refers to `constants`, which must outlive it. Never allocates.
+/// Samples are one sample period of the model apart. Learning a sample is spread over the control ticks until
+/// the next sample. `tick_cost()` bounds every call. Refers to `constants`, which must outlive this object.
+/// Never allocates.
 template <class ModelType>
 class LearnedTorque {
   public:
@@ -26,12 +28,12 @@ class LearnedTorque {
     using Scalar = typename Model::Scalar;
     using Estimator = dfdyn::Estimator<Model>;
     static constexpr int outputs = Model::outputs;
-    static_assert(Model::joints == Model::outputs, "a model of the torques of all joints");
-    static_assert(Model::outputs != dynamic, "sizes of run time: see the tools");
+    static_assert(Model::joints == Model::outputs, "outputs must be the torques of all joints");
+    static_assert(Model::outputs != dynamic, "sizes must be fixed at compile time");
 
     explicit LearnedTorque(const typename Model::Constants&&, int ticks) = delete;
 
-    /// `ticks`: control ticks from one sample to the next, ≥ 1.
+    /// `ticks`: control ticks per sample period, ≥ 1.
     LearnedTorque(const typename Model::Constants& constants, int ticks) noexcept
         : constants_(&constants), share_(share_of(constants.sizes, ticks > 1 ? ticks : 1)),
           estimator_(constants), columns_(constants), sample_{}, weights_{} {
@@ -40,7 +42,7 @@ class LearnedTorque {
 
     [[nodiscard]] Extent<outputs> output_count() const noexcept { return constants_->sizes.output_count; }
 
-    /// The arm rests at `position` (n values, rad), and has long since: both windows begin anew. What has
+    /// Starts both windows as if the arm had rested at `position` (n values, rad) for a long time. What has
     /// been learned stays.
     void begin(std::int64_t time_ns, const Scalar* position) noexcept {
         estimator_.restart_window();
@@ -50,8 +52,8 @@ class LearnedTorque {
         }
     }
 
-    /// Begins to learn a sample: `position` as measured, n values, rad, and the torque that moved it there,
-    /// N·m; nullptr: not known. Faulty samples are refused as `Estimator::tick` says.
+    /// Begins to learn a sample: the measured `position` (n values, rad) and the torque that moved the arm
+    /// there (N·m), or nullptr if unknown. Faulty samples are refused as in `Estimator::tick`.
     Status learn(std::int64_t time_ns, const Scalar* position, const Scalar* torque) noexcept {
         sample_.time_ns = time_ns;
         sample_.output_valid = torque != nullptr;
@@ -65,17 +67,17 @@ class LearnedTorque {
         return status;
     }
 
-    /// Goes on with that sample; in every control tick that has none.
+    /// Continues to learn the sample. Call it in every control tick without a new sample.
     void go_on() noexcept {
         estimator_.advance(share_);
         take_over_when_done();
     }
 
-    /// The torque that the reference takes a sample period after the last call, N·m: `position` then, rad.
-    /// False, and zeros, while the window fills, where the input is out of range, or beyond the model's
-    /// limits. It does not fade away from the data, as an `Estimate` does: no variance is known here. What it
-    /// is worth, `FeedForward` judges. A position
-    /// that is no number begins the reference's window anew.
+    /// Predicts the torque of the reference one sample period after the last call, N·m, for the reference's
+    /// `position` at that time, rad. Returns false and writes zeros while the window fills, if the input is
+    /// out of range, or beyond the model's limits. Away from the data the prediction does not fade out as in
+    /// an `Estimate`, because no variance is computed; `FeedForward` compares its quality with that of the
+    /// nominal torque. A NaN or infinite position restarts the reference's window.
     bool predict(std::int64_t time_ns, const Scalar* position, Scalar* torque) noexcept {
         bool known = true;
         for (int k = 0; k < output_count(); ++k) {
@@ -101,7 +103,7 @@ class LearnedTorque {
         return known;
     }
 
-    /// Back to what was known at the start.
+    /// Returns to the initial state of the model.
     void reset() noexcept {
         estimator_.reset();
         columns_.restart();
@@ -109,13 +111,13 @@ class LearnedTorque {
     }
 
     [[nodiscard]] const Estimator& estimator() const noexcept { return estimator_; }
-    /// A buffer of this many bytes holds any snapshot.
+    /// Size in bytes of a buffer that holds any snapshot.
     static constexpr std::size_t snapshot_capacity = Estimator::snapshot_capacity;
     /// See `Estimator::snapshot`.
     [[nodiscard]] SnapshotResult snapshot(std::span<std::byte> buffer) const noexcept {
         return estimator_.snapshot(buffer);
     }
-    /// See `Estimator::restore`. Both windows begin anew: `begin` follows.
+    /// See `Estimator::restore`. Restarts both windows; call `begin` next.
     [[nodiscard]] SnapshotResult restore(std::span<const std::byte> buffer) noexcept {
         const SnapshotResult result = estimator_.restore(buffer);
         if (result == SnapshotResult::ok) {
@@ -126,7 +128,7 @@ class LearnedTorque {
         return result;
     }
 
-    /// Multiply-adds of a control tick with `learn` or `go_on` and `predict`, at most.
+    /// Returns the maximum multiply-adds of a control tick: `learn` or `go_on`, plus `predict`.
     [[nodiscard]] std::int64_t tick_cost() const noexcept {
         const Cost cost = Estimator::cost(constants_->sizes);
         return 2 * cost.predict + cost.variance + share_.operations;
@@ -136,11 +138,11 @@ class LearnedTorque {
     using Columns = typename Model::Structure::template Columns<Model>;
     static_assert(ColumnsOf<Columns, Scalar, typename Model::Sample>);
 
-    /// Samples of any model's window, at most: a bound for a loop.
+    /// Maximum window length of any model, in samples; bounds a loop.
     static constexpr int longest_window = 4096;
 
-    /// What suffices to learn a sample in `ticks` slices, in each of which as much may be left over as a
-    /// slice cannot use.
+    /// Returns the budget per tick that suffices to learn a sample in `ticks` slices. Each slice may leave as
+    /// much unused as is too little for the next step.
     static constexpr Budget share_of(const typename Model::Sizes& sizes, int ticks) noexcept {
         const Cost cost = Estimator::cost(sizes);
         return {(cost.learn + cost.forget + ticks - 1) / ticks + cost.largest_step};
@@ -166,12 +168,12 @@ class LearnedTorque {
     }
 
     const typename Model::Constants* constants_;
-    Budget share_; ///< of a control tick
+    Budget share_; ///< per control tick
     Estimator estimator_;
-    Columns columns_; ///< at the reference
+    Columns columns_; ///< columns at the reference
     typename Model::Sample sample_;
     Storage<Scalar, Columns::weights> weights_;
-    bool pending_ = false; ///< the estimator may know more than `weights_`
+    bool pending_ = false; ///< the estimator may have newer weights than `weights_`
 };
 
 } // namespace dfdyn

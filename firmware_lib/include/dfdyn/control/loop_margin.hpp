@@ -9,35 +9,36 @@
 
 namespace dfdyn {
 
-/// One joint under proportional and derivative feedback, as far as stability needs it.
+/// One joint under proportional-derivative feedback, as described for a stability analysis.
 template <class Scalar>
 struct JointLoop {
     Scalar inertia;       ///< of the arm at this joint, kg·m²; > 0
     Scalar position_gain; ///< N·m/rad; > 0
     Scalar velocity_gain; ///< N·m·s/rad; ≥ 0
-    Scalar delay_s;       ///< from a position to the torque that answers it, half a tick of holding included
-    Scalar velocity_delay_s; ///< beyond that, of the velocity: half the length of its window
+    Scalar delay_s;       ///< from a position to the torque that reacts to it, including half a tick of hold
+    Scalar velocity_delay_s; ///< additional delay of the velocity: half the length of its window
 };
 
-/// How far such a joint with a `DisturbanceObserver` is from oscillation, by its open loop
+/// Phase margin of such a joint with a `DisturbanceObserver`, from its open loop
 ///
 ///     L(s) = e^(-s delay) [P (1 + b/s) + (D (1 + b/s) + b J) s e^(-s velocity delay)] / (J' s²)
 ///
-/// with the gains P and D, the observer's bandwidth b and inertia J, and the true inertia J'. A textbook
-/// phase margin (K. J. Åström, R. M. Murray, "Feedback Systems", 2008, ch. 9).
+/// where P and D are the gains, b and J the observer's bandwidth and inertia, and J' the true inertia. A
+/// textbook phase margin (K. J. Åström, R. M. Murray, "Feedback Systems", 2008, ch. 9).
 template <class Scalar>
 class LoopMargin {
   public:
-    /// `observer_inertia`: the one given to the observer, kg·m²; ≥ 0.
+    /// `observer_inertia`: inertia that the observer uses, kg·m²; ≥ 0.
     constexpr LoopMargin(const JointLoop<Scalar>& loop, Scalar observer_inertia) noexcept
         : loop_(loop), observer_inertia_(observer_inertia) {}
 
-    /// rad, at the highest frequency where |L| is 1; negative: unstable. `bandwidth`: rad/s, ≥ 0. About 80
-    /// evaluations of L.
+    /// Returns the phase margin in rad, at the highest frequency where |L| = 1; a negative margin means
+    /// instability. `bandwidth`: of the observer, rad/s, ≥ 0. Cost: about 80 evaluations of L.
     [[nodiscard]] Scalar phase(Scalar bandwidth) const noexcept {
         Scalar low = lowest;
         Scalar high = highest;
-        for (int i = 0; i < steps; ++i) { // on a logarithmic scale; |L| falls below 1 once, at the end
+        // Bisection on a logarithmic scale for the last crossover of |L| = 1.
+        for (int i = 0; i < steps; ++i) {
             using std::sqrt;
             const Scalar middle = sqrt(low * high);
             (at(bandwidth, middle).square > 1 ? low : high) = middle;
@@ -45,8 +46,9 @@ class LoopMargin {
         return at(bandwidth, high).phase;
     }
 
-    /// The largest bandwidth up to `most` below which every one leaves a margin of `margin` rad, rad/s; 0 if
-    /// none does. About 5000 evaluations of L: for the start of a program.
+    /// Returns the largest bandwidth, rad/s, at most `most`, such that every smaller bandwidth leaves a phase
+    /// margin of at least `margin` rad; 0 if none does. Cost: about 5000 evaluations of L, so call it when
+    /// the program starts.
     [[nodiscard]] Scalar largest_bandwidth(Scalar margin, Scalar most) const noexcept {
         Scalar low = 0;
         Scalar high = most * least_share;
@@ -69,15 +71,15 @@ class LoopMargin {
     static constexpr Scalar highest = Scalar(1e5); ///< rad/s
     static constexpr int steps = 80;
     static constexpr int bisections = 24;
-    static constexpr Scalar least_share = Scalar(1e-3); ///< of the largest bandwidth: where the search begins
+    static constexpr Scalar least_share = Scalar(1e-3); ///< smallest bandwidth tried, relative to the largest
     static constexpr Scalar growth = Scalar(1.25);
 
     struct Point {
         Scalar square; ///< |L|²
-        Scalar phase;  ///< of -L: the margin where |L| is 1, rad
+        Scalar phase;  ///< of -L, rad: the phase margin where |L| = 1
     };
 
-    /// L at the angular frequency `w`. Its numerator over s, then the double integrator's -1 by the sign.
+    /// Evaluates L at the angular frequency `w`. The sign accounts for the -1 of the double integrator.
     [[nodiscard]] Point at(Scalar bandwidth, Scalar w) const noexcept {
         using std::atan2;
         using std::cos;
@@ -90,8 +92,7 @@ class LoopMargin {
         const Scalar imaginary =
             -loop_.position_gain * b / w - loop_.velocity_gain * b * sin(lag) + rate * w * cos(lag);
         const Scalar plant = loop_.inertia * w * w;
-        if (lag + w * loop_.delay_s >
-            std::numbers::pi_v<Scalar>) { // beyond it the angle is that of another turn
+        if (lag + w * loop_.delay_s > std::numbers::pi_v<Scalar>) { // atan2 wraps beyond half a turn
             return {(real * real + imaginary * imaginary) / (plant * plant), -std::numbers::pi_v<Scalar>};
         }
         return {(real * real + imaginary * imaginary) / (plant * plant),

@@ -5,7 +5,7 @@
 
 namespace dfdyn {
 
-/// What the joints are to do at one instant.
+/// Reference motion of the joints at one time.
 template <class Scalar, int n>
 struct Reference {
     Storage<Scalar, n> position;     ///< rad
@@ -13,8 +13,8 @@ struct Reference {
     Storage<Scalar, n> acceleration; ///< rad/s²
 };
 
-/// Position of joint `joint` a short time later, at constant acceleration, rad. Its error is a sixth of the
-/// jerk times the third power of the time.
+/// Returns the position of joint `joint` after a short time at constant acceleration, rad. The error is jerk
+/// · time³ / 6.
 template <class Scalar, int n>
 Scalar position_after(const Reference<Scalar, n>& reference, int joint, Scalar time_s) noexcept {
     return reference.position[joint] +
