@@ -12,22 +12,22 @@
 
 namespace dfdyn {
 
-/// One prediction from those of several estimators ("members") of the same m outputs.
+/// Combines the predictions of several estimators ("members") of the same m outputs into one.
 ///
-/// Each output weighs each member in inverse proportion to the square of its expected square error: of its
-/// mean square error over about `memory` samples, plus a multiple of the variance of its parameters at this
-/// input. After J. M. Bates and C. W. J. Granger, "The combination of forecasts" (1969), whose weights are in
-/// inverse proportion to the mean square error itself.
+/// Per output, the weight of a member is inversely proportional to the square of its expected square error:
+/// its mean square error over about `memory` samples, plus a multiple of the variance of its parameters at
+/// this input. After J. M. Bates and C. W. J. Granger, "The combination of forecasts" (1969), where weights
+/// are inversely proportional to the mean square error itself.
 ///
-/// Errors one step ahead are mostly tracking: they do not show what a member would do if it stopped learning.
-/// So `learn` takes also what each member predicts with weights that it had 0.2 to 0.4 s ago (`HeldWeights`);
-/// the mean of both squares counts. The variance decides where nothing is learned, on a motion that was not
-/// seen before.
+/// Errors one step ahead mostly measure tracking. They do not show how a member would predict if it stopped
+/// learning. `learn` therefore also uses each member's prediction with its weights of 0.2 to 0.4 s ago
+/// (`HeldWeights`), and averages both squares. The variance decides where nothing is learned, on a motion
+/// that was not seen before.
 ///
 /// The powers and a memory of 0.8 s were chosen on the UR5 recordings No5 and No6. Weights are in [0, 1] and
-/// sum to 1, so that the combination of finite predictions lies among them. An error counts for at most a
-/// hundred times the best member's, so that an absurd one is forgotten within five memories; without
-/// `noise_std` that begins once the memory is full.
+/// sum to 1, so the combination of finite predictions lies between them. A square error is clipped to 10⁴
+/// times the mean square error of the best member, so that an absurd error is forgotten within five memories;
+/// without `noise_std` the clipping begins once the memory is full.
 ///
 ///     for each member j: estimate[j] = estimator[j].tick(sample, budget);   // into tables, member by member
 ///     combination.weigh(deviations);                        // at this input; without: by past errors alone
@@ -35,26 +35,28 @@ namespace dfdyn {
 ///     if the sample was not refused: combination.learn(predictions, ahead, sample.output.data());
 ///     else: combination.skip();
 ///
-/// Cost: `cost()`; 3 c m + 5 scalars for c members. Never allocates.
+/// Tables contain m values per member, member by member. Cost: `cost()`; 3 c m + 5 scalars for c members.
+/// Never allocates.
 template <class Scalar, int members, int m>
 class ForecastCombination {
   public:
-    /// Times that the variance of a member's parameters counts beside errors lately measured. It counts more
-    /// than once because it assumes white noise: with residuals of autocorrelation ρ, n samples carry the
-    /// information of n (1 - ρ) / (1 + ρ), and ρ = 0.82 gives the factor 10. Chosen on the UR5 recordings No5
-    /// and No6.
+    /// Factor on the variance of a member's parameters while recent errors are available. It is greater than
+    /// 1 because the variance assumes white noise: with residuals of autocorrelation ρ, n samples carry the
+    /// information of n (1 - ρ) / (1 + ρ) samples, and ρ = 0.82 gives the factor 10. Chosen on the UR5
+    /// recordings No5 and No6.
     static constexpr Scalar variance_factor = 10;
-    /// The same while no error has been measured lately, for deviations that count correlation and what is
-    /// unknown away from the data (`Extrapolation`). These bound 95 % of the errors; what they add to the
-    /// noise is about four times the mean square. Chosen on the UR5 recordings No5 and No6, where 0.15 to
-    /// 0.35 do as well, and on the servo's 00, 02 and 03, where it makes little difference.
+    /// Factor while no recent errors are available, for deviations that include correlation and the
+    /// uncertainty away from the data (`Extrapolation`). Such deviations bound 95 % of the errors; their
+    /// variance beyond the noise is about four times the mean square error. Chosen on the UR5 recordings No5
+    /// and No6, where 0.15 to 0.35 perform equally, and on the servo's recordings 00, 02 and 03, where it
+    /// makes little difference.
     static constexpr Scalar calibrated_variance_factor = Scalar(0.25);
 
-    /// `memory`: samples, ≥ 1; a smaller one counts as 1. `noise_std`: deviation of each member's noise for
-    /// each output, member by member, > 0, in the outputs' units; the errors to expect at the start. nullptr:
-    /// not known; members count alike until they have been seen to predict. `unjudged_factor`: times that the
-    /// variance of the members' parameters counts until errors have been measured, and some memories after
-    /// the last; ≥ 0.
+    /// `memory`: samples, ≥ 1; smaller values count as 1. `noise_std`: standard deviation of each member's
+    /// noise per output, a table of values > 0 in the outputs' units, used as the expected errors at the
+    /// start; nullptr if unknown: members then have equal weights until their errors are known.
+    /// `unjudged_factor`: factor on the variance of the members' parameters before the first error and some
+    /// memories after the last; ≥ 0.
     constexpr ForecastCombination(Extent<members> member_count, Extent<m> output_count, Scalar memory,
                                   const Scalar* noise_std = nullptr,
                                   Scalar unjudged_factor = variance_factor) noexcept
@@ -68,7 +70,7 @@ class ForecastCombination {
         restart();
     }
 
-    /// Back to what is expected at the start.
+    /// Returns to the state after construction.
     constexpr void restart() noexcept {
         const bool known = noise_square_[0] > 0;
         set_trust(known ? Scalar(0) : Scalar(1));
@@ -79,16 +81,16 @@ class ForecastCombination {
         weigh();
     }
 
-    /// Weighs the members by their past errors and their standard deviations at this input, member by member,
-    /// in the outputs' units, parameters and noise together as in `Estimate`. One that is no number counts as
+    /// Computes the weights from past errors and from `deviations`, the members' standard deviations at this
+    /// input: a table in the outputs' units, including parameters and noise as in `Estimate`. NaN counts as
     /// infinite.
     constexpr void weigh(const Scalar* deviations) noexcept {
         copy_mean_squares(weights_.data());
         weigh(weights_.data(), deviations, weights_.data());
     }
 
-    /// Likewise with other mean square errors, as `copy_mean_squares` gave them, into `weights`, which may be
-    /// the same table.
+    /// Same, from the given mean square errors (see `copy_mean_squares`) into the table `weights`, which may
+    /// be the table `mean_squares`.
     constexpr void weigh(const Scalar* mean_squares, const Scalar* deviations,
                          Scalar* weights) const noexcept {
         for (int i = 0; i < count(); ++i) {
@@ -101,13 +103,13 @@ class ForecastCombination {
         }
     }
 
-    /// `from`: a value of each output from each member, member by member; `to`: m values. Takes predictions,
-    /// and their standard deviations, as of members whose errors go together.
+    /// Combines the table `from` into the m values `to`. Use it for predictions, and for their standard
+    /// deviations as if the members' errors were fully correlated.
     constexpr void combine(const Scalar* from, Scalar* to) const noexcept {
         combine(weights_.data(), from, to);
     }
 
-    /// Likewise with other weights.
+    /// Same, with the given weights.
     constexpr void combine(const Scalar* weights, const Scalar* from, Scalar* to) const noexcept {
         for (int k = 0; k < outputs_; ++k) {
             Scalar sum = 0;
@@ -118,12 +120,14 @@ class ForecastCombination {
         }
     }
 
-    /// Learns how the members' predictions of a sample compare with its m outputs. `ahead`: what they predict
-    /// for it with weights of a while ago; may be `predictions`. Then weighs by the errors alone.
+    /// Updates the mean square errors from the members' predictions of a sample and its m measured outputs.
+    /// `ahead`: predictions of the same sample with older weights; may be `predictions`. Then computes the
+    /// weights from the errors alone.
     constexpr void learn(const Scalar* predictions, const Scalar* ahead, const Scalar* measured) noexcept {
         copy_mean_squares(mean_square_.data());
         set_trust(1);
-        const bool scaled = samples_ >= memory_ || noise_square_[0] > 0; // it is known what is absurd
+        // the scale of plausible errors is known
+        const bool scaled = samples_ >= memory_ || noise_square_[0] > 0;
         samples_ = samples_ < memory_ ? samples_ + 1 : memory_;
         for (int k = 0; k < outputs_; ++k) {
             const Scalar most = scaled ? std::min(outlier * best_of(k), largest) : largest;
@@ -138,20 +142,20 @@ class ForecastCombination {
         weigh();
     }
 
-    /// A tick that learns nothing: past errors count for less, the members' noise for more, until after a
-    /// memory the noise and the variances decide. The last errors before a standstill say little about a
-    /// motion that follows. Without `noise_std` it does nothing.
+    /// Accounts for a tick without learning: the influence of past errors decays, and after one memory the
+    /// members' noise and variances decide. The last errors before a standstill carry little information
+    /// about the next motion. Has no effect without `noise_std`.
     constexpr void skip() noexcept {
         set_trust(trust_ * (noise_square_[0] > 0 ? 1 - 1 / memory_ : Scalar(1)));
     }
 
-    /// `learn` by the errors of the predictions alone.
+    /// Same as `learn` with `ahead` equal to `predictions`.
     constexpr void learn(const Scalar* predictions, const Scalar* measured) noexcept {
         learn(predictions, predictions, measured);
     }
 
-    /// Multiply-adds, at most. `predict`: of `weigh` (8 c m for c members) and two calls of `combine` (c m
-    /// each), for predictions and deviations. `learn`: of `learn` or `skip`.
+    /// Maximum multiply-adds. `predict`: one `weigh` (8 c m for c members) and two `combine` (c m each), for
+    /// predictions and deviations. `learn`: one `learn` or `skip`.
     [[nodiscard]] static constexpr Cost cost(Extent<members> member_count, Extent<m> output_count) noexcept {
         const std::int64_t table = std::int64_t{member_count} * output_count;
         return {.predict = 10 * table,
@@ -161,9 +165,9 @@ class ForecastCombination {
                 .largest_step = 11 * table};
     }
 
-    /// Of each member for each output, member by member.
+    /// Returns the weights, a table.
     [[nodiscard]] constexpr const Scalar* weights() const noexcept { return weights_.data(); }
-    /// Copies the mean square errors that count now, member by member.
+    /// Copies the mean square errors in use into a table.
     constexpr void copy_mean_squares(Scalar* to) const noexcept {
         for (int i = 0; i < count(); ++i) {
             to[i] = trust_ * mean_square_[i] + (1 - trust_) * noise_square_[i];
@@ -172,12 +176,13 @@ class ForecastCombination {
 
     [[nodiscard]] std::size_t snapshot_bytes() const noexcept { return dfdyn::snapshot_bytes(*this); }
 
-    /// Writes what has been learned to the front of `buffer`, of at least `snapshot_bytes()`.
+    /// Writes the learned state to the front of `buffer`, which holds at least `snapshot_bytes()`.
     [[nodiscard]] SnapshotResult snapshot(std::span<std::byte> buffer) const noexcept {
         return write_snapshot(*this, identity(), buffer);
     }
 
-    /// Restores a snapshot of a combination of as many members and outputs, whole or not at all.
+    /// Restores a snapshot of a combination with the same numbers of members and outputs. A rejected snapshot
+    /// changes nothing.
     [[nodiscard]] SnapshotResult restore(std::span<const std::byte> buffer) noexcept {
         const SnapshotResult result = read_snapshot(*this, identity(), buffer);
         set_trust(1);
@@ -195,10 +200,10 @@ class ForecastCombination {
 
   private:
     static constexpr int size = product(members, m);
-    static constexpr Scalar least = Scalar(1e-30);  ///< mean square error: none is better than this …
-    static constexpr Scalar largest = Scalar(1e30); ///< … nor worse than this
-    static constexpr Scalar outlier = Scalar(1e4);  ///< times the best: no single square counts for more
-    static constexpr Scalar first_samples = 10;     ///< that the noise counts for at the start
+    static constexpr Scalar least = Scalar(1e-30);  ///< smallest mean square error
+    static constexpr Scalar largest = Scalar(1e30); ///< largest mean square error
+    static constexpr Scalar outlier = Scalar(1e4); ///< bound of a square error, relative to the best member's
+    static constexpr Scalar first_samples = 10;    ///< weight of the noise at the start
     using Table = Storage<Scalar, size>;
 
     [[nodiscard]] constexpr int count() const noexcept { return members_ * outputs_; }
@@ -207,13 +212,13 @@ class ForecastCombination {
         return member * outputs_ + output;
     }
 
-    /// At most `most`, also of what is no number.
+    /// Returns error² clipped to [`least`, `most`]; `most` if the error is NaN.
     [[nodiscard]] static constexpr Scalar square(Scalar error, Scalar most) noexcept {
         const Scalar value = error * error;
         return value < most ? std::max(value, least) : most;
     }
 
-    /// The least mean square error of the output.
+    /// Returns the smallest mean square error of an output.
     [[nodiscard]] constexpr Scalar best_of(int output) const noexcept {
         Scalar best = largest;
         for (int j = 0; j < members_; ++j) {
@@ -232,7 +237,7 @@ class ForecastCombination {
             trust < 1 ? unjudged_factor_ + trust * (variance_factor - unjudged_factor_) : variance_factor;
     }
 
-    /// By past errors alone.
+    /// Computes the weights from past errors alone.
     constexpr void weigh() noexcept {
         std::copy(mean_square_.begin(), mean_square_.end(), weights_.begin());
         for (int k = 0; k < outputs_; ++k) {
@@ -240,7 +245,7 @@ class ForecastCombination {
         }
     }
 
-    /// From an output's expected square errors to its weights, in place.
+    /// Converts an output's expected square errors to weights, in place.
     constexpr void normalise(int output, Scalar* weights) const noexcept {
         Scalar best = largest;
         for (int j = 0; j < members_; ++j) {
@@ -261,10 +266,10 @@ class ForecastCombination {
     [[no_unique_address]] Extent<m> outputs_;
     Scalar memory_;
     Scalar unjudged_factor_;
-    Scalar factor_ = variance_factor; ///< times that variance beyond the noise counts now
-    Scalar samples_ = 0;              ///< that the means are over, at most the memory
-    Scalar trust_ = 1;                ///< in the means, in [0, 1]; the rest is the noise's
-    Table noise_square_;              ///< zero: not known
+    Scalar factor_ = variance_factor; ///< present factor on the variance beyond the noise
+    Scalar samples_ = 0;              ///< memory of the means so far, at most `memory_`
+    Scalar trust_ = 1;                ///< share of the past errors, in [0, 1]; the rest is the noise's
+    Table noise_square_;              ///< zero: unknown
     Table mean_square_;
     Table weights_;
 };

@@ -5,22 +5,22 @@
 
 namespace dfdyn {
 
-/// The last M+1 positions of n joints, q(t⁻) of the paper, newest first.
+/// The last M+1 positions of n joints, newest first: q(t⁻) of the paper (Section V).
 ///
-/// A ring that writes each row twice, M+1 rows apart, so that the window is always one contiguous block: no
-/// copying, no wrap-around in the reader. Push O(n). Memory 2 (M+1) n scalars.
+/// A ring buffer that writes each row twice, M+1 rows apart, so that the window is always one contiguous
+/// block: no copying, and no wrap-around for the reader. Push O(n). Memory 2 (M+1) n scalars.
 template <class Scalar, int n, int M>
 class LagWindow {
   public:
     constexpr LagWindow(Extent<n> joints, Extent<M> lags) noexcept
         : joints_(joints), lags_(lags), rows_(Rows::zeros(extent<size>(2 * (lags + 1) * joints))) {}
 
-    /// Number of rows that a full window holds: M+1.
+    /// Returns the number of rows of a full window: M+1.
     [[nodiscard]] constexpr int capacity() const noexcept { return lags_ + 1; }
     [[nodiscard]] constexpr bool full() const noexcept { return filled_ == capacity(); }
     [[nodiscard]] constexpr int filled() const noexcept { return filled_; }
 
-    /// Forgets the past; the window must fill again.
+    /// Empties the window; it must fill again.
     constexpr void restart() noexcept {
         filled_ = 0;
         newest_ = 0;
@@ -37,7 +37,7 @@ class LagWindow {
         filled_ = full() ? filled_ : filled_ + 1;
     }
 
-    /// The row of n positions `lag` samples ago, 0 ≤ lag < filled().
+    /// Returns the row of n positions `lag` samples ago, 0 ≤ lag < filled().
     [[nodiscard]] constexpr const Scalar* row(int lag) const noexcept {
         return rows_.data() + (newest_ + lag) * joints_;
     }

@@ -10,7 +10,7 @@
 
 namespace dfdyn {
 
-/// An arm of which only the sizes are known: n joints, m outputs. `Chain` knows its geometry too.
+/// An arm with n joints and m outputs and no known geometry. `Chain` adds the geometry.
 template <int n, int m>
 struct Joints {
     static constexpr int joints = n;
@@ -19,7 +19,7 @@ struct Joints {
 
 namespace detail {
 
-/// The sample that an input needs, or a physics, whichever needs more.
+/// Sample type that both the input and the physics can use: the larger of their two types.
 template <class Input, class Motion, class Scalar, int n, int m>
 using SampleOf = std::conditional_t<
     std::is_same_v<typename Motion::template Sample<Scalar, n, m>, dfdyn::Sample<Scalar, n, m>>,
@@ -27,8 +27,8 @@ using SampleOf = std::conditional_t<
 
 } // namespace detail
 
-/// A model is a composition: scalar, arm, input, features, structure. `Constants` is what `dfdyn train`
-/// writes; it can be a `constexpr` object in flash and must outlive the estimators that refer to it.
+/// A model is a composition of scalar, arm, input, features and structure. `dfdyn train` writes its
+/// `Constants`, which can be a `constexpr` object in flash and must outlive the estimators that refer to it.
 template <class ScalarType, class ArmType, class InputType, class FeatureType,
           class StructureType = Nonparametric<>>
 struct Model {
@@ -51,7 +51,7 @@ struct Model {
     using StructureConstants = typename Structure::template Constants<Scalar, columns, outputs>;
     using Sample = detail::SampleOf<Input, typename Physics::Motion, Scalar, joints, outputs>;
 
-    /// Empty for a firmware model: every size is a template argument.
+    /// Empty for a firmware model, where every size is a template argument.
     struct Sizes {
         [[no_unique_address]] Extent<joints> joint_count{};
         [[no_unique_address]] Extent<outputs> output_count{};
@@ -70,24 +70,28 @@ struct Model {
 
     struct Constants {
         [[no_unique_address]] Sizes sizes;
-        std::uint32_t identity; ///< differs between models: a snapshot of one is not restored into another
-        std::int64_t gap_ns;    ///< without a period: a longer time between two samples is a gap
-        std::int64_t period_ns = 0; ///< nominal sample period: what is a gap follows from the sample grid
+        /// Differs between models: a snapshot of one model is not restored into another.
+        std::uint32_t identity;
+        /// Without a period: a longer time between two samples is a gap.
+        std::int64_t gap_ns;
+        /// Nominal sample period; with it, `SampleClock` decides on gaps.
+        std::int64_t period_ns = 0;
         [[no_unique_address]] InputConstants input;
         [[no_unique_address]] FeatureConstants features;
         [[no_unique_address]] PhysicsConstants physics;
         Storage<Scalar, outputs> output_offset;    ///< y = offset + noise_std (prediction + e), e ~ N(0, 1)
         Storage<Scalar, outputs> output_noise_std; ///< > 0, in the output's unit
-        Storage<Scalar, joints> position_limit;    ///< |q_i| beyond it is refused (rad)
-        Storage<Scalar, outputs> output_limit;     ///< |y_k| beyond it is not learned
+        Storage<Scalar, joints> position_limit; ///< |q_i| beyond it is refused (rad; m for prismatic joints)
+        Storage<Scalar, outputs> output_limit;  ///< |y_k| beyond it is not learned
         /// Normalised innovation squared beyond which a sample contradicts the model (see `InnovationGate`);
         /// > 0.
         Scalar innovation_limit;
-        std::int32_t innovation_patience; ///< samples of contradiction that make a changed arm; ≥ 0
-        /// No prediction leaves the range ±`prediction_limit` (the output's unit); 0, also absent: no limit.
+        /// Net number of contradicting samples that indicate a change of the arm; ≥ 0.
+        std::int32_t innovation_patience;
+        /// Predictions are limited to ±`prediction_limit` (the output's unit). 0 or absent: no limit.
         Storage<Scalar, outputs> prediction_limit{};
         StructureConstants learner;
-        ExtrapolationConstants<Scalar, outputs> extrapolation{}; ///< zero: the paper's
+        ExtrapolationConstants<Scalar, outputs> extrapolation{}; ///< all zero: as in the paper
     };
 };
 

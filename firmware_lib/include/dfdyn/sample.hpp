@@ -7,13 +7,13 @@
 
 namespace dfdyn {
 
-/// What the sensors showed at one instant.
+/// Readings of the sensors at one time.
 template <class Scalar, int n, int m>
 struct Sample {
-    std::int64_t time_ns;        ///< on any clock that runs forward; only differences matter
+    std::int64_t time_ns;        ///< any monotonic clock; only differences matter
     Storage<Scalar, n> position; ///< rad (m for prismatic joints), base to tip
-    Storage<Scalar, m> output;   ///< N·m, N, A …, as the model was trained
-    bool output_valid;           ///< false: nothing was measured; predict only
+    Storage<Scalar, m> output;   ///< N·m, N, A …, as in the training data
+    bool output_valid;           ///< false: no measurement, predict only
 };
 
 /// A sample of an arm whose velocities and accelerations are measured (input

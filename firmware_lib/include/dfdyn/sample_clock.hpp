@@ -12,34 +12,34 @@ namespace dfdyn {
 /// Decides from time stamps whether samples were lost between two of them.
 ///
 /// A single step cannot distinguish jitter from a loss: two consecutive stamps that are each half a period
-/// early or late are up to two periods apart. Therefore a phase-locked loop follows the sample grid, the
-/// sender's steady clock of which the stamps are noisy readings. It is a Kalman filter of two states, phase
-/// and period; all its quantities are in nominal sample periods. The period may deviate from the nominal one
-/// by an eighth.
+/// early or late are up to two periods apart. Therefore a phase-locked loop follows the sample grid: the
+/// sender's regular clock, of which the stamps are noisy readings. The loop is a Kalman filter with two
+/// states, phase and period; all quantities are in nominal sample periods. The period may deviate from the
+/// nominal one by one eighth.
 ///
-/// The rule. Let e be the time by which a stamp is later than its place on the grid, and f the time by which
-/// its step is longer than one period, both in periods. Samples were lost if
-/// - e > 1/2 + max(1/8, 4 p), where p is the standard error of the place: the root mean square jitter times
-///   the filter's relative error, which falls from 1 at the first sample of a grid to 0.09; or
-/// - f > 5/8 and f - 5/8 > 2 r, where r is the root mean square of recent f; or
-/// - the step is longer than 16 periods.
+/// Let e be the delay of a stamp with respect to its position on the grid, and f the excess of its step over
+/// one period. Samples were lost if
+///  - e > 1/2 + max(1/8, 4 p), where p is the standard error of the predicted position: the root mean square
+///    jitter times the filter's relative error, which falls from 1 at the first sample of a grid to 0.09; or
+///  - f > 5/8 and f - 5/8 > 2 r, where r is the root mean square of recent f; or
+///  - the step is longer than 16 periods.
 ///
 /// A sender that waits a fixed time after each sample has no grid. While the mean square of e is more than
-/// twice that of f, the first condition is f > 1/2.
+/// twice that of f, the first condition is replaced by f > 1/2.
 ///
-/// Evenly distributed jitter of up to half a period either way is therefore not taken for a loss: e stays
-/// below 1/2 + p, and f below 5/8 + 2 r. A lost sample adds a period to e and f. It is found where the next
-/// stamp is early by less than 3/8 of a period and p is below 1/32; without jitter it is found from the
-/// second sample on. Beyond, a late stamp and an early one after a loss look the same, and the rule assumes
-/// jitter. An early stamp is never a loss. After a loss the phase starts again, after a long step the period
-/// too.
+/// Uniform jitter of up to ± half a period is therefore not mistaken for a loss: e stays below 1/2 + p, and f
+/// below 5/8 + 2 r. A lost sample adds one period to e and f. It is detected if the next stamp is early by
+/// less than 3/8 of a period and p is below 1/32; without jitter it is detected from the second sample on.
+/// Beyond these limits a late stamp and an early stamp after a loss look the same, and the rule assumes
+/// jitter. An early stamp is never a loss. After a loss the phase is initialised again; after a step longer
+/// than 16 periods the period is too.
 class SampleClock {
   public:
-    /// Multiply-adds of one sample, the square root and divisions with 16 each.
+    /// Multiply-adds per sample; the square root and each division count as 16.
     static constexpr std::int64_t cost = 80;
 
-    /// `step_ns`: time since the last sample (ns), > 0. `period_ns`: nominal sample period, > 0, always the
-    /// same between two restarts. Returns true if samples were lost in between.
+    /// Processes one stamp and returns true if samples were lost before it. `step_ns`: time since the last
+    /// sample (ns), > 0. `period_ns`: nominal sample period (ns), > 0, constant between two restarts.
     bool lost_before(std::uint64_t step_ns, std::int64_t period_ns) noexcept {
         const float step = static_cast<float>(step_ns) / static_cast<float>(period_ns);
         if (step > longest_step) {
@@ -59,26 +59,27 @@ class SampleClock {
         return false;
     }
 
-    /// The next sample starts a new grid.
+    /// Forgets the grid; the next sample starts a new one.
     constexpr void restart() noexcept { *this = {}; }
 
-    /// The sample period as far as the stamps show it, relative to the nominal one.
+    /// Returns the estimated sample period relative to the nominal one, in [7/8, 9/8].
     [[nodiscard]] constexpr float relative_period() const noexcept { return period_; }
 
   private:
-    /// Of the filter's states, relative to the variance of the jitter.
+    /// Covariance of the filter's states, relative to the variance of the jitter.
     struct Covariance {
         float phase, both, period;
     };
     static constexpr float longest_step = 16;
     static constexpr float earliest = -2;
-    static constexpr float memory = 1.0F / 32;         ///< of the mean squares, per sample
-    static constexpr float period_variance = 0.02F;    ///< at the start
-    static constexpr float period_random_walk = 1e-9F; ///< per sample; fixes the gain that remains, 0.009
-    static constexpr float jitter_square = 0.011F;     ///< at the start; the first limit is then 0.92
-    static constexpr float floor = 1e-12F;             ///< keeps away from denormal numbers
+    static constexpr float memory = 1.0F / 32;         ///< forgetting of the mean squares, per sample
+    static constexpr float period_variance = 0.02F;    ///< initial value
+    static constexpr float period_random_walk = 1e-9F; ///< per sample; sets the steady-state gain, 0.009
+    static constexpr float jitter_square = 0.011F;     ///< initial value; the first limit is then 0.92
+    static constexpr float floor = 1e-12F;             ///< avoids denormal numbers
 
-    /// Errors of the two predictions; variance of the place relative to the jitter's.
+    /// Applies the rule. `from_grid`, `from_last`: errors of the two predictions (e and f); `phase_variance`:
+    /// p² relative to the mean square jitter.
     [[nodiscard]] bool lost(float from_grid, float from_last, float phase_variance) const noexcept {
         const float sure = from_last - 0.625F;
         if (sure > 0 && sure * sure > 4 * last_square_) {
@@ -104,7 +105,7 @@ class SampleClock {
         last_square_ += memory * (from_last * from_last - last_square_) + floor;
     }
 
-    float late_ = 0; ///< of the last stamp, from its place on the grid
+    float late_ = 0; ///< delay of the last stamp on the grid
     float period_ = 1;
     Covariance covariance_{1, 0, period_variance};
     float grid_square_ = jitter_square; ///< mean square error of the grid's predictions

@@ -14,22 +14,27 @@
 
 namespace dfdyn {
 
-/// Why a snapshot was not taken or not restored; in every case but `ok` nothing changed.
+/// Result of writing or reading a snapshot. Every result but `ok` means that nothing was changed.
 enum class SnapshotResult : std::uint8_t {
     ok = 0,
     wrong_size =
-        1, ///< the buffer is smaller than the snapshot, or the snapshot of another size than this state
-    not_a_snapshot = 2, ///< the first bytes are not a snapshot's, or its byte order differs
-    wrong_version = 3,  ///< written by another version of the format
-    wrong_model = 4,    ///< taken from an estimator with other sizes, another scalar type or other constants
-    corrupted = 5,      ///< the checksum does not match, or the content cannot be a state
-    changed = 6, ///< the state changed while it was copied, so the copy is none of one moment; take another
+        /// The buffer is smaller than the snapshot, or the snapshot has another size than this state.
+    1,
+    /// The magic number is missing, or the byte order differs.
+    not_a_snapshot = 2,
+    wrong_version = 3, ///< written by another version of the format
+    /// From an estimator with other sizes, another scalar type or other constants.
+    wrong_model = 4,
+    /// Wrong checksum, or the content is not a valid state.
+    corrupted = 5,
+    /// The state changed during the copy, so the copy is inconsistent; take another.
+    changed = 6,
     in_progress = 7, ///< not finished yet (`SnapshotWriter`)
 };
 
-/// The head of a snapshot, in the machine's byte order. The parts of the state follow, in the order of
-/// `visit_state`, and then the CRC-32 of all bytes before it: a snapshot can be written from its begin to its
-/// end without going back, and one that was not finished is none.
+/// Header of a snapshot, in the machine's byte order. The parts of the state follow, in the order of
+/// `visit_state`, and then the CRC-32 of all preceding bytes. A snapshot can therefore be written
+/// sequentially, and an unfinished one is rejected.
 struct SnapshotHeader {
     static constexpr std::uint32_t expected_magic = 0x59444644; // "DFDY"
     static constexpr std::uint32_t expected_version = 5;
@@ -44,10 +49,10 @@ using SnapshotChecksum = std::uint32_t;
 
 namespace detail {
 
-/// Visitors of a state. A state names its parts once, in `visit_state`: each array, and each index with its
-/// range; then a snapshot can be measured, written, checked as a whole before anything is changed, and read.
-/// Before many small parts it can ask whether the visitor has no use for any of them (`skips`, with how many
-/// numbers of type T they have together): then they need not be visited.
+/// Visitors of a state. A state lists its parts once, in `visit_state`: each array, and each index with its
+/// range. The visitors measure a snapshot, write it, check it completely before anything is changed, and read
+/// it. Before many small parts a state can ask whether the visitor skips all of them (`skips<T>(count)`, with
+/// their total number of values of type T).
 class SnapshotMeasure {
   public:
     template <class T>
@@ -73,7 +78,7 @@ class SnapshotMeasure {
     std::size_t bytes_ = 0;
 };
 
-/// Copies the bytes from `first` on of a state, as many as `into` has room for.
+/// Copies bytes of a state, beginning at offset `first`, until `into` is full.
 class SnapshotSlice {
   public:
     SnapshotSlice(std::size_t first, std::span<std::byte> into) noexcept : before_(first), into_(into) {}
@@ -110,7 +115,7 @@ class SnapshotSlice {
     }
 
   private:
-    std::size_t before_; ///< bytes still to pass over
+    std::size_t before_; ///< bytes still to skip
     std::span<std::byte> into_;
 };
 
@@ -142,7 +147,7 @@ class SnapshotReader {
     const std::byte* cursor_;
 };
 
-/// Reads without writing: is every number finite, every variance positive, every index in its range?
+/// Checks without writing that every number is finite, every variance positive and every index in its range.
 class SnapshotCheck {
   public:
     explicit SnapshotCheck(const std::byte* cursor) noexcept : reader_(cursor) {}
@@ -185,7 +190,7 @@ class SnapshotCheck {
 
 } // namespace detail
 
-/// Returns the bytes that a snapshot of `state` takes.
+/// Returns the size of a snapshot of `state`, in bytes.
 template <class State>
 std::size_t snapshot_bytes(const State& state) noexcept {
     detail::SnapshotMeasure measure;
@@ -195,7 +200,7 @@ std::size_t snapshot_bytes(const State& state) noexcept {
 
 namespace detail {
 
-/// What a snapshot of that many bytes begins with.
+/// Returns the header of a snapshot of `bytes` bytes.
 inline SnapshotHeader snapshot_header(std::uint32_t model, std::size_t bytes) noexcept {
     SnapshotHeader header;
     header.model = model;
@@ -206,7 +211,7 @@ inline SnapshotHeader snapshot_header(std::uint32_t model, std::size_t bytes) no
 
 } // namespace detail
 
-/// Writes `state`, marked with the model it belongs to, into the front of `buffer`. O(bytes).
+/// Writes `state`, marked with the identity of its model, to the front of `buffer`. O(bytes).
 template <class State>
 SnapshotResult write_snapshot(const State& state, std::uint32_t model, std::span<std::byte> buffer) noexcept {
     const std::size_t bytes = snapshot_bytes(state);
@@ -223,7 +228,7 @@ SnapshotResult write_snapshot(const State& state, std::uint32_t model, std::span
     return SnapshotResult::ok;
 }
 
-/// Reads `state` back from the front of `buffer`, whole or not at all. O(bytes).
+/// Reads `state` from the front of `buffer`. A rejected snapshot changes nothing. O(bytes).
 template <class State>
 SnapshotResult read_snapshot(State& state, std::uint32_t model, std::span<const std::byte> buffer) noexcept {
     SnapshotHeader header;

@@ -6,37 +6,36 @@
 
 namespace dfdyn {
 
-/// Takes a snapshot of an estimator in pieces of any size while another context, such as a timer's interrupt,
-/// goes on ticking it. Firmware writes it page by page from the idle loop:
+/// Takes a snapshot of an estimator in pieces of any size while another context, such as a timer interrupt,
+/// keeps ticking it. Firmware can write it page by page from the idle loop:
 ///
 ///     SnapshotWriter writer(estimator);
 ///     while (writer.result() == SnapshotResult::in_progress) {
 ///         flash.append(page, writer.next(page)); // the interrupt ticks and predicts meanwhile
 ///     }
-///     // ok: what is in flash is a snapshot for `Estimator::restore`
+///     // ok: flash contains a snapshot for `Estimator::restore`
 ///
-/// From its construction until the last part of the state is copied the estimator predicts in every tick, but
-/// does not learn: its samples are counted as `Reason::learning_held`, and a sample that is half learned is
-/// finished afterwards. So every piece is of the same moment. Copying within the ticks instead would need no
-/// such pause, but would charge every tick for a thing that happens once a day; and letting the learner go on
-/// would need a second state in memory.
+/// From the construction of the writer until the last part of the state is copied, the estimator predicts in
+/// every tick but does not learn. Its samples are counted as `Reason::learning_held`; a half-learned sample
+/// is finished afterwards. All pieces therefore belong to the same state. The alternatives cost more: copying
+/// within the ticks would charge every tick for an event that happens once a day, and learning during the
+/// copy would need a second state in memory.
 ///
-/// The pause is bounded: after `max_held_ticks` ticks learning goes on, whatever has become of this object,
-/// and an unfinished snapshot is refused as `changed`; so is one during which the estimator was reset or
-/// restored. The checksum comes last and only if the state did not change: pieces of a refused snapshot are
-/// no snapshot.
+/// The pause is bounded: after `max_held_ticks` ticks learning continues in any case, and the unfinished
+/// snapshot is refused as `changed`. The same holds if the estimator was reset or restored during the copy.
+/// The checksum is written last, and only if the state did not change, so the pieces of a refused snapshot
+/// are not a valid snapshot.
 ///
-/// One context takes snapshots. No interrupt is masked and nobody waits. Each `next` takes O(bytes of its
-/// piece
-/// + columns), no heap.
+/// Only one context may take snapshots. No interrupt is masked, and neither context waits for the other. Each
+/// `next` takes O(bytes of its piece + columns) and no heap.
 template <class Estimator>
 class SnapshotWriter {
   public:
-    /// 10 s at 1 kHz: 32 bytes a tick save a state of 320 kB.
+    /// 10 s at 1 kHz: at 32 bytes per tick this suffices for a state of 320 kB.
     static constexpr std::uint32_t default_held_ticks = 10'000;
 
-    /// Asks the estimator to hold what it has learned for at most `max_held_ticks` > 0. It must outlive this
-    /// object.
+    /// Requests that the estimator does not learn for at most `max_held_ticks` > 0 ticks. The estimator must
+    /// outlive this object.
     explicit SnapshotWriter(Estimator& estimator, std::uint32_t max_held_ticks = default_held_ticks) noexcept
         : estimator_(&estimator), bytes_(dfdyn::snapshot_bytes(estimator)),
           hold_(estimator.sequence_.hold(max_held_ticks)) {}
@@ -44,8 +43,8 @@ class SnapshotWriter {
     SnapshotWriter& operator=(const SnapshotWriter&) = delete;
     ~SnapshotWriter() { release(); }
 
-    /// Writes the next bytes of the snapshot to the front of `piece` and returns how many. 0 where nothing is
-    /// left to write (see `result`), or for once where a tick is under way on another core.
+    /// Writes the next bytes of the snapshot to the front of `piece` and returns their number. Returns 0 if
+    /// nothing is left to write (see `result`), or once if a tick is in progress on another core.
     [[nodiscard]] std::size_t next(std::span<std::byte> piece) noexcept {
         if (result_ != SnapshotResult::in_progress || (holding_ && !unchanged(sequence().read()))) {
             return 0;
@@ -60,8 +59,8 @@ class SnapshotWriter {
         return position_ - before;
     }
 
-    /// Writes at most `max_bytes` more to where they belong in `buffer`, of at least `bytes()`, which must be
-    /// the same in every call. Returns `result()`.
+    /// Writes at most `max_bytes` more bytes to their position in `buffer`, which holds at least `bytes()`
+    /// and must be the same in every call. Returns `result()`.
     SnapshotResult step(std::span<std::byte> buffer, std::size_t max_bytes) noexcept {
         if (result_ == SnapshotResult::in_progress && buffer.size() < bytes_) {
             cancel(SnapshotResult::wrong_size);
@@ -72,10 +71,9 @@ class SnapshotWriter {
         return result_;
     }
 
-    /// `in_progress`, or what has become of the snapshot: `ok` when all of it is written, otherwise why there
-    /// is none.
+    /// Returns `in_progress`, `ok` after the whole snapshot is written, or the reason why there is none.
     [[nodiscard]] SnapshotResult result() const noexcept { return result_; }
-    /// Of the whole snapshot, and those written so far.
+    /// Size of the whole snapshot, and the number of bytes written so far.
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
     [[nodiscard]] std::size_t written() const noexcept { return position_; }
 
@@ -92,9 +90,9 @@ class SnapshotWriter {
         result_ = why;
     }
 
-    /// Whether the state is still that of the first piece. A tick that began before the hold, or has found
-    /// the hold used up, may be under way: then it is too early to say, and `now` is one more than an even
-    /// number.
+    /// Returns true if the state is still that of the first piece. A tick that began before the hold, or
+    /// after the hold expired, may still be in progress; `now` is then one more than an even number, and the
+    /// decision is deferred.
     bool unchanged(std::uint32_t now) noexcept {
         if (!begun_ && now % 2 == 0) {
             begun_ = true;
@@ -106,8 +104,8 @@ class SnapshotWriter {
         return begun_ && now == first_sequence_;
     }
 
-    /// Copies header and state. The hold ends with the last byte of the state, if all were of the same
-    /// moment.
+    /// Copies header and state. Ends the hold after the last byte of the state if all pieces are of the same
+    /// state.
     void copy(std::span<std::byte> piece) noexcept {
         const std::span<std::byte> copied = piece.first(std::min(piece.size(), checked_bytes() - position_));
         std::span<std::byte> rest = copied;
@@ -129,7 +127,7 @@ class SnapshotWriter {
         }
     }
 
-    /// Writes the checksum, of a state that is known to be of one moment.
+    /// Writes the checksum of a state that is known to be consistent.
     void finish(std::span<std::byte> piece) noexcept {
         if (result_ != SnapshotResult::in_progress) {
             return;
@@ -148,8 +146,8 @@ class SnapshotWriter {
     SnapshotChecksum checksum_ = 0;
     SnapshotResult result_ = SnapshotResult::in_progress;
     std::uint32_t hold_;
-    bool holding_ = true; ///< the state is not copied yet
-    bool begun_ = false;  ///< `first_sequence_` is known
+    bool holding_ = true; ///< the state is not completely copied yet
+    bool begun_ = false;  ///< `first_sequence_` is valid
 };
 
 } // namespace dfdyn

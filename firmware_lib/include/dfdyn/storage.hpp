@@ -7,20 +7,20 @@
 
 namespace dfdyn {
 
-/// Where the arrays of a state begin, for vector loads.
+/// Alignment of the arrays of a state in bytes, for vector loads.
 inline constexpr int storage_alignment = 32;
 
-/// The bytes that `count` numbers take in place. The `state_bytes` of the maps and learners are sums of
-/// these, functions of the sizes: what an object takes beyond them, pointers and indices, is the same
-/// whatever the sizes.
+/// Returns the bytes of `count` numbers in place, including alignment. The `state_bytes` of maps and learners
+/// are sums of these. An object needs additional pointers and indices, whose size does not depend on the
+/// model's sizes.
 template <class T>
 constexpr std::int64_t storage_bytes(std::int64_t count) noexcept {
     const std::int64_t bytes = count * static_cast<std::int64_t>(sizeof(T));
     return (bytes + storage_alignment - 1) / storage_alignment * storage_alignment;
 }
 
-/// `count` numbers in place, aligned for vector loads. An aggregate, so that a table of constants can live in
-/// flash. Eigen's fixed-size matrices are limited to 128 KB; this is not.
+/// `count` numbers in place, aligned for vector loads. An aggregate, so that a table of constants can be in
+/// flash. Unlike Eigen's fixed-size matrices it is not limited to 128 KB.
 template <class T, int count>
 struct Storage {
     static_assert(count > 0);
@@ -39,7 +39,7 @@ struct Storage {
     [[nodiscard]] constexpr const T* end() const noexcept { return values + count; }
 };
 
-/// The host's tools specialise this for sizes that are known at run time only.
+/// The host's tools specialise this for sizes that are known only at run time.
 template <class T>
 struct Storage<T, dynamic>;
 

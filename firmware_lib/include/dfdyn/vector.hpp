@@ -15,26 +15,27 @@ namespace dfdyn::detail {
 
 #if defined(__AVX__)
 inline constexpr int vector_bytes =
-    32; // with AVX-512 too: on Zen 4 a sweep takes up to a tenth longer with 64
+    32; // also with AVX-512: on Zen 4 a sweep takes up to a tenth longer with 64
 #elif defined(__SSE2__) || defined(__ARM_NEON)
 inline constexpr int vector_bytes = 16;
 #else
 inline constexpr int vector_bytes = 0; // no vector instructions: one scalar at a time
 #endif
 
-/// Scalars per vector of the machine.
+/// Number of scalars per vector register; 1 without vector instructions.
 template <class Scalar>
 inline constexpr int wide = std::max(1, vector_bytes / static_cast<int>(sizeof(Scalar)));
 
-/// `lanes` numbers as one. The compilers' own vector type, because a sum that is kept in lanes by hand is
-/// vectorised by some versions at some levels only. Values move by reference: how a call passes a vector
-/// depends on the machine's options. All that is asked of vectors is here, so that a scalar of another kind
-/// can bring its own.
+/// `lanes` numbers as one value. Uses the compilers' vector type, because not every compiler version
+/// vectorises a sum that is kept in lanes by hand. Values are passed by reference: how a call passes a vector
+/// depends on compiler options. All required operations are defined here, so that another kind of scalar can
+/// provide its own.
 template <class Scalar, int lanes>
 struct Vector {
     // The attribute needs a typedef: NOLINTNEXTLINE(modernize-use-using)
     typedef Scalar Type __attribute__((vector_size(lanes * sizeof(Scalar))));
-    using Mask = decltype(Type{} < Type{}); ///< whole numbers as wide as the scalar; as a condition: -1 or 0
+    /// Integers as wide as the scalar; as a condition: -1 or 0.
+    using Mask = decltype(Type{} < Type{});
 
     static void load(const Scalar* address, Type& vector) noexcept {
         std::memcpy(&vector, address, sizeof vector);
@@ -43,7 +44,7 @@ struct Vector {
         std::memcpy(address, &vector, sizeof vector);
     }
 
-    /// The halves are added until one number is left, which takes as many steps as `lanes` has bits.
+    /// Adds the two halves until one number is left: log2(`lanes`) steps.
     static Scalar total(const Type& vector) noexcept {
         if constexpr (lanes == 2) {
             return vector[0] + vector[1];
@@ -54,11 +55,11 @@ struct Vector {
         }
     }
 
-    /// Lane by lane: where the condition holds `yes`, else `no`.
+    /// Sets each lane to `yes` where the condition holds and to `no` elsewhere.
     static void select(const Mask& condition, const Type& yes, const Type& no, Type& result) noexcept {
         result = condition ? yes : no;
     }
-    /// Towards zero.
+    /// Rounds each lane towards zero.
     static void truncate(const Type& vector, Mask& whole) noexcept {
         whole = __builtin_convertvector(vector, Mask);
     }
@@ -75,7 +76,7 @@ struct Vector {
     }
 };
 
-/// A machine without vectors: plain scalars, which stay in its floating-point registers.
+/// A machine without vector instructions: plain scalars, which stay in floating-point registers.
 template <class Scalar>
 struct Vector<Scalar, 1> {
     using Type = Scalar;

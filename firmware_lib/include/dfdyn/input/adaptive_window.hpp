@@ -9,13 +9,13 @@ namespace dfdyn {
 
 /// Velocity and acceleration at the newest of a few samples, by the adaptive windowing of F. Janabi-Sharifi,
 /// V. Hayward and C.-S. J. Chen, "Discrete-time adaptive windowing for velocity estimation", IEEE Trans.
-/// Control Systems Technology 8(6), 2000 (best-fit variant): the longest window over which a least-squares
-/// polynomial passes within the noise bound of every sample. Fast motion gets a short window and little
-/// delay, slow motion a long one and little noise.
+/// Control Systems Technology 8(6), 2000 (best-fit variant): a least-squares polynomial over the longest
+/// window in which it passes within the noise bound of every sample. Fast motion gets a short window and
+/// little delay, slow motion a long window and little noise.
 ///
-/// `time` and `value` hold `count` samples, newest first; times decrease and are relative to the newest
-/// (time[0] = 0). Fewer than degree + 1 samples give 0. Causal. O(count²): the window grows to at most
-/// `count`.
+/// `time` and `value` contain `count` samples, newest first; times decrease and are relative to the newest
+/// (time[0] = 0). With fewer than degree + 1 samples the result is 0. Causal. O(count²): the window grows to
+/// at most `count`.
 template <class Scalar>
 class AdaptiveWindow {
   public:
@@ -23,27 +23,28 @@ class AdaptiveWindow {
                              Scalar noise_bound) noexcept
         : time_(time), value_(value), stride_(stride), count_(count), noise_bound_(noise_bound) {}
 
-    /// Slope of the longest straight line that fits, in units of value per time.
+    /// Returns the slope of the longest line that fits, in units of value per time.
     [[nodiscard]] constexpr Scalar velocity() const noexcept { return longest(1).slope; }
 
-    /// Slope of another signal of the same times, over the samples of that line: two signals that are
-    /// compared get the same delay. `stride` and order are those of `value`.
+    /// Returns the slope of another signal with the same times over the window of that line, so that two
+    /// compared signals have the same delay. `stride` and order are those of `value`.
     [[nodiscard]] constexpr Scalar slope_of(const Scalar* other) const noexcept {
         const int length = longest(1).length;
         return length < 2 ? Scalar(0)
                           : AdaptiveWindow(time_, other, stride_, length, noise_bound_).fit(1, length).slope;
     }
 
-    /// Second derivative of the longest parabola that fits.
+    /// Returns the second derivative of the longest parabola that fits, in units of value per time squared.
     [[nodiscard]] constexpr Scalar acceleration() const noexcept { return longest(2).curvature; }
 
-    /// Multiply-adds of both, where all samples fit; otherwise fewer.
+    /// Returns the multiply-adds of both if all samples fit, which is the maximum.
     [[nodiscard]] static constexpr std::int64_t cost(int count) noexcept {
         std::int64_t total = 0;
         for (int length = 2; length <= count; ++length) {
-            total += 4 * length + 8;                               // a line through `length` samples
-            total += length > 2 ? 4 * length + 8 * length + 9 : 0; // whether it fits them; a parabola
-            total += length > 3 ? 4 * length : 0;                  // whether that fits them
+            total += 4 * length + 8; // a line through `length` samples
+            // Test of the line; a parabola.
+            total += length > 2 ? 4 * length + 8 * length + 9 : 0;
+            total += length > 3 ? 4 * length : 0; // test of the parabola
         }
         return total;
     }
@@ -60,14 +61,14 @@ class AdaptiveWindow {
     };
 
   public:
-    static constexpr std::int64_t fit_bytes = sizeof(Fit); ///< of a polynomial
+    static constexpr std::int64_t fit_bytes = sizeof(Fit); ///< of one polynomial
 
   private:
     [[nodiscard]] constexpr Fit longest(int degree) const noexcept {
         Fit best;
         for (int length = degree + 1; length <= count_; ++length) {
             const Fit candidate = fit(degree, length);
-            // the shortest window passes through its samples; rounding must not say otherwise
+            // The shortest window interpolates its samples; rounding must not reject it.
             if (length > degree + 1 && !within_noise(candidate, length)) {
                 break;
             }
@@ -76,7 +77,7 @@ class AdaptiveWindow {
         return best;
     }
 
-    /// The value of sample i relative to the newest: exact in floating point where values are close.
+    /// Returns the value of sample i relative to the newest: exact in floating point if the values are close.
     [[nodiscard]] constexpr Scalar relative(int i) const noexcept { return value_[i * stride_] - value_[0]; }
 
     [[nodiscard]] constexpr Fit fit(int degree, int length) const noexcept {

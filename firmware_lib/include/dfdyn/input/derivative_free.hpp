@@ -7,13 +7,12 @@
 
 namespace dfdyn {
 
-/// Input DF: ξ_i = q_i(t⁻), the last M+1 positions themselves (paper, "Derivative-free features", R = I),
-/// scaled.
+/// Input DF: ξ_i = q_i(t⁻), the last M+1 positions (paper, Section V-A, R = I), scaled.
 ///
-/// An input is a type that names its sizes, has a number that differs from every other input's (`identity`;
-/// it is part of a snapshot) and holds a `Map`: the map keeps what it needs of the past
-/// (`push`), says when it has enough (`ready`), and computes ξ on request (`evaluate`). Element (i, j) of ξ,
-/// feature j of joint i, has index i·k + j. Evaluate costs n (M+1) multiplications.
+/// An input is a type with its sizes, an `identity` and a class `Map`. The identity differs between inputs
+/// and is part of a snapshot. The map stores the past positions that it needs (`push`), reports when it has
+/// enough (`ready`), and computes ξ (`evaluate`). Element (i, j) of ξ, feature j of joint i, has index i·k +
+/// j. Cost of `evaluate`: n (M+1) multiplications.
 template <int M>
 struct DerivativeFree {
     static constexpr int identity = 1;
@@ -25,7 +24,7 @@ struct DerivativeFree {
     template <class Scalar, int n>
     struct Constants {
         Storage<Scalar, product(n, features_per_joint)>
-            scale; ///< of each element of ξ; 1 / (its standard deviation)
+            scale; ///< per element of ξ: 1 / (its standard deviation)
     };
 
     template <class Scalar, int n>
@@ -73,7 +72,7 @@ struct DerivativeFree {
     };
 };
 
-/// Input DFW: ξ_i = diag(r) q_i(t⁻) (paper, eq. eqRdiag). The weight of each lag is part of the element's
+/// Input DFW: ξ_i = diag(r) q_i(t⁻) (paper, Section V-A). The weight of each lag is part of the element's
 /// scale, so the computation is that of DF.
 template <int M>
 struct DerivativeFreeWeighted : DerivativeFree<M> {

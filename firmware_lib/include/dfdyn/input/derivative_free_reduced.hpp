@@ -8,9 +8,9 @@
 namespace dfdyn {
 
 /// Writes k rows of R, each over M+1 lags, in difference form: R q = r'_0 q(t) + Σ_{l≥1} r'_l (q(t-l) -
-/// q(t)), where r'_0 is the row's sum and the other entries are those of R. Rows that differentiate sum to
-/// almost nothing; with the differences taken first, single precision loses nothing to cancellation. `rows`
-/// may be `difference_rows`.
+/// q(t)), where r'_0 is the sum of the row and the other entries are those of R. Rows that differentiate have
+/// a sum near zero; taking the differences first avoids cancellation in single precision. `rows` may be
+/// `difference_rows`.
 template <class Scalar>
 constexpr void to_difference_form(const Scalar* rows, int row_count, int lags,
                                   Scalar* difference_rows) noexcept {
@@ -25,9 +25,8 @@ constexpr void to_difference_form(const Scalar* rows, int row_count, int lags,
     }
 }
 
-/// Input DFR: ξ_i = R q_i(t⁻) with k free rows, shared by the joints (paper, eq.
-/// eq:input_locations_features_free); row 0 is the position by convention. Evaluate costs n k (M+1)
-/// multiply-adds.
+/// Input DFR: ξ_i = R q_i(t⁻) with k free rows, shared by the joints (paper, Section V-B); row 0 is the
+/// position by convention. Cost of `evaluate`: n k (M+1) multiply-adds.
 template <int M, int k>
 struct DerivativeFreeReduced {
     static_assert(k == dynamic || M == dynamic || k <= M + 1, "more rows than lags: use DerivativeFree");
@@ -41,7 +40,7 @@ struct DerivativeFreeReduced {
     struct Constants {
         Storage<Scalar, product(k, sum(M, 1))>
             rows;                             ///< k × (M+1), row-major, newest lag first, in difference form
-        Storage<Scalar, product(n, k)> scale; ///< of each element of ξ; relevance / standard deviation
+        Storage<Scalar, product(n, k)> scale; ///< per element of ξ: relevance / standard deviation
     };
 
     template <class Scalar, int n>

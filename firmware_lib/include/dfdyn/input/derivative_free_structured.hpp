@@ -16,8 +16,7 @@ struct StructuredFilters {
     Scalar beta1, beta2;
 };
 
-/// Writes the three FIR rows of DFSR (paper, eq. eq:input_locations_features_vel_acc), 3 × (M+1), row-major,
-/// M ≥ 2.
+/// Writes the three FIR rows of DFSR (paper, Section V-C), 3 × (M+1), row-major, M ≥ 2.
 template <class Scalar>
 constexpr void structured_rows(const StructuredFilters<Scalar>& filters, int lags, Scalar* rows) noexcept {
     Scalar* position = rows;
@@ -41,18 +40,18 @@ constexpr void structured_rows(const StructuredFilters<Scalar>& filters, int lag
     }
 }
 
-/// Input DFSR as the paper computes it: FIR rows of length M+1, three features per joint (position, velocity,
-/// acceleration). The constants' rows come from `structured_rows` and `to_difference_form`.
+/// Input DFSR as in the paper: FIR rows of length M+1 and three features per joint (position, velocity,
+/// acceleration). The rows of the constants come from `structured_rows` and `to_difference_form`.
 template <int M>
 struct DerivativeFreeStructured : DerivativeFreeReduced<M, 3> {
-    static_assert(M == dynamic || M >= 2, "the acceleration row needs three positions");
+    static_assert(M == dynamic || M >= 2, "the acceleration row needs at least three positions");
     static constexpr int identity = 4;
 };
 
-/// Input DFSR as the recursive filter that the FIR rows truncate: its memory does not grow with M and nothing
-/// is cut off, so that velocity and acceleration of a position at rest decay to exactly zero. After M+1
-/// samples it differs from the FIR rows by what they truncate, of order β^M. Starts as if the arm had stood
-/// still at its first position. Costs 7 n multiply-adds.
+/// Input DFSR as the recursive filter that the FIR rows truncate. Its memory does not grow with M, and
+/// velocity and acceleration at a constant position decay to exactly zero. After M+1 samples it differs from
+/// the FIR rows by their truncation error, of order β^M. Initial state: the arm at rest at its first
+/// position. Cost: 7 n multiply-adds.
 template <int M>
 struct DerivativeFreeStructuredRecursive {
     static_assert(M == dynamic || M >= 2);
@@ -65,7 +64,7 @@ struct DerivativeFreeStructuredRecursive {
     template <class Scalar, int n>
     struct Constants {
         StructuredFilters<Scalar> filters;
-        Storage<Scalar, product(n, 3)> scale; ///< of each element of ξ
+        Storage<Scalar, product(n, 3)> scale; ///< per element of ξ
     };
 
     template <class Scalar, int n>
@@ -117,7 +116,8 @@ struct DerivativeFreeStructuredRecursive {
         using Joints = Storage<Scalar, n>;
         static constexpr Joints zeros(Extent<n> joints) noexcept { return Joints::zeros(joints); }
 
-        /// A filter that decays would end in denormals, which cost some machines a hundred times as much.
+        /// Flushes small values to zero: a decaying filter would end in denormals, which cost some machines a
+        /// hundred times as much.
         static constexpr Scalar without_denormals(Scalar value) noexcept {
             constexpr Scalar floor =
                 std::numeric_limits<Scalar>::min() / std::numeric_limits<Scalar>::epsilon();

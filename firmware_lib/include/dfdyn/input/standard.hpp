@@ -8,12 +8,12 @@
 
 namespace dfdyn {
 
-/// Input STD with derivatives estimated from the positions: ξ_i = (q_i, q̇_i, q̈_i) (paper, eq. eq:x), by the
-/// adaptive window over at most M+1 positions. Causal and bounded: O(n M²), the most where the arm stands
-/// still.
+/// Input STD with derivatives estimated from the positions: ξ_i = (q_i, q̇_i, q̈_i) (paper, eq. 1), by the
+/// adaptive window over at most M+1 positions. Causal. Bounded cost O(n M²); the maximum is reached at
+/// standstill.
 template <int M>
 struct Standard {
-    static_assert(M == dynamic || M >= 2, "an acceleration needs three positions");
+    static_assert(M == dynamic || M >= 2, "an acceleration needs at least three positions");
     static constexpr int identity = 6;
     static constexpr int lags = M;
     static constexpr int features_per_joint = 3;
@@ -23,7 +23,7 @@ struct Standard {
     template <class Scalar, int n>
     struct Constants {
         Scalar position_noise_bound; ///< largest error of a measured position (rad), e.g. one encoder count
-        Storage<Scalar, product(n, 3)> scale; ///< of each element of ξ; relevance / standard deviation
+        Storage<Scalar, product(n, 3)> scale; ///< per element of ξ: relevance / standard deviation
     };
 
     template <class Scalar, int n>
@@ -49,8 +49,8 @@ struct Standard {
             times_.push(&sample.time_ns);
             for (int lag = 0; lag < times_.filled(); ++lag) {
                 const auto age_ns =
-                    static_cast<std::uint64_t>(sample.time_ns) - // the clock may have any origin
-                    static_cast<std::uint64_t>(*times_.row(lag));
+                    // The origin of the clock is arbitrary, so the difference may overflow a signed integer.
+                    static_cast<std::uint64_t>(sample.time_ns) - static_cast<std::uint64_t>(*times_.row(lag));
                 ages_s_[lag] = static_cast<Scalar>(age_ns) * Scalar(-1e-9);
             }
         }
@@ -77,7 +77,7 @@ struct Standard {
                    storage_bytes<Scalar>(lag_count + 1);
         }
 
-        /// Of `push` and `evaluate`: two polynomials are compared.
+        /// Of `push` and `evaluate`, which compare two polynomials.
         [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
             return frame_bytes + 2 * AdaptiveWindow<Scalar>::fit_bytes;
         }
@@ -93,7 +93,7 @@ struct Standard {
     };
 };
 
-/// Input STD with measured derivatives: the sample brings q̇ and q̈. Evaluate costs O(n).
+/// Input STD with measured derivatives: the sample contains q̇ and q̈. Cost of `evaluate`: O(n).
 struct StandardMeasured {
     static constexpr int identity = 7;
     static constexpr int lags = 0;
@@ -103,7 +103,7 @@ struct StandardMeasured {
 
     template <class Scalar, int n>
     struct Constants {
-        Storage<Scalar, product(n, 3)> scale; ///< of each element of ξ; relevance / standard deviation
+        Storage<Scalar, product(n, 3)> scale; ///< per element of ξ: relevance / standard deviation
     };
 
     template <class Scalar, int n>

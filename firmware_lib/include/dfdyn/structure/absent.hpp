@@ -5,7 +5,7 @@
 
 namespace dfdyn {
 
-/// The input of a model without features (P: physics alone).
+/// Input of a model without features (P: physics alone).
 struct NoInput {
     static constexpr int identity = 0;
     static constexpr int lags = 0;
@@ -16,7 +16,7 @@ struct NoInput {
     struct Constants {};
 };
 
-/// The features of such a model.
+/// Features of a model without features.
 struct NoFeatures {
     static constexpr int identity = 0;
     static constexpr int count = 0;
@@ -25,7 +25,7 @@ struct NoFeatures {
     struct Constants {};
 };
 
-/// The physics of a model without (NP: features alone).
+/// Physics of a model without physics (NP: features alone).
 struct NoPhysics {
     using Motion = NoInput;
     static constexpr int columns = 0;

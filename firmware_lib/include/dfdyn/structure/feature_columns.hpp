@@ -8,8 +8,8 @@
 
 namespace dfdyn {
 
-/// The columns φ of a model, the same for all outputs: the input map over the last positions and the features
-/// of what it gives.
+/// The feature columns φ, common to all outputs: the input map over the last positions, followed by the
+/// features.
 template <class Model>
 class FeatureColumns {
   public:
@@ -26,7 +26,7 @@ class FeatureColumns {
     [[nodiscard]] bool ready() const noexcept { return map_.ready(); }
     void push(const typename Model::Sample& sample) noexcept { map_.push(sample); }
 
-    /// False if an input is far outside anything trained; φ is then void.
+    /// Computes φ. Returns false, with φ undefined, if an input is far outside the training data.
     bool evaluate() noexcept {
         const typename Model::Sizes& sizes = constants_->sizes;
         map_.evaluate(xi_.data());
@@ -36,7 +36,7 @@ class FeatureColumns {
 
     [[nodiscard]] const typename Model::Sizes& sizes() const noexcept { return constants_->sizes; }
 
-    /// φ of the last `evaluate`, 2d values.
+    /// Returns φ of the last `evaluate`, 2d values.
     [[nodiscard]] const Scalar* data() const noexcept { return phi_.data(); }
 
     [[nodiscard]] static constexpr std::int64_t cost(const typename Model::Sizes& sizes) noexcept {

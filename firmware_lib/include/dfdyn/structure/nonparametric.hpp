@@ -9,12 +9,12 @@
 
 namespace dfdyn {
 
-/// Model NP of the paper (eq. nonpar_model): the columns are the features alone, the same for every output,
-/// learned by one learner.
+/// Model NP (paper, Section III-B, eq. 4): the columns are the features alone, common to all outputs, with
+/// one learner.
 ///
-/// A structure is a type that names the physics it uses (`NoPhysics` if none), the constants of its learner,
-/// its `Columns` (see `ColumnsOf`), a `Regression` (see `RegressionOf`), and a number that tells it from the
-/// others.
+/// A structure is a type that defines `Physics` (`NoPhysics` if none), the `Constants` of its learner, its
+/// `Columns` (see `ColumnsOf`), a `Regression` (see `RegressionOf`), and an `identity` that differs from that
+/// of all other structures.
 template <template <class Scalar, int columns, int outputs> class LearnerForm = UdCovariance>
 struct Nonparametric {
     using Physics = NoPhysics;
@@ -32,7 +32,7 @@ struct Nonparametric {
         explicit Columns(const typename Model::Constants& constants) noexcept
             : FeatureColumns<Model>(constants) {}
 
-        /// `numbers`: w of each output, m × 2d.
+        /// `numbers`: weights w of all outputs, m × 2d.
         void predict_with(const typename Model::Scalar* numbers,
                           typename Model::Scalar* means) const noexcept {
             const int count = this->sizes().column_count();
@@ -85,7 +85,7 @@ struct Nonparametric {
         bool advance(Budget& budget) noexcept { return learner_.advance(budget); }
 
         [[nodiscard]] const Learner& learner() const noexcept { return learner_; }
-        /// φ of the last tick that predicted.
+        /// Returns φ of the last tick that predicted, 2d values.
         [[nodiscard]] const Scalar* columns() const noexcept { return columns_.data(); }
 
         [[nodiscard]] int weight_count() const noexcept { return outputs_ * column_count_; }
@@ -106,7 +106,7 @@ struct Nonparametric {
             return cost;
         }
 
-        /// Of any call.
+        /// Maximum over all calls.
         [[nodiscard]] static constexpr std::int64_t
         stack_bytes(const typename Model::Sizes& /*sizes*/) noexcept {
             return std::max(Learner::stack_bytes(), FeatureColumns<Model>::stack_bytes());

@@ -9,9 +9,9 @@
 
 namespace dfdyn {
 
-/// Model P of the paper (eq. par_regr_model): y_k = ψ_k'π + e, the parameters of the rigid body and of named
-/// effects alone, shared by all outputs. The model's input and features are `NoInput` and `NoFeatures`. See
-/// `Nonparametric` for what a structure is.
+/// Model P (paper, Section III-A, eq. 3): y_k = ψ_k'π + e, with the parameters of the rigid body and of named
+/// effects, common to all outputs. Use `NoInput` and `NoFeatures` as the model's input and features.
+/// `Nonparametric` documents what a structure is.
 template <class PhysicsType>
 struct Parametric {
     using Physics = PhysicsType;
@@ -29,7 +29,7 @@ struct Parametric {
         explicit Columns(const typename Model::Constants& constants) noexcept
             : PhysicsColumns<Model>(constants) {}
 
-        /// `numbers`: π, p values.
+        /// `numbers`: parameters π, p values.
         void predict_with(const typename Model::Scalar* numbers,
                           typename Model::Scalar* means) const noexcept {
             const int count = this->sizes().physics.column_count;
@@ -59,7 +59,7 @@ struct Parametric {
         void predict(Scalar* means) noexcept { learner_.predict(physics_.data(), means); }
         void predict_without_features(Scalar* means) const noexcept {
             for (int k = 0; k < outputs_; ++k) {
-                means[k] = 0; // there are none, and nothing is taken off
+                means[k] = 0; // without features no part of a prediction is reduced
             }
         }
         Scalar variances(Scalar* ratios) const noexcept {
@@ -84,7 +84,7 @@ struct Parametric {
         bool advance(Budget& budget) noexcept { return learner_.advance(budget); }
 
         [[nodiscard]] const Learner& learner() const noexcept { return learner_; }
-        /// ψ of the last tick that predicted, m × p.
+        /// Returns ψ of the last tick that predicted, m × p.
         [[nodiscard]] const Scalar* physics() const noexcept { return physics_.data(); }
 
         [[nodiscard]] int weight_count() const noexcept { return parameters_; }
@@ -103,7 +103,7 @@ struct Parametric {
             return cost;
         }
 
-        /// Of any call.
+        /// Maximum over all calls.
         [[nodiscard]] static constexpr std::int64_t stack_bytes(const typename Model::Sizes& sizes) noexcept {
             return std::max(Learner::stack_bytes(), PhysicsColumns<Model>::stack_bytes(sizes));
         }

@@ -8,7 +8,7 @@
 
 namespace dfdyn {
 
-/// The columns ψ of a model, a row of its own for each output, in units of that output's noise.
+/// The physics columns ψ, one row per output, in units of that output's noise.
 template <class Model>
 class PhysicsColumns {
   public:
@@ -24,7 +24,8 @@ class PhysicsColumns {
     [[nodiscard]] bool ready() const noexcept { return map_.ready(); }
     void push(const typename Model::Sample& sample) noexcept { map_.push(sample); }
 
-    /// False if the motion is beyond the physics' limits, or a row not finite; ψ is then void.
+    /// Computes ψ. Returns false, with ψ undefined, if the motion exceeds the physics' limits or a row is not
+    /// finite.
     bool evaluate() noexcept {
         if (!map_.evaluate(psi_.data())) {
             return false;
@@ -43,7 +44,7 @@ class PhysicsColumns {
 
     [[nodiscard]] const typename Model::Sizes& sizes() const noexcept { return constants_->sizes; }
 
-    /// ψ of the last `evaluate`, m × p.
+    /// Returns ψ of the last `evaluate`, m × p, row-major.
     [[nodiscard]] const Scalar* data() const noexcept { return psi_.data(); }
 
     [[nodiscard]] static constexpr std::int64_t cost(const typename Model::Sizes& sizes) noexcept {

@@ -7,12 +7,12 @@
 
 namespace dfdyn {
 
-/// The columns of a structure at one motion, without what is learned: where the arm *shall* go, there is
-/// nothing to learn (`LearnedTorque`).
+/// The columns of a structure for one motion, without a learner. `LearnedTorque` uses them for the reference,
+/// where there is nothing to learn.
 ///  - `push`, `ready`, `restart`: the window of past positions.
-///  - `evaluate`: computes the columns; false if they mean nothing.
-///  - `predict_with(numbers, means)`: with `weights` numbers as `copy_weights` of the `Regression` gives
-///  them.
+///  - `evaluate`: computes the columns; false if they are not usable.
+///  - `predict_with(numbers, means)`: predicts with `weights` numbers from `copy_weights` of the
+///    `Regression`.
 template <class C, class Scalar, class Sample>
 concept ColumnsOf = requires(C columns, const C& constant, Scalar* values, const Scalar* numbers,
                              const Sample& sample) {
@@ -24,23 +24,23 @@ concept ColumnsOf = requires(C columns, const C& constant, Scalar* values, const
     { C::weights } -> std::convertible_to<int>;
 };
 
-/// What an estimator predicts with and learns: the part of a model that its structure brings. All outputs are
-/// in units of their noise and about their offset.
+/// The part of a model that its structure defines: what an estimator predicts with and learns. All outputs
+/// are in units of their noise and relative to their offset.
 ///  - `push`, `ready`, `restart`: the window of past positions.
-///  - `evaluate`: computes the present columns; false if they mean nothing.
-///  - `predict(means)` at the present columns, m values.
-///  - `predict_without_features(means)`: the part of the physics in that.
-///  - `variances(ratios)`: 1 + the variance of each mean; returns φ'Pφ, the part of the features.
-///  - `begin(targets, noise_variance)`: takes the present columns in, after `predict`, when `idle()`, with
-///    targets measured with `noise_variance` in units of their noise variance.
-///  - `reset_covariance()`: begins, when `idle()`, to set the covariance back to the prior's. The means stay
+///  - `evaluate`: computes the present columns; false if they are not usable.
+///  - `predict(means)`: predicts at the present columns, m values.
+///  - `predict_without_features(means)`: the physics' part of that prediction.
+///  - `variances(ratios)`: 1 + the variance of each mean; returns φ'Pφ, the features' part.
+///  - `begin(targets, noise_variance)`: after `predict` and when `idle()`, begins to learn the present
+///    columns with m targets, measured with `noise_variance` in units of their noise variance.
+///  - `reset_covariance()`: when `idle()`, begins to reset the covariance to the prior's. The means stay
 ///    (covariance resetting: G. C. Goodwin, K. S. Sin, "Adaptive Filtering, Prediction and Control", 1984).
-///  - `advance(budget)`: works on them; true when nothing is left to do.
-///  - `sample_pending()`: they are not learned yet; `last_ratios(ratios)`: `variances` before the last sample
-///    that was.
-///  - `weight_count`, `copy_weights` (when idle), `predict_with(weights, means)`: what has been learned as
+///  - `advance(budget)`: continues either task; true when nothing is left to do.
+///  - `sample_pending()`: a sample has begun and is not learned yet.
+///  - `last_ratios(ratios)`: `variances` at the last learned sample, before it was learned.
+///  - `weight_count`, `copy_weights` (when idle), `predict_with(weights, means)`: the learned weights as
 ///    numbers, to predict with later.
-///  - `reset()`: back to the start, all of it.
+///  - `reset()`: returns to the initial state.
 template <class R, class Scalar, class Sample>
 concept RegressionOf = requires(R regression, const R& constant, Scalar* values, const Scalar* numbers,
                                 const Sample& sample, Budget& budget) {

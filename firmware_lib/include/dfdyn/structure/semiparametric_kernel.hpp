@@ -9,8 +9,8 @@
 
 namespace dfdyn {
 
-/// Model SPK of the paper (eq. modelloSPK): y_k = ψ_k'π + φ'w_k + e, the physics' parameters learned together
-/// with the weights of the features. See `Nonparametric` for what a structure is.
+/// Model SPK (paper, Section III-D, eq. 8): y_k = ψ_k'π + φ'w_k + e, where the parameters π of the physics
+/// are learned together with the weights of the features. `Nonparametric` documents what a structure is.
 template <class PhysicsType>
 struct SemiparametricKernel {
     using Physics = PhysicsType;
@@ -19,7 +19,7 @@ struct SemiparametricKernel {
     template <class Scalar, int columns, int outputs>
     using Constants = BlockArrowConstants<Scalar, columns, Physics::columns, outputs>;
 
-    /// See `ColumnsOf`: φ and ψ.
+    /// φ and ψ; see `ColumnsOf`.
     template <class Model>
     class Columns {
       public:
@@ -40,11 +40,11 @@ struct SemiparametricKernel {
         }
         bool evaluate() noexcept { return features_.evaluate() && physics_.evaluate(); }
 
-        /// φ of the last `evaluate`, 2d values, and ψ, m × p.
+        /// Return φ (2d values) and ψ (m × p) of the last `evaluate`.
         [[nodiscard]] const Scalar* features() const noexcept { return features_.data(); }
         [[nodiscard]] const Scalar* physics() const noexcept { return physics_.data(); }
 
-        /// `numbers`: w of each output, m × 2d, then π.
+        /// `numbers`: weights w of all outputs, m × 2d, then π.
         void predict_with(const Scalar* numbers, Scalar* means) const noexcept {
             const typename Model::Sizes& sizes = features_.sizes();
             const int columns = sizes.column_count();
@@ -114,7 +114,7 @@ struct SemiparametricKernel {
         [[nodiscard]] const Scalar* columns() const noexcept { return columns_.features(); }
         [[nodiscard]] const Scalar* physics() const noexcept { return columns_.physics(); }
 
-        /// E[w] of all outputs, then π.
+        /// The numbers are E[w] of all outputs, then π.
         [[nodiscard]] int weight_count() const noexcept { return outputs_ * column_count_ + parameters_; }
         void copy_weights(Scalar* weights) const noexcept {
             learner_.copy_weights(weights);
@@ -133,7 +133,7 @@ struct SemiparametricKernel {
             return cost;
         }
 
-        /// Of any call.
+        /// Maximum over all calls.
         [[nodiscard]] static constexpr std::int64_t stack_bytes(const typename Model::Sizes& sizes) noexcept {
             return std::max(Learner::stack_bytes(), Columns<Model>::stack_bytes(sizes));
         }

@@ -8,15 +8,15 @@
 
 namespace dfdyn {
 
-/// Constants of a model whose physics is its mean.
+/// Constants of a model with the physics as its mean.
 template <class Scalar, int parameters, class LearnerConstantsType>
 struct MeanConstants {
     Storage<Scalar, parameters> parameters_of_mean; ///< π, per unit of the physics' column scale
-    LearnerConstantsType residual;                  ///< of the learner of what the mean leaves
+    LearnerConstantsType residual;                  ///< of the learner of the residual
     static constexpr std::int64_t start_bytes = LearnerConstantsType::start_bytes;
 };
 
-/// ψ_k'π of each output at the present columns, of a π that stays.
+/// Predicts ψ_k'π of each output at the present columns, with a fixed π.
 template <class Model>
 class FixedMean {
   public:
@@ -29,7 +29,7 @@ class FixedMean {
     [[nodiscard]] bool ready() const noexcept { return physics_.ready(); }
     void push(const typename Model::Sample& sample) noexcept { physics_.push(sample); }
 
-    /// False where the columns of the physics mean nothing.
+    /// Returns false if the columns of the physics are not usable.
     bool evaluate() noexcept {
         if (!physics_.evaluate()) {
             return false;
@@ -49,7 +49,7 @@ class FixedMean {
         }
     }
 
-    /// ψ of the last `evaluate`, m × p.
+    /// Returns ψ of the last `evaluate`, m × p.
     [[nodiscard]] const Scalar* physics() const noexcept { return physics_.data(); }
 
     [[nodiscard]] static constexpr std::int64_t cost(const typename Model::Sizes& sizes) noexcept {
@@ -65,8 +65,8 @@ class FixedMean {
     Outputs mean_;
 };
 
-/// Models SP and SP2 of the paper (eq. eq:SP-Mean_model_statistics): y_k = ψ_k'π + φ'w_k + e with a fixed π;
-/// the two differ in how training finds it. See `Nonparametric` for what a structure is.
+/// Models SP and SP2 (paper, Section III-C, eq. 7): y_k = ψ_k'π + φ'w_k + e with a fixed π. The two differ in
+/// how training estimates π. `Nonparametric` documents what a structure is.
 template <class PhysicsType,
           template <class Scalar, int columns, int outputs> class LearnerForm = UdCovariance>
 struct SemiparametricMean {
@@ -77,7 +77,7 @@ struct SemiparametricMean {
     using Constants =
         MeanConstants<Scalar, Physics::columns, typename LearnerForm<Scalar, columns, outputs>::Constants>;
 
-    /// See `ColumnsOf`: φ, and the mean.
+    /// φ and the mean; see `ColumnsOf`.
     template <class Model>
     class Columns : public Nonparametric<LearnerForm>::template Columns<Model> {
         using Features = typename Nonparametric<LearnerForm>::template Columns<Model>;
@@ -97,7 +97,7 @@ struct SemiparametricMean {
         }
         bool evaluate() noexcept { return Features::evaluate() && mean_.evaluate(); }
 
-        /// `numbers`: w of each output, m × 2d.
+        /// `numbers`: weights w of all outputs, m × 2d.
         void predict_with(const typename Model::Scalar* numbers,
                           typename Model::Scalar* means) const noexcept {
             Features::predict_with(numbers, means);
@@ -154,7 +154,7 @@ struct SemiparametricMean {
             Residual::begin(target_.data(), noise_variance);
         }
 
-        /// ψ of the last tick that predicted, m × p.
+        /// Returns ψ of the last tick that predicted, m × p.
         [[nodiscard]] const Scalar* physics() const noexcept { return mean_.physics(); }
 
         [[nodiscard]] static constexpr Cost cost(const typename Model::Sizes& sizes) noexcept {
@@ -163,7 +163,7 @@ struct SemiparametricMean {
             return cost;
         }
 
-        /// Of any call.
+        /// Maximum over all calls.
         [[nodiscard]] static constexpr std::int64_t stack_bytes(const typename Model::Sizes& sizes) noexcept {
             return std::max(Residual::stack_bytes(sizes), PhysicsColumns<Model>::stack_bytes(sizes));
         }
