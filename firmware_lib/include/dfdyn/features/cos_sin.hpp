@@ -12,15 +12,15 @@
 
 namespace dfdyn {
 
-/// Arguments up to this size (rad) keep the full accuracy of `cos_sin`.
+/// Largest |argument| (rad) for which `cos_sin` has its full accuracy.
 template <class Scalar>
 inline constexpr Scalar largest_cos_sin_argument = 8192;
 
 namespace detail {
 
-/// π/2 in parts whose products with a whole number below 2¹³ are exact, largest first; the last part takes
-/// the rest. Cody, Waite, "Software Manual for the Elementary Functions", 1980: subtracting them in turn
-/// loses nothing.
+/// π/2 as a sum of parts, largest first. The products of all parts but the last with an integer below 2¹³ are
+/// exact, and the last part contains the remainder. Subtracting the products in this order therefore loses no
+/// accuracy (Cody, Waite, "Software Manual for the Elementary Functions", 1980).
 template <class Scalar>
 struct HalfPi;
 
@@ -34,7 +34,8 @@ struct HalfPi<double> {
     static constexpr double parts[] = {0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2e037073p-69};
 };
 
-/// Taylor coefficients suffice on [-π/4, π/4]: the first term left out is below the scalar's precision.
+/// Number of Taylor coefficients that suffices on [-π/4, π/4]: the first omitted term is below the scalar's
+/// precision.
 template <class Scalar>
 inline constexpr int taylor_terms = std::numeric_limits<Scalar>::digits <= 24 ? 5 : 8;
 
@@ -67,7 +68,8 @@ struct Taylor {
 template <class Scalar>
 inline constexpr int cos_sin_lane_count = std::max(4, wide<Scalar>);
 
-/// `lanes` cosines and sines at once; `outside` gets every lane set whose argument is no number or too large.
+/// Computes `lanes` cosines and sines at once. Sets each lane of `outside` whose argument is NaN or too
+/// large.
 template <class Scalar, int lanes>
 void cos_sin_lanes(const Scalar* argument, Scalar amplitude, Scalar* cosine, Scalar* sine,
                    typename Vector<Scalar, lanes>::Mask& outside) noexcept {
@@ -109,15 +111,18 @@ void cos_sin_lanes(const Scalar* argument, Scalar amplitude, Scalar* cosine, Sca
 
 } // namespace detail
 
-/// Cosine and sine of `count` arguments, each times `amplitude`; `cosine` may be `argument` itself. Returns
-/// whether every argument was a number of size at most `largest_cos_sin_argument`; if not, the values are not
-/// to be used. No branches, no calls: the same values wherever products and sums are rounded the same way.
+/// Computes cosine and sine of `count` arguments, each times `amplitude`; `cosine` may be `argument` itself.
+/// Returns false if an argument is NaN or exceeds `largest_cos_sin_argument` in magnitude; the results are
+/// then not usable. No branches and no calls, so the results are the same on all machines that round products
+/// and sums in the same way.
 ///
 /// Absolute error below 1.2e-7 (float) and 3e-16 (double) for amplitude 1. For float the tests try every
-/// argument there is. For double it is the sum of what the tests verify one by one, at most: two roundings of
-/// r = x - k π/2 (1.1e-16; the products with all parts but the last are exact, and the first difference too),
-/// the first term that the sine leaves out (0.5e-16; the cosine's is nothing), and the roundings of the last
-/// sum and of the products after it (1.2e-16), before which Horner's terms are small.
+/// argument. For double the bound is the sum of the following terms, which the tests verify one by one:
+///  - two roundings of r = x - k π/2, 1.1e-16 (the products with all parts but the last are exact, and so is
+///    the first difference);
+///  - the first omitted term of the sine, 0.5e-16 (that of the cosine is negligible);
+///  - the roundings of the last sum and of the products after it, 1.2e-16; the earlier terms of Horner's
+///    scheme are small.
 template <class Scalar>
 bool cos_sin(const Scalar* argument, int count, Scalar amplitude, Scalar* cosine, Scalar* sine) noexcept {
     constexpr int lanes = detail::cos_sin_lane_count<Scalar>;
@@ -140,13 +145,13 @@ bool cos_sin(const Scalar* argument, int count, Scalar amplitude, Scalar* cosine
     return inside;
 }
 
-/// A scalar that `cos_sin` computes with; one that carries derivatives brings functions of its own.
+/// A scalar that `cos_sin` supports. A scalar that carries derivatives provides its own functions.
 template <class Scalar>
 concept CosSinScalar = requires {
     detail::HalfPi<Scalar>::parts;
 };
 
-/// Cosine and sine of one argument; no numbers where `cos_sin` has none.
+/// Computes cosine and sine of one argument; NaN where `cos_sin` returns false.
 template <class Scalar>
 void cos_sin_of(const Scalar& argument, Scalar& cosine, Scalar& sine) noexcept {
     if constexpr (CosSinScalar<Scalar>) {
@@ -159,13 +164,13 @@ void cos_sin_of(const Scalar& argument, Scalar& cosine, Scalar& sine) noexcept {
     }
 }
 
-/// On the stack of `cos_sin`: three vectors that are filled up, and those that find no register (measured, as
-/// all bytes of stack).
+/// Stack bytes of `cos_sin`: three padded vectors, and the vectors that find no register (measured, over the
+/// whole stack).
 template <class Scalar>
 inline constexpr std::int64_t cos_sin_bytes = std::int64_t{22} * detail::cos_sin_lane_count<Scalar> *
                                               sizeof(Scalar);
 
-/// Multiply-adds of `cos_sin`: per argument, filled up to whole vectors of the machine, one for the quadrant,
+/// Multiply-adds of `cos_sin`. Per argument, padded to whole vectors of the machine: one for the quadrant,
 /// one for each part of π/2, the two polynomials with their square, and the amplitude.
 template <class Scalar>
 constexpr std::int64_t cos_sin_cost(int count) noexcept {

@@ -10,9 +10,9 @@
 namespace dfdyn {
 
 /// Random Fourier features of the Gaussian kernel K_G = exp(-|ξ-ξ'|²/(2ℓ²)): φ = [cos(Ωξ); sin(Ωξ)]/√d, 2d
-/// columns (paper, eq. eq:basis_function with one length scale ℓ: Ω = ω/ℓ, ω ~ N(0, I)). Orthogonal random
-/// features (Yu et al. 2016) are the same map with another draw of ω: the training tool makes either.
-/// Evaluate costs d·dim(ξ) multiply-adds and those of d cosines and sines.
+/// columns (paper, Section IV-A, with one length scale ℓ: Ω = ω/ℓ, ω ~ N(0, I)). Orthogonal random features
+/// (F. X. Yu et al., 2016) are the same map with another distribution of ω; the training tool offers both.
+/// Cost of `evaluate`: d·dim(ξ) multiply-adds, and d cosines and sines.
 template <int d>
 struct RandomFourier {
     static constexpr int identity = 1;
@@ -21,13 +21,13 @@ struct RandomFourier {
 
     template <class Scalar, int inputs>
     struct Constants {
-        /// Ω by inputs: element (input a, feature b) at a·d + b. Already divided by the length scale.
+        /// Ω by inputs: element (input a, feature b) at a·d + b. Includes the division by the length scale.
         Storage<Scalar, product(inputs, d)> frequencies;
         Scalar amplitude; ///< 1/√d
     };
 
-    /// Writes φ (2d values). False if an argument is not finite or so large that its cosine means nothing; φ
-    /// is then void.
+    /// Writes φ (2d values). Returns false, with φ undefined, if an argument is not finite or exceeds
+    /// `largest_cos_sin_argument`.
     template <class Scalar, int inputs>
     static bool evaluate(const Constants<Scalar, inputs>& constants, Extent<inputs> input_count,
                          Extent<d> feature_count, const Scalar* xi, Scalar* phi) noexcept {
@@ -54,7 +54,7 @@ struct RandomFourier {
         return frame_bytes + cos_sin_bytes<Scalar>;
     }
 
-    /// Of the constants; a feature map keeps no state.
+    /// Of the constants; a feature map has no state.
     template <class Scalar>
     [[nodiscard]] static constexpr std::int64_t constant_bytes(int input_count, int feature_count) noexcept {
         return storage_bytes<Scalar>(std::int64_t{input_count} * feature_count);

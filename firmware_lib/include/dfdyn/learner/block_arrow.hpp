@@ -7,8 +7,8 @@
 
 namespace dfdyn {
 
-/// The two parts of a block-arrow regression (see `BlockArrow`). The start of `features` holds, output after
-/// output, the weights of that output's y and then of each of its p columns ψ.
+/// Constants of the two parts of a block-arrow regression (see `BlockArrow`). The initial weights of
+/// `features` are, per output, those of y followed by those of its p columns ψ.
 template <class Scalar, int columns, int p, int m>
 struct BlockArrowConstants {
     LearnerConstants<Scalar, columns, product(m, sum(p, 1))> features;
@@ -17,23 +17,24 @@ struct BlockArrowConstants {
         decltype(features)::start_bytes + decltype(common)::start_bytes;
 };
 
-/// Recursive least squares of model SPK: y_k = φ'w_k + ψ_k'π + e_k, the same columns φ with weights of their
-/// own for each of the m outputs, and p parameters π that all outputs share (paper, eq. modello_approx).
+/// Recursive least squares of model SPK: y_k = φ'w_k + ψ_k'π + e_k, with the same columns φ but separate
+/// weights for each of the m outputs, and p parameters π common to all outputs (paper, Section IV-A).
 ///
-/// Its information matrix is an arrow: m equal blocks for the w_k, coupled through π alone. Eliminating the
-/// blocks leaves two small problems, and nothing is approximated:
-///  - y_k and every column of ψ_k are regressed on φ, by one factor for all of them, as m (1+p) outputs of
-///    model NP. What φ does not explain is ẽ_k = y_k - φ'a_k and ψ̃_k = ψ_k - G_k'φ, with the variance
-///    α = 1 + φ'Pφ of one noise;
+/// Its information matrix is a block arrow: m equal blocks for the w_k, coupled only through π. Eliminating
+/// the blocks (Schur complement) leaves two small problems, without approximation:
+///  - y_k and every column of ψ_k are regressed on φ, with one factor for all, as m (1+p) outputs of model
+///    NP. The residuals are ẽ_k = y_k - φ'a_k and ψ̃_k = ψ_k - G_k'φ; their noise has the variance α = 1 +
+///    φ'Pφ.
 ///  - ẽ_k = ψ̃_k'π + noise of variance α, the problem of `CommonParameters`.
-/// Then E[w_k] = a_k - G_k π. A row costs 1.5 (2d)² + 2·2d·m(1+p) + 1.5 m p² multiply-adds instead of
-/// 1.5 (m·2d + p)²; memory (2d)²/2 + 2d·m(1+p) + p²/2.
 ///
-/// Under forgetting that holds while both parts can afford the same λ; each has an account of its own (see
-/// `Forgetting`), and the bound is on the variance of w given π.
+/// Then E[w_k] = a_k - G_k π. A row costs 1.5 (2d)² + 2·2d·m(1+p) + 1.5 m p² multiply-adds instead of 1.5
+/// (m·2d + p)²; memory (2d)²/2 + 2d·m(1+p) + p²/2 scalars.
 ///
-/// Learning can be sliced: the sweep after any panel, the weights after any column. Predictions and variances
-/// are those before the sample until its rows reach π, and after it from then on.
+/// With forgetting this holds while both parts apply the same λ. Each part has its own account (see
+/// `Forgetting`), and the bound of the variances applies to w given π.
+///
+/// Learning can be sliced after any panel of the sweep and after any column of weights. Predictions and
+/// variances are those before the sample until its rows are learned by π, and those after it from then on.
 template <class Scalar, int columns, int p, int m>
 class BlockArrow {
   public:
@@ -70,8 +71,8 @@ class BlockArrow {
         fresh_ = false;
     }
 
-    /// Means of the m outputs for φ and the rows ψ (m × p), which become the present columns of `variances`
-    /// and `begin`. O(2d m (1+p)).
+    /// Computes the means of the m outputs for φ and the rows ψ (m × p), which become the present columns of
+    /// `variances` and `begin`. O(2d m (1+p)).
     void predict(const Scalar* phi, const Scalar* psi, Scalar* means) noexcept {
         const Scalar pending =
             task_ == Task::weights ? detail::dot(factor_.gain(), phi, columns_) / alpha_ : Scalar(0);
@@ -90,8 +91,8 @@ class BlockArrow {
         fresh_ = true;
     }
 
-    /// Variance of each predicted mean at the present columns, of which `phi` is the φ; returns the features'
-    /// part of it, φ'Pφ. O((2d)² + m p²).
+    /// Computes the variance of each predicted mean at the present columns, whose features are `phi`. Returns
+    /// the features' part, φ'Pφ. O((2d)² + m p²).
     Scalar variances(const Scalar* phi, Scalar* variances) const noexcept {
         common_.variances(present_.rows.data(), variances);
         const Scalar shared = factor_.variance(phi);
@@ -104,9 +105,9 @@ class BlockArrow {
     [[nodiscard]] bool idle() const noexcept { return task_ == Task::none; }
     [[nodiscard]] bool sample_pending() const noexcept { return !idle() && task_ < Task::forget; }
 
-    /// Takes in the present columns, as given to `predict`, with the m targets, measured with
-    /// `noise_variance` in units of their noise. Only when idle. If weights were updated since `predict`,
-    /// what φ leaves of the columns is computed once more, within the budget.
+    /// Begins to learn the present columns (those of the last `predict`) with the m targets, measured with
+    /// `noise_variance` in units of their noise variance. Only when idle. If weights were updated since
+    /// `predict`, the residual of the columns is computed again, within the budget.
     void begin(const Scalar* phi, const Scalar* psi, const Scalar* targets,
                Scalar noise_variance = 1) noexcept {
         for (int k = 0; k < outputs_; ++k) {
@@ -122,8 +123,8 @@ class BlockArrow {
         fresh_ = false;
     }
 
-    /// Begins to take the covariance back to the prior's, in which w and π are independent, while predictions
-    /// stay. Only when idle.
+    /// Begins to reset the covariance to the prior's, in which w and π are independent. Predictions do not
+    /// change. Only when idle.
     void reset_covariance() noexcept {
         factor_.begin_reset();
         next_ = 0;
@@ -131,7 +132,7 @@ class BlockArrow {
         task_ = Task::reset_factor;
     }
 
-    /// Works on the sample in hand as far as the budget goes; true when there is nothing left.
+    /// Continues the present task within the budget; returns true when nothing is left to do.
     bool advance(Budget& budget) noexcept {
         while (!idle()) {
             if (!work(budget)) {
@@ -142,7 +143,8 @@ class BlockArrow {
         return true;
     }
 
-    /// 1 + the variance of each output's mean at the last sample learned, before it was; returns φ'Pφ then.
+    /// Writes 1 + the variance of each output's mean at the last learned sample, before it was learned;
+    /// returns φ'Pφ of that time.
     Scalar last_ratios(Scalar* ratios) const noexcept {
         for (int k = 0; k < outputs_; ++k) {
             ratios[k] = alpha_ + (1 - noise_variance_) + common_.last_variances()[k];
@@ -150,11 +152,11 @@ class BlockArrow {
         return alpha_ - 1;
     }
 
-    /// Of P, which all outputs share.
+    /// Returns the factor of P, which all outputs share.
     [[nodiscard]] const UdFactor<Scalar, columns>& factor() const noexcept { return factor_; }
     [[nodiscard]] const CommonParameters<Scalar, p, m>& common() const noexcept { return common_; }
 
-    /// E[w_k] of all outputs, m × 2d. O(2d m p).
+    /// Copies E[w_k] of all outputs, m × 2d. O(2d m p).
     void copy_weights(Scalar* result) const noexcept {
         for (int k = 0; k < outputs_; ++k) {
             Scalar* w = result + k * columns_;
@@ -172,7 +174,8 @@ class BlockArrow {
         const std::int64_t regression_count = std::int64_t{outputs} * (1 + parameters);
         const std::int64_t sweep = Factor::sweep_cost(column_count);
         const std::int64_t variances = outputs * UdFactor<Scalar, p>::variance_cost(parameters);
-        // In hand, a sample costs a sweeping variance, or what it adds to `predict` while the weights change.
+        // While a sample is being learned, a tick also pays for `variance` during a sweep, or for the
+        // additional work of `predict` while the weights change.
         const std::int64_t in_hand = std::max(Factor::sweeping_variance_cost(column_count) + shared.variance,
                                               column_count + 1 + regression_count + variances);
         return {.predict = regression_count * column_count + shared.predict,
@@ -195,7 +198,7 @@ class BlockArrow {
                2 * residual;
     }
 
-    /// Of any call.
+    /// Maximum over all calls.
     [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
         return frame_bytes + 72 * std::int64_t{sizeof(Scalar)};
     }
@@ -218,7 +221,7 @@ class BlockArrow {
     }
 
   private:
-    /// What is to be done next; from `forget` on, no sample is in hand.
+    /// The next task. From `forget` on, no sample is pending.
     enum class Task : int {
         none,
         residual,
@@ -237,10 +240,10 @@ class BlockArrow {
     using Factor = UdFactor<Scalar, columns>;
     using Weights = Storage<Scalar, product(regressions, Factor::padded(columns))>;
 
-    /// What φ leaves of an instant's outputs and of their columns.
+    /// Residual of one sample's outputs and of their columns after regression on φ.
     struct Residual {
         Storage<Scalar, product(m, p)> rows; ///< ψ̃, m × p
-        Storage<Scalar, m> output;           ///< present: φ'a_k; in hand: ẽ_k
+        Storage<Scalar, m> output;           ///< present: φ'a_k; pending: ẽ_k
     };
 
     [[nodiscard]] Residual zero_residual() const noexcept {
@@ -262,12 +265,13 @@ class BlockArrow {
     }
     [[nodiscard]] int regression_count() const noexcept { return outputs_ * (1 + parameters_); }
 
-    /// Weights of column c of output k: 0 a_k, 1 … p those of G_k.
+    /// Returns the weights of column c of output k: a_k for c = 0, those of G_k for c = 1 … p.
     [[nodiscard]] const Scalar* weights(int k, int c) const noexcept {
         return weights_.data() + (k * (1 + parameters_) + c) * padded(columns_);
     }
 
-    /// φ times the weights of regression i, as they are once an update under way is done; `pending` = φ'K/α.
+    /// Returns φ times the weights of regression i, as they will be after an update in progress; `pending` =
+    /// φ'K/α.
     [[nodiscard]] Scalar projection(int i, const Scalar* phi, Scalar pending) const noexcept {
         const Scalar now = detail::dot(weights_.data() + i * padded(columns_), phi, columns_);
         return task_ != Task::weights || i < next_ ? now : now + pending * residual(*this, i);
@@ -282,7 +286,7 @@ class BlockArrow {
         }
     }
 
-    /// Does the task in hand as far as the budget goes; true when it is done.
+    /// Performs the present task within the budget; returns true when it is done.
     bool work(Budget& budget) noexcept {
         switch (task_) {
         case Task::residual:
@@ -304,7 +308,7 @@ class BlockArrow {
         }
     }
 
-    /// From a task that is done to the next.
+    /// Selects the task that follows a completed one.
     void go_on() noexcept {
         switch (task_) {
         case Task::residual:
@@ -339,7 +343,7 @@ class BlockArrow {
         }
     }
 
-    /// The residual in hand of regression i.
+    /// Returns the pending residual of regression i.
     template <class Self>
     [[nodiscard]] static auto& residual(Self& self, int i) noexcept {
         const int k = i / (1 + self.parameters_);
@@ -370,7 +374,7 @@ class BlockArrow {
         return true;
     }
 
-    /// Column after column: G_k = 0 and a_k = E[w_k], which leaves the predictions as they are.
+    /// Sets G_k = 0 and a_k = E[w_k], column by column, which leaves the predictions unchanged.
     bool decouple(Budget& budget) noexcept {
         for (; next_ < regression_count(); ++next_) {
             const int k = next_ / (1 + parameters_);
@@ -389,7 +393,7 @@ class BlockArrow {
         return true;
     }
 
-    /// True if a variance must be taken back.
+    /// Applies forgetting; returns true if a variance must be bounded.
     bool forget() noexcept {
         if (!forgetting_.active()) {
             return false;
@@ -408,10 +412,10 @@ class BlockArrow {
     Weights weights_; ///< m (1+p) × padded 2d
     Residual present_;
     Residual in_hand_;
-    Scalar alpha_ = 1; ///< noise variance + φ'Pφ of the sample in hand, once its sweep is done
+    Scalar alpha_ = 1; ///< noise variance + φ'Pφ of the pending sample, once its sweep is done
     Scalar noise_variance_ = 1;
-    int next_ = 0;       ///< column of weights to work on
-    bool fresh_ = false; ///< the present residual is that of the present weights
+    int next_ = 0;       ///< next column of weights
+    bool fresh_ = false; ///< the present residual belongs to the present weights
     Task task_ = Task::none;
 };
 

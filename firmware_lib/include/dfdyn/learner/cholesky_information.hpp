@@ -10,14 +10,13 @@
 
 namespace dfdyn {
 
-/// Recursive least squares by the Cholesky factor of the information matrix, R'R = P⁻¹, as in the paper
-/// ("Cholesky-based updates"): each row is folded in by Givens rotations, and the right-hand sides ride
-/// along, R w = z, so that single precision loses nothing. Weights come from back-substitution: for several
-/// outputs that costs more than the update, which is why `UdCovariance` is the default. A row is folded in
-/// one piece: a budget below `cost().learn` learns nothing. Forgetting is a piece of its own, and taking a
-/// variance back another.
+/// Recursive least squares by the Cholesky factor of the information matrix, R'R = P⁻¹ (paper, Section IV-B).
+/// Givens rotations fold each row into R and, with it, the targets into the right-hand sides z of R w = z.
+/// This keeps full accuracy in single precision. The weights follow by back-substitution. For several outputs
+/// that costs more than the update, so `UdCovariance` is the default. A row is folded in as a whole: a budget
+/// below `cost().learn` learns nothing. Forgetting is a separate step, and so is bounding a variance.
 ///
-/// R is stored by rows above and on its diagonal. Memory about p²/2 + (2m+2) p.
+/// R is stored by rows, from the diagonal on. Memory about p²/2 + (2m+2) p scalars.
 template <class Scalar, int p, int m>
 class CholeskyInformation {
   public:
@@ -61,7 +60,7 @@ class CholeskyInformation {
         }
     }
 
-    /// |R⁻ᵀφ|²
+    /// Returns φ'Pφ = |R⁻ᵀφ|².
     [[nodiscard]] Scalar variance(const Scalar* row) const noexcept {
         for (int j = 0; j < columns_; ++j) {
             scratch_[j] = row[j];
@@ -72,7 +71,7 @@ class CholeskyInformation {
     [[nodiscard]] bool idle() const noexcept { return task_ == Task::none; }
     [[nodiscard]] bool sample_pending() const noexcept { return task_ == Task::sample; }
 
-    /// `noise_variance`: of the targets, in units of their noise.
+    /// `noise_variance`: of the targets, in units of their noise variance.
     void begin(const Scalar* row, const Scalar* target, Scalar noise_variance = 1) noexcept {
         for (int j = 0; j < columns_; ++j) {
             row_[j] = row[j];
@@ -84,7 +83,7 @@ class CholeskyInformation {
         task_ = Task::sample;
     }
 
-    /// Begins to take the covariance back to the prior's, while the weights stay. Only when idle.
+    /// Begins to reset the covariance to the prior's; the weights stay. Only when idle.
     void reset_covariance() noexcept { task_ = Task::reset; }
 
     bool advance(Budget& budget) noexcept {
@@ -129,7 +128,7 @@ class CholeskyInformation {
                2 * storage_bytes<Scalar>(columns) + storage_bytes<Scalar>(outputs);
     }
 
-    /// Of any call.
+    /// Maximum over all calls.
     [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
         return frame_bytes + 24 * std::int64_t{sizeof(Scalar)};
     }
@@ -160,7 +159,8 @@ class CholeskyInformation {
     static constexpr std::int64_t variance_cost(int columns) noexcept {
         return half_square(columns) + columns;
     }
-    /// Of each column's rotation, over the factor and the right-hand sides, and of the weights.
+    /// Multiply-adds of the rotations of all columns, over the factor and the right-hand sides, and of the
+    /// back-substitution.
     static constexpr std::int64_t fold_and_solve_cost(int columns, int outputs) noexcept {
         return std::int64_t{columns} * (function_cost + 2 + 4 * outputs) +
                (4 + outputs) * half_square(columns);
@@ -185,7 +185,7 @@ class CholeskyInformation {
     using PerOutput = Storage<Scalar, product(m, p)>;
     using Outputs = Storage<Scalar, m>;
 
-    /// Row i of R from its diagonal on: columns_ - i entries.
+    /// Returns row i of R from the diagonal on: columns_ - i entries.
     [[nodiscard]] Scalar* factor_row(int i) noexcept { return factor_.data() + row_offset(i); }
     [[nodiscard]] const Scalar* factor_row(int i) const noexcept { return factor_.data() + row_offset(i); }
     [[nodiscard]] int row_offset(int i) const noexcept { return i * columns_ - i * (i - 1) / 2; }
@@ -194,7 +194,7 @@ class CholeskyInformation {
         return right_hand_sides_[k * columns_ + i];
     }
 
-    /// R = I / sqrt(prior variance).
+    /// Sets R = I / sqrt(prior variance).
     void fill_prior() noexcept {
         using std::sqrt;
         const Scalar diagonal = 1 / sqrt(constants_->prior_variance);
@@ -205,7 +205,7 @@ class CholeskyInformation {
         }
     }
 
-    /// R = D^(-1/2) U⁻¹ and z = R w.
+    /// Sets R = D^(-1/2) U⁻¹ and z = R w.
     void load(const LearnerStart<Scalar, p, m>& start) noexcept {
         for (int i = 0; i < columns_; ++i) {
             Scalar* row = factor_row(i);
@@ -222,7 +222,7 @@ class CholeskyInformation {
         }
     }
 
-    /// Rotates the row in hand, zero before column `first`, into R, and its targets into z.
+    /// Rotates the pending row, which is zero before column `first`, into R, and its targets into z.
     void fold(int first) noexcept {
         for (int i = first; i < columns_; ++i) {
             if (row_[i] == 0) {
@@ -260,7 +260,7 @@ class CholeskyInformation {
         }
     }
 
-    /// |R⁻ᵀs|² of the scratch vector s, which is zero before `first`.
+    /// Returns |R⁻ᵀs|² of the scratch vector s, which is zero before `first`.
     [[nodiscard]] Scalar scratch_square(int first) const noexcept {
         Scalar total = 0;
         for (int i = first; i < columns_; ++i) {
@@ -272,7 +272,7 @@ class CholeskyInformation {
         return total;
     }
 
-    /// Does the task in hand and goes on to the next; false if the budget does not reach.
+    /// Performs the present task and selects the next one; returns false if the budget does not suffice.
     bool work(Budget& budget) noexcept {
         switch (task_) {
         case Task::sample:
@@ -295,7 +295,7 @@ class CholeskyInformation {
         return true;
     }
 
-    /// Takes the row and the targets in hand to those of unit noise.
+    /// Scales the pending row and targets to unit noise.
     void weigh() noexcept {
         using std::sqrt;
         const Scalar scale = 1 / sqrt(noise_variance_);
@@ -307,7 +307,7 @@ class CholeskyInformation {
         }
     }
 
-    /// R = I / sqrt(prior variance), z = R w.
+    /// Sets R = I / sqrt(prior variance) and z = R w.
     bool finish_reset() noexcept {
         fill_prior();
         for (int k = 0; k < outputs_; ++k) {
@@ -319,7 +319,7 @@ class CholeskyInformation {
         return true;
     }
 
-    /// Scales the information, which leaves the weights as they are, and looks at one parameter's variance.
+    /// Scales the information, which does not change the weights, and checks the variance of one parameter.
     bool forget() noexcept {
         using std::sqrt;
         const Scalar shrink = sqrt(forgetting_.factor_after(ratio_));
@@ -333,7 +333,7 @@ class CholeskyInformation {
         return true;
     }
 
-    /// See UdFactor::begin_bound.
+    /// Begins to bound the variance of parameter i; see `UdFactor::begin_bound`.
     void begin_bound(int i) noexcept {
         using std::sqrt;
         const Scalar ceiling = constants_->prior_variance;
@@ -367,12 +367,12 @@ class CholeskyInformation {
     PerOutput right_hand_sides_; ///< m × p
     PerOutput weights_;          ///< m × p
     Columns row_;
-    mutable Columns scratch_; ///< of `variance`
+    mutable Columns scratch_; ///< used by `variance`
     Outputs target_;
-    Scalar noise_variance_ = 1; ///< of the sample in hand
+    Scalar noise_variance_ = 1; ///< of the pending sample
     Scalar ratio_ = 1;
     Task task_ = Task::none;
-    int bounded_ = 0; ///< the parameter whose variance is taken back
+    int bounded_ = 0; ///< parameter whose variance is being bounded
 };
 
 } // namespace dfdyn

@@ -5,10 +5,10 @@
 
 namespace dfdyn {
 
-/// Recursive least squares of p parameters that all outputs share: y_k = h_k'π + e_k, k = 1 … m, a row h_k of
-/// its own for each output, as a rigid body has. The m rows of an instant are folded in one after the other,
-/// each exactly; forgetting happens once per instant. Sliced learning can stop between rows: π is then that
-/// of the rows done. Memory about p²/2 + (m+5) p.
+/// Recursive least squares of p parameters common to all outputs: y_k = h_k'π + e_k, k = 1 … m, with one row
+/// h_k per output, as for a rigid body. The m rows of a sample are folded in one after the other, each
+/// exactly; forgetting is applied once per sample. Sliced learning can stop between rows: π is then the
+/// estimate from the rows learned so far. Memory about p²/2 + (m+5) p scalars.
 template <class Scalar, int p, int m>
 class CommonParameters {
   public:
@@ -32,14 +32,14 @@ class CommonParameters {
         next_ = 2 * outputs_;
     }
 
-    /// h_k'π of `rows`, m × p.
+    /// Computes the means h_k'π of `rows` (m × p), m values.
     void predict(const Scalar* rows, Scalar* means) const noexcept {
         for (int k = 0; k < outputs_; ++k) {
             learner_.predict(rows + k * parameters_, means + k);
         }
     }
 
-    /// h_k'P h_k of each of the `rows`. O(m p²).
+    /// Computes h_k'P h_k of each of the `rows` (m × p), m values. O(m p²).
     void variances(const Scalar* rows, Scalar* variances) const noexcept {
         for (int k = 0; k < outputs_; ++k) {
             variances[k] = learner_.variance(rows + k * parameters_);
@@ -51,7 +51,8 @@ class CommonParameters {
         return next_ < 2 * outputs_ || learner_.sample_pending();
     }
 
-    /// Takes in the rows (m × p) and targets of an instant, all with this variance of noise. Only when idle.
+    /// Begins to learn the rows (m × p) and m targets of a sample, all with the same noise variance. Only
+    /// when idle.
     void begin(const Scalar* rows, const Scalar* targets, Scalar noise_variance) noexcept {
         for (int element = 0; element < outputs_ * parameters_; ++element) {
             rows_[element] = rows[element];
@@ -63,13 +64,13 @@ class CommonParameters {
         next_ = 0;
     }
 
-    /// Begins to take the covariance back to the prior's, while the parameters stay. Only when idle.
+    /// Begins to reset the covariance to the prior's; the parameters stay. Only when idle.
     void reset_covariance() noexcept { learner_.reset_covariance(); }
 
-    /// Works on the rows in hand as far as the budget goes; true when there is nothing left.
+    /// Continues the present task within the budget; returns true when nothing is left to do.
     bool advance(Budget& budget) noexcept { return learn(budget) && learner_.advance(budget); }
 
-    /// The same, but leaves what forgetting has to do to `advance`.
+    /// Same, but leaves the work of forgetting to `advance`.
     bool learn(Budget& budget) noexcept {
         while (learner_.learn(budget)) {
             if (next_ == 2 * outputs_) {
@@ -90,10 +91,10 @@ class CommonParameters {
         return false;
     }
 
-    /// h_k'P h_k of the last rows learned, before any of them was; m values.
+    /// Returns h_k'P h_k of the last learned rows, before any of them was learned; m values.
     [[nodiscard]] const Scalar* last_variances() const noexcept { return variances_.data(); }
 
-    /// π.
+    /// Returns π, p values.
     [[nodiscard]] const Scalar* parameters() const noexcept { return learner_.weights(0); }
     [[nodiscard]] const UdCovariance<Scalar, p, 1>& learner() const noexcept { return learner_; }
 
@@ -113,7 +114,7 @@ class CommonParameters {
                storage_bytes<Scalar>(std::int64_t{outputs} * parameters) + 2 * storage_bytes<Scalar>(outputs);
     }
 
-    /// Of any call.
+    /// Maximum over all calls.
     [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
         return frame_bytes + UdCovariance<Scalar, p, 1>::stack_bytes();
     }
@@ -135,11 +136,12 @@ class CommonParameters {
     [[no_unique_address]] Extent<p> parameters_;
     [[no_unique_address]] Extent<m> outputs_;
     UdCovariance<Scalar, p, 1> learner_;
-    Rows rows_; ///< of the instant in hand
+    Rows rows_; ///< of the pending sample
     Targets targets_;
     Targets variances_;
     Scalar noise_variance_ = 1;
-    int next_; ///< first the variances 0 … m - 1, then the rows m … 2m - 1; 2m: nothing in hand
+    /// Next step: variances 0 … m - 1, then rows m … 2m - 1; 2m: no sample is pending.
+    int next_;
 };
 
 } // namespace dfdyn

@@ -9,32 +9,36 @@
 
 namespace dfdyn {
 
-/// Exponential forgetting that cannot outrun the excitation.
+/// Exponential forgetting that is limited by the excitation.
 ///
-/// A factor λ < 1 gives away log(1/λ) nats of information about every one of p parameters with every sample;
-/// a sample that brings less makes the covariance grow along everything the motion does not touch, without
-/// bound while the arm stands still. So forgetting is paid for from an account: each sample pays in `payback`
-/// times the information log(1 + φ'Pφ) that it brought, and forgetting is reduced to what the account covers.
-/// While the motion excites at least 1/`payback` of the parameters, λ is applied exactly. A standstill
-/// excites as many directions as an instant has rows; so that these do not pay for all others, `payback` is
-/// 20 but at most half of the parameters per row (and at least 1), and forgetting stops by itself. What grows
-/// nevertheless is bounded by the learner, which looks at one parameter per sample and takes its variance
-/// back to the prior's.
+/// A factor λ discards log(1/λ) nats of information about each of p parameters with every sample. If a sample
+/// contributes less, the covariance grows along all directions that the motion does not excite, without bound
+/// at standstill (covariance wind-up). Forgetting is therefore paid from an account: each sample pays in
+/// `payback` times the information log(1 + φ'Pφ) that it contributed, and forgetting is reduced to what the
+/// account covers. While the motion excites at least 1/`payback` of the parameters, λ is applied exactly. A
+/// standstill excites as many directions as a sample has rows. So that these do not pay for all other
+/// directions, `payback` is 20 but at most half of the parameters per row (and at least 1), and forgetting
+/// stops by itself. The learner bounds the remaining growth: per sample it checks the variance of one
+/// parameter and reduces it to the prior's.
 ///
-/// A row that repeats for ever brings φ'Pφ = (1-λ)/λ under forgetting at λ, and less once the account limits
-/// forgetting. So an instant that brings less than 1-λ per row belongs to a standstill, and pays nothing:
-/// otherwise the log t that t such rows bring would be taken, `payback` times, from the other parameters. An
-/// instant of m rows about few parameters, p < 2 m, pays from (1-λ) p / 2 on, half of what a motion brings.
-/// Nor does an instant pay that brings less than 1024 ε per row: there φ'Pφ is rounding, which stops falling
-/// where one more row no longer changes the factor of P, and would pay for ever. What such rows teach is
-/// learned all the same. A moving arm forgets at λ as long as one row in `payback` brings more than both;
-/// where the memory is well beyond p / (1024 ε) samples (8000 p in float, 4·10¹² p in double), none does, and
-/// the memory becomes longer than λ says.
+/// A row that repeats forever contributes φ'Pφ = (1-λ)/λ under forgetting with λ, and less once the account
+/// limits forgetting. A sample that contributes less than 1-λ per row is therefore attributed to a standstill
+/// and pays nothing. Otherwise the log t that t such rows contribute would be discarded, `payback` times,
+/// from the other parameters. A sample of m rows with few parameters, p < 2 m, pays from (1-λ) p / 2 on, half
+/// of what a motion contributes.
+///
+/// A sample that contributes less than 1024 ε per row (ε: machine epsilon) also pays nothing. There φ'Pφ is
+/// rounding error: it stops falling where one more row no longer changes the factor of P, and would pay
+/// forever. Such rows are learned nevertheless.
+///
+/// A moving arm forgets with λ as long as one row in `payback` contributes more than both limits. If the
+/// memory is much longer than p / (1024 ε) samples (8000 p in float, 4·10¹² p in double), no row does, and
+/// the memory becomes longer than that of λ.
 template <class Scalar>
 class Forgetting {
   public:
-    /// 1 - 1/`parameters` ≤ `factor` ≤ 1: a shorter memory than one sample per parameter determines none of
-    /// them. `parameters` ≥ 1, `rows` ≥ 1 in an instant.
+    /// 1 - 1/`parameters` ≤ `factor` ≤ 1: a memory shorter than one sample per parameter determines none of
+    /// them. `parameters` ≥ 1; `rows` per sample ≥ 1.
     constexpr Forgetting(Scalar factor, int parameters, int rows = 1) noexcept
         : factor_(factor), parameters_(static_cast<Scalar>(parameters)),
           payback_(std::clamp(parameters_ / (2 * static_cast<Scalar>(rows)), Scalar(1), Scalar(20))),
@@ -48,14 +52,15 @@ class Forgetting {
 
     [[nodiscard]] constexpr bool active() const noexcept { return factor_ < 1; }
 
-    /// A full account: one horizon 1/(1-λ) of forgetting without excitation, which lets variances grow by at
-    /// most e.
+    /// Fills the account: one horizon 1/(1-λ) of forgetting without excitation, in which variances grow by at
+    /// most the factor e.
     constexpr void restart() noexcept {
         account_ = active() ? capacity() : Scalar(0);
         next_parameter_ = 0;
     }
 
-    /// The factor to apply after a sample whose predictive variance was `ratio` = 1 + φ'Pφ times the noise's.
+    /// Returns the factor to apply after a sample with predictive variance `ratio` = 1 + φ'Pφ, in units of
+    /// the noise variance.
     [[nodiscard]] Scalar factor_after(Scalar ratio) noexcept {
         if (!active()) {
             return 1;
@@ -73,10 +78,10 @@ class Forgetting {
         return affordable;
     }
 
-    /// Multiply-adds of `factor_after`, at most.
+    /// Maximum multiply-adds of `factor_after`.
     static constexpr int cost = 2 * (function_cost + 1);
 
-    /// The parameters in turn, for the look at their variances.
+    /// Returns the index of the parameter whose variance is checked next, in cyclic order.
     [[nodiscard]] constexpr int next_parameter() noexcept {
         const int parameter = next_parameter_;
         next_parameter_ = parameter + 1 < static_cast<int>(parameters_) ? parameter + 1 : 0;
@@ -90,14 +95,14 @@ class Forgetting {
     }
 
   private:
-    /// log(1/λ)/(1-λ) ≈ 1 nat per parameter: what one horizon of forgetting costs.
+    /// Capacity of the account in nats: one horizon of forgetting costs log(1/λ)/(1-λ) ≈ 1 nat per parameter.
     [[nodiscard]] constexpr Scalar capacity() const noexcept { return parameters_; }
 
     Scalar factor_;
     Scalar parameters_;
     Scalar payback_;
-    Scalar least_paid_; ///< of φ'Pφ
-    Scalar price_ = 0;  ///< of applying the factor once, in nats
+    Scalar least_paid_; ///< smallest φ'Pφ that pays
+    Scalar price_ = 0;  ///< cost of applying the factor once, in nats
     Scalar account_ = 0;
     int next_parameter_ = 0;
 };

@@ -7,25 +7,25 @@
 
 namespace dfdyn::detail {
 
-/// Columns that one pass of a sweep treats together, so that the row and the gain are read once for all of
+/// Columns that one pass of a sweep processes together, so that the row and the gain are read once for all of
 /// them.
 inline constexpr int panel_width = 4;
 
-/// A panel is stored in blocks of so many rows: of each of its columns as many as a vector of the machine has
-/// lanes, at least four. A block is contiguous, so that every load is aligned as the panel is.
+/// Rows per block of a panel: the lanes of a vector register, at least four. A block contains these rows of
+/// each column of the panel. It is contiguous, so that every load has the alignment of the panel.
 template <class Scalar>
 inline constexpr int block_rows = std::max(panel_width, wide<Scalar>);
 
 template <class Scalar>
 inline constexpr int block_size = panel_width* block_rows<Scalar>;
 
-/// Where the last whole vector of elements `begin` … `count` - 1 ends.
+/// Returns the end of the last whole vector of elements `begin` … `count` - 1.
 template <int lanes>
 constexpr int whole_vectors(int begin, int count) noexcept {
     return begin + (count - begin) / lanes * lanes;
 }
 
-/// a'b over what whole vectors leave of `count` elements: from `begin` on, fewer than 2 `lanes`.
+/// Returns a'b over the elements that do not fill whole vectors: from `begin` on, fewer than 2 `lanes`.
 template <class Scalar, int lanes>
 Scalar dot_of_rest(const Scalar* a, const Scalar* b, int begin, int count) noexcept {
     if constexpr (lanes == 0) {
@@ -43,7 +43,7 @@ Scalar dot_of_rest(const Scalar* a, const Scalar* b, int begin, int count) noexc
     }
 }
 
-/// a'b over `count` elements.
+/// Returns a'b over `count` elements.
 template <class Scalar>
 Scalar dot(const Scalar* a, const Scalar* b, int count) noexcept {
     constexpr int lanes = wide<Scalar>;
@@ -60,7 +60,7 @@ Scalar dot(const Scalar* a, const Scalar* b, int count) noexcept {
     return Wide::total(partial) + dot_of_rest<Scalar, lanes / 2>(a, b, whole, count);
 }
 
-/// y += factor x over `count` elements.
+/// Computes y += factor x over `count` elements.
 template <class Scalar>
 void add_scaled(Scalar factor, const Scalar* x, Scalar* y, int count) noexcept {
     using Wide = Vector<Scalar, wide<Scalar>>;
@@ -78,10 +78,9 @@ void add_scaled(Scalar factor, const Scalar* x, Scalar* y, int count) noexcept {
     }
 }
 
-/// y += factor x, where y alone is too coarse: `rest` holds what rounding has kept from it so far (T. J.
-/// Dekker's fast two-sum, "A floating-point technique for extending the available precision", 1971). The sum
-/// y + rest is then as precise as if it had twice the digits, as long as |factor x| < |y|; else it is as
-/// `add_scaled` leaves it.
+/// Computes y += factor x with compensation: `rest` accumulates the rounding errors of y (T. J. Dekker's fast
+/// two-sum, "A floating-point technique for extending the available precision", 1971). While |factor x| <
+/// |y|, the sum y + rest has the precision of twice the digits; otherwise that of `add_scaled`.
 template <class Scalar>
 void add_compensated(Scalar factor, const Scalar* x, Scalar* y, Scalar* rest, int count) noexcept {
     using Wide = Vector<Scalar, wide<Scalar>>;
@@ -106,14 +105,14 @@ void add_compensated(Scalar factor, const Scalar* x, Scalar* y, Scalar* rest, in
     }
 }
 
-/// What the four columns of a panel do to one another and to the gain.
+/// Factors of the update of four columns of a panel and of the gain.
 template <class Scalar>
 struct PanelFactors {
-    Scalar v[panel_width];  ///< onto the gain, per unit of the column
-    Scalar mu[panel_width]; ///< onto the column, per unit of the gain
+    Scalar v[panel_width];  ///< added to the gain, per unit of the column
+    Scalar mu[panel_width]; ///< added to the column, per unit of the gain
 };
 
-/// The products of a panel's columns with a row, as they are summed up block by block.
+/// Products of a panel's columns with a row, accumulated block by block.
 template <class Scalar>
 class PanelProducts {
   public:
@@ -140,7 +139,7 @@ class PanelProducts {
     typename Lanes::Type partial_[panel_width] = {};
 };
 
-/// Bierman's update of one block: for each column in turn u += mu·gain, gain += v·u (the old u).
+/// Bierman's update of one block: for each column in turn u += mu·gain, gain += v·u (with the old u).
 template <class Scalar>
 void update_block(Scalar* block, Scalar* gain, const PanelFactors<Scalar>& factors) noexcept {
     using Lanes = Vector<Scalar, wide<Scalar>>;
@@ -158,7 +157,7 @@ void update_block(Scalar* block, Scalar* gain, const PanelFactors<Scalar>& facto
     }
 }
 
-/// The products of a panel of `blocks` blocks with a row, which is as long as they are.
+/// Computes the products of a panel of `blocks` blocks with a row of the same length.
 template <class Scalar>
 [[gnu::always_inline]] inline void panel_products(const Scalar* panel, int blocks, const Scalar* row,
                                                   Scalar (&products)[panel_width]) noexcept {
@@ -177,8 +176,8 @@ template <class Scalar>
     }
 }
 
-/// `update_panel`, and `panel_products` of the panel `next` of at least as many blocks: while the one is
-/// worked on in the nearest cache, the other comes from farther away.
+/// Combines `update_panel` with `panel_products` of the panel `next`, which has at least as many blocks: the
+/// next panel is loaded from memory while the present one is processed in the nearest cache.
 template <class Scalar>
 [[gnu::always_inline]] inline void
 update_panel(Scalar* panel, int blocks, Scalar* gain, PanelFactors<Scalar> factors, const Scalar* next,

@@ -9,8 +9,8 @@
 
 namespace dfdyn {
 
-/// Where a learner starts, in the scale of the noise (see `LearnerConstants`): weights and the factor P = U D
-/// U' of their covariance, as the training tool computed them.
+/// Initial state of a learner, in the scale of the noise (see `LearnerConstants`): weights, and the factor P
+/// = U D U' of their covariance, as computed by the training tool.
 template <class Scalar, int p, int m>
 struct LearnerStart {
     static constexpr int upper_size(int columns) noexcept {
@@ -23,33 +23,34 @@ struct LearnerStart {
     Storage<Scalar, p> diagonal; ///< D, positive
 };
 
-/// The regression y = φ'w + e of m outputs over the same p columns, each output in units of its own noise: e
-/// ~ N(0, 1), w ~ N(0, prior_variance I), so that one factor serves all.
+/// Constants of the regression y = φ'w + e of m outputs over the same p columns, each output in units of its
+/// own noise: e ~ N(0, 1), w ~ N(0, prior_variance I), so that all outputs share one factor.
 template <class Scalar, int p, int m>
 struct LearnerConstants {
     Scalar prior_variance;    ///< ρ²/σ² > 0
     Scalar forgetting_factor; ///< λ, 1 - 1/p ≤ λ ≤ 1; 1 reproduces the paper
     static constexpr std::int64_t start_bytes = sizeof(LearnerStart<Scalar, p, m>);
-    const LearnerStart<Scalar, p, m>* start; ///< nullptr: zero weights and the prior's covariance
+    /// nullptr: zero weights and the prior's covariance.
+    const LearnerStart<Scalar, p, m>* start;
 };
 
 /// Recursive least squares in a square-root form.
 ///
-/// `identity` is a number that differs from every other form's; it is part of a snapshot.
+/// `identity` differs between forms and is part of a snapshot.
 ///
 /// With λ = 1 the recursion is exact: after any number of rows, weights and covariance are those of the batch
-/// solution of eq. ReLS. With λ < 1 the same holds, each row t weighed by λ^(N-t), as long as the account of
-/// `Forgetting` pays for it and no parameter's variance exceeds the prior's; beyond, forgetting is reduced
-/// and the variance is taken back. Rows and targets must be finite.
-///  - `predict(row, means)`: the m means φ'w. O(m p).
-///  - `variance(row)`: φ'Pφ of the last whole state, also while a row is being folded in. O(p²).
-///  - `begin(row, target, noise_variance)`: takes a row in when `idle()`, with targets measured with
-///    `noise_variance` in units of their noise variance, 1 without it.
-///  - `reset_covariance()`: begins, when `idle()`, to set the covariance back to the prior's, in `advance`.
-///  - `advance(budget)`: works on it and says whether there is nothing left to do.
-///  - `sample_pending()`: the row is not learned yet; under forgetting there is more work after that.
-///  - `last_ratio()`: 1 + φ'Pφ of the last row, before it was learned.
-///  - `reset()`: back to the start, all of it.
+/// solution (paper, Section IV-B). With λ < 1 the same holds with the weight λ^(N-t) of row t, as long as the
+/// account of `Forgetting` covers it and no parameter's variance exceeds the prior's. Otherwise forgetting is
+/// reduced and the variance is bounded. Rows and targets must be finite.
+///  - `predict(row, means)`: computes the m means φ'w. O(m p).
+///  - `variance(row)`: returns φ'Pφ of the last complete state, also while a row is being learned. O(p²).
+///  - `begin(row, target, noise_variance)`: when `idle()`, begins to learn a row with targets measured with
+///    `noise_variance` in units of their noise variance (default 1).
+///  - `reset_covariance()`: when `idle()`, begins to reset the covariance to the prior's, in `advance`.
+///  - `advance(budget)`: continues the present task; true when nothing is left to do.
+///  - `sample_pending()`: the row is not learned yet. With forgetting, more work follows after it is.
+///  - `last_ratio()`: returns 1 + φ'Pφ of the last row, before it was learned.
+///  - `reset()`: returns to the initial state.
 template <class L, class Scalar>
 concept Learner = requires(L learner, const L& constant, const Scalar* row, Scalar* means, Budget& budget) {
     { learner.reset() }

@@ -12,20 +12,20 @@ namespace dfdyn {
 /// Recursive least squares of m outputs over the same p columns, by the factor P = U D U' of their covariance
 /// (`UdFactor`): one sweep per row, after which the gain gives the weights of all outputs.
 ///
-/// Learning can be sliced after the innovations, after any panel of the sweep and before forgetting. Until it
-/// is done the weights and `variance` are the old ones.
+/// Learning can be sliced after the innovations, after any panel of the sweep, and before forgetting. Until
+/// it is done, the weights and `variance` are those before the row.
 ///
-/// After t rows a row changes the weights by about 1/t of what it first did, and soon by less than half of
-/// their last digit: a float would then drop the change, always where P is largest, and drift. So the sum is
-/// compensated (`detail::add_compensated`): what rounding keeps back is added with the next row. Memory about
-/// p²/2 + (2m+3) p.
+/// After t rows, a row changes the weights by about 1/t of the change by the first row. In float this soon
+/// falls below half of the last digit; the change would be lost, always where P is largest, and the weights
+/// would drift. The sum is therefore compensated (`detail::add_compensated`): the rounding error is added
+/// with the next row. Memory about p²/2 + (2m+3) p scalars.
 template <class Scalar, int p, int m>
 class UdCovariance {
   public:
     static constexpr int identity = 1;
     using Constants = LearnerConstants<Scalar, p, m>;
 
-    /// `rows_of_instant`: that `begin_row` is given before it forgets.
+    /// `rows_of_instant`: rows per sample, passed to `begin_row` before forgetting is applied.
     UdCovariance(const Constants& constants, Extent<p> columns, Extent<m> outputs,
                  int rows_of_instant = 1) noexcept
         : factor_(columns),
@@ -63,22 +63,22 @@ class UdCovariance {
 
     [[nodiscard]] bool idle() const noexcept { return task_ == Task::none; }
 
-    /// Whether a sample's row is in hand and not yet learned.
+    /// Returns true if the row of a sample has begun and is not learned yet.
     [[nodiscard]] bool sample_pending() const noexcept {
         return task_ == Task::innovation || task_ == Task::sample;
     }
 
-    /// Takes in φ (p values) and the m targets, each in units of its noise, measured with `noise_variance` in
-    /// those units. Only when idle.
+    /// Begins to learn φ (p values) with m targets, each in units of its noise, measured with
+    /// `noise_variance` in units of the noise variance. Only when idle.
     void begin(const Scalar* row, const Scalar* target, Scalar noise_variance = 1) noexcept {
         begin_row(row, target, noise_variance, true);
     }
 
-    /// The same for one of several rows of the same instant: forgetting happens once, after the last.
+    /// Same, for one of several rows of a sample: forgetting is applied once, after the last row.
     void begin_row(const Scalar* row, const Scalar* target, Scalar noise_variance,
                    bool last_of_instant) noexcept {
         for (int k = 0; k < outputs_; ++k) {
-            innovation_[k] = target[k]; // the prediction is taken off within the budget
+            innovation_[k] = target[k]; // the prediction is subtracted later, within the budget
         }
         factor_.begin(row, noise_variance);
         noise_variance_ = noise_variance;
@@ -86,13 +86,13 @@ class UdCovariance {
         task_ = Task::innovation;
     }
 
-    /// Begins to take the covariance back to the prior's, while the weights stay. Only when idle.
+    /// Begins to reset the covariance to the prior's; the weights stay. Only when idle.
     void reset_covariance() noexcept {
         factor_.begin_reset();
         task_ = Task::reset;
     }
 
-    /// Works on the row in hand as far as the budget goes; true when there is none left.
+    /// Continues the present task within the budget; returns true when nothing is left to do.
     bool advance(Budget& budget) noexcept {
         while (!idle()) {
             if (!work(budget)) {
@@ -102,7 +102,7 @@ class UdCovariance {
         return true;
     }
 
-    /// The same, but leaves what forgetting has to do to `advance`.
+    /// Same, but leaves the work of forgetting to `advance`.
     bool learn(Budget& budget) noexcept {
         while (sample_pending()) {
             if (!work(budget)) {
@@ -112,15 +112,15 @@ class UdCovariance {
         return true;
     }
 
-    /// 1 + φ'Pφ / (noise variance) of the last row learned, before it was learned.
+    /// Returns 1 + φ'Pφ / (noise variance) of the last learned row, before it was learned.
     [[nodiscard]] Scalar last_ratio() const noexcept { return ratio_; }
 
-    /// Weights of one output, p values in units of its noise.
+    /// Returns the weights of one output, p values in units of its noise.
     [[nodiscard]] const Scalar* weights(int output) const noexcept {
         return weights_.data() + output * padded(columns_);
     }
 
-    /// Variance of one parameter, P_ii, while idle. O(p).
+    /// Returns the variance P_ii of one parameter. Only when idle. O(p).
     [[nodiscard]] Scalar parameter_variance(int i) const noexcept { return factor_.parameter_variance(i); }
 
     [[nodiscard]] const UdFactor<Scalar, p>& factor() const noexcept { return factor_; }
@@ -143,7 +143,7 @@ class UdCovariance {
                storage_bytes<Scalar>(outputs);
     }
 
-    /// Of any call.
+    /// Maximum over all calls.
     [[nodiscard]] static constexpr std::int64_t stack_bytes() noexcept {
         return frame_bytes + 24 * std::int64_t{sizeof(Scalar)};
     }
@@ -168,7 +168,7 @@ class UdCovariance {
   private:
     using Factor = UdFactor<Scalar, p>;
 
-    /// What is to be done next; a sample and a bound are sweeps.
+    /// The next task. `sample` and `bound` are sweeps.
     enum class Task : int { none, innovation, sample, forget, bound, reset };
 
     static constexpr int padded(int columns) noexcept { return Factor::padded(columns); }
@@ -191,7 +191,7 @@ class UdCovariance {
         }
     }
 
-    /// Does the task in hand and goes on to the next; false if the budget does not reach.
+    /// Performs the present task and selects the next one; returns false if the budget does not suffice.
     bool work(Budget& budget) noexcept {
         switch (task_) {
         case Task::innovation:
@@ -249,7 +249,7 @@ class UdCovariance {
 
     Factor factor_;
     Weights weights_;
-    Weights rest_; ///< what rounding has kept from the weights
+    Weights rest_; ///< rounding errors of the weights
     Outputs innovation_;
     [[no_unique_address]] Extent<p> columns_;
     [[no_unique_address]] Extent<m> outputs_;
@@ -257,7 +257,7 @@ class UdCovariance {
     Forgetting<Scalar> forgetting_;
     Scalar noise_variance_ = 1;
     Scalar ratio_ = 1;
-    Scalar information_ = 1; ///< product of the ratios of this instant's rows
+    Scalar information_ = 1; ///< product of the ratios of this sample's rows
     int last_of_instant_ = 1;
     Task task_ = Task::none;
 };

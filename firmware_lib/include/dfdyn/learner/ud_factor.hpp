@@ -10,16 +10,16 @@ namespace dfdyn {
 
 /// The covariance P = U D U' of p parameters as its square-root-free Cholesky factor, and the sweep that
 /// folds a row into it (G. J. Bierman, "Factorization Methods for Discrete Sequential Estimation", 1977): 1.5
-/// p² multiply-adds, no square root, and the gain and the predictive variance come with it.
+/// p² multiply-adds without a square root, which also give the gain and the predictive variance.
 ///
-/// U is stored in panels of four columns: panel b holds its columns down to their diagonal, of ones, and
-/// zeros below it to the end of a block (see `block_rows`). So a sweep needs to know nothing of the triangle:
-/// zeros stay zeros and ones stay ones. Columns beyond p fill the last panel and do nothing. Memory about
-/// p²/2 + 5 p, in scalars.
+/// U is stored in panels of four columns. Panel b contains its columns down to their unit diagonal, and zeros
+/// below it to the end of a block (see `block_rows`). A sweep can therefore ignore the triangular shape:
+/// zeros stay zeros and ones stay ones. Columns beyond p pad the last panel and have no effect. Memory about
+/// p²/2 + 5 p scalars.
 ///
-/// A sweep can stop after any panel and go on later. Until it is closed `variance` is that of the old
-/// covariance, exactly: after j columns the part of P already updated is that of a rank-one downdate,
-/// Σ_{i≤j} ū d̄ ū' = Σ_{i≤j} u d u' - g g'/α, with the partial gain g and α that the sweep carries.
+/// A sweep can stop after any panel and continue later. Until it is closed, `variance` is exactly that of the
+/// old covariance: after j columns the updated part of P is a rank-one downdate of the old one, Σ_{i≤j} ū d̄
+/// ū' = Σ_{i≤j} u d u' - g g'/α, with the partial gain g and α of the sweep.
 template <class Scalar, int p>
 class UdFactor {
   public:
@@ -35,7 +35,7 @@ class UdFactor {
         : columns_(columns), panels_(Panels::zeros(extent<panels_size(p)>(panels_size(columns)))),
           diagonal_(zero_columns()), row_(zero_columns()), gain_(zero_columns()) {}
 
-    /// P = `variance` I; forgets a sweep under way.
+    /// Sets P = `variance` I and discards a sweep in progress.
     void reset(Scalar variance) noexcept {
         clear(panels_);
         for (int j = 0; j < width * panel_count(); ++j) {
@@ -51,7 +51,7 @@ class UdFactor {
         sweeping_ = 0;
     }
 
-    /// The factor of a start: U above its diagonal by columns, and D.
+    /// Loads an initial factor: U above its diagonal by columns, and D.
     void load(const Scalar* unit_upper, const Scalar* diagonal) noexcept {
         for (int j = 0; j < columns_; ++j) {
             diagonal_[j] = diagonal[j];
@@ -62,7 +62,7 @@ class UdFactor {
         }
     }
 
-    /// h'Ph of a row h of p values, under a sweep that of the covariance before it. O(p²).
+    /// Returns h'Ph of a row h of p values; during a sweep, that of the covariance before it. O(p²).
     [[nodiscard]] Scalar variance(const Scalar* row) const noexcept {
         Scalar total = 0;
         for (int b = 0; b < panel_count(); ++b) {
@@ -82,7 +82,7 @@ class UdFactor {
 
     [[nodiscard]] bool sweeping() const noexcept { return sweeping_ != 0; }
 
-    /// Begins to fold in a row of p values, measured with a noise of this variance > 0.
+    /// Begins to fold in a row of p values, measured with this noise variance > 0.
     void begin(const Scalar* row, Scalar noise_variance) noexcept {
         for (int j = 0; j < columns_; ++j) {
             row_[j] = row[j];
@@ -91,8 +91,8 @@ class UdFactor {
         begin_at(0, noise_variance);
     }
 
-    /// Begins a measurement of parameter i alone, as precise as it takes to bring its variance back to
-    /// `ceiling`; false, and nothing begun, if it is not above that. O(p).
+    /// Begins a measurement of parameter i alone, whose noise is chosen such that its variance becomes
+    /// `ceiling`. Returns false and begins nothing if the variance is not above `ceiling`. O(p).
     [[nodiscard]] bool begin_bound(int i, Scalar ceiling) noexcept {
         const Scalar present = parameter_variance(i);
         if (present <= ceiling) {
@@ -105,7 +105,7 @@ class UdFactor {
         return true;
     }
 
-    /// Sweeps as far as the budget goes; true when all columns are done.
+    /// Continues the sweep within the budget; returns true when all columns are done.
     [[nodiscard]] bool sweep(Budget& budget) noexcept {
         int end = panel_;
         while (end < panel_count() && budget.spend(panel_cost(end))) {
@@ -117,21 +117,21 @@ class UdFactor {
         return panel_ == panel_count();
     }
 
-    /// Ends a sweep that is done: from now on the new covariance counts.
+    /// Ends a completed sweep: from now on the new covariance is used.
     void close() noexcept { sweeping_ = 0; }
 
-    /// The row in hand, p values.
+    /// Returns the row of the present or last sweep, p values.
     [[nodiscard]] const Scalar* row() const noexcept { return row_.data(); }
 
-    /// After a sweep: noise variance + h'Ph, and gain·that, p values.
+    /// After a sweep: `alpha` is the noise variance + h'Ph, and `gain` is alpha times the gain, p values.
     [[nodiscard]] Scalar alpha() const noexcept { return alpha_; }
     [[nodiscard]] const Scalar* gain() const noexcept { return gain_.data(); }
 
-    /// Begins to take the covariance back to that of a prior; not while a sweep is under way.
+    /// Begins to reset the covariance to a prior's. Not during a sweep.
     void begin_reset() noexcept { panel_ = 0; }
 
-    /// Takes the covariance to `variance` I, panel by panel as far as the budget goes; true when it is done.
-    /// In between it is that of the panels done and, given them, of the others.
+    /// Resets the covariance to `variance` I, panel by panel within the budget; returns true when it is done.
+    /// Meanwhile it is the covariance of the completed panels and, given those, of the others.
     [[nodiscard]] bool reset(Scalar variance, Budget& budget) noexcept {
         for (; panel_ < panel_count(); ++panel_) {
             if (!budget.spend(projection_cost(panel_))) {
@@ -146,14 +146,14 @@ class UdFactor {
         return true;
     }
 
-    /// P *= growth.
+    /// Computes P *= growth.
     void scale(Scalar growth) noexcept {
         for (int j = 0; j < columns_; ++j) {
             diagonal_[j] *= growth;
         }
     }
 
-    /// Variance of one parameter, P_ii, while no sweep is under way. O(p).
+    /// Returns the variance P_ii of one parameter. Not during a sweep. O(p).
     [[nodiscard]] Scalar parameter_variance(int i) const noexcept {
         Scalar total = diagonal_[i];
         for (int j = i + 1; j < columns_; ++j) {
@@ -162,11 +162,11 @@ class UdFactor {
         return total;
     }
 
-    /// Element of U above the diagonal, i < j.
+    /// Returns an element of U above the diagonal, i < j.
     [[nodiscard]] Scalar upper(int i, int j) const noexcept { return element(*this, i, j); }
     [[nodiscard]] Scalar diagonal(int j) const noexcept { return diagonal_[j]; }
 
-    /// Multiply-adds of a sweep, and of the largest part that a sweep can be sliced into.
+    /// Multiply-adds of a sweep, and of the largest indivisible part of a sweep.
     [[nodiscard]] static constexpr std::int64_t sweep_cost(int columns) noexcept {
         std::int64_t total = 0;
         for (int b = 0; b < panels_of(columns); ++b) {
@@ -177,7 +177,7 @@ class UdFactor {
     [[nodiscard]] static constexpr std::int64_t largest_step(int columns) noexcept {
         return panel_cost(panels_of(columns) - 1);
     }
-    /// Of `reset` with a budget: one for each element.
+    /// Multiply-adds of `reset` with a budget: one per element.
     [[nodiscard]] static constexpr std::int64_t reset_cost(int columns) noexcept {
         std::int64_t total = 0;
         for (int b = 0; b < panels_of(columns); ++b) {
@@ -185,7 +185,7 @@ class UdFactor {
         }
         return total;
     }
-    /// Of `variance`, and what it takes beyond that while a sweep is under way, at most.
+    /// Maximum multiply-adds of `variance`, and its additional cost during a sweep.
     [[nodiscard]] static constexpr std::int64_t variance_cost(int columns) noexcept {
         std::int64_t total = 0;
         for (int b = 0; b < panels_of(columns); ++b) {
@@ -196,7 +196,7 @@ class UdFactor {
     [[nodiscard]] static constexpr std::int64_t sweeping_variance_cost(int columns) noexcept {
         return std::int64_t{columns} + 2;
     }
-    /// Of `scale` and `begin_bound`, at most.
+    /// Maximum multiply-adds of `scale` and `begin_bound`.
     [[nodiscard]] static constexpr std::int64_t scale_and_bound_cost(int columns) noexcept {
         return std::int64_t{3} * columns;
     }
@@ -205,7 +205,7 @@ class UdFactor {
         return storage_bytes<Scalar>(panels_size(columns)) + 3 * storage_bytes<Scalar>(padded(columns));
     }
 
-    /// Column after column, so that every machine writes the same.
+    /// By columns, so that a snapshot does not depend on the machine's layout.
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         for (int j = 1; j < self.columns_; ++j) {
@@ -231,7 +231,8 @@ class UdFactor {
 
     static constexpr int panels_of(int columns) noexcept { return (columns + width - 1) / width; }
     static constexpr int block_count(int panel) noexcept { return width * panel / rows + 1; }
-    /// Elements before a panel: 1 … whole blocks, so many panels each, and some of one block more.
+    /// Returns the number of elements before a panel. Panels have 1, 2, 3 … blocks, with `rows` / `width`
+    /// panels of each height.
     static constexpr int panel_offset(int panel) noexcept {
         constexpr int panels = rows / width;
         const int whole = panel / panels;
@@ -243,7 +244,8 @@ class UdFactor {
     static constexpr std::int64_t projection_cost(int panel) noexcept {
         return std::int64_t{size} * block_count(panel);
     }
-    /// One for each element's product, two for its update, five for each column's part of the gain.
+    /// One multiply-add per element for its product, two for its update, and five per column for its part of
+    /// the gain.
     static constexpr std::int64_t panel_cost(int panel) noexcept {
         return 3 * projection_cost(panel) + 5 * width;
     }
@@ -277,7 +279,7 @@ class UdFactor {
         sweeping_ = 1;
     }
 
-    /// f = U'h for the four columns of panel b, of a row of p values.
+    /// Computes f = U'h for the four columns of panel b, with a row h of p values.
     void project(int b, const Scalar* row, Scalar (&f)[width]) const noexcept {
         const int blocks = block_count(b);
         if (rows * blocks <= columns_) {
@@ -295,8 +297,8 @@ class UdFactor {
         }
     }
 
-    /// Folds the row into the panels before `end`, at least one. What a panel does to the gain follows from
-    /// U'h alone: while one panel is updated, the next is already multiplied with the row.
+    /// Folds the row into the panels before `end`, at least one. The effect of a panel on the gain follows
+    /// from U'h alone, so the next panel is multiplied with the row while the present one is updated.
     void fold_panels(int end) noexcept {
         Scalar f[width];
         detail::panel_products(panel(panel_), block_count(panel_), row_.data(), f);
@@ -329,7 +331,7 @@ class UdFactor {
     Columns diagonal_;
     Columns row_;
     Columns gain_;
-    Scalar alpha_ = 1; ///< the row's noise variance + h'Ph over the columns done
+    Scalar alpha_ = 1; ///< noise variance of the row + h'Ph over the completed columns
     int panel_ = 0;    ///< next panel to fold
     int sweeping_ = 0;
 };

@@ -8,31 +8,32 @@
 
 namespace dfdyn {
 
-/// Where a frame sits in another one: x_outer = rotation x_inner + translation.
+/// Pose of a frame in an outer frame: x_outer = rotation x_inner + translation.
 template <class Scalar>
 struct Placement {
     Scalar rotation[9];    ///< row-major, orthonormal
     Scalar translation[3]; ///< m
 };
 
-/// A joint of a serial chain. Its frame is also that of the link it moves: the link turns about `axis`
-/// (revolute) or slides along it (prismatic) from where `placement` puts it.
+/// A joint of a serial chain. Its frame is also that of the link it moves: from the pose `placement`, the
+/// link rotates about `axis` (revolute) or slides along it (prismatic).
 template <class Scalar>
 struct ChainJoint {
-    Placement<Scalar> placement; ///< of the link's frame in the previous link's, at joint position 0
-    Scalar axis[3];              ///< unit vector in the link's frame
+    /// Pose of the link's frame in the previous link's frame, at joint position 0.
+    Placement<Scalar> placement;
+    Scalar axis[3]; ///< unit vector in the link's frame
     bool prismatic;
 };
 
-/// Numbers per body: mass, first moment m·c (3) and the inertia about the link frame's origin, in the link's
-/// frame: m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz.
+/// Parameters per body, in the link's frame: mass, first moment m·c, and inertia about the origin of the
+/// link's frame: m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz (kg, kg·m, kg·m²).
 inline constexpr int inertial_parameters = 10;
 
-/// The outputs of a chain are the generalised forces of its joints (N·m, N); every link counts.
+/// The outputs of a chain are the generalised forces of its joints (N·m, N); every link contributes.
 ///
-/// A kind of outputs has a number that differs from every other kind's, and says how many there are, which
-/// bodies count (the last `bodies` links), and where along the chain each output's screw begins: the motion
-/// whose virtual power is that output.
+/// A kind of outputs defines an `identity` that differs from that of every other kind, the number of outputs,
+/// the bodies that contribute (the last `bodies` links), and the link at which each output's screw begins.
+/// The screw is the motion whose virtual power is that output.
 struct JointTorques {
     static constexpr int identity = 1;
     static constexpr int outputs(int joints) noexcept { return joints; }
@@ -41,7 +42,8 @@ struct JointTorques {
     template <class Scalar>
     struct Constants {};
 
-    /// Writes the screws of the outputs that begin at `link` (0: the base), in its frame; returns how many.
+    /// Writes the screws of the outputs that begin at `link` (0: the base), in its frame; returns their
+    /// number.
     template <class Real, class Scalar>
     static constexpr int begin(const Constants<Real>& /*output*/, const ChainJoint<Real>* joints, int link,
                                Screw<Scalar>* screws) noexcept {
@@ -54,24 +56,24 @@ struct JointTorques {
         return 1;
     }
 
-    /// Pairs of an output and a body that acts on it.
+    /// Returns the number of pairs of an output and a body that contributes to it.
     static constexpr std::int64_t pairs(int outputs, int /*bodies*/) noexcept {
         return std::int64_t{outputs} * (outputs + 1) / 2;
     }
 
-    /// Times that a screw is brought from one link's frame to the next one's.
+    /// Returns the number of transforms of a screw from one link's frame to the next.
     static constexpr std::int64_t carries(int outputs, int /*bodies*/, int /*joints*/) noexcept {
         return std::int64_t{outputs} * (outputs - 1) / 2;
     }
 
-    /// Multiply-adds of all `begin`.
+    /// Multiply-adds of all calls of `begin`.
     static constexpr int begin_cost = 0;
 };
 
-/// The outputs are force (N) and torque (N·m, about the sensor frame's origin) at a sensor within the chain,
-/// in the sensor's frame. Only what moves beyond the sensor counts: the last `body_count` links, the first of
-/// them without its part on the base's side of the sensor. That makes n - link + 1 bodies, or all n if the
-/// sensor sits on the base.
+/// The outputs are force (N) and torque (N·m, about the origin of the sensor frame) at a sensor within the
+/// chain, in the sensor's frame. Only bodies beyond the sensor contribute: the last `body_count` links, the
+/// first of them without its part on the base's side of the sensor. That is n - link + 1 bodies, or all n if
+/// the sensor is mounted on the base.
 template <int body_count>
 struct WrenchAtSensor {
     static constexpr int identity = 2;
@@ -80,12 +82,13 @@ struct WrenchAtSensor {
 
     template <class Scalar>
     struct Constants {
-        std::int32_t link;        ///< that carries the sensor: 0 the base, i the link that joint i moves
-        Placement<Scalar> sensor; ///< of the sensor's frame in that link's frame
-        Scalar sign; ///< +1: what the base's side exerts on the tip's side, -1: the reverse (child to parent)
+        std::int32_t link;        ///< link that carries the sensor: 0 the base, i the link that joint i moves
+        Placement<Scalar> sensor; ///< pose of the sensor's frame in that link's frame
+        /// +1: wrench that the base's side exerts on the tip's side; -1: the opposite (child to parent).
+        Scalar sign;
     };
 
-    /// Unit motions along and about the sensor's axes.
+    /// Writes the unit motions along and about the sensor's axes.
     template <class Real, class Scalar>
     static constexpr int begin(const Constants<Real>& output, const ChainJoint<Real>* /*joints*/, int link,
                                Screw<Scalar>* screws) noexcept {
@@ -108,7 +111,7 @@ struct WrenchAtSensor {
         return std::int64_t{outputs} * bodies;
     }
 
-    /// At most: where every link counts the sensor may sit on the first link, not on the base.
+    /// An upper bound: if every link contributes, the sensor may be on the first link instead of the base.
     static constexpr std::int64_t carries(int outputs, int bodies, int joints) noexcept {
         return std::int64_t{outputs} * (bodies == joints ? bodies : bodies - 1);
     }
@@ -116,8 +119,8 @@ struct WrenchAtSensor {
     static constexpr int begin_cost = 27;
 };
 
-/// A serial chain of n joints of known geometry, compiled in; what is learned is the inertial parameters of
-/// its bodies.
+/// A serial chain of n joints whose geometry is compiled in. The inertial parameters of its bodies are
+/// learned.
 template <int n, class OutputType = JointTorques>
 struct Chain {
     using Output = OutputType;
@@ -127,7 +130,7 @@ struct Chain {
     static constexpr int parameters = product(inertial_parameters, bodies);
     static_assert(n == dynamic || bodies <= n, "more bodies than links");
 
-    /// Empty for a firmware model: every size is a template argument.
+    /// Empty for a firmware model, where every size is a template argument.
     struct Sizes {
         [[no_unique_address]] Extent<joints> joint_count{};
         [[no_unique_address]] Extent<outputs> output_count{};

@@ -11,17 +11,16 @@
 
 namespace dfdyn {
 
-/// A named effect adds columns to the physics: each column acts on one output and is known but for its
-/// factor, which is learned. An effect says
-///  - `identity`: a number that differs from every other effect's, 1000 or more for a user's own; it is part
-///    of a snapshot;
-///  - `columns`: how many; `column_cost<Scalar>`: multiply-adds of one, at most;
-///  - `at_joint`: its columns act on joints, so that the outputs must be the joints' torques;
-///  - `Constants`: `row` gives the output (0: the first) that each column acts on, the rest is the effect's
-///    own;
-///  - `value(constants, column, xi)`: the column's entry in that row, from (q, q̇, q̈) of each joint at 3i + j.
-///    In N·m (N) per unit of the parameter, of what the actuator has to give.
-/// The motion's scalar may carry derivatives.
+/// A named effect adds columns to the physics. Each column acts on one output and is known up to a factor,
+/// which is learned. An effect defines
+///  - `identity`: differs from that of every other effect, 1000 or more for a user's own; part of a snapshot;
+///  - `columns`: their number; `column_cost<Scalar>`: maximum multiply-adds of one;
+///  - `at_joint`: true if the columns act on joints, so that the outputs must be joint torques;
+///  - `Constants`: `row` gives the output (0: the first) that each column acts on; the effect may add more;
+///  - `value(constants, column, xi)`: the entry of a column in that row, from (q, q̇, q̈), element j of joint
+///    i at 3i + j. The unit is N·m (N) of actuator torque (force) per unit of the parameter.
+///
+/// The scalar of the motion may carry derivatives.
 template <class E>
 concept PhysicsEffect = requires(const typename E::template Constants<float>& constants, int column,
                                  const float* xi) {
@@ -37,8 +36,8 @@ concept PhysicsEffect = requires(const typename E::template Constants<float>& co
 
 namespace detail {
 
-/// An effect whose columns are one element of their joint's motion (0: q, 1: q̇, 2: q̈). `Effect` tells one
-/// such effect's constants from another's.
+/// An effect whose columns equal one element of their joint's motion (0: q, 1: q̇, 2: q̈). The template
+/// argument `Effect` makes the constants of different effects different types.
 template <template <int> class Effect, int count, int element>
 struct MotionColumns {
     static constexpr int columns = count;
@@ -59,13 +58,13 @@ struct MotionColumns {
 
 } // namespace detail
 
-/// `viscous_friction`: q̇; the parameter is N·m·s/rad.
+/// `viscous_friction`: q̇. Unit of the parameter: N·m·s/rad.
 template <int count>
 struct ViscousFriction : detail::MotionColumns<ViscousFriction, count, 1> {
     static constexpr int identity = 1;
 };
 
-/// `coulomb_friction`: tanh(q̇ / v), a sign without a step; the parameter is N·m.
+/// `coulomb_friction`: tanh(q̇ / v), a smooth sign. Unit of the parameter: N·m.
 template <int count>
 struct CoulombFriction {
     static constexpr int identity = 2;
@@ -87,8 +86,8 @@ struct CoulombFriction {
     }
 };
 
-/// `stribeck_friction` beyond Coulomb's: tanh(q̇ / v) exp(-(q̇ / v_s)²); the parameter is static less Coulomb
-/// friction (N·m).
+/// `stribeck_friction`, in addition to Coulomb friction: tanh(q̇ / v) exp(-(q̇ / v_s)²). The parameter is
+/// static minus Coulomb friction (N·m).
 template <int count>
 struct StribeckFriction {
     static constexpr int identity = 3;
@@ -96,12 +95,13 @@ struct StribeckFriction {
     template <class>
     static constexpr std::int64_t column_cost = 2 * function_cost + 4;
     static constexpr bool at_joint = true;
-    static constexpr int faded = 40; ///< exp(-40) is nothing, and beyond 87 a float has denormals
+    /// exp(-40) is negligible; beyond 87 the result in float would be denormal.
+    static constexpr int faded = 40;
 
     template <class Scalar>
     struct Constants {
         Storage<std::int32_t, count> row;
-        Storage<Scalar, count> sign_velocity;     ///< v > 0 (rad/s), as of Coulomb friction
+        Storage<Scalar, count> sign_velocity;     ///< v > 0 (rad/s), as for Coulomb friction
         Storage<Scalar, count> stribeck_velocity; ///< v_s > 0 (rad/s), above v
     };
 
@@ -121,20 +121,21 @@ struct StribeckFriction {
     }
 };
 
-/// `rotor_inertia`: q̈; the parameter is the inertia seen at the joint (kg·m²).
+/// `rotor_inertia`: q̈. The parameter is the inertia reflected to the joint (kg·m²).
 template <int count>
 struct RotorInertia : detail::MotionColumns<RotorInertia, count, 2> {
     static constexpr int identity = 4;
 };
 
-/// `joint_spring`: q; the parameter is its stiffness (N·m/rad). Where it rests is part of the row's offset.
+/// `joint_spring`: q. The parameter is the stiffness (N·m/rad). Its rest position is part of the row's
+/// offset.
 template <int count>
 struct JointSpring : detail::MotionColumns<JointSpring, count, 0> {
     static constexpr int identity = 5;
 };
 
-/// `torque_ripple`: sin(c q + phase). Two columns of phases 0 and pi/2 are a wave of any phase; the
-/// parameters are N·m.
+/// `torque_ripple`: sin(c q + phase). Two columns with phases 0 and pi/2 form a wave of any phase. Unit of
+/// the parameters: N·m.
 template <int count>
 struct TorqueRipple {
     static constexpr int identity = 6;
@@ -147,7 +148,7 @@ struct TorqueRipple {
     struct Constants {
         Storage<std::int32_t, count> row;
         Storage<Scalar, count>
-            cycles_per_rev; ///< c > 0, c |q| ≤ 8000; a float's angle is good to 1e-4 rad up to c = 200
+            cycles_per_rev; ///< c > 0, c |q| ≤ 8000; in float the angle is accurate to 1e-4 rad up to c = 200
         Storage<Scalar, count> phase; ///< rad
     };
 
@@ -161,7 +162,7 @@ struct TorqueRipple {
     }
 };
 
-/// `torque_offset` or `ft_bias`: 1; the parameter is what is added to the output (N·m, N).
+/// `torque_offset` or `ft_bias`: 1. The parameter is added to the output (N·m, N).
 template <int count>
 struct OutputOffset {
     static constexpr int identity = 7;

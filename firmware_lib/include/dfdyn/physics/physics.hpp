@@ -12,16 +12,18 @@
 namespace dfdyn {
 
 /// The parametric part of a model: columns ψ of the rigid body's inertial parameters and of named effects, so
-/// that output = ψ π. MotionType is an input map whose `scale` makes (q, q̇, q̈) of each joint in rad, m and
-/// s. Of all columns - ten per body, base to tip, then those of each effect in the order of the template
-/// arguments - p are selected, since of the inertial parameters only combinations can be identified.
+/// that output = ψ π. `MotionType` is an input map whose `scale` makes (q, q̇, q̈) of each joint in rad, m
+/// and s. All columns are ten per body, base to tip, then those of each effect in the order of the template
+/// arguments. Of these, p are selected, because only certain combinations of inertial parameters are
+/// identifiable.
 template <class MotionType, int p, PhysicsEffect... EffectTypes>
 struct Physics {
     static_assert(MotionType::features_per_joint == 3, "the motion is position, velocity and acceleration");
     using Motion = MotionType;
     static constexpr int columns = p;
 
-    /// Of each effect, in the order of the template arguments; a reference to one binds to the whole.
+    /// Constants of all effects, in the order of the template arguments. A reference to the constants of one
+    /// effect binds to this object.
     template <class Scalar>
     struct EffectConstants : EffectTypes::template Constants<Scalar>... {};
 
@@ -30,15 +32,15 @@ struct Physics {
         typename Arm::template Constants<Scalar> chain;
         typename MotionType::template Constants<Scalar, Arm::joints> motion;
         [[no_unique_address]] EffectConstants<Scalar> effects;
-        /// |q|, |q̇|, |q̈| of each joint beyond which there is no row (rad, m, s): one glitch of an encoder
-        /// would weigh more than all that was learned.
+        /// Limits of |q|, |q̇|, |q̈| of each joint (rad, m, s), beyond which no row is computed: one glitch
+        /// of an encoder would otherwise outweigh all learned samples.
         Storage<Scalar, product(3, Arm::joints)> motion_limit;
-        Storage<std::int32_t, p> selected; ///< indices of the selected columns among all, ascending
-        Storage<Scalar, p> column_scale;   ///< the parameter that is learned is the physical one / scale
+        Storage<std::int32_t, p> selected;         ///< indices of the selected columns, ascending
+        Storage<Scalar, p> column_scale;           ///< the learned parameter is the physical one / scale
         Storage<Scalar, Arm::outputs> output_gain; ///< output per N·m (N): 1, or 1 / torque constant (A/N·m)
     };
 
-    /// Empty for a firmware model: every size is a template argument.
+    /// Empty for a firmware model, where every size is a template argument.
     template <class Arm>
     struct Sizes {
         [[no_unique_address]] Extent<Arm::joints> joint_count{};
@@ -52,8 +54,8 @@ struct Physics {
         }
     };
 
-    /// Returns a number that differs between physics whose parameters mean different things: the motion's
-    /// input, the kind of the outputs, the effects that have columns, and which columns are selected. O(p).
+    /// Returns a number that differs between physics whose parameters have different meanings. It depends on
+    /// the motion's input, the kind of outputs, the effects with columns, and the selected columns. O(p).
     template <class Scalar, class Arm>
     static std::uint32_t identity_of(const Constants<Scalar, Arm>& constants) noexcept {
         std::uint32_t crc = crc32_of(std::int32_t{input_identity<MotionType>(constants.motion)}, 0);
@@ -65,9 +67,10 @@ struct Physics {
         return crc;
     }
 
-    /// Writes ψ (outputs × p, row-major, in the outputs' units) of a motion: (q, q̇, q̈) of each joint, element
-    /// j of joint i at 3i + j; rad, m, s. Its scalar may carry derivatives. Nothing is checked. An effect
-    /// `at_joint` may be selected for an arm with joint torques only, and its rows are joints of the arm.
+    /// Writes ψ (outputs × p, row-major, in the outputs' units) of a motion: (q, q̇, q̈) of each joint,
+    /// element j of joint i at 3i + j; rad, m, s. The scalar may carry derivatives. Arguments are not
+    /// checked. An effect with `at_joint` may be selected only if the outputs are joint torques; its rows are
+    /// then joints of the arm.
     template <class Arm, class Real, class Scalar>
     static void evaluate_rows(const Constants<Real, Arm>& constants, const Sizes<Arm>& sizes,
                               const Scalar* xi, Scalar* psi) noexcept {
@@ -98,8 +101,8 @@ struct Physics {
             motion_.push(sample);
         }
 
-        /// Writes ψ (outputs × p, row-major, in the outputs' units) of the newest sample. False, and ψ void,
-        /// if its motion is beyond the limits or no number.
+        /// Writes ψ (outputs × p, row-major, in the outputs' units) of the newest sample. Returns false, with
+        /// ψ undefined, if its motion exceeds the limits or is NaN.
         bool evaluate(Scalar* psi) noexcept {
             motion_.evaluate(xi_.data());
             for (int i = 0; i < 3 * sizes_.joint_count; ++i) {
@@ -111,7 +114,7 @@ struct Physics {
             return true;
         }
 
-        /// Multiply-adds of `evaluate`, at most: all of it where every column is selected.
+        /// Returns the maximum multiply-adds of `evaluate`, reached if every column is selected.
         [[nodiscard]] static constexpr std::int64_t cost(const Sizes& sizes) noexcept {
             const std::int64_t written = std::int64_t{2} * sizes.output_count * sizes.column_count;
             return MotionMap::cost(sizes.joint_count, sizes.lag_count, 3) +
@@ -123,8 +126,8 @@ struct Physics {
                    storage_bytes<Scalar>(std::int64_t{3} * sizes.joint_count);
         }
 
-        /// Of `push` and `evaluate`: the outputs' screws, motion and frame of a link, a body's row, and what
-        /// it takes to get from one to the next, its cosine and sine too.
+        /// Of `push` and `evaluate`: the outputs' screws, motion and frame of a link, the row of a body, and
+        /// the computation of the next link, including its cosine and sine.
         [[nodiscard]] static constexpr std::int64_t stack_bytes(const Sizes& sizes) noexcept {
             constexpr int of_a_link = 224;
             const std::int64_t scalars = of_a_link + 6 * sizes.output_count;
@@ -137,7 +140,8 @@ struct Physics {
             const int most = Effect::columns == dynamic ? selected : std::min(Effect::columns, selected);
             return Effect::template column_cost<Scalar> * most;
         }
-        /// Of all that are there, and not more than of the most expensive ones alone.
+        /// Cost of the effects: the sum over all columns, but at most that of the most expensive ones for
+        /// `selected` columns.
         static constexpr std::int64_t effects_cost(int selected) noexcept {
             const std::int64_t most =
                 std::max({std::int64_t{0}, EffectTypes::template column_cost<Scalar>...});
@@ -155,7 +159,8 @@ struct Physics {
     };
 
   private:
-    /// Adds an effect to a checksum, unless it has no column: a host program's physics has all effects.
+    /// Adds an effect to a checksum unless it has no columns: the physics of a host program contains all
+    /// effects.
     template <class Effect, class Scalar>
     static void add_effect(const typename Effect::template Constants<Scalar>& effect,
                            std::uint32_t& crc) noexcept {
@@ -165,7 +170,7 @@ struct Physics {
         }
     }
 
-    /// Writes the selected columns of all bodies; returns how many they are.
+    /// Writes the selected columns of all bodies; returns their number.
     template <class Arm, class Real, class Scalar>
     static int write_bodies(const Constants<Real, Arm>& constants, const Sizes<Arm>& sizes, const Scalar* xi,
                             Scalar* psi) noexcept {
@@ -189,7 +194,8 @@ struct Physics {
         return column;
     }
 
-    /// Writes the selected columns of one effect, whose first column among all is `first`; moves both on.
+    /// Writes the selected columns of one effect, whose first column has index `first`; advances both
+    /// indices.
     template <class Effect, class Arm, class Real, class Scalar>
     static void write_effect(const Constants<Real, Arm>& constants, const Sizes<Arm>& sizes, const Scalar* xi,
                              int& first, int& column, Scalar* psi) noexcept {
@@ -205,7 +211,7 @@ struct Physics {
         first += effect.row.size();
     }
 
-    /// The first selected column, from `column` on, whose index among all is not below `index`.
+    /// Returns the first selected column, from `column` on, whose index is at least `index`.
     template <class Arm, class Real>
     static int end_of(const Constants<Real, Arm>& constants, const Sizes<Arm>& sizes, int column,
                       int index) noexcept {

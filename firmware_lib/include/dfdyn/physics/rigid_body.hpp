@@ -9,7 +9,7 @@
 
 namespace dfdyn {
 
-/// How a link moves, in its own frame; `acceleration` is that of the frame's origin, less gravity.
+/// Motion of a link in its own frame. `acceleration` is that of the frame's origin minus gravity.
 template <class Scalar>
 struct LinkMotion {
     Vector3<Scalar> angular_velocity, angular_acceleration, acceleration;
@@ -17,8 +17,8 @@ struct LinkMotion {
 
 namespace detail {
 
-/// Where a joint at `position` puts the link's frame in the previous link's. Rodrigues' rotation about the
-/// axis, row by row: only the last line depends on the position.
+/// Returns the pose of a link's frame in the previous link's frame for a joint at `position`. Rodrigues'
+/// rotation about the axis, row by row: only the last line depends on the position.
 template <class Scalar, class Real>
 LinkFrame<Scalar> link_frame(const ChainJoint<Real>& joint, const Scalar& position) noexcept {
     Scalar c(1);
@@ -41,7 +41,7 @@ LinkFrame<Scalar> link_frame(const ChainJoint<Real>& joint, const Scalar& positi
     return frame;
 }
 
-/// The motion of a link from that of the previous one and its joint's rate and acceleration.
+/// Returns the motion of a link from that of the previous link and the joint's rate and acceleration.
 template <class Scalar, class Real>
 LinkMotion<Scalar> link_motion(const LinkMotion<Scalar>& previous, const LinkFrame<Scalar>& frame,
                                const ChainJoint<Real>& joint, const Scalar& velocity,
@@ -66,9 +66,9 @@ LinkMotion<Scalar> link_motion(const LinkMotion<Scalar>& previous, const LinkFra
 
 } // namespace detail
 
-/// Goes along the chain and calls visit(body, motion, screws, count) for every body, base to tip: `screws`
-/// holds those of the first `count` outputs, in the body's frame; the other outputs do not feel the body.
-/// `xi` is (q, q̇, q̈) of each joint: element j of joint i at 3i + j; rad, m, s.
+/// Traverses the chain and calls visit(body, motion, screws, count) for every body, base to tip. `screws`
+/// contains those of the first `count` outputs, in the body's frame; the body does not contribute to the
+/// other outputs. `xi` is (q, q̇, q̈) of each joint: element j of joint i at 3i + j; rad, m, s.
 template <class Arm, class Real, class Scalar, class Visit>
 void for_each_body(const typename Arm::template Constants<Real>& chain, const typename Arm::Sizes& sizes,
                    const Scalar* xi, Visit visit) noexcept {
@@ -91,9 +91,9 @@ void for_each_body(const typename Arm::template Constants<Real>& chain, const ty
     }
 }
 
-/// The ten derivatives of a screw's output by a body's inertial parameters: screw · wrench, where the wrench
-/// of the body about its frame's origin is force = m a + A (mc), torque = (mc) × a + I α + ω × I ω with A =
-/// [α]× + [ω]×[ω]×.
+/// Writes the ten derivatives of a screw's output with respect to a body's inertial parameters: screw ·
+/// wrench. The wrench of the body about its frame's origin is force = m a + A (mc), torque = (mc) × a + I α +
+/// ω × I ω, with A = [α]× + [ω]×[ω]×.
 template <class Scalar>
 void inertial_row(const Screw<Scalar>& screw, const LinkMotion<Scalar>& motion, Scalar* row) noexcept {
     const auto& [w, alpha, a] = motion;
@@ -114,9 +114,9 @@ void inertial_row(const Screw<Scalar>& screw, const LinkMotion<Scalar>& motion, 
     row[9] = u.z * alpha.z + uw.z * w.z;
 }
 
-/// Multiply-adds of the regressor of revolute joints; a prismatic one needs no cosine and sine. Per joint its
-/// frame and its motion, per screw and joint it passes the change of frames, per pair of an output and a body
-/// that acts on it the row.
+/// Multiply-adds of the regressor for revolute joints; a prismatic joint needs no cosine and sine. Sum of the
+/// frame and motion per joint, the change of frame per screw and joint it passes, and the row per pair of an
+/// output and a body that contributes to it.
 template <class Arm, class Scalar>
 constexpr std::int64_t rigid_body_cost(const typename Arm::Sizes& sizes) noexcept {
     constexpr std::int64_t joint = cos_sin_cost<Scalar>(1) + 57 + 57;
@@ -126,14 +126,15 @@ constexpr std::int64_t rigid_body_cost(const typename Arm::Sizes& sizes) noexcep
            51 * Output::pairs(sizes.output_count, sizes.body_count);
 }
 
-/// The rows ψ with ψ π = output (paper, eq. par_regr_model), where π holds the inertial parameters of every
-/// body, base to tip, each in the order of `inertial_parameters`. Writes outputs × 10·bodies values,
-/// row-major, rows `stride` ≥ 10·bodies apart. O(n²): each output's screw is carried along the chain and met
-/// with the wrench of each body, so that no wrench has to be carried back.
+/// Writes the rows ψ with ψ π = output (paper, Section III-A, eq. 3), where π contains the inertial
+/// parameters of every body, base to tip, each in the order of `inertial_parameters`. Writes outputs ×
+/// 10·bodies values, row-major, rows `stride` ≥ 10·bodies apart. O(n²): each output's screw is transformed
+/// along the chain and multiplied with the wrench of each body, so that no wrench has to be transformed back.
 ///
 /// `xi` is (q, q̇, q̈) of each joint: element j of joint i at 3i + j; rad, m, s. The scalar of the motion may
-/// carry derivatives; the constants are then of a plain scalar or of the same, and entries that are 0 in
-/// every motion carry none. Nothing is checked: what is not finite comes out as not finite.
+/// carry derivatives. The constants then have a plain scalar or the same one, and entries that are 0 in every
+/// motion carry no derivatives. Arguments are not checked: values that are not finite give results that are
+/// not finite.
 template <class Arm, class Real, class Scalar>
 void rigid_body_regressor(const typename Arm::template Constants<Real>& chain,
                           const typename Arm::Sizes& sizes, const Scalar* xi, Scalar* psi,

@@ -5,14 +5,15 @@
 
 namespace dfdyn {
 
-/// A vector of space. The scalar may be any type with arithmetic, also one that carries derivatives.
+/// A vector in three dimensions. The scalar may be any arithmetic type, including one that carries
+/// derivatives.
 template <class Scalar>
 struct Vector3 {
     Scalar x, y, z;
 
     static constexpr Vector3 zero() noexcept { return {Scalar(0), Scalar(0), Scalar(0)}; }
 
-    /// From three numbers of this scalar or of a plainer one.
+    /// Converts three numbers of this scalar or of a plainer one.
     template <class Real>
     static constexpr Vector3 from(const Real* values) noexcept {
         return {Scalar(values[0]), Scalar(values[1]), Scalar(values[2])};
@@ -40,25 +41,25 @@ struct Vector3 {
     }
 };
 
-/// A unit motion: the rate at which a frame turns, and the velocity of its origin. Times a wrench about that
-/// origin it is the component of the wrench along the motion (its virtual power).
+/// A unit motion: angular velocity of a frame and velocity of its origin. Its product with a wrench about
+/// that origin is the component of the wrench along the motion (its virtual power).
 template <class Scalar>
 struct Screw {
     Vector3<Scalar> angular, linear;
 };
 
-/// A link's frame within an outer one; x_outer = (row_i · x_inner)_i + origin.
+/// Pose of a link's frame in an outer frame; x_outer = (row_i · x_inner)_i + origin.
 template <class Scalar>
 struct LinkFrame {
     Vector3<Scalar> row[3];
     Vector3<Scalar> origin;
 
-    /// A vector of the outer frame in this one: 9 multiply-adds.
+    /// Expresses a vector of the outer frame in this frame: 9 multiply-adds.
     [[nodiscard]] constexpr Vector3<Scalar> inward(const Vector3<Scalar>& outer) const noexcept {
         return row[0] * outer.x + row[1] * outer.y + row[2] * outer.z;
     }
 
-    /// The same motion, seen from this frame: 24 multiply-adds.
+    /// Expresses a motion of the outer frame in this frame: 24 multiply-adds.
     [[nodiscard]] constexpr Screw<Scalar> inward(const Screw<Scalar>& outer) const noexcept {
         return {inward(outer.angular), inward(outer.linear + cross(outer.angular, origin))};
     }
