@@ -17,37 +17,37 @@
 
 namespace dfdyn {
 
-/// What one tick gives. Where nothing could be predicted the prediction is 0, so that a careless feed-forward
-/// adds no torque, and its standard deviation is infinite. A prediction beyond the model's `prediction_limit`
-/// is that limit, and its standard deviation at least the distance between the two.
+/// Result of one tick. Without a prediction the value is 0, so that feeding it forward unchecked adds no
+/// torque, and its standard deviation is infinite. A prediction beyond the model's `prediction_limit` is
+/// replaced by that limit, and its standard deviation is at least the distance between the two.
 template <class Scalar, int m>
 struct Estimate {
-    Storage<Scalar, m> prediction;         ///< in the output's unit, made before the sample was learned
-    Storage<Scalar, m> standard_deviation; ///< of the measurement about it: parameter uncertainty and noise
+    Storage<Scalar, m> prediction;         ///< in the output's unit, computed before the sample is learned
+    Storage<Scalar, m> standard_deviation; ///< of the measurement about the prediction: parameters and noise
     Storage<Scalar, m> innovation;         ///< measured - prediction; 0 without a usable measurement
-    /// The sum over the outputs of (measured - prediction)² / `standard_deviation`², both before the bound;
-    /// about m while the model holds, 0 without a measurement. Where outputs share
-    /// parameters (P, SPK) it is not chi-square: how their errors correlate is not looked at.
+    /// Sum over the outputs of (measured - prediction)² / `standard_deviation`², both before the bound. About
+    /// m while the model is valid, 0 without a measurement. If outputs share parameters (P, SPK) it is not
+    /// chi-square, because the correlation of their errors is ignored.
     Scalar normalised_innovation_squared;
     Status status;
 };
 
-/// How often each reason occurred since the last reset; never decreases in between: 64 bits last for ever (at
-/// 1 kHz, 584 million years), where 32 would have wrapped after 49.7 days, and a count that saturated there
-/// would have hidden every later fault. On a core of 32 bits a counter is read in two loads: read it where
-/// the estimator ticks, or while nothing ticks.
+/// Number of occurrences of each reason since the last reset; monotonic in between. 64 bits suffice for 584
+/// million years at 1 kHz. 32 bits would wrap after 49.7 days, and a saturated counter would hide every later
+/// fault. A 32-bit core reads a counter in two loads, so read it in the context that ticks, or while nothing
+/// ticks.
 struct Counters {
     std::uint64_t ticks = 0;
     std::uint64_t predicted = 0;
     std::uint64_t learned = 0;
-    /// By the reason's number: of prediction, or of learning if predicted.
+    /// Indexed by the reason's number: the reason of the prediction, or of learning if predicted.
     Storage<std::uint64_t, reason_count> reasons{};
 };
 
-/// Learns an arm's inverse dynamics tick by tick and predicts in every tick. The whole state is in this
-/// object: no heap, no globals; give it static storage (it may be large). Refers to `constants`, which must
-/// outlive it. Not thread-safe: one context ticks it, and all other calls are made there, or while nothing
-/// ticks. Only a `SnapshotWriter` may copy from another context meanwhile.
+/// Learns the inverse dynamics of an arm tick by tick and predicts in every tick. The whole state is in this
+/// object, without heap or globals; it may be large, so give it static storage. Refers to `constants`, which
+/// must outlive it. Not thread-safe: one context ticks it and makes all other calls, or they are made while
+/// nothing ticks. Only a `SnapshotWriter` may copy from another context during ticks.
 template <class ModelType>
 class Estimator {
   public:
@@ -60,21 +60,25 @@ class Estimator {
     using Regression = typename Model::Structure::template Regression<Model>;
     static_assert(RegressionOf<Regression, Scalar, Sample>);
 
-    /// Consecutive samples from the past after which the sender's clock is taken to have been set back.
+    /// Consecutive samples with earlier time stamps after which the sender's clock is assumed to have been
+    /// set back.
     static constexpr int clock_restart_samples = 3;
 
-    explicit Estimator(const Constants&&) = delete; // it would refer to a temporary
+    explicit Estimator(const Constants&&) = delete; // prevents a reference to a temporary
     explicit Estimator(const Constants& constants) noexcept
         : constants_(&constants), sizes_(constants.sizes), learn_cost_(cost(constants.sizes).learn),
           regression_(constants), target_(Outputs::zeros(sizes_.output_count)), ratio_(target_),
           without_features_(target_), gate_(constants.innovation_limit, constants.innovation_patience) {}
 
-    /// Predicts the sample's output from its position and the past, then learns it as far as the budget goes.
-    /// A refused sample leaves what has been learned as it is. Takes at most `cost().predict` +
-    /// `cost().variance` + the budget multiply-adds, whatever the input; where the sample is learned at once,
-    /// the variance comes with it; deciding on gaps takes `SampleClock::cost` besides. Within the budget,
-    /// learning may take more than `cost().learn`: `cost().forget` with forgetting, and for SPK the products
-    /// of φ with all weights once more where another sample ended in the same tick.
+    /// Predicts the sample's output from its position and the past positions, then learns the sample within
+    /// the budget. A refused sample does not change the learned state.
+    ///
+    /// Cost, for any input: at most `cost().predict` + `cost().variance` + the budget, in multiply-adds. If
+    /// the sample is learned at once, the variance is included in learning. Deciding on gaps takes
+    /// `SampleClock::cost` in addition. Within the budget, learning may take more than `cost().learn`:
+    ///  - with forgetting, `cost().forget`;
+    ///  - for SPK, the products of φ with all weights once more, if another sample was completed in the same
+    ///    tick.
     Estimate tick(const Sample& sample, Budget budget) noexcept {
         Estimate estimate = unknown();
         Status& status = estimate.status;
@@ -93,8 +97,8 @@ class Estimator {
         return estimate;
     }
 
-    /// Goes on with what earlier ticks began to learn, so that the rest of a sample can be spread over the
-    /// time until the next: at most the budget's multiply-adds. True when nothing is left.
+    /// Continues to learn earlier samples with at most the budget's multiply-adds, so that learning can be
+    /// spread over the time until the next sample. Returns true when nothing is left to do.
     bool advance(Budget budget) noexcept {
         held_ = !sequence_.try_change(0);
         const bool idle = work(budget);
@@ -102,8 +106,8 @@ class Estimator {
         return idle;
     }
 
-    /// Back to the state after construction: the start that the constants give, an empty window, counters at
-    /// zero.
+    /// Returns to the state after construction: the initial state of the constants, an empty window, counters
+    /// at zero.
     void reset() noexcept {
         sequence_.begin_change();
         regression_.reset();
@@ -127,17 +131,17 @@ class Estimator {
         gate_.restart();
     }
 
-    /// Bytes of a snapshot: what has been learned, including a sample still being learned. Not the window:
-    /// positions of the past are of no use to a later start.
+    /// Returns the size of a snapshot in bytes. It contains the learned state, including a sample that is
+    /// still being learned, but not the window: past positions are of no use after a later start.
     [[nodiscard]] std::size_t snapshot_bytes() const noexcept { return dfdyn::snapshot_bytes(*this); }
 
-    /// A buffer of this many bytes holds any snapshot of a firmware model.
+    /// Size in bytes of a buffer that holds any snapshot of a firmware model.
     static constexpr std::size_t snapshot_capacity =
         sizeof(SnapshotHeader) + sizeof(Regression) + sizeof(int) + sizeof(SnapshotChecksum);
 
-    /// Writes a snapshot to the front of `buffer`, of at least `snapshot_bytes()`. It takes the time of
-    /// hundreds of ticks; one that learns meanwhile, in an interrupt, makes the result `changed`: for that
-    /// case there is the `SnapshotWriter`.
+    /// Writes a snapshot to the front of `buffer`, which holds at least `snapshot_bytes()`. This takes as
+    /// long as hundreds of ticks. If an interrupt ticks and learns during the copy, the result is `changed`;
+    /// use a `SnapshotWriter` in that case.
     [[nodiscard]] SnapshotResult snapshot(std::span<std::byte> buffer) const noexcept {
         const std::uint32_t before = sequence_.read();
         const SnapshotResult result = write_snapshot(*this, model_identity(), buffer);
@@ -145,8 +149,8 @@ class Estimator {
         return whole || result != SnapshotResult::ok ? result : SnapshotResult::changed;
     }
 
-    /// Restores a snapshot of an estimator of the same model and restarts the window; rejects it whole if
-    /// anything is wrong.
+    /// Restores a snapshot of an estimator of the same model and restarts the window. A rejected snapshot
+    /// changes nothing.
     [[nodiscard]] SnapshotResult restore(std::span<const std::byte> buffer) noexcept {
         sequence_.begin_change();
         const SnapshotResult result = read_snapshot(*this, model_identity(), buffer);
@@ -161,7 +165,7 @@ class Estimator {
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
     [[nodiscard]] const Regression& regression() const noexcept { return regression_; }
 
-    /// Cost of a tick's parts in multiply-adds, a constant expression for a firmware model.
+    /// Returns the cost of a tick's parts in multiply-adds, a constant expression for a firmware model.
     [[nodiscard]] static constexpr Cost cost(const typename Model::Sizes& sizes = {}) noexcept {
         Cost cost = Regression::cost(sizes);
         cost.predict +=
@@ -170,16 +174,16 @@ class Estimator {
         return cost;
     }
 
-    /// Bytes of a firmware model. The stack does not grow with features or lags: on it are copies of the
-    /// estimate and what the parts need, one after the other.
+    /// Returns the memory of a firmware model in bytes. The stack does not grow with features or lags: it
+    /// contains copies of the estimate, and the data of one part at a time.
     [[nodiscard]] static constexpr Footprint footprint() noexcept {
         return {.state_bytes = sizeof(Estimator),
                 .constant_bytes = sizeof(Constants) + Model::StructureConstants::start_bytes,
                 .stack_bytes = frame_bytes + 3 * sizeof(Estimate) + Regression::stack_bytes({})};
     }
 
-    /// What a snapshot holds. It changes between `sequence_.begin_change` (or `try_change`) and `end_change`
-    /// only.
+    /// Visits the contents of a snapshot. They change only between `sequence_.begin_change` (or `try_change`)
+    /// and `end_change`.
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         Regression::visit_state(self.regression_, visitor);
@@ -193,9 +197,9 @@ class Estimator {
     using Outputs = Storage<Scalar, Model::outputs>;
     using Gate = InnovationGate<Scalar>;
 
-    /// Multiply-adds that an output takes between the regression's units and its own.
+    /// Multiply-adds per output for the conversion between the regression's units and the output's.
     static constexpr int output_cost = function_cost + 15;
-    /// Multiply-adds of an output's part in `innovation_square`.
+    /// Multiply-adds per output in `innovation_square`.
     static constexpr int square_cost = 2;
 
     [[nodiscard]] Estimate unknown() const noexcept {
@@ -210,7 +214,7 @@ class Estimator {
         return estimate;
     }
 
-    /// The gates of positions and time; what passes enters the window.
+    /// Checks position and time; an accepted sample enters the window.
     Reason accept(const Sample& sample) noexcept {
         const Reason fault = check_position(sample);
         if (fault != Reason::ok) {
@@ -235,13 +239,14 @@ class Estimator {
         return regression_.ready() ? Reason::ok : filling;
     }
 
-    /// Whether samples were lost in a step of that length.
+    /// Returns true if samples were lost in a step of that length (ns).
     bool lost_before(std::uint64_t step_ns) noexcept {
         return constants_->period_ns > 0 ? clock_.lost_before(step_ns, constants_->period_ns)
                                          : step_ns > static_cast<std::uint64_t>(constants_->gap_ns);
     }
 
-    /// Of a sample later than the last (ns); the difference of two stamps may need all 64 bits.
+    /// Returns the time since the last sample (ns), for a sample that is later; the difference of two stamps
+    /// may need all 64 bits.
     [[nodiscard]] std::uint64_t time_since_last(const Sample& sample) const noexcept {
         return static_cast<std::uint64_t>(sample.time_ns) - static_cast<std::uint64_t>(last_time_ns_);
     }
@@ -273,8 +278,8 @@ class Estimator {
         return Reason::ok;
     }
 
-    /// A stamp that is not later than the last: one such sample is a stray, several from the past in a row
-    /// are a new clock.
+    /// Processes a stamp that is not later than the last one. A single such sample is an outlier; several in
+    /// a row with earlier stamps indicate a new clock.
     bool clock_restarted(std::int64_t time_ns) noexcept {
         past_samples_ = time_ns < last_time_ns_ ? past_samples_ + 1 : 0;
         return past_samples_ == clock_restart_samples;
@@ -301,9 +306,9 @@ class Estimator {
         return all;
     }
 
-    /// Gates the measurement, learns what the budget allows, oldest first, and completes the estimate. The
-    /// variances come with a sample that is learned from begin to end in this tick; otherwise, or if they
-    /// decide whether to learn at all, they take a pass of their own.
+    /// Checks the measurement, learns within the budget, oldest sample first, and completes the estimate. A
+    /// sample that is learned entirely in this tick provides the variances. Otherwise, or if the variances
+    /// decide whether to learn, they are computed separately.
     void learn(const Sample& sample, Budget budget, Estimate& estimate) noexcept {
         Status& status = estimate.status;
         Scalar error_square =
@@ -335,7 +340,7 @@ class Estimator {
         complete(sample, measured, estimate);
     }
 
-    /// Goes on with an earlier sample, then with this one unless it was refused.
+    /// Continues an earlier sample, then learns this one unless it was refused.
     void fold(Budget& budget, Scalar noise_variance, Status& status) noexcept {
         bool idle = work(budget);
         if (idle && !held_ && budget.operations > 0 && gate_.take_change()) {
@@ -359,7 +364,7 @@ class Estimator {
         }
     }
 
-    /// Goes on with what the learner has in hand; true when it has nothing left.
+    /// Continues the learner's present task; returns true when nothing is left to do.
     bool work(Budget& budget) noexcept {
         if (held_) {
             return regression_.idle();
@@ -370,8 +375,8 @@ class Estimator {
         return idle;
     }
 
-    /// The measured outputs in units of their noise about their offset, as the regression sees them; returns
-    /// the sum of the squares of their differences from the prediction.
+    /// Converts the measured outputs to the regression's units (relative to offset and noise). Returns the sum
+    /// of the squared differences from the prediction.
     Scalar normalise(const Sample& sample, const Outputs& prediction) noexcept {
         Scalar error_square = 0;
         for (int k = 0; k < sizes_.output_count; ++k) {
@@ -382,10 +387,10 @@ class Estimator {
         return error_square;
     }
 
-    /// Reduces the prediction, in units of the noise, by the doubt that its input deserves, and turns
-    /// `ratio_` into the variances of measurements about it. Once the arm has changed, P covers only what has
-    /// been seen since, while the weights are still the best guess elsewhere: nothing is reduced until
-    /// `reset`.
+    /// Reduces the prediction, in units of the noise, by the doubt at its input (see `Extrapolation`), and
+    /// converts `ratio_` to the variances of measurements about it. After a change of the arm, P covers only
+    /// the samples since then, while the weights are still the best estimate elsewhere; the prediction is
+    /// then not reduced until `reset`.
     void extrapolate(Scalar feature_variance, Estimate& estimate) noexcept {
         const auto& known = constants_->extrapolation;
         const Extrapolation<Scalar> beyond(feature_variance, known.inverse_far_variance,
@@ -403,8 +408,8 @@ class Estimator {
         }
     }
 
-    /// Of the targets about a prediction in units of the noise, after `extrapolate`. Where outputs share
-    /// parameters, how their errors correlate is not looked at.
+    /// Returns the normalised squared innovation of the targets about a prediction in units of the noise,
+    /// after `extrapolate`. Ignores the correlation of errors between outputs that share parameters.
     [[nodiscard]] Scalar innovation_square(const Outputs& prediction) const noexcept {
         Scalar total = 0;
         for (int k = 0; k < sizes_.output_count; ++k) {
@@ -414,21 +419,21 @@ class Estimator {
         return std::min(total, std::numeric_limits<Scalar>::max());
     }
 
-    /// From the regression's units to the output's, and within the limits of the predictions.
+    /// Converts the estimate from the regression's units to the output's and applies the prediction limits.
     void complete(const Sample& sample, bool measured, Estimate& estimate) const noexcept {
         for (int k = 0; k < sizes_.output_count; ++k) {
             const Scalar noise = constants_->output_noise_std[k];
             estimate.prediction[k] = constants_->output_offset[k] + noise * estimate.prediction[k];
             using std::sqrt;
             estimate.standard_deviation[k] = noise * sqrt(ratio_[k]);
-            if (k < constants_->prediction_limit.size()) { // sizes of run time: it may be absent
+            if (k < constants_->prediction_limit.size()) { // may be absent with run-time sizes
                 bound(constants_->prediction_limit[k], k, estimate);
             }
             estimate.innovation[k] = measured ? sample.output[k] - estimate.prediction[k] : Scalar(0);
         }
     }
 
-    /// Takes the prediction of output k back to ±`limit`, if there is one.
+    /// Limits the prediction of output k to ±`limit` if `limit` > 0.
     static void bound(Scalar limit, int k, Estimate& estimate) noexcept {
         const Scalar own = estimate.prediction[k];
         if (!(limit > 0) || (own <= limit && own >= -limit)) {
@@ -454,8 +459,8 @@ class Estimator {
         ++counters_.reasons[static_cast<int>(status.reason())];
     }
 
-    /// Kinds of all parts, sizes and scalar as well as the constants' identity: models that differ in any of
-    /// them may share the latter.
+    /// Returns a checksum over the kinds of all parts, the sizes, the scalar and the constants' identity,
+    /// because models that differ in any of these may have the same identity.
     [[nodiscard]] std::uint32_t model_identity() const noexcept {
         const std::int32_t parts[] = {sizes_.joint_count,
                                       sizes_.output_count,
@@ -478,16 +483,16 @@ class Estimator {
     Regression regression_;
     SampleClock clock_;
     Outputs target_;
-    Outputs ratio_;            ///< the variance of a measurement about each prediction, in the noise's units
-    Outputs without_features_; ///< what the physics alone predicts, in the regression's units
+    Outputs ratio_; ///< variance of a measurement about each prediction, in units of the noise variance
+    Outputs without_features_; ///< prediction of the physics alone, in the regression's units
     Counters counters_;
     StateSequence sequence_;
-    bool held_ = false; ///< nothing may be learned in this tick
+    bool held_ = false; ///< no learning in this tick
     std::int64_t last_time_ns_ = 0;
     bool has_time_ = false;
     int past_samples_ = 0;
     Gate gate_;
-    int changed_ = 0; ///< 1: the arm was found to have changed since the start
+    int changed_ = 0; ///< 1: a change of the arm was detected since the start
 };
 
 } // namespace dfdyn

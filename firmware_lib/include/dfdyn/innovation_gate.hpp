@@ -9,56 +9,57 @@
 
 namespace dfdyn {
 
-/// Tells a push from an arm that has changed, by how long measurements contradict the model.
+/// Distinguishes a push from a change of the arm by how long measurements contradict the model.
 ///
-/// The contradiction of a sample is its normalised innovation squared over a limit: the model's, times a
-/// level that follows what is ordinary for this arm.
-///  - Up to 1 the sample is learned as it is.
+/// The contradiction of a sample is its normalised innovation squared divided by a limit: that of the model,
+/// times a level that adapts to this arm.
+///  - Up to 1 the sample is learned unchanged.
 ///  - Up to `rejection` it is learned with contradiction⁴ times the noise variance. The further beyond the
-///    limit, the less it moves the model: a redescending influence function in three parts (F. R. Hampel,
+///    limit, the less it changes the model: a redescending influence function in three parts (F. R. Hampel,
 ///    "The influence curve and its role in robust estimation", 1974).
-///  - Beyond that it is refused.
-/// From a sample beyond `alarm` until the count below is back at 0, contradictions are measured by what is
-/// ordinary, a third of the limit: the end of a push is below the limit, and would be learned.
+///  - Beyond `rejection` it is refused.
+///
+/// From a sample beyond `alarm` until the count below has returned to 0, the limit is reduced to a third
+/// (`ordinary`). Otherwise the end of a push, which is below the full limit, would be learned.
 ///
 /// A count, in samples, rises with each contradiction beyond `ordinary` and falls with each other sample. A
-/// push ends before the count has reached the patience. Beyond the patience the arm is taken to have changed:
-/// `take_change` reports it once, and all samples are learned as they are until plausible ones have
-/// outnumbered the others by `settling` patiences. A moving arm that has changed has plausible samples at
-/// each reversal: they delay the decision by their number, but do not begin the wait anew.
+/// push ends before the count has reached the patience. Beyond the patience the arm is assumed to have
+/// changed: `take_change` reports it once. From then on all samples are learned unchanged until plausible
+/// samples outnumber the others by `settling` patiences. A moving arm that has changed has plausible samples
+/// at each reversal. They delay the decision by their number, but do not reset the count to 0.
 ///
 /// The level is a running quantile by stochastic approximation, and at least 1. Only samples that are learned
-/// as they are after a change raise it: a model that is never right is not found to have changed again and
-/// again. Exponent, `rejection` and `settling` were chosen on a simulated arm of two links, on motions No3 to
-/// No6 of a measured one and on a servo's runs 00 to 03; `alarm` with a pushed motion No7 in sight as well.
+/// unchanged after a change raise it, so that a model that never fits is not reported as changed again and
+/// again. The exponent, `rejection` and `settling` were chosen on a simulated two-link arm, on motions No3 to
+/// No6 of a measured arm and on runs 00 to 03 of a servo; for `alarm` a pushed motion No7 was also used.
 template <class Scalar>
 class InnovationGate {
   public:
-    /// Contradiction beyond which a sample is evidence of a change. The calibrated limit is three times what
-    /// 0.1 % of the samples of an unchanged arm exceed.
+    /// Contradiction beyond which a sample is evidence of a change. The calibrated limit is three times the
+    /// value that 0.1 % of the samples of an unchanged arm exceed.
     static constexpr double ordinary = 1.0 / 3;
-    /// Contradiction beyond which a sample is taken for part of a push.
+    /// Contradiction beyond which a sample is attributed to a push.
     static constexpr double alarm = 3;
     /// Contradiction beyond which a sample is refused.
     static constexpr double rejection = 10;
-    /// Patiences of plausible samples that end a change.
+    /// Net number of plausible samples that end a change, in patiences.
     static constexpr std::int64_t settling = 4;
 
-    /// `limit` > 0; one that is not, or is NaN, makes every sample a contradiction. `patience`: samples, any
-    /// number; with 0 or less every sample is learned as it is.
+    /// `limit` > 0; any other value, including NaN, makes every sample a contradiction. `patience`: samples,
+    /// any number; with 0 or less every sample is learned unchanged.
     constexpr InnovationGate(Scalar limit, std::int32_t patience) noexcept
         : limit_(limit), patience_(patience), rise_(1 + 2 / Scalar(std::max<std::int32_t>(patience, 2))),
           fall_(std::min<Scalar>(1 - Scalar(0.002) / Scalar(std::max<std::int32_t>(patience, 2)),
                                  1 - std::numeric_limits<Scalar>::epsilon())) {}
 
-    /// Begins a new motion with an empty count. The level stays, and a change that is still to be reported.
+    /// Starts a new motion with an empty count. Keeps the level and an unreported change.
     constexpr void restart() noexcept {
         count_ = 0;
         alarmed_ = false;
         changed_ = false;
     }
 
-    /// Judges one measured sample. Returns the noise variance to learn it with, in units of the output's
+    /// Checks one measured sample. Returns the noise variance to learn it with, in units of the output's
     /// noise variance (≥ 1), or 0 to refuse it.
     [[nodiscard]] constexpr Scalar judge(Scalar normalised_innovation_squared) noexcept {
         const Scalar limit = limit_ * level_;
@@ -97,7 +98,7 @@ class InnovationGate {
     static constexpr int cost = 6; ///< multiply-adds of `judge`
 
   private:
-    static constexpr double highest = 1000; ///< level: a model that far off has to be trained again
+    static constexpr double highest = 1000; ///< maximum level: a model this far off must be trained again
 
     constexpr void count(bool implausible) noexcept {
         if (!implausible) {
@@ -113,10 +114,12 @@ class InnovationGate {
 
     Scalar limit_;
     std::int32_t patience_;
-    Scalar rise_, fall_; ///< factors of the level per sample
+    Scalar rise_, fall_; ///< factors on the level per sample
     Scalar level_ = 1;
-    std::int64_t count_ = 0; ///< 0 … patience, or `settling` patiences where the arm has changed
-    bool alarmed_ = false;   ///< since a sample beyond `alarm` the count has not been 0
+    /// 0 … patience, or up to `settling` patiences after a change.
+    std::int64_t count_ = 0;
+    /// A sample exceeded `alarm`, and the count has not been 0 since.
+    bool alarmed_ = false;
     bool changed_ = false;
     bool change_pending_ = false;
 };
