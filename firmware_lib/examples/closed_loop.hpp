@@ -3,7 +3,8 @@
 
 #include "simulated_joints.hpp"
 
-/// The controller and its arm, tick by tick: on a computer, and in the timer interrupt of a Cortex-M.
+/// The controller and a simulated arm, tick by tick: for a computer, and for the timer interrupt of a
+/// Cortex-M.
 class ClosedLoop {
   public:
     ClosedLoop()
@@ -21,7 +22,7 @@ class ClosedLoop {
         joints_.advance(controller_.update(state, reference, SimulatedJoints::nominal(reference)));
     }
 
-    /// Root mean square of the tracking error since the last call, over all joints, rad.
+    /// Returns the root mean square tracking error since the last call, over all joints, rad.
     float take_error(int ticks) {
         const float mean = error_square_ / static_cast<float>(ticks * JointController::joints);
         error_square_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What it takes to watch an arm with an embedded estimator: a model that `dfdyn train --header` wrote, one
-// object, one call per tick. To move it, see joint_controller.hpp.
+// Observes an arm with an embedded estimator: a model written by `dfdyn train --header`, one object, one call
+// per tick. For control see joint_controller.hpp.
 #include "embedding.hpp"
 
 #include "ur5_model.hpp" // constants, in flash
@@ -10,9 +10,9 @@ namespace {
 
 using Estimator = dfdyn::Estimator<ur5_model::Model>;
 
-Estimator estimator(ur5_model::constants); // all of its state; no heap
+Estimator estimator(ur5_model::constants); // the whole state; no heap
 constexpr dfdyn::Budget budget{Estimator::cost().learn /
-                               2}; // of one tick: a sample is learned over two or three
+                               2}; // per tick: a sample is learned in two or three ticks
 static_assert(budget.affords(Estimator::cost().largest_step), "a smaller budget would never learn anything");
 
 } // namespace
@@ -23,7 +23,7 @@ int run_example(void (*after_tick)(const TickOutcome&)) {
     float output_square = 0;
     for (const Ur5Sample& recorded : ur5_samples) {
         const auto estimate = estimator.tick(read_sensors<Estimator::Sample>(recorded), budget);
-        if (estimate.status.predicted()) { // to compare, never to feed forward
+        if (estimate.status.predicted()) { // for comparison; never feed it forward
             error_square += estimate.innovation[1] * estimate.innovation[1];
             output_square += recorded.current_A[1] * recorded.current_A[1];
         }

@@ -3,7 +3,7 @@
 
 #include <array>
 
-/// What a tick of the example gave, as plain numbers: the same on every machine but for rounding.
+/// Result of one tick of the example as plain numbers, identical on every machine except for rounding.
 struct TickOutcome {
     std::array<double, 6> prediction; ///< A
     std::array<double, 6> standard_deviation;
@@ -11,10 +11,10 @@ struct TickOutcome {
     bool learned;
 };
 
-/// Runs the embedding example from its start. `after_tick`, where given, is called after each tick of the
-/// estimator, so that the caller can measure and compare. Returns 0 when the outcome is as expected; prints
-/// nothing, allocates nothing.
+/// Runs the embedding example from its initial state. `after_tick`, if given, is called after each tick of
+/// the estimator, so that the caller can measure and compare. Returns 0 if the result is as expected. Prints
+/// nothing and allocates nothing.
 int run_example(void (*after_tick)(const TickOutcome&) = nullptr);
 
-/// The same with the model in double precision (not part of an image whose core has none).
+/// Same, with the model in double precision. Not part of an image for a core without double precision.
 int run_example_in_double(void (*after_tick)(const TickOutcome&) = nullptr);

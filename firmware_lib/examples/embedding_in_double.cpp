@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The embedding example in double precision: the model's constants are widened when compiling.
+// The embedding example in double precision; the model's constants are converted at compile time.
 #include "embedding.hpp"
 
 #include "ur5_model.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// dfdyn_embedding: runs the example. dfdyn_embedding TICKS [TICKS_IN_DOUBLE]: compares it with what a target
-// wrote of each of its ticks, a line of whole numbers "ticks: …" for each.
+// dfdyn_embedding runs the example. dfdyn_embedding TICKS [TICKS_IN_DOUBLE] also compares it with the ticks
+// of a target, read from files with one line of integers "ticks: …" per tick.
 #include "embedding.hpp"
 
 #include <algorithm>
@@ -17,14 +17,14 @@
 
 namespace {
 
-std::vector<TickOutcome> outcomes; // of the run on this machine
+std::vector<TickOutcome> outcomes; // of this machine
 
 bool runs_well(int (*run)(void (*)(const TickOutcome&))) {
     outcomes.clear();
     return run([](const TickOutcome& outcome) { outcomes.push_back(outcome); }) == 0;
 }
 
-/// The lines of a target that begin with `tag`.
+/// Reads the target's lines that begin with `tag`.
 std::vector<TickOutcome> read_outcomes(const char* path, const std::string& tag) {
     std::ifstream file(path);
     std::vector<TickOutcome> read;
@@ -52,8 +52,8 @@ std::vector<TickOutcome> read_outcomes(const char* path, const std::string& tag)
     return read;
 }
 
-/// Relative to the value, or to the standard deviation where that is larger: a prediction of 0 is as good as
-/// it.
+/// Returns the largest difference relative to the value, or to the standard deviation if that is larger, so
+/// that small values are compared absolutely.
 double difference(const TickOutcome& a, const TickOutcome& b) {
     double largest = a.predicted == b.predicted && a.learned == b.learned ? 0 : 1;
     for (std::size_t k = 0; k < 6 && a.predicted && b.predicted; ++k) {

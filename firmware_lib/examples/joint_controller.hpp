@@ -11,9 +11,10 @@
 #include <cmath>
 #include <cstdint>
 
-/// A controller to copy from, in the manner of ros2_control: `activate`, then `update` in each period.
-/// Feedback, the learned feed-forward and an observer for what neither knows. Efforts are in the unit of the
-/// model's outputs, here A; it has no operating system, no heap and a bounded time per tick.
+/// A controller to copy and adapt, with the interface of ros2_control: `activate`, then `update` in each
+/// period. It contains feedback, the learned feed-forward and an observer for the remaining disturbance.
+/// Efforts are in the unit of the model's outputs, here A. No operating system, no heap, bounded time per
+/// tick.
 class JointController {
   public:
     static constexpr int joints = 6;
@@ -26,18 +27,18 @@ class JointController {
     using Reference = dfdyn::Reference<float, joints>;
     using Efforts = dfdyn::Storage<float, joints>;
 
-    /// What the joints show at one instant.
+    /// Measured state of the joints at one time.
     struct State {
         std::int64_t time_ns;
         Efforts position; // rad
         Efforts velocity; // rad/s
     };
 
-    /// What is known of the arm and wanted of the loop, the same for all joints for brevity.
+    /// Gains and limits of the loop, the same for all joints for brevity.
     struct Gains {
         float position;  // A/rad
         float velocity;  // A·s/rad
-        float inertia;   // A·s²/rad, about
+        float inertia;   // A·s²/rad, approximate
         float limit;     // A
         float bandwidth; // of the observer, rad/s; see dfdyn::LoopMargin
     };
@@ -51,17 +52,17 @@ class JointController {
                               .rate = all(20 * gains.limit)}),
           observer_({}, {1e-9F * period_ns, all(gains.bandwidth), all(0.3F * gains.limit)}) {}
 
-    /// The arm rests where the reference begins.
+    /// Starts the controller. The arm rests at the beginning of the reference.
     void activate(const State& state) {
         forward_.begin(state.time_ns, state.position.data());
         observer_.restart();
         effort_ = excess_ = all(0);
     }
 
-    /// Efforts until the next period. `nominal`: what your model of the arm says of the reference; zeros if
-    /// you have none.
+    /// Returns the efforts until the next period. `nominal`: effort of your own model for the reference;
+    /// zeros without one.
     const Efforts& update(const State& state, const Reference& reference, const Efforts& nominal) {
-        const Efforts before = effort_; // held while the arm came to where it is
+        const Efforts before = effort_; // in effect until the present position was reached
         Efforts error_rate, feedback;
         for (int k = 0; k < joints; ++k) {
             error_rate[k] = reference.velocity[k] - state.velocity[k];
@@ -74,20 +75,20 @@ class JointController {
             observer_.update(feedback.data(), inertia.data(), error_rate.data(), excess_.data());
         for (int k = 0; k < joints; ++k) {
             const float wanted = forward[k] + feedback[k] + disturbance[k];
-            // a position that is no number must not reach the motors: feed-forward is always one
+            // A NaN position must not reach the motors; the feed-forward is always finite.
             effort_[k] = std::isfinite(wanted) ? std::clamp(wanted, -gains_.limit, gains_.limit) : forward[k];
             excess_[k] = std::isfinite(wanted) ? wanted - effort_[k] : 0;
         }
         const bool limited =
             std::any_of(excess_.begin(), excess_.end(), [](float excess) { return excess != 0; });
-        if (!limited) { // else it is not what the motion takes
+        if (!limited) { // a limited effort is not the one that the motion needs
             forward_.commanded(effort_.data());
         }
         forward_.measured(state.time_ns, state.position.data(), before.data());
         return effort_;
     }
 
-    /// Switches what is learned on and off, without a step.
+    /// Switches the learned part on and off, without a step.
     void enable_learned(bool on) { forward_.enable(on); }
 
     [[nodiscard]] const Forward& forward() const { return forward_; }

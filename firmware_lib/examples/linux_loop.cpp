@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// dfdyn_linux_loop [SECONDS]: the controller in a bare loop of 1 kHz, as a real-time Linux runs it: absolute
-// times, locked memory, SCHED_FIFO where it is allowed. Without SECONDS as fast as it goes, which is what the
-// tests do: the arm is simulated either way. Prints the tracking error second by second.
+// dfdyn_linux_loop [SECONDS] runs the controller in a 1 kHz loop as on a real-time Linux: absolute times,
+// locked memory, and SCHED_FIFO if permitted. Without SECONDS it runs as fast as possible, as in the tests;
+// the arm is simulated in both cases. Prints the tracking error of each second.
 #include "closed_loop.hpp"
 
 #include <sched.h>
@@ -16,7 +16,7 @@ namespace {
 constexpr int ticks_per_second = 1000;
 constexpr int seconds_without_clock = 12;
 
-ClosedLoop loop; // static: it is large, and nothing is allocated
+ClosedLoop loop; // static, because it is large and nothing is allocated
 
 void become_real_time() {
     constexpr sched_param priority{80};

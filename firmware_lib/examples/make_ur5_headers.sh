@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Writes ur5_model.hpp, ur5_samples.hpp and ur5_frames.hpp anew, from the recording that the project carries.
+# Writes ur5_model.hpp, ur5_samples.hpp and ur5_frames.hpp from the recording in tests/data.
 # Usage: make_ur5_headers.sh PATH_TO_DFDYN
 set -euo pipefail
 dfdyn=${1:?usage: make_ur5_headers.sh PATH_TO_DFDYN}
@@ -27,7 +27,7 @@ awk -F, '
     }
     END { print "};" }' "$log" > "$here/ur5_samples.hpp"
 
-# The same rows as the frames that six CiA 402 drives would have sent.
+# The same rows as frames of six CiA 402 drives.
 awk 'NR == 1 || NR >= 5202 && NR < 5502' "$log" > "$scratch/rows.csv"
 "$dfdyn" convert --log "$scratch/rows.csv" --bus "$here/../../tests/data/can/ur5_cia402.json" -o "$scratch/frames.log"
 awk '

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/features/cos_sin.hpp" // the C library's are slow where they matter
+#include "dfdyn/features/cos_sin.hpp" // faster than the C library where speed matters
 #include "joint_controller.hpp"
 
 #include <cmath>
 
-/// In the place of a robot: six joints with inertia, gravity and friction, not those that the model was
-/// trained on, and a motion for them.
+/// Simulates six joints with inertia, gravity and friction that differ from those of the training data, and
+/// provides a reference motion for them.
 class SimulatedJoints {
   public:
     static constexpr int joints = JointController::joints;
@@ -17,7 +17,7 @@ class SimulatedJoints {
     static constexpr float viscous = 0.5F; // A·s/rad
     static constexpr float period_s = 1e-9F * JointController::period_ns;
 
-    /// At rest at the motion's start.
+    /// Starts at rest at the beginning of the motion.
     SimulatedJoints() {
         const JointController::Reference start = reference(0);
         for (int k = 0; k < joints; ++k) {
@@ -25,7 +25,7 @@ class SimulatedJoints {
         }
     }
 
-    /// A motion that repeats, from rest.
+    /// Returns the reference: a periodic motion that starts from rest.
     static JointController::Reference reference(std::int64_t tick) {
         JointController::Reference reference{};
         constexpr float rate = 2.5F; // rad/s
@@ -42,7 +42,7 @@ class SimulatedJoints {
         return reference;
     }
 
-    /// What a model that knows inertia only says of it.
+    /// Returns the nominal effort of a model that contains only the inertia.
     static JointController::Efforts nominal(const JointController::Reference& reference) {
         JointController::Efforts effort{};
         for (int k = 0; k < joints; ++k) {
@@ -51,7 +51,7 @@ class SimulatedJoints {
         return effort;
     }
 
-    /// A period under these efforts, in short steps.
+    /// Simulates one period with these efforts, in short steps.
     void advance(const JointController::Efforts& effort) {
         constexpr int steps = 4;
         constexpr float step_s = period_s / steps;
@@ -68,7 +68,7 @@ class SimulatedJoints {
     [[nodiscard]] const JointController::State& state() const { return state_; }
 
   private:
-    /// Smooth about rest, so that the steps can be long.
+    /// Friction, smooth near zero velocity so that the steps can be long.
     static float friction(float velocity) {
         constexpr float slow = 0.01F; // rad/s
         return coulomb * velocity / (slow + std::abs(velocity)) + viscous * velocity;

@@ -3,11 +3,11 @@
 
 #include "embedding.hpp"
 
-#include "ur5_samples.hpp" // a stretch of a recording in place of the sensors
+#include "ur5_samples.hpp" // part of a recording instead of sensors
 
 #include <algorithm>
 
-/// What the sensors would have given: positions in rad, motor currents in A as the outputs.
+/// Returns a recorded sample as if read from sensors: positions in rad, motor currents in A as the outputs.
 template <class Sample>
 Sample read_sensors(const Ur5Sample& recorded) {
     Sample sample{.time_ns = 1000 * recorded.time_us, .position = {}, .output = {}, .output_valid = true};

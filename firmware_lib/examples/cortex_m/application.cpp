@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the embedding example on a bare Cortex-M, writes what every tick gave, and reports what it took.
+// Runs the embedding example on a bare Cortex-M, writes the result of every tick, and reports time and
+// memory.
 #include "embedding.hpp"
 #include "instruction_counter.hpp"
 #include "report.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tick of a model of DFDYN_JOINTS joints, six outputs and DFDYN_FEATURES random features (2d columns):
-// instructions to predict, and to predict and learn; stack; and what the constant expressions said of bytes
-// before.
+// Benchmark of a tick of a model with DFDYN_JOINTS joints, six outputs and DFDYN_FEATURES random features (2d
+// columns): instructions for predicting, and for predicting and learning; stack; and the bytes that the
+// constant expressions predict.
 #include "dfdyn/dfdyn.hpp"
 #include "instruction_counter.hpp"
 #include "report.hpp"
@@ -17,7 +17,8 @@ using Model = dfdyn::Model<Scalar, dfdyn::Joints<DFDYN_JOINTS, 6>, dfdyn::Deriva
 using Estimator = dfdyn::Estimator<Model>;
 constexpr dfdyn::Footprint footprint = Estimator::footprint();
 
-/// Numbers without a pattern, in [-1, 1]; which does not matter: a tick takes the same way whatever they are.
+/// Pseudo-random numbers in [-1, 1]. Their values do not matter: a tick executes the same instructions for
+/// any values.
 constexpr Scalar any_number(std::uint32_t& state) {
     state = state * 1664525U + 1013904223U;
     return static_cast<Scalar>(static_cast<std::int32_t>(state)) / Scalar(2147483648.0);

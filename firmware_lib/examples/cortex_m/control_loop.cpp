@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Learning on the metal: a periodic timer interrupt takes what has come over CAN, gates it into a sample,
-// predicts, and learns within its budget. The idle loop saves what has been learned meanwhile. The frames
-// come from memory in the place of the controller's mailbox; for another board write `Mailbox` anew.
+// Learning on a microcontroller: a periodic timer interrupt reads the received CAN frames, assembles and
+// checks a sample, predicts, and learns within its budget. The idle loop saves the learned state. In this
+// example the frames come from memory; for a board with a CAN controller, replace `Mailbox`.
 #include "report.hpp"
 #include "stack_watermark.hpp"
 #include "systick.hpp"
@@ -20,10 +20,10 @@ namespace {
 using namespace dfdyn::hal;
 
 constexpr int joints = 6;
-constexpr std::int64_t sample_period_ns = 8'000'000; // of the recording; the timer is eight times as fast
+constexpr std::int64_t sample_period_ns = 8'000'000; // of the recording; the timer is eight times faster
 constexpr std::uint32_t timer_hz = 1000;
 
-/// The CAN controller. Its clock is the timer.
+/// Replaces the CAN controller. Its clock is the timer.
 class Mailbox {
   public:
     void advance() noexcept { now_ns_ += sample_period_ns; }
@@ -99,17 +99,18 @@ constexpr dfdyn::Budget budget{Estimator::cost().learn / 2};
 
 struct Statistics {
     std::uint32_t interrupts = 0;
-    std::uint32_t overruns = 0; ///< interrupts that were due before the one before had ended
-    std::uint32_t longest = 0;  ///< of an interrupt, in counts of the timer
-    float error_square = 0;     ///< of joint 2
+    /// Interrupts that were due before the previous one had ended.
+    std::uint32_t overruns = 0;
+    /// Longest interrupt, in timer counts.
+    std::uint32_t longest = 0;
+    float error_square = 0; ///< of joint 2
     float output_square = 0;
-    std::uint32_t saved = 0;   ///< snapshots
-    std::uint32_t refused = 0; ///< that were not of one moment
+    std::uint32_t saved = 0;   ///< number of snapshots
+    std::uint32_t refused = 0; ///< snapshots refused because the state changed
 };
 Statistics statistics;
 constexpr std::uint32_t interrupts_before_save = 150;
-std::array<std::byte, Estimator::snapshot_capacity>
-    flash; ///< in its place: a page is appended after the other
+std::array<std::byte, Estimator::snapshot_capacity> flash; ///< stands for flash memory: pages are appended
 volatile bool ended;
 
 void learn(std::int64_t instant_ns) {
@@ -118,7 +119,7 @@ void learn(std::int64_t instant_ns) {
         return;
     }
     const auto estimate = estimator.tick(sample, budget);
-    if (estimate.status.predicted() && sample.output_valid) { // to compare, never to feed forward
+    if (estimate.status.predicted() && sample.output_valid) { // for comparison; never feed it forward
         statistics.error_square += estimate.innovation[1] * estimate.innovation[1];
         statistics.output_square += sample.output[1] * sample.output[1];
     }
@@ -132,17 +133,17 @@ void end_of_interrupt() {
     ended = mailbox.ended();
 }
 
-/// What has been learned, page by page, while the interrupt ticks and predicts.
+/// Saves the learned state page by page, while the interrupt keeps ticking and predicting.
 void save() {
     constexpr std::size_t page_bytes = 256;
     dfdyn::SnapshotWriter writer(estimator);
     while (writer.step(flash, page_bytes) == dfdyn::SnapshotResult::in_progress) {
-        asm volatile("wfi" ::: "memory"); // other work of the idle loop
+        asm volatile("wfi" ::: "memory"); // other work of the idle loop goes here
     }
     (writer.result() == dfdyn::SnapshotResult::ok ? statistics.saved : statistics.refused) += 1;
 }
 
-/// An estimator takes over from the last snapshot, as after the next start.
+/// Restores the last snapshot into an estimator, as after the next start.
 bool restored() { return estimator.restore(flash) == dfdyn::SnapshotResult::ok; }
 
 bool learned_well() {
@@ -169,7 +170,7 @@ extern "C" void systick_handler() {
     if (ended) {
         return;
     }
-    static_cast<void>(systick().control); // forgets that the timer has passed zero
+    static_cast<void>(systick().control); // clears the flag that the timer passed zero
     mailbox.advance();
     assembly.drain(mailbox, room, [](const Assembly::Moment& moment) { learn(moment.instant_ns); });
     end_of_interrupt();

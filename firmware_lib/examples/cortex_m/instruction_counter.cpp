@@ -9,10 +9,10 @@ namespace {
 std::uint32_t last_value;
 std::uint64_t elapsed_ticks;
 
-/// With the same few instructions of its own about any loop.
+/// Not inlined, so that the overhead is the same for every loop.
 [[gnu::noinline]] std::uint32_t instructions_of_loop(std::uint32_t turns) {
     const std::uint32_t before = instruction_counter();
-    asm volatile("1: subs %0, %0, #1\n" // two instructions a turn
+    asm volatile("1: subs %0, %0, #1\n" // two instructions per turn
                  "bne 1b\n"
                  : "+r"(turns)
                  :
@@ -25,7 +25,7 @@ std::uint64_t elapsed_ticks;
 void start_instruction_counter() {
     systick().control = 0;
     systick().reload = SysTick::longest;
-    systick().value = 0; // whatever is written, it goes on from the reload value
+    systick().value = 0; // any written value restarts the timer from `reload`
     systick().control = SysTick::enabled | SysTick::core_clock;
     elapsed_ticks = 0;
     last_value = systick().value;
@@ -35,7 +35,7 @@ void start_instruction_counter() {
     const std::uint32_t value = systick().value;
     elapsed_ticks += (last_value - value) & SysTick::longest;
     last_value = value;
-    // One instruction takes 1024 ns; the nearest whole number of them is exact.
+    // One instruction takes 1024 ns; rounding to the nearest instruction is exact.
     constexpr std::uint64_t denominator = 1024ULL * (core_clock_hz / 125'000);
     return static_cast<std::uint32_t>((elapsed_ticks * 8000 + denominator / 2) / denominator);
 }
@@ -44,7 +44,7 @@ bool counter_is_exact() {
     start_instruction_counter();
     const std::uint32_t difference = instructions_of_loop(100'000) - instructions_of_loop(1'000);
     const bool exact =
-        difference >= 197'999 && difference <= 198'001; // one reading is rounded by less than one
+        difference >= 197'999 && difference <= 198'001; // one reading is rounded by less than one instruction
     if (!exact) {
         report(DFDYN_CORE ": 198000 instructions were counted as ", difference, "\n");
     }

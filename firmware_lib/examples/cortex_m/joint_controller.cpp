@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The joint controller in the timer interrupt of 1 kHz, moving the simulated joints for some seconds.
+// Runs the joint controller in a 1 kHz timer interrupt and moves the simulated joints for some seconds.
 #include "closed_loop.hpp"
 #include "report.hpp"
 #include "stack_watermark.hpp"
@@ -14,8 +14,10 @@ constexpr std::uint32_t seconds = 6;
 
 ClosedLoop loop;
 std::uint32_t ticks = 0;
-std::uint32_t longest = 0;  ///< of an interrupt, the arm's simulation included, in counts of the timer
-std::uint32_t overruns = 0; ///< interrupts that were due before the one before had ended
+/// Longest interrupt including the arm's simulation, in timer counts.
+std::uint32_t longest = 0;
+/// Interrupts that were due before the previous one had ended.
+std::uint32_t overruns = 0;
 float first_error = 0;
 float last_error = 0;
 volatile bool ended;
@@ -28,7 +30,7 @@ extern "C" void systick_handler() {
     if (ended) {
         return;
     }
-    static_cast<void>(systick().control); // forgets that the timer has passed zero
+    static_cast<void>(systick().control); // clears the flag that the timer passed zero
     loop.tick();
     const std::uint32_t spent = systick().reload - systick().value;
     overruns += (systick().control & SysTick::passed_zero) != 0 ? 1 : 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stack that every map and learner takes by itself, against what its constant expression says.
+// Compares the stack that every map and learner uses by itself with its constant expression.
 #include "dfdyn/dfdyn.hpp"
 #include "report.hpp"
 #include "stack_watermark.hpp"
@@ -14,9 +14,9 @@ namespace {
 using namespace dfdyn;
 
 bool all_within = true;
-std::array<std::byte, 50'000> buffer; ///< of snapshots
+std::array<std::byte, 50'000> buffer; ///< for snapshots
 
-/// So that its frame is below the paint's top.
+/// Not inlined, so that its frame is below the painted area.
 template <class Call>
 [[gnu::noinline]] void run(const Call& call) {
     call();
@@ -29,7 +29,8 @@ template <class Call>
     return stack_used_bytes(top);
 }
 
-/// Foretold is at least what is used, and beside the registers at most twice that.
+/// The predicted bytes must be at least the bytes used and, without the saved registers, at most twice as
+/// many.
 void check(const char* part, std::uint32_t used, std::int64_t foretold) {
     const bool within = used <= foretold && foretold <= 2 * used + frame_bytes;
     semihosting::write(DFDYN_CORE ": stack of ");
@@ -49,7 +50,7 @@ void check_features(const char* part) {
           Map::template stack_bytes<Scalar>());
 }
 
-/// Numbers that take every function of an effect through all of its steps.
+/// Constants such that every function of an effect executes all of its steps.
 template <class Scalar, class Effect>
 void fill_effect(typename Effect::template Constants<Scalar>& constants) {
     for (int c = 0; c < Effect::columns; ++c) {
@@ -66,7 +67,7 @@ void fill_effect(typename Effect::template Constants<Scalar>& constants) {
     }
 }
 
-/// All columns of all bodies and effects.
+/// Constants that select all columns of all bodies and effects.
 template <class Arm, PhysicsEffect... Effects>
 struct Parts {
     static constexpr int columns = inertial_parameters * Arm::bodies + (0 + ... + Effects::columns);
@@ -96,7 +97,7 @@ using TorquesOfSix = Parts<Chain<6>, ViscousFriction<6>, CoulombFriction<6>, Str
                            RotorInertia<6>, TorqueRipple<6>>;
 using WrenchOfThree = Parts<Chain<6, WrenchAtSensor<3>>, OutputOffset<6>>;
 
-/// Moves all joints on.
+/// Advances all joints.
 template <class AnySample>
 void move(AnySample& sample) {
     sample.time_ns += 1'000'000;
@@ -106,7 +107,7 @@ void move(AnySample& sample) {
     }
 }
 
-/// The most that a call takes, over so many motions of `sample`.
+/// Returns the maximum stack of `call` over several motions of `sample`.
 template <class AnySample, class Call>
 std::uint32_t stack_in_motion(AnySample& sample, int ticks, const Call& call) {
     std::uint32_t most = 0;
@@ -149,7 +150,7 @@ void check_physics(const char* part) {
     all_within = all_within && evaluated;
 }
 
-/// `learner` predicts and learns `rows` for `targets`, with forgetting.
+/// Predicts and learns `rows` for `targets`, with forgetting.
 template <class Learner, class Scalar, class... Rows>
 std::uint32_t learn(Learner& learner, Scalar* means, const Scalar* targets, Rows... rows) {
     const std::uint32_t predicting = stack_of([&] { learner.predict(rows..., means); });
@@ -233,7 +234,8 @@ void fill_model(typename AnyModel::Constants& constants) {
     }
 }
 
-/// Ticks that learn, at once or in slices, and such without a measurement; what comes between runs.
+/// Measures ticks with learning, at once and in slices, ticks without a measurement, then snapshot, restore
+/// and reset.
 template <class AnyModel>
 void check_estimator(const char* part) {
     static typename AnyModel::Constants constants{};

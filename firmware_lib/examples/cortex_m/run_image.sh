@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# run_image.sh QEMU BOARD ICOUNT_SHIFT CORE IMAGE.elf: prints the flash and RAM that the image takes; fails when it holds
-# anything of a heap, of exceptions, of run-time type information or of streams, or a sine of the C library's. Then runs it; its output goes to IMAGE.txt
-# beside it too.
+# run_image.sh QEMU BOARD ICOUNT_SHIFT CORE IMAGE.elf prints the flash and RAM of the image and runs it in
+# QEMU; the output is also written to IMAGE.txt. Fails if the image contains parts of a heap, exceptions,
+# run-time type information, streams, or the sine of the C library.
 set -euo pipefail
 qemu=$1 board=$2 shift=$3 core=$4 image=$5
 

@@ -22,7 +22,7 @@ void write(const char* text) { call(sys_write0, text); }
 
 void write(std::uint32_t number) {
     std::array<char, 11> digits{};
-    std::size_t first = digits.size() - 1; // the last element stays zero
+    std::size_t first = digits.size() - 1; // the last element is the terminating zero
     do {
         digits[--first] = static_cast<char>('0' + number % 10);
         number /= 10;

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-/// Output and exit through the debugger or the emulator.
+/// Output and exit through a debugger or emulator.
 namespace semihosting {
 
 /// Writes a zero-terminated text to the host's terminal.

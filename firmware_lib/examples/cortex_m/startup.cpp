@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happens between reset and the application: the vector table, the floating-point unit, memory,
-// constructors.
+// From reset to the application: vector table, floating-point unit, memory and constructors.
 #include "semihosting.hpp"
 #include "stack_watermark.hpp"
 
@@ -20,7 +19,7 @@ extern const Initialiser init_array_begin[], init_array_end[];
     semihosting::exit(3);
 }
 
-/// For whoever uses the timer's interrupt.
+/// Defined by a program that uses the timer's interrupt.
 [[gnu::weak]] void systick_handler() { fault_handler(); }
 
 [[noreturn]] void start() {
@@ -38,8 +37,8 @@ extern const Initialiser init_array_begin[], init_array_end[];
     semihosting::exit(application());
 }
 
-// Nothing may touch a floating-point register before this is done, so it stands apart from what the compiler
-// may vectorise.
+// No floating-point register may be used before the unit is enabled. This function is therefore separate from
+// code that the compiler may vectorise.
 [[noreturn, gnu::naked]] void reset_handler() {
     asm volatile("ldr r0, =0xE000ED88\n" // CPACR: full access to coprocessors 10 and 11
                  "ldr r1, [r0]\n"

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-/// The timer of every Cortex-M core: counts down from `reload`, 24 bits, at the core's clock.
+/// The timer of every Cortex-M core. It counts down from `reload` (24 bits) at the core's clock rate.
 struct SysTick {
     std::uint32_t control;
     std::uint32_t reload;

@@ -375,8 +375,8 @@ class Estimator {
         return idle;
     }
 
-    /// Converts the measured outputs to the regression's units (relative to offset and noise). Returns the sum
-    /// of the squared differences from the prediction.
+    /// Converts the measured outputs to the regression's units (relative to offset and noise). Returns the
+    /// sum of the squared differences from the prediction.
     Scalar normalise(const Sample& sample, const Outputs& prediction) noexcept {
         Scalar error_square = 0;
         for (int k = 0; k < sizes_.output_count; ++k) {
