@@ -16,7 +16,7 @@ namespace allocation_guard_test {
 using dfdyn::tests::AllocationGuard;
 using dfdyn::tests::HeapCalls;
 
-// Without this the compiler may leave out an allocation whose memory nobody looks at.
+// Prevents the compiler from omitting an allocation whose memory is not used.
 template <typename T>
 void keep(T& value) {
     asm volatile("" : : "g"(&value) : "memory");
@@ -34,7 +34,7 @@ void check_one_block(const HeapCalls& calls) {
     CHECK(calls.releases == 1);
 }
 
-TEST_CASE("the guard counts nothing where nothing is allocated") {
+TEST_CASE("the guard counts nothing without allocations") {
     const HeapCalls calls = calls_of([] {
         std::array<double, 100> numbers{};
         keep(numbers);
@@ -45,7 +45,7 @@ TEST_CASE("the guard counts nothing where nothing is allocated") {
     CHECK(calls.releases == 0);
 }
 
-TEST_CASE("the guard sees new and delete") {
+TEST_CASE("the guard counts new and delete") {
     check_one_block(calls_of([] {
         auto number = std::make_unique<int>(1);
         keep(*number);
@@ -56,7 +56,7 @@ TEST_CASE("the guard sees new and delete") {
     }));
 }
 
-TEST_CASE("the guard sees new of an over-aligned type") {
+TEST_CASE("the guard counts new of an over-aligned type") {
     struct alignas(128) Aligned {
         int number = 0;
     };
@@ -66,7 +66,7 @@ TEST_CASE("the guard sees new of an over-aligned type") {
     }));
 }
 
-TEST_CASE("the guard sees the C library's functions") {
+TEST_CASE("the guard counts the C library's functions") {
     check_one_block(calls_of([] {
         void* block = std::malloc(10);
         keep(block);
@@ -90,7 +90,7 @@ TEST_CASE("the guard sees the C library's functions") {
     }));
 }
 
-TEST_CASE("the guard sees each realloc as an allocation and a release") {
+TEST_CASE("the guard counts each realloc as an allocation and a release") {
     const HeapCalls calls = calls_of([] {
         void* block = std::realloc(nullptr, 10);
         keep(block);
@@ -102,14 +102,14 @@ TEST_CASE("the guard sees each realloc as an allocation and a release") {
     CHECK(calls.releases == 2);
 }
 
-TEST_CASE("blocks have the alignment that was asked for") {
+TEST_CASE("blocks have the requested alignment") {
     void* block = nullptr;
     REQUIRE(::posix_memalign(&block, 4096, 10) == 0);
     CHECK(reinterpret_cast<std::uintptr_t>(block) % 4096 == 0);
     std::free(block);
 }
 
-TEST_CASE("the guard sees a std::vector and a std::string grow") {
+TEST_CASE("the guard counts the growth of a std::vector and a std::string") {
     check_one_block(calls_of([] {
         std::vector<double> numbers;
         numbers.push_back(1.0);
@@ -121,7 +121,7 @@ TEST_CASE("the guard sees a std::vector and a std::string grow") {
     }));
 }
 
-TEST_CASE("the guard sees Eigen's dynamic matrices and the temporary of an aliased product") {
+TEST_CASE("the guard counts Eigen's dynamic matrices and the temporary of an aliased product") {
     check_one_block(calls_of([] {
         Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(10, 10);
         keep(matrix);
@@ -134,7 +134,7 @@ TEST_CASE("the guard sees Eigen's dynamic matrices and the temporary of an alias
     CHECK(calls.allocations >= 1);
 }
 
-TEST_CASE("the guard sees what other threads and a library inside the process allocate") {
+TEST_CASE("the guard counts allocations of other threads and of a library") {
     const HeapCalls calls = calls_of([] {
         std::thread([] {
             void* block = std::malloc(10);
@@ -142,10 +142,10 @@ TEST_CASE("the guard sees what other threads and a library inside the process al
             std::free(block);
         }).join();
     });
-    CHECK(calls.allocations >= 2); // the block, and what std::thread keeps of its function
+    CHECK(calls.allocations >= 2); // the block, and the storage of std::thread for its function
 }
 
-TEST_CASE("guards nest, and a guard counts on after it was asked") {
+TEST_CASE("guards can be nested, and a guard continues to count after it was read") {
     const AllocationGuard outer;
     const HeapCalls inner = calls_of([] {
         auto number = std::make_unique<int>(1);

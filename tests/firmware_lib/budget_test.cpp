@@ -5,7 +5,7 @@
 
 using dfdyn::Budget;
 
-TEST_CASE("a budget is spent whole or not at all") {
+TEST_CASE("a budget affords a cost completely or not at all") {
     Budget budget{10};
     CHECK(budget.affords(10));
     CHECK_FALSE(budget.affords(11));
@@ -19,7 +19,7 @@ TEST_CASE("a budget is spent whole or not at all") {
     CHECK(budget.spend(0));
 }
 
-TEST_CASE("the two ends of budgets") {
+TEST_CASE("an unlimited budget affords everything and a budget for prediction nothing") {
     CHECK_FALSE(Budget::predict_only().affords(1));
     CHECK(Budget::unlimited().affords(std::int64_t{1} << 62));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An arm of two links that is pushed, takes up a load, or rubs: what the estimator makes of it within
+// A two-link arm that is pushed, picks up a load, or gets more friction: the estimator within the following
 // seconds.
 #include "dfdyn/estimator.hpp"
 
@@ -20,7 +20,7 @@ using namespace dfdyn::tests;
 constexpr double step_s = 1e-3;
 constexpr std::int64_t step_ns = 1'000'000;
 constexpr double noise = 0.05; // N·m
-constexpr double limit = 41;   // three times what 0.1 % of two normal errors exceed
+constexpr double limit = 41; // three times the value that 0.1 % of the samples with two normal errors exceed
 constexpr double learned_s = 40;
 
 using Features = Model<float, Joints<2, 2>, StandardMeasured, RandomFourier<100>, Nonparametric<>>;
@@ -28,7 +28,7 @@ using Physical = TestParametric<float, StandardMeasured>;
 using Both = TestKernel<float, StandardMeasured, 30>;
 using Plant = Physics<StandardMeasured, two_link_column_count, ViscousFriction<2>, OutputOffset<2>>;
 
-/// What is done to the arm.
+/// The change of the arm.
 struct Event {
     double payload_kg = 0;
     double friction = 0; ///< N·m, of each joint
@@ -36,7 +36,7 @@ struct Event {
     double push_s = 0;
 };
 
-/// The torques of the two links, with a load on the second at 0.3 m.
+/// The torques of the two links, with a load on the second link at 0.3 m.
 class TwoLinks {
   public:
     TwoLinks() {
@@ -72,14 +72,14 @@ class TwoLinks {
     Plant::Constants<double, Chain<2>> constants_{};
 };
 
-/// An estimator on such an arm at 1 kHz.
+/// An estimator of such an arm at 1 kHz.
 template <class Model>
 class Arm {
   public:
     explicit Arm(std::mt19937_64 engine) : engine_(engine), constants_(constants(engine)) {}
 
-    /// Goes on for `duration_s`; returns the root mean square of the predictions' errors against the arm as
-    /// it is without the push, in units of the noise, over the last 2.5 s.
+    /// Continues for `duration_s`. Returns the root mean square error of the predictions, relative to the arm
+    /// without the push, in units of the noise, over the last 2.5 s.
     double run(double duration_s, const Event& event) {
         const long last = now_ + std::lround(duration_s / step_s);
         const long pushed_until = now_ + std::lround(event.push_s / step_s);
@@ -171,7 +171,7 @@ TEMPLATE_TEST_CASE("a push of one second leaves less than 5 % of extra error beh
         left_alone.run(learned_s, {});
         const double with = pushed.run(3.5, {.push = deviations * noise, .push_s = 1});
         const double without = left_alone.run(3.5, {});
-        // Of the error of a measurement: its noise, and what the model does not know.
+        // Relative to the error of a measurement: its noise and the model error.
         CHECK(std::hypot(1, with) < 1.05 * std::hypot(1, without));
     }
 }

@@ -29,8 +29,8 @@ State<Scalar> state(Scalar memory = 300) {
     return {Extent<outputs>{}, memory, noise.data()};
 }
 
-/// What a model predicts and what is measured: a smooth motion, and errors of the model that are an AR(1)
-/// with the given coefficient in the first output, and white in the second.
+/// Predictions and measurements: a smooth motion, with model errors that are AR(1) with the given coefficient
+/// in the first output and white in the second.
 class Samples {
   public:
     explicit Samples(double coefficient) : coefficient_(coefficient) {}
@@ -45,7 +45,7 @@ class Samples {
         measured = {Scalar(smooth + error_), Scalar(smooth + normal_(engine))};
     }
 
-    /// What nobody can forecast of the first output.
+    /// The unpredictable part of the first output.
     double innovation() const { return innovation_; }
 
   private:
@@ -84,7 +84,7 @@ Errors errors_of(State<Scalar>& state, Samples samples, int ticks, std::mt19937_
     return errors;
 }
 
-TEMPLATE_TEST_CASE("a coloured residual is forecast nearly as well as its innovations allow", "", float,
+TEMPLATE_TEST_CASE("the forecast error of a coloured residual is close to its innovation", "", float,
                    double) {
     DFDYN_SEEDED_ENGINE(engine);
     for (const double coefficient : {0.0, 0.5, 0.9, 0.98}) {
@@ -93,12 +93,12 @@ TEMPLATE_TEST_CASE("a coloured residual is forecast nearly as well as its innova
         const Errors errors = errors_of(learned, Samples(coefficient), 8000, engine);
         CHECK(errors.forecast[0] < 1.05 * errors.innovation);
         CHECK(errors.forecast[0] < 1.02 * errors.persistence[0]);
-        CHECK(errors.forecast[1] < 1.02 * errors.model[1]); // white: nothing to gain, little to lose
+        CHECK(errors.forecast[1] < 1.02 * errors.model[1]); // white: no gain, small loss
         CHECK(static_cast<double>(learned.correlation(0)) == Approx(coefficient).margin(0.1));
     }
 }
 
-TEST_CASE("where the model is useless, the forecast is as good as an autoregression of the output") {
+TEST_CASE("with a useless model the forecast is as good as an autoregression of the output") {
     DFDYN_SEEDED_ENGINE(engine);
     std::normal_distribution<double> normal;
     State<double> learned = state<double>(2000);
@@ -123,7 +123,7 @@ TEST_CASE("where the model is useless, the forecast is as good as an autoregress
     CHECK(by_state < 1.4 * by_truth);
 }
 
-TEMPLATE_TEST_CASE("a spike is forgotten within a few samples, and what was learned is not", "", float,
+TEMPLATE_TEST_CASE("a spike is forgotten within a few samples, and the coefficients are kept", "", float,
                    double) {
     DFDYN_SEEDED_ENGINE(engine);
     for (const TestType spike :
@@ -156,8 +156,7 @@ TEMPLATE_TEST_CASE("a spike is forgotten within a few samples, and what was lear
     }
 }
 
-TEMPLATE_TEST_CASE("whatever it is given, a forecast is finite and the correlation below one", "", float,
-                   double) {
+TEMPLATE_TEST_CASE("for any input the forecast is finite and the correlation below one", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     using Limits = std::numeric_limits<TestType>;
     const std::array<TestType, 9> odd{0,
@@ -177,7 +176,7 @@ TEMPLATE_TEST_CASE("whatever it is given, a forecast is finite and the correlati
         return choice < finite ? odd[choice] : TestType(normal(engine));
     };
     for (int t = 0; t < 20'000; ++t) {
-        const Values<TestType> prediction{value(5), value(5)}; // an estimator's predictions are bounded
+        const Values<TestType> prediction{value(5), value(5)}; // the predictions of an estimator are bounded
         const Values<TestType> measured{value(9), value(9)};
         learned.forecast(prediction.data(), one_step.data());
         for (const TestType forecast : one_step) {
@@ -191,7 +190,7 @@ TEMPLATE_TEST_CASE("whatever it is given, a forecast is finite and the correlati
     }
 }
 
-TEST_CASE("after a gap the forecast is the prediction, and then follows again with what was learned") {
+TEST_CASE("after a gap the forecast is the prediction, then uses the coefficients again") {
     DFDYN_SEEDED_ENGINE(engine);
     State<double> learned = state<double>();
     errors_of(learned, Samples(0.95), 2000, engine);
@@ -203,11 +202,11 @@ TEST_CASE("after a gap the forecast is the prediction, and then follows again wi
     CHECK(one_step == prediction);
     learned.learn(prediction.data(), measured.data());
     learned.forecast(prediction.data(), one_step.data());
-    CHECK(one_step[0] > 4.5); // 3 and about 0.95 of the residual of 2
+    CHECK(one_step[0] > 4.5); // 3 plus about 0.95 of the residual of 2
     CHECK(one_step[0] < 5.1);
 }
 
-TEST_CASE("measurements without a prediction count as the last output when predictions begin") {
+TEST_CASE("measurements without a prediction count as the last output once predictions begin") {
     State<double> learned = state<double>();
     const Values<double> measured{7, -7};
     for (int t = 0; t < 10; ++t) {
@@ -216,11 +215,11 @@ TEST_CASE("measurements without a prediction count as the last output when predi
     const Values<double> prediction{100, -100};
     Values<double> one_step{};
     learned.forecast(prediction.data(), one_step.data());
-    CHECK(one_step[0] < 13); // the gap to the model is limited to ten times the noise
+    CHECK(one_step[0] < 13); // the difference from the model is clipped to ten times the noise
     CHECK(one_step[1] > -13);
 }
 
-TEST_CASE("a residual state goes on from its snapshot, and takes no other") {
+TEST_CASE("a residual state continues from its snapshot and rejects any other") {
     DFDYN_SEEDED_ENGINE(engine);
     State<float> learned = state<float>();
     errors_of(learned, Samples(0.9), 500, engine);

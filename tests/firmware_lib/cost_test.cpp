@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the cost functions say is what is done, counted by a scalar that counts.
+// Compares the cost functions with the operations done, using a scalar that counts them.
 #include "dfdyn/dfdyn.hpp"
 
 #include "tests/firmware_lib/support/counted.hpp"
@@ -34,7 +34,7 @@ constexpr Cost cost_of() {
     return Estimator<Model>::cost();
 }
 
-/// Of one call.
+/// Counts the operations of one call.
 template <class Call>
 std::int64_t count(Call call) {
     counted_operations = 0;
@@ -42,13 +42,14 @@ std::int64_t count(Call call) {
     return counted_operations;
 }
 
-/// From none to more than a sample takes; small ones often, since they stop where little is left to do.
+/// Returns a budget from none to more than a sample needs. Small budgets are frequent, because they stop near
+/// the end of the work.
 std::int64_t random_budget(const Cost& cost, std::mt19937_64& engine) {
     const std::int64_t most[] = {0, cost.largest_step, 2 * cost.largest_step, 2 * cost.learn};
     return std::uniform_int_distribution<std::int64_t>(0, most[engine() % 4])(engine);
 }
 
-/// Every sixth sample is wrong in one of the ways that a sample can be.
+/// Makes every sixth sample faulty, in one of the possible ways.
 template <class Sample>
 Sample perhaps_faulty(Sample sample, std::mt19937_64& engine) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -85,8 +86,8 @@ Sample perhaps_faulty(Sample sample, std::mt19937_64& engine) {
     return sample;
 }
 
-TEMPLATE_TEST_CASE("a tick that learns its sample at once costs what prediction and learning cost", "",
-                   UdSingle, UdDouble, UdWhole, Information, Parametric, Mean, Kernel, KernelSingle) {
+TEMPLATE_TEST_CASE("a tick that learns its sample at once costs what prediction and learning cost together",
+                   "", UdSingle, UdDouble, UdWhole, Information, Parametric, Mean, Kernel, KernelSingle) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine);
     Estimator<TestType> estimator(constants);
@@ -105,9 +106,8 @@ TEMPLATE_TEST_CASE("a tick that learns its sample at once costs what prediction 
     CHECK(ticks >= 30);
 }
 
-// What a tick does beyond its budget is prediction and a variance, whatever comes in, and at its most exactly
-// that.
-TEMPLATE_TEST_CASE("no tick does more than predict, a variance and its budget", "", UdSingle, UdDouble,
+// Beyond its budget a tick does a prediction and a variance, for any sample; the maximum is reached exactly.
+TEMPLATE_TEST_CASE("no tick does more than a prediction, a variance and its budget", "", UdSingle, UdDouble,
                    UdWhole, Information, Parametric, Mean, Kernel, KernelSingle) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr Cost cost = cost_of<TestType>();
@@ -129,8 +129,8 @@ TEMPLATE_TEST_CASE("no tick does more than predict, a variance and its budget", 
     }
 }
 
-TEMPLATE_TEST_CASE("between ticks no more is done than the budget, and all of it by whole samples", "",
-                   UdSingle, UdDouble, UdWhole, Information, Parametric, Mean, Kernel, KernelSingle) {
+TEMPLATE_TEST_CASE("work between ticks stays within its budget and within the cost of learning", "", UdSingle,
+                   UdDouble, UdWhole, Information, Parametric, Mean, Kernel, KernelSingle) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr Cost cost = cost_of<TestType>();
     for (const double forgetting_factor : {1.0, 0.99}) {
@@ -138,7 +138,7 @@ TEMPLATE_TEST_CASE("between ticks no more is done than the budget, and all of it
         Estimator<TestType> estimator(constants);
         std::int64_t most = 0;
         for (int t = 0; t < 200; ++t) {
-            estimator.tick(moving_sample<TestType>(t, engine), Budget{1}); // takes the sample in
+            estimator.tick(moving_sample<TestType>(t, engine), Budget{1}); // begins to learn the sample
             std::int64_t whole = 0;
             while (!estimator.regression().idle()) {
                 const std::int64_t budget = random_budget(cost, engine);
@@ -153,7 +153,7 @@ TEMPLATE_TEST_CASE("between ticks no more is done than the budget, and all of it
     }
 }
 
-// Columns, outputs and scalars in all proportions to panels and vectors.
+// Columns, outputs and scalars in many proportions to panels and vectors.
 TEMPLATE_TEST_CASE_SIG("the cost of learning is that of any size", "",
                        ((int columns, int outputs), columns, outputs), (1, 1), (2, 3), (4, 1), (5, 6), (8, 2),
                        (31, 1), (50, 6)) {
@@ -179,7 +179,7 @@ TEMPLATE_TEST_CASE_SIG("the cost of learning is that of any size", "",
     check(std::type_identity<CholeskyInformation<Double, columns, outputs>>{});
 }
 
-TEMPLATE_TEST_CASE("an input map costs what it says", "", DerivativeFree<6>, DerivativeFreeWeighted<3>,
+TEMPLATE_TEST_CASE("an input map costs what it declares", "", DerivativeFree<6>, DerivativeFreeWeighted<3>,
                    (DerivativeFreeReduced<6, 3>), DerivativeFreeStructured<6>,
                    DerivativeFreeStructuredRecursive<6>, StandardMeasured, Standard<2>, Standard<6>,
                    Standard<20>) {
@@ -188,7 +188,7 @@ TEMPLATE_TEST_CASE("an input map costs what it says", "", DerivativeFree<6>, Der
     const typename Map::Constants constants{};
     Map map(constants, {}, {}, {});
     typename TestType::template Sample<Double, joints, 1>
-        sample{}; // of a standing arm: all windows are whole
+        sample{}; // standstill: all windows have full length
     Double xi[joints * TestType::features_per_joint];
     for (int t = 0; t < 2 * TestType::lags + 2; ++t) {
         sample.time_ns += 1'000'000;
@@ -199,7 +199,7 @@ TEMPLATE_TEST_CASE("an input map costs what it says", "", DerivativeFree<6>, Der
     CHECK(counted_operations == Map::cost(joints, TestType::lags, TestType::features_per_joint));
 }
 
-TEMPLATE_TEST_CASE_SIG("the feature map costs what it says", "", ((int d), d), 1, 4, 7, 16, 25, 250) {
+TEMPLATE_TEST_CASE_SIG("the feature map costs what it declares", "", ((int d), d), 1, 4, 7, 16, 25, 250) {
     const auto check = [](auto number) {
         using Number = decltype(number);
         const typename RandomFourier<d>::template Constants<Number, 12> constants{};
@@ -212,8 +212,9 @@ TEMPLATE_TEST_CASE_SIG("the feature map costs what it says", "", ((int d), d), 1
     check(Double{});
 }
 
-// Every inertial parameter and every effect is selected; at rest Stribeck's curve is worked out in full.
-TEST_CASE("the physics map costs what it says") {
+// Every inertial parameter and every effect is selected; at zero velocity the Stribeck term is computed in
+// full.
+TEST_CASE("the physics map costs what it declares") {
     using Arm = Chain<3>;
     constexpr int columns = 10 * 3 + 6 * 3;
     using Columns = Physics<StandardMeasured, columns, ViscousFriction<3>, CoulombFriction<3>,

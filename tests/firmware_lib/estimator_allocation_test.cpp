@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// No call of the library touches the heap.
+// No call of the library uses the heap.
 #include "dfdyn/dfdyn.hpp"
 
 #include "tests/firmware_lib/support/test_model.hpp"
@@ -16,8 +16,8 @@ namespace estimator_allocation_test {
 using namespace dfdyn;
 using namespace dfdyn::tests;
 
-/// Ticks of every kind: filling, learned at once, in slices, blind, refused, after a gap and after a clock
-/// restart.
+/// Ticks of every kind: filling, learned at once, in slices, without an output, refused, after a gap and
+/// after a clock restart.
 template <class Model>
 std::vector<typename Model::Sample> samples_of_every_kind(std::mt19937_64& engine) {
     std::vector<typename Model::Sample> samples;
@@ -34,7 +34,7 @@ std::vector<typename Model::Sample> samples_of_every_kind(std::mt19937_64& engin
     return samples;
 }
 
-/// Everything that can be asked of a regression.
+/// Calls every function of a regression.
 template <class Model>
 void use(const Estimator<Model>& estimator) {
     typename Model::Scalar means[Model::outputs];
@@ -53,7 +53,7 @@ void use(const Estimator<Model>& estimator) {
     }
 }
 
-/// Calls every function of an estimator; returns the heap calls on the way.
+/// Calls every function of an estimator; returns the number of heap calls.
 template <class Model>
 HeapCalls heap_calls(const typename Model::Constants& constants,
                      const std::vector<typename Model::Sample>& samples) {
@@ -83,8 +83,8 @@ void check(std::mt19937_64& engine) {
     CHECK(calls.releases == 0);
 }
 
-// Every input map, learner and structure, in one scalar or the other. DFW and DFSR are DF's and DFR's maps.
-TEMPLATE_TEST_CASE("nothing in an estimator's life calls the heap", "", DerivativeFree<5>,
+// Every input map, learner and structure, with either scalar. DFW and DFSR use the maps of DF and DFR.
+TEMPLATE_TEST_CASE("no call of an estimator uses the heap", "", DerivativeFree<5>,
                    (DerivativeFreeReduced<5, 3>), DerivativeFreeStructuredRecursive<5>, Standard<5>,
                    StandardMeasured) {
     DFDYN_SEEDED_ENGINE(engine);
@@ -92,15 +92,14 @@ TEMPLATE_TEST_CASE("nothing in an estimator's life calls the heap", "", Derivati
     check<TestModel<double, TestType, 4, CholeskyInformation>>(engine);
 }
 
-TEMPLATE_TEST_CASE("nothing in the life of an estimator with physics calls the heap", "",
-                   (DerivativeFreeReduced<5, 3>), DerivativeFreeStructuredRecursive<5>, Standard<5>,
-                   StandardMeasured) {
+TEMPLATE_TEST_CASE("no call of an estimator with physics uses the heap", "", (DerivativeFreeReduced<5, 3>),
+                   DerivativeFreeStructuredRecursive<5>, Standard<5>, StandardMeasured) {
     DFDYN_SEEDED_ENGINE(engine);
     check<TestParametric<double, TestType>>(engine);
     check<TestMean<double, TestType, 4>>(engine);
     check<TestKernel<float, TestType, 4>>(engine);
     check<TestKernel<float, DerivativeFree<5>, 4, TestType>>(
-        engine); // features and physics see different inputs
+        engine); // different inputs for features and physics
 }
 
 } // namespace estimator_allocation_test

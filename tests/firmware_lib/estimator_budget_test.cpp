@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ticks with little budget: learning is spread over several, and changes nothing of the result.
+// Ticks with a small budget: learning is spread over several ticks, with the same result.
 #include "dfdyn/estimator.hpp"
 
 #include "tests/firmware_lib/support/test_model.hpp"
@@ -31,7 +31,7 @@ constexpr Cost cost_of() {
     return Estimator<Model>::cost();
 }
 
-/// Whether a sample was taken in by this tick, to be learned at once or in slices.
+/// Returns true if this tick began to learn its sample, at once or in slices.
 bool taken(const Status& status) {
     return status.predicted() &&
            (status.learning == Reason::ok || status.learning == Reason::learning_in_progress);
@@ -46,7 +46,7 @@ double largest_difference(const Storage<Scalar, m>& a, const Storage<Scalar, m>&
     return largest;
 }
 
-// The whole estimator learns exactly the samples that the sliced one took in.
+// The estimator without slicing learns exactly the samples that the sliced one began to learn.
 TEMPLATE_TEST_CASE("random budgets learn the same as unlimited ones, bit for bit", "", UdFloat, UdDouble,
                    InformationFloat, InformationDouble, Parametric, ParametricDouble, Mean, Kernel,
                    KernelDouble) {
@@ -74,7 +74,7 @@ TEMPLATE_TEST_CASE("random budgets learn the same as unlimited ones, bit for bit
     CHECK(sliced.counters().reasons[static_cast<int>(Reason::learner_busy)] > 300);
 }
 
-TEMPLATE_TEST_CASE("while a sample is being learned the estimates are those of before", "", UdFloat, UdDouble,
+TEMPLATE_TEST_CASE("while a sample is being learned the estimates are those before it", "", UdFloat, UdDouble,
                    InformationFloat, InformationDouble, Mean) {
     DFDYN_SEEDED_ENGINE(engine);
     const double rounding = std::is_same_v<typename TestType::Scalar, float> ? 1e-4 : 1e-12;
@@ -83,7 +83,7 @@ TEMPLATE_TEST_CASE("while a sample is being learned the estimates are those of b
     for (int t = 0; t < 50; ++t) {
         estimator.tick(moving_sample<TestType>(t, engine), Budget::unlimited());
     }
-    estimator.tick(moving_sample<TestType>(50, engine), Budget{100'000}); // nothing is left in hand
+    estimator.tick(moving_sample<TestType>(50, engine), Budget{100'000}); // completes the pending sample
     Estimator<TestType> before = estimator;
     int busy = 0;
     for (int t = 51; t < 500; ++t) {
@@ -96,7 +96,7 @@ TEMPLATE_TEST_CASE("while a sample is being learned the estimates are those of b
         REQUIRE(largest_difference(estimate.standard_deviation, expected.standard_deviation) < rounding);
         busy += idle ? 0 : 1;
         REQUIRE(estimate.status.learning == (idle ? Reason::learning_in_progress : Reason::learner_busy));
-        if (t % 60 == 0) { // let it finish, and look at another sample
+        if (t % 60 == 0) { // complete it and choose another sample
             estimator.tick(moving_sample<TestType>(++t, engine), Budget::unlimited());
             before = estimator;
         }
@@ -104,8 +104,8 @@ TEMPLATE_TEST_CASE("while a sample is being learned the estimates are those of b
     CHECK(busy > 100);
 }
 
-TEMPLATE_TEST_CASE("samples that arrive meanwhile are skipped, and counted", "", UdFloat, InformationDouble,
-                   Parametric, Mean, Kernel) {
+TEMPLATE_TEST_CASE("samples that arrive while another is being learned are skipped and counted", "", UdFloat,
+                   InformationDouble, Parametric, Mean, Kernel) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine);
     Estimator<TestType> estimator(constants);
@@ -126,9 +126,9 @@ TEMPLATE_TEST_CASE("samples that arrive meanwhile are skipped, and counted", "",
     CHECK(begun < 1900);
 }
 
-TEMPLATE_TEST_CASE("a budget of the largest step always gets on, a smaller one never finishes", "", UdFloat,
-                   UdDouble, InformationFloat, InformationDouble, Parametric, ParametricDouble, Mean, Kernel,
-                   KernelDouble) {
+TEMPLATE_TEST_CASE("a budget of the largest step always makes progress, a smaller one never finishes", "",
+                   UdFloat, UdDouble, InformationFloat, InformationDouble, Parametric, ParametricDouble, Mean,
+                   Kernel, KernelDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine);
     Estimator<TestType> enough(constants);
@@ -145,7 +145,7 @@ TEMPLATE_TEST_CASE("a budget of the largest step always gets on, a smaller one n
     CHECK(std::ranges::all_of(weights_of(too_little), [](auto weight) { return weight == 0; }));
 }
 
-TEMPLATE_TEST_CASE("without any budget a sample is predicted and not taken in", "", UdFloat, Parametric, Mean,
+TEMPLATE_TEST_CASE("without a budget a sample is predicted and not learned", "", UdFloat, Parametric, Mean,
                    Kernel) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine);
@@ -161,7 +161,7 @@ TEMPLATE_TEST_CASE("without any budget a sample is predicted and not taken in", 
     CHECK(estimator.counters().learned == 0);
 }
 
-TEMPLATE_TEST_CASE("a sample in hand is learned on in ticks that are refused or blind", "", UdFloat,
+TEMPLATE_TEST_CASE("ticks that are refused or have no output continue a pending sample", "", UdFloat,
                    Parametric, Mean, Kernel) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine);
@@ -178,8 +178,8 @@ TEMPLATE_TEST_CASE("a sample in hand is learned on in ticks that are refused or 
     CHECK(estimator.counters().learned == 1);
 }
 
-TEMPLATE_TEST_CASE("a sample is learned on between ticks, bit for bit, in steps of no more than the budget",
-                   "", UdFloat, UdDouble, Parametric, Mean, Kernel) {
+TEMPLATE_TEST_CASE("learning between ticks gives the same bits and stays within the budget", "", UdFloat,
+                   UdDouble, Parametric, Mean, Kernel) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine, 0.99);
     Estimator<TestType> sliced(constants);
@@ -204,11 +204,11 @@ TEMPLATE_TEST_CASE("a sample is learned on between ticks, bit for bit, in steps 
     CHECK(sliced.advance(Budget::predict_only()));
 }
 
-TEST_CASE("the cost of a tick is a constant expression of the model") {
+TEST_CASE("the cost of a tick is a constant expression of the model's sizes") {
     constexpr Cost cost = Estimator<UdFloat>::cost();
     static_assert(cost.predict > 0 && cost.variance > 0 && cost.learn > cost.largest_step);
-    // inputs: n k (M+2); features: d n k and the cosines and sines; weights: m 2d; estimate: 14 + m (15 +
-    // a square root)
+    // Inputs: n k (M+2); features: d n k and the cosines and sines; weights: m 2d; estimate: 14 + m (15 + a
+    // square root).
     static_assert(cost.predict == 2 * 3 * 8 + 15 * 6 + cos_sin_cost<float>(15) + 2 * 30 + 2 * 45 + 14);
     SUCCEED();
 }

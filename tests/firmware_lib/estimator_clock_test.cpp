@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stamps of good samples: jitter, a wrong nominal period, losses.
+// Time stamps of valid samples: jitter, a wrong nominal period, losses.
 #include "dfdyn/estimator.hpp"
 
 #include "tests/firmware_lib/support/test_model.hpp"
@@ -20,7 +20,8 @@ struct Line {
     double jitter;
 };
 
-/// The reasons of `ticks` ticks over that line; every sample whose number is a multiple of `loses` is lost.
+/// Counts the reasons of `ticks` ticks over that line. Every sample whose number is a multiple of `loses` is
+/// lost.
 Counters run(const Line& line, int ticks, std::mt19937_64& engine, int loses = 0) {
     auto constants = make_constants<SmallModel>(engine);
     constants.period_ns = line.period_ns;
@@ -38,7 +39,7 @@ Counters run(const Line& line, int ticks, std::mt19937_64& engine, int loses = 0
     return estimator.counters();
 }
 
-TEST_CASE("jitter of nearly half a period leaves no tick unpredicted once the window is full") {
+TEST_CASE("with jitter of nearly half a period every tick predicts once the window is full") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const std::int64_t period_ns : {20'000'000, 8'000'000, 1'000'000, 200'000}) {
         const Line line{period_ns, 1.01, 0.4};
@@ -46,16 +47,16 @@ TEST_CASE("jitter of nearly half a period leaves no tick unpredicted once the wi
     }
 }
 
-TEST_CASE("a lost sample restarts the window, with jitter of a tenth of a period too") {
+TEST_CASE("a lost sample restarts the window, also with jitter of a tenth of a period") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const double jitter : {0.0, 0.1}) {
         const Counters counters = run({1'000'000, 1.01, jitter}, 3000, engine, 100);
-        CHECK(counters.reasons[static_cast<int>(Reason::gap)] == 29); // the last loss has nothing after it
+        CHECK(counters.reasons[static_cast<int>(Reason::gap)] == 29); // no sample follows the last loss
         CHECK(counters.predicted == 3000 - 30 - 30 * lags);
     }
 }
 
-TEST_CASE("without a sample period a step longer than the gap is a gap, and a shorter one is none") {
+TEST_CASE("without a sample period, a step is a gap if and only if it exceeds the gap time") {
     DFDYN_SEEDED_ENGINE(engine);
     auto constants = make_constants<SmallModel>(engine);
     constants.period_ns = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measurements that contradict the model: a contact is not learned, an arm that has changed is.
+// Measurements that contradict the model: a contact is not learned, a change of the arm is.
 #include "dfdyn/estimator.hpp"
 
 #include "tests/firmware_lib/support/running_arm.hpp"
@@ -17,7 +17,7 @@ using namespace dfdyn::tests;
 
 constexpr int patience = 5;
 
-/// An arm whose estimator refuses samples of more than 25 noise variances. It has learned 2,000 samples.
+/// An arm whose estimator refuses samples beyond 25 noise variances. It has learned 2,000 samples.
 template <class Model>
 struct WatchfulArm : RunningArm<Model> {
     explicit WatchfulArm(std::mt19937_64& engine) : RunningArm<Model>(engine, watchful(engine)) {
@@ -33,7 +33,7 @@ struct WatchfulArm : RunningArm<Model> {
         return constants;
     }
 
-    /// The sample due next, with an external torque at joint 2.
+    /// Returns the next sample, with an external torque at joint 2.
     typename Model::Sample touched(double torque) {
         auto sample = this->due();
         sample.output[1] += static_cast<typename Model::Scalar>(torque);
@@ -46,7 +46,7 @@ using ModelOf = TestModel<Scalar, DerivativeFreeReduced<6, 3>, 60, Form>;
 using UdFloat = ModelOf<float, UdCovariance>;
 using InformationDouble = ModelOf<double, CholeskyInformation>;
 
-TEMPLATE_TEST_CASE("a short contact is predicted, shown and not learned", "", UdFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("a short contact is predicted, reported and not learned", "", UdFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     WatchfulArm<TestType> arm(engine);
     for (int contact = 0; contact < 4; ++contact) {
@@ -63,7 +63,7 @@ TEMPLATE_TEST_CASE("a short contact is predicted, shown and not learned", "", Ud
     CHECK(static_cast<double>(estimate.normalised_innovation_squared) == Approx(62.5 * 62.5).epsilon(0.3));
 }
 
-TEMPLATE_TEST_CASE("a sample is learned if and only if the gate lets it in", "", UdFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("a sample is learned if and only if the gate accepts it", "", UdFloat, InformationDouble) {
     using Scalar = typename TestType::Scalar;
     DFDYN_SEEDED_ENGINE(engine);
     WatchfulArm<TestType> arm(engine);
@@ -83,7 +83,7 @@ TEMPLATE_TEST_CASE("a sample is learned if and only if the gate lets it in", "",
     CHECK(arm.estimator.counters().reasons[static_cast<int>(Reason::innovation_too_large)] > 20);
 }
 
-TEMPLATE_TEST_CASE("when the arm has changed, what it predicted stays and its certainty is the prior's", "",
+TEMPLATE_TEST_CASE("after a change of the arm the prediction stays and its variance grows to the prior's", "",
                    UdFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     WatchfulArm<TestType> arm(engine);
@@ -106,7 +106,7 @@ TEMPLATE_TEST_CASE("when the arm has changed, what it predicted stays and its ce
           Approx(static_cast<double>(certain.prediction[0])).margin(0.5));
 }
 
-TEST_CASE("samples without an output, or refused ones, neither end a contact nor prolong it") {
+TEST_CASE("samples that are refused or have no output neither end a contact nor prolong it") {
     DFDYN_SEEDED_ENGINE(engine);
     WatchfulArm<UdFloat> arm(engine);
     for (int t = 0; t < patience; ++t) {
@@ -119,7 +119,7 @@ TEST_CASE("samples without an output, or refused ones, neither end a contact nor
     CHECK(arm.tick(arm.touched(5)) == Reason::ok);
 }
 
-TEST_CASE("a new window begins with new patience") {
+TEST_CASE("a new window starts with an empty count") {
     DFDYN_SEEDED_ENGINE(engine);
     WatchfulArm<UdFloat> arm(engine);
     for (int t = 0; t < patience; ++t) {
@@ -130,9 +130,9 @@ TEST_CASE("a new window begins with new patience") {
     CHECK(arm.refused(arm.touched(5)) == Reason::innovation_too_large);
 }
 
-// The limit is on the innovation over its own variance: where the model knows nothing, nothing contradicts
-// it.
-TEST_CASE("an estimator that has learned nothing yet refuses nothing") {
+// The limit applies to the innovation relative to its own variance, so an untrained model contradicts
+// nothing.
+TEST_CASE("an estimator that has not learned yet refuses nothing") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = WatchfulArm<UdFloat>::watchful(engine);
     Estimator<UdFloat> estimator(constants);
@@ -140,12 +140,11 @@ TEST_CASE("an estimator that has learned nothing yet refuses nothing") {
         estimator.tick(moving_sample<UdFloat>(t, engine), Budget::unlimited());
     }
     auto sample = moving_sample<UdFloat>(6, engine);
-    sample.output[1] +=
-        5; // 60 times the noise, but less than twice the prior's deviation of 32 times the noise
+    sample.output[1] += 5; // 60 times the noise, but below twice the prior's deviation of 32 times the noise
     CHECK(estimator.tick(sample, Budget::unlimited()).status.learned());
 }
 
-TEST_CASE("a limit that is none refuses all for the patience and lets nothing infinite out") {
+TEST_CASE("an invalid limit refuses all samples for the patience and gives finite estimates") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const float limit : {-1.0F, 0.0F, std::nanf("")}) {
         auto constants = make_constants<UdFloat>(engine);
@@ -168,8 +167,8 @@ TEST_CASE("a limit that is none refuses all for the patience and lets nothing in
     }
 }
 
-TEMPLATE_TEST_CASE("no prediction leaves the estimator beyond its limit, and its deviation covers the rest",
-                   "", UdFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("no prediction is beyond its limit, and its deviation covers the difference", "", UdFloat,
+                   InformationDouble) {
     using Model = TestType;
     using Scalar = typename Model::Scalar;
     DFDYN_SEEDED_ENGINE(engine);
@@ -184,7 +183,7 @@ TEMPLATE_TEST_CASE("no prediction leaves the estimator beyond its limit, and its
         magnitudes.push_back(std::abs(own.back().prediction[1]));
     }
     std::ranges::nth_element(magnitudes, magnitudes.begin() + 300);
-    const Scalar limit = magnitudes[300]; // half of the predictions are beyond it
+    const Scalar limit = magnitudes[300]; // half of the predictions exceed it
     auto bounded_constants = constants;
     bounded_constants.prediction_limit = {{0, limit}};
     Estimator<Model> bounded(bounded_constants);

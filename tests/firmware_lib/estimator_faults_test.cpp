@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One failure of the sensors, the bus or the clock at a time.
+// Single faults of the sensors, the bus or the clock.
 #include "dfdyn/estimator.hpp"
 
 #include "tests/firmware_lib/support/running_arm.hpp"
@@ -37,7 +37,7 @@ SmallModel::Sample with_time(SmallModel::Sample sample, std::int64_t time_ns) {
     return sample;
 }
 
-TEST_CASE("a position that is no number, or beyond its limit, is refused and leaves a gap") {
+TEST_CASE("a position that is NaN or beyond its limit is refused and leaves a gap") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);
     for (const int joint : {0, 1}) {
@@ -54,7 +54,7 @@ TEST_CASE("a position that is no number, or beyond its limit, is refused and lea
     }
 }
 
-TEST_CASE("a refused position with the stamp of a good one does no harm") {
+TEST_CASE("a refused position with the stamp of a valid one has no effect") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);
     const auto good = arm.due();
@@ -71,7 +71,7 @@ TEST_CASE("a position at its limit is accepted") {
     }
 }
 
-TEST_CASE("an output that is no number, or beyond its limit, is not learned but predicted") {
+TEST_CASE("an output that is NaN or beyond its limit is predicted and not learned") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);
     for (const int output : {0, 1}) {
@@ -91,7 +91,7 @@ TEST_CASE("an output that is no number, or beyond its limit, is not learned but 
     CHECK(std::isfinite(estimate.standard_deviation[0]));
 }
 
-TEST_CASE("a missing output may hold anything") {
+TEST_CASE("a missing output may have any value") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);
     auto sample = with_output(arm.due(), 0, not_a_number);
@@ -99,7 +99,7 @@ TEST_CASE("a missing output may hold anything") {
     CHECK(arm.refused(sample) == Reason::output_missing);
 }
 
-TEST_CASE("a repeated sample and a stray from the past are refused, and the window stays") {
+TEST_CASE("a repeated or an old sample is refused and the window stays") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);
     const auto good = arm.due();
@@ -115,7 +115,7 @@ TEST_CASE("a repeated sample and a stray from the past are refused, and the wind
     }
 }
 
-TEST_CASE("a repeated stamp between two strays from the past does not make a new clock of them") {
+TEST_CASE("old samples with a repeated stamp in between are not a new clock") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);
     const auto last = arm.due();
@@ -127,7 +127,7 @@ TEST_CASE("a repeated stamp between two strays from the past does not make a new
     CHECK(arm.tick(arm.due()) == Reason::ok);
 }
 
-TEST_CASE("a clock that was set back is adopted at the third sample, and the window fills again") {
+TEST_CASE("a clock that was set back is adopted at the third sample and the window fills again") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);
     arm.clock_offset_ns = -1'000'000'000;
@@ -140,7 +140,7 @@ TEST_CASE("a clock that was set back is adopted at the third sample, and the win
     CHECK(arm.tick(arm.due()) == Reason::ok);
 }
 
-TEST_CASE("a gap restarts the window, a late sample does not") {
+TEST_CASE("a gap restarts the window and a late sample does not") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);
     CHECK(arm.tick(arm.due()) == Reason::ok);
@@ -154,7 +154,7 @@ TEST_CASE("a gap restarts the window, a late sample does not") {
     CHECK(arm.ticks_to_recover() == lags - 1);
 }
 
-TEST_CASE("a gap while the window fills starts it anew") {
+TEST_CASE("a gap while the window fills restarts it") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);
     for (int gaps = 0; gaps < 3; ++gaps) {
@@ -165,7 +165,7 @@ TEST_CASE("a gap while the window fills starts it anew") {
     CHECK(arm.ticks_to_recover() == lags - 2);
 }
 
-TEST_CASE("after one stamp from the far future the true clock is adopted again") {
+TEST_CASE("after one stamp far in the future the true clock is adopted again") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);
     CHECK(arm.refused(with_time(arm.due(), std::numeric_limits<std::int64_t>::max())) == Reason::gap);
@@ -175,7 +175,7 @@ TEST_CASE("after one stamp from the far future the true clock is adopted again")
     CHECK(arm.ticks_to_recover() == lags - 1);
 }
 
-TEST_CASE("a clock may jump over all of its range") {
+TEST_CASE("a clock may jump over its whole range") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);
     constexpr std::int64_t first = std::numeric_limits<std::int64_t>::min();
@@ -186,7 +186,7 @@ TEST_CASE("a clock may jump over all of its range") {
     CHECK(arm.ticks_to_recover() == lags - 1);
 }
 
-TEST_CASE("a jump of the encoder is refused while it makes the inputs meaningless") {
+TEST_CASE("an encoder jump is refused while it makes the inputs invalid") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);
     CHECK(arm.refused(with_position(arm.due(), 0, -9.9)) == Reason::input_out_of_range);
@@ -197,7 +197,7 @@ TEST_CASE("a jump of the encoder is refused while it makes the inputs meaningles
     CHECK(arm.tick(arm.due()) == Reason::ok);
 }
 
-TEST_CASE("an arm of which all sensors show zero is learned without harm") {
+TEST_CASE("an arm whose sensors all read zero is learned without faults") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);
     SmallModel::Sample zeros{};
@@ -216,7 +216,7 @@ TEST_CASE("an arm of which all sensors show zero is learned without harm") {
     CHECK(std::abs(last.prediction[0]) < 0.01);
 }
 
-TEST_CASE("an output so large that its square overflows is out of range, whatever the limit") {
+TEST_CASE("an output whose square overflows is out of range for any limit") {
     DFDYN_SEEDED_ENGINE(engine);
     auto constants = make_constants<SmallModel>(engine);
     constants.output_limit = {{std::numeric_limits<double>::max(), std::numeric_limits<double>::max()}};
@@ -225,7 +225,7 @@ TEST_CASE("an output so large that its square overflows is out of range, whateve
     CHECK(arm.tick(arm.due()) == Reason::ok);
 }
 
-TEST_CASE("a clock may pass from its negative half to its positive half in a gap and within a window") {
+TEST_CASE("a clock may change sign in a gap and within a window") {
     DFDYN_SEEDED_ENGINE(engine);
     using Timed = TestModel<double, Standard<6>>;
     RunningArm<Timed> arm(engine, make_constants<Timed>(engine));
@@ -238,7 +238,7 @@ TEST_CASE("a clock may pass from its negative half to its positive half in a gap
     CHECK(arm.tick(arm.due()) == Reason::ok);
 }
 
-TEST_CASE("measured derivatives that are no numbers, or too large, are refused with their sample") {
+TEST_CASE("samples with measured derivatives that are NaN or too large are refused") {
     DFDYN_SEEDED_ENGINE(engine);
     using Measured = TestModel<double, StandardMeasured>;
     RunningArm<Measured> arm(engine, make_constants<Measured>(engine));

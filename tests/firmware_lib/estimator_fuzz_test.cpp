@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All failures mixed at random.
+// All faults in random combinations.
 #include "dfdyn/estimator.hpp"
 
 #include "tests/firmware_lib/support/test_model.hpp"
@@ -23,8 +23,8 @@ using FuzzSample = FuzzModel::Sample;
 constexpr float jump = 1e6F;
 constexpr float position_limit = 1e7F;
 
-/// Constants with which every jump of joint 1 makes the inputs meaningless for as long as it is in the
-/// window: all rows sum to -1 and have no small entry, all frequencies are positive, so that nothing cancels.
+/// Constants for which every jump of joint 1 makes the inputs invalid while it is in the window: all rows sum
+/// to -1 without small entries, and all frequencies are positive, so that nothing cancels.
 FuzzModel::Constants fuzz_constants(std::mt19937_64& engine) {
     FuzzModel::Constants constants{};
     std::uniform_real_distribution<float> size(0.5F, 1.5F);
@@ -47,7 +47,7 @@ FuzzModel::Constants fuzz_constants(std::mt19937_64& engine) {
     return constants;
 }
 
-/// The documented rules of positions and time, written down once more.
+/// A second implementation of the documented rules for positions and time.
 class Gates {
   public:
     Reason expect(const FuzzSample& sample) {
@@ -113,12 +113,13 @@ float not_finite(std::mt19937_64& engine) {
     return values[engine() % 3];
 }
 
-/// What reaches the estimator instead of, or besides, each good sample.
+/// Replaces good samples by faulty ones, or adds them.
 class FaultyLine {
   public:
     explicit FaultyLine(std::mt19937_64& engine) : engine_(&engine) {}
 
-    /// The samples that arrive for one good sample, in order. The good one, if it arrives, is the last.
+    /// Returns the samples that arrive for one good sample, in order. The good one, if it arrives, is the
+    /// last.
     std::vector<FuzzSample> deliver(FuzzSample good) {
         good.time_ns += clock_ns_;
         std::vector<FuzzSample> arriving{good};
@@ -164,7 +165,7 @@ class FaultyLine {
 
     int joint() { return static_cast<int>((*engine_)() % 2); }
 
-    /// The last sample once more, or with a stamp from far away.
+    /// Returns the last sample again, or one with a distant stamp.
     FuzzSample stray() {
         const std::int64_t offsets[] = {0, -10'000 * period_ns, 10'000 * period_ns, 1'000'000 * period_ns};
         FuzzSample sample = last_;
@@ -181,7 +182,7 @@ class FaultyLine {
     FuzzSample last_{};
 };
 
-/// An estimator at the end of a faulty line, checked tick by tick.
+/// An estimator at the end of a faulty line, checked in every tick.
 class Victim {
   public:
     explicit Victim(const FuzzModel::Constants& constants)
@@ -213,7 +214,7 @@ class Victim {
         REQUIRE(after.reasons[reason] == before.reasons[reason] + 1);
     }
 
-    /// What has been learned changes in the ticks that say so, and in no other.
+    /// Checks that the learned state changes exactly in the ticks that report learning.
     void check_learned(bool changed) {
         auto now = snapshot_of(estimator_);
         REQUIRE((now != learned_) == changed);
@@ -225,7 +226,7 @@ class Victim {
     std::vector<std::byte> learned_;
 };
 
-/// Any bytes at all.
+/// Returns random bytes as a T.
 template <class T>
 T garbage(std::mt19937_64& engine) {
     const std::uint64_t bits = engine();
@@ -246,9 +247,9 @@ FuzzSample garbage_sample(std::mt19937_64& engine) {
     return sample;
 }
 
-// The twin is told of every good sample, but learns only those that the victim did: after all that happens to
-// the victim it must predict the same, bit for bit.
-TEST_CASE("any mixture of faults is handled as documented, and leaves no trace") {
+// The twin receives every good sample, but learns only those that the victim learned. It must predict the
+// same as the victim, bit for bit.
+TEST_CASE("any mixture of faults is handled as documented, without lasting effect") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = fuzz_constants(engine);
     Victim victim(constants);
@@ -280,7 +281,7 @@ TEST_CASE("any mixture of faults is handled as documented, and leaves no trace")
     }
 }
 
-TEST_CASE("any bytes whatever, any budget and any call in between leave a sound estimator") {
+TEST_CASE("random bytes, budgets and calls leave a valid estimator") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = fuzz_constants(engine);
     Estimator<FuzzModel> estimator(constants);
@@ -293,8 +294,7 @@ TEST_CASE("any bytes whatever, any budget and any call in between leave a sound 
         REQUIRE(estimate.normalised_innovation_squared >= 0);
         if (t % 777 == 0) {
             const auto bytes = snapshot_of(estimator);
-            REQUIRE(estimator.restore(bytes) ==
-                    SnapshotResult::ok); // the snapshot's own check finds it sound
+            REQUIRE(estimator.restore(bytes) == SnapshotResult::ok); // valid by the snapshot's own check
         }
     }
     CHECK(estimator.counters().learned > 1000);

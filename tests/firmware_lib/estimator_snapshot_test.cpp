@@ -27,7 +27,7 @@ using Mean = TestMean<float, DerivativeFreeReduced<6, 3>, 5>;
 using Kernel = TestKernel<float, DerivativeFreeReduced<6, 3>, 5>;
 using KernelDouble = TestKernel<double, DerivativeFreeReduced<6, 3>, 5>;
 
-/// An estimator with a past; `tiny` leaves a sample half learned.
+/// An estimator that has learned; `tiny` leaves a sample half learned.
 template <class Model>
 void give_past(Estimator<Model>& estimator, std::mt19937_64& engine, bool tiny) {
     for (int t = 0; t < 80; ++t) {
@@ -38,14 +38,14 @@ void give_past(Estimator<Model>& estimator, std::mt19937_64& engine, bool tiny) 
     }
 }
 
-/// Puts the right checksum on changed bytes.
+/// Writes the correct checksum of changed bytes.
 void seal(Bytes& bytes) {
     const std::span checked = std::span(bytes).first(bytes.size() - sizeof(SnapshotChecksum));
     const SnapshotChecksum crc = crc32(checked);
     std::memcpy(bytes.data() + checked.size(), &crc, sizeof crc);
 }
 
-/// Restores changed bytes into an estimator that has learned something else; a rejection must change nothing.
+/// Restores changed bytes into an estimator that has learned other data; a rejection must change nothing.
 template <class Model>
 SnapshotResult restored(Estimator<Model>& other, const Bytes& bytes) {
     const Bytes before = snapshot_of(other);
@@ -72,9 +72,8 @@ struct Pair {
     }
 };
 
-TEMPLATE_TEST_CASE("a restored estimator goes on as the original does, once its window has filled", "",
-                   UdFloat, UdDouble, InformationFloat, InformationDouble, Parametric, Mean, Kernel,
-                   KernelDouble) {
+TEMPLATE_TEST_CASE("a restored estimator behaves as the original once its window is full", "", UdFloat,
+                   UdDouble, InformationFloat, InformationDouble, Parametric, Mean, Kernel, KernelDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     for (const bool half_learned : {false, true}) {
         CAPTURE(half_learned);
@@ -85,7 +84,7 @@ TEMPLATE_TEST_CASE("a restored estimator goes on as the original does, once its 
         int compared = 0;
         for (int t = 81; t < 200; ++t) {
             auto sample = moving_sample<TestType>(t, engine);
-            sample.output_valid = t > 90; // while one of them cannot learn, neither does
+            sample.output_valid = t > 90; // neither learns while the restored one cannot
             const auto expected = pair.original.tick(sample, Budget{t < 100 ? 100 : 3000});
             const auto estimate = pair.other.tick(sample, Budget{t < 100 ? 100 : 3000});
             if (estimate.status.predicted()) {
@@ -98,8 +97,9 @@ TEMPLATE_TEST_CASE("a restored estimator goes on as the original does, once its 
     }
 }
 
-TEMPLATE_TEST_CASE("every changed byte and every truncation of a snapshot is rejected whole", "", UdFloat,
-                   UdDouble, InformationFloat, InformationDouble, Parametric, Mean, Kernel, KernelDouble) {
+TEMPLATE_TEST_CASE("every changed byte and every truncation of a snapshot is rejected and changes nothing",
+                   "", UdFloat, UdDouble, InformationFloat, InformationDouble, Parametric, Mean, Kernel,
+                   KernelDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     Pair<TestType> pair(engine, true);
     const Bytes bytes = snapshot_of(pair.original);
@@ -114,12 +114,12 @@ TEMPLATE_TEST_CASE("every changed byte and every truncation of a snapshot is rej
     CHECK(rejected == 2 * bytes.size());
 }
 
-TEMPLATE_TEST_CASE("no number of a snapshot may be missing, whatever the checksum says", "", UdFloat,
-                   UdDouble, InformationFloat, InformationDouble, Parametric, Mean, Kernel, KernelDouble) {
+TEMPLATE_TEST_CASE("NaN in a snapshot is rejected despite a correct checksum", "", UdFloat, UdDouble,
+                   InformationFloat, InformationDouble, Parametric, Mean, Kernel, KernelDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     Pair<TestType> pair(engine, true);
     const Bytes bytes = snapshot_of(pair.original);
-    // all ones: not a number in either precision, and no index or size either
+    // All bits set: NaN in either precision, and no valid index or size.
     constexpr std::size_t width = sizeof(typename TestType::Scalar);
     std::size_t wrongly_restored = 0;
     const std::size_t end = bytes.size() - sizeof(SnapshotChecksum);
@@ -132,8 +132,8 @@ TEMPLATE_TEST_CASE("no number of a snapshot may be missing, whatever the checksu
     CHECK(wrongly_restored == 0);
 }
 
-// How U lies in memory is the machine's business; a snapshot is the same on all.
-TEST_CASE("the snapshot of U-D begins with U above its diagonal, column after column") {
+// The memory layout of U depends on the machine; a snapshot does not.
+TEST_CASE("the snapshot of U-D begins with U above its diagonal, by columns") {
     DFDYN_SEEDED_ENGINE(engine);
     const Pair<UdFloat> pair(engine);
     const Bytes bytes = snapshot_of(pair.original);
@@ -150,9 +150,9 @@ TEST_CASE("the snapshot of U-D begins with U above its diagonal, column after co
     }
 }
 
-// The snapshot of U-D begins with U, then come the variances; that of the information form with its factor,
-// whose rows begin with their diagonal element.
-TEST_CASE("variances and diagonals of a snapshot must be positive, whatever the checksum says") {
+// The snapshot of U-D begins with U, followed by the variances. That of the information form begins with its
+// factor, whose rows begin with the diagonal element.
+TEST_CASE("variances and diagonals that are not positive are rejected despite a correct checksum") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto with_number = [&]<class Model>(Pair<Model>& pair, std::size_t index, float number) {
         Bytes forged = snapshot_of(pair.original);
@@ -177,9 +177,8 @@ TEST_CASE("variances and diagonals of a snapshot must be positive, whatever the 
     CHECK(with_number(information, 0, 2.0F) == SnapshotResult::ok);
 }
 
-// A sound checksum over finite numbers is all that a snapshot can be asked for; what overflows in use is
-// found there.
-TEST_CASE("absurd numbers from a snapshot predict nothing, and are gone after a reset") {
+// A snapshot can only be checked for a correct checksum and finite numbers; an overflow is detected in use.
+TEST_CASE("with extreme numbers from a snapshot nothing is predicted until a reset") {
     DFDYN_SEEDED_ENGINE(engine);
     Pair<UdFloat> pair(engine);
     Bytes forged = snapshot_of(pair.original);
@@ -223,7 +222,7 @@ TEST_CASE("a snapshot of another model is rejected") {
     CHECK(result_in(InformationFloat{}, identity) != SnapshotResult::ok);
 }
 
-TEST_CASE("foreign bytes and other versions are rejected") {
+TEST_CASE("bytes that are not a snapshot and other versions are rejected") {
     DFDYN_SEEDED_ENGINE(engine);
     Pair<UdFloat> pair(engine);
     Bytes bytes = snapshot_of(pair.original);

@@ -22,7 +22,7 @@ using ModelOf = TestModel<Scalar>;
 using DoubleModel = ModelOf<double>;
 constexpr int lags = 6;
 
-/// What the estimator's columns were and what it was told, tick by tick, in the learner's units.
+/// The estimator's columns and inputs, tick by tick, in the learner's units.
 struct Record {
     Regression regression;
     int count = 0;
@@ -49,7 +49,8 @@ struct Record {
     }
 };
 
-TEMPLATE_TEST_CASE("until the window is full nothing is predicted, and it says so", "", float, double) {
+TEMPLATE_TEST_CASE("until the window is full nothing is predicted, with the reason window_filling", "", float,
+                   double) {
     DFDYN_SEEDED_ENGINE(engine);
     using Model = ModelOf<TestType>;
     const auto constants = make_constants<Model>(engine);
@@ -72,7 +73,7 @@ TEMPLATE_TEST_CASE("until the window is full nothing is predicted, and it says s
     CHECK(static_cast<double>(first.standard_deviation[1]) == Approx(0.08 * std::sqrt(1001)));
 }
 
-TEST_CASE("every estimate is what the batch solution of all samples before it says") {
+TEST_CASE("every estimate equals the batch solution of all samples before it") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<DoubleModel>(engine);
     Estimator<DoubleModel> estimator(constants);
@@ -113,14 +114,14 @@ TEST_CASE("every estimate is what the batch solution of all samples before it sa
           }()) < 1e-9);
 }
 
-// With data drawn from the model itself the normalised innovations are independent and N(0, 1): their squares
-// add up to a chi-square with m degrees of freedom per tick, of mean m and variance 2m.
+// With data drawn from the model itself the normalised innovations are independent and N(0, 1). The sum of
+// their squares is chi-square with m degrees of freedom per tick, with mean m and variance 2m.
 TEMPLATE_TEST_CASE("on data from the model the normalised innovations squared are chi-square", "", float,
                    double) {
     DFDYN_SEEDED_ENGINE(engine);
     using Model = ModelOf<TestType>;
     const auto constants = make_constants<Model>(engine);
-    Estimator<Model> probe(constants); // gives the columns before the sample is made
+    Estimator<Model> probe(constants); // computes the columns before the sample exists
     Estimator<Model> estimator(constants);
     std::normal_distribution<double> normal;
     Eigen::MatrixXd weights(Model::columns, 2);
@@ -152,7 +153,7 @@ TEMPLATE_TEST_CASE("on data from the model the normalised innovations squared ar
                 std::abs(static_cast<double>(normalised)) < 1.959964 ? 1 : 0;
         }
     }
-    // five standard deviations of a mean of `count` ticks
+    // Five standard deviations of a mean of `count` ticks.
     CHECK(sum / count == Approx(2).margin(5 * std::sqrt(2 * 2.0 / count)));
     for (const int inside : within) {
         CHECK(inside == Approx(0.95 * count).margin(5 * std::sqrt(0.95 * 0.05 * count)));
@@ -173,7 +174,7 @@ TEST_CASE("the arm's torque is learned to within its noise") {
     CHECK(std::sqrt(squares / 1000) < 1.2 * torque_noise);
 }
 
-TEST_CASE("forgetting follows an arm that changes, no forgetting does not") {
+TEST_CASE("a changing arm is followed with forgetting and not without") {
     DFDYN_SEEDED_ENGINE(engine);
     using Model = TestModel<float, DerivativeFreeStructured<10>, 20>;
     const auto error_after_change = [&](double forgetting_factor) {
@@ -217,7 +218,8 @@ TEST_CASE("a sample without output is predicted and not learned") {
           Approx(static_cast<double>(blind.standard_deviation[0])).epsilon(1e-5));
 }
 
-TEMPLATE_TEST_CASE("reset gives a new estimator, restart_window keeps what was learned", "", float, double) {
+TEMPLATE_TEST_CASE("reset returns to the initial state, restart_window keeps the learned state", "", float,
+                   double) {
     DFDYN_SEEDED_ENGINE(engine);
     using Model = ModelOf<TestType>;
     const auto constants = make_constants<Model>(engine, 0.999);
@@ -229,7 +231,7 @@ TEMPLATE_TEST_CASE("reset gives a new estimator, restart_window keeps what was l
     const auto learned = snapshot_of(used);
     used.restart_window();
     CHECK((snapshot_of(used) == learned));
-    // an earlier time: the clock starts again too
+    // An earlier time: the clock restarts too.
     CHECK(used.tick(moving_sample<Model>(0, engine), Budget::predict_only()).status.prediction ==
           Reason::window_filling);
     used.reset();
@@ -243,7 +245,7 @@ TEMPLATE_TEST_CASE("reset gives a new estimator, restart_window keeps what was l
     CHECK((snapshot_of(used) == snapshot_of(fresh)));
 }
 
-TEST_CASE("counters outlast every robot: a million years at 10 kHz") {
+TEST_CASE("counters do not overflow within a million years at 10 kHz") {
     constexpr std::uint64_t ticks = std::uint64_t{10'000} * 3600 * 24 * 365 * 1'000'000;
     using Number = decltype(Counters::ticks);
     static_assert(std::numeric_limits<Number>::max() > ticks);

@@ -32,7 +32,7 @@ float inverse_far_variance(const Estimator<Model>& estimator) {
     return static_cast<float>(Model::columns) / trace;
 }
 
-/// An arm that has learned 3,000 samples, and now stands where it never was.
+/// An arm that has learned 3,000 samples and is then evaluated away from them.
 template <class Model>
 struct StrayArm : RunningArm<Model> {
     explicit StrayArm(std::mt19937_64& engine) : RunningArm<Model>(engine, sharp(engine)) {
@@ -51,14 +51,14 @@ struct StrayArm : RunningArm<Model> {
         return constants;
     }
 
-    /// Uses what `dfdyn train` would measure.
+    /// Sets the constants that `dfdyn train` would measure.
     void know() {
         this->constants.extrapolation.inverse_far_variance = inverse_far_variance(this->estimator);
         this->constants.extrapolation.extra_noise = {{0.5F, 0.5F}};
         this->constants.extrapolation.prior_variance = {{900, 400}};
     }
 
-    /// The estimate `offset` rad away from where the arm would be, without learning it.
+    /// Returns the estimate `offset` rad away from the arm's position, without learning it.
     auto estimate_at(float offset) {
         this->estimator.restart_window();
         typename Estimator<Model>::Estimate estimate{};
@@ -72,7 +72,7 @@ struct StrayArm : RunningArm<Model> {
         return estimate;
     }
 
-    /// What the physics alone says there, in the output's unit.
+    /// Returns the physics' prediction at the present sample, in the output's unit.
     float without_features(int k) {
         std::array<float, 2> means{};
         this->estimator.regression().predict_without_features(means.data());
@@ -81,7 +81,7 @@ struct StrayArm : RunningArm<Model> {
     }
 };
 
-TEST_CASE("doubt rises from nothing at the data to nearly all far from them") {
+TEST_CASE("doubt rises from zero at the data to nearly one far from them") {
     float last = 0;
     for (const float t : {0.0F, 0.01F, 0.03F, 0.1F, 0.2F, 0.5F, 0.8F, 1.0F, 30.0F}) {
         const Extrapolation<float> beyond(5 * t, 0.2F);
@@ -95,17 +95,17 @@ TEST_CASE("doubt rises from nothing at the data to nearly all far from them") {
     CHECK(Extrapolation<float>(1, 1).doubt() > 0.98F);
     CHECK(Extrapolation<float>(1, 1).unknown() == 1);
     CHECK(Extrapolation<float>(1, 1).variance(2, 1, 0.5F, 7) == 8.5F);
-    CHECK(Extrapolation<float>(1, 1).variance(6, 1, 0.5F, 7) == 12.5F); // 4 of the physics' parameters
+    // 4 of the variance belongs to the physics' parameters
+    CHECK(Extrapolation<float>(1, 1).variance(6, 1, 0.5F, 7) == 12.5F);
 }
 
-TEST_CASE("without the constants predictions and standard deviations are the paper's, bit for bit") {
+TEST_CASE("without the constants predictions and standard deviations equal the paper's, bit for bit") {
     const Extrapolation<float> paper(123.4F, 0);
     CHECK(paper.doubt() == 0);
     CHECK(paper.variance(124.4F, 123.4F, 0, 0) == 124.4F);
 }
 
-TEST_CASE(
-    "doubt of the physics rises with what its parameters leave open, and its variance is the output's") {
+TEST_CASE("doubt of the physics rises with the variance of its parameters, up to the output's variance") {
     const Extrapolation<float> beyond(0, 0, 20);
     float last = 0;
     for (const float of_parameters : {0.0F, 0.01F, 1.0F, 5.0F, 40.0F, 1e10F, 1e30F}) {
@@ -114,14 +114,15 @@ TEST_CASE(
         CHECK(doubt >= last);
         CHECK(doubt <= 1);
         CHECK(beyond.variance(1 + of_parameters, 0, 0.5F, 0, 100) <= 101.5F);
-        CHECK(beyond.parameter_doubt(1 + of_parameters, 0, 0) == 0); // nothing is known of the output
+        CHECK(beyond.parameter_doubt(1 + of_parameters, 0, 0) == 0); // the output's variance is unknown
         last = doubt;
     }
     CHECK(last > 0.999F);
     CHECK(beyond.parameter_doubt(1 + 15, 0, 100) == 0.5F); // 20 times 15 is the square of the range
     CHECK(beyond.variance(3, 0, 0.5F, 0, 100) == 41.5F);
     CHECK(beyond.variance(1e10F, 0, 0.5F, 0, 100) == 101.5F);
-    CHECK(Extrapolation<float>(2, 0.1F, 20).variance(6, 2, 0.5F, 0, 100) == 61.5F); // 3 of the parameters
+    // 3 of the variance belongs to the parameters
+    CHECK(Extrapolation<float>(2, 0.1F, 20).variance(6, 2, 0.5F, 0, 100) == 61.5F);
 }
 
 TEST_CASE("a variance that is not finite stays so") {
@@ -131,7 +132,7 @@ TEST_CASE("a variance that is not finite stays so") {
     }
 }
 
-TEST_CASE("without knowledge of the outputs, what the physics' parameters leave open counts once") {
+TEST_CASE("without a variance of the outputs the parameters' variance has the factor one") {
     DFDYN_SEEDED_ENGINE(engine);
     RunningArm<Physics> arm(engine, make_constants<Physics>(engine));
     const auto estimate_at_rest = [&] {
@@ -166,7 +167,7 @@ TEST_CASE("without knowledge of the outputs, what the physics' parameters leave 
     CHECK(open.prediction[1] == often.prediction[1]);
 }
 
-TEMPLATE_TEST_CASE("far from the data the physics predicts, or the mean, and the deviation is the output's",
+TEMPLATE_TEST_CASE("far from the data the prediction is that of the physics and the deviation the output's",
                    "", Features, Mean, Kernel) {
     DFDYN_SEEDED_ENGINE(engine);
     StrayArm<TestType> arm(engine);
@@ -176,7 +177,7 @@ TEMPLATE_TEST_CASE("far from the data the physics predicts, or the mean, and the
         REQUIRE(estimate.status.predicted());
         strayed = std::max(strayed, std::abs(estimate.prediction[0] - arm.without_features(0)));
     }
-    REQUIRE(strayed > arm.constants.output_noise_std[0]); // the paper's features say something there
+    REQUIRE(strayed > arm.constants.output_noise_std[0]); // the features of the paper contribute here
     arm.know();
     for (int visit = 0; visit < 20; ++visit) {
         const auto estimate = arm.estimate_at(6);
@@ -190,12 +191,12 @@ TEMPLATE_TEST_CASE("far from the data the physics predicts, or the mean, and the
     }
 }
 
-TEMPLATE_TEST_CASE("near the data predictions stay as they are", "", Features, Mean, Kernel) {
+TEMPLATE_TEST_CASE("near the data predictions do not change", "", Features, Mean, Kernel) {
     DFDYN_SEEDED_ENGINE(engine);
     StrayArm<TestType> arm(engine);
     for (int visit = 0; visit < 20; ++visit) {
         arm.constants.extrapolation = {};
-        arm.now = 1000 + 50 * visit; // where it has been
+        arm.now = 1000 + 50 * visit; // within the learned motion
         const auto before = arm.estimate_at(0);
         arm.know();
         arm.now = 1000 + 50 * visit;
@@ -208,12 +209,13 @@ TEMPLATE_TEST_CASE("near the data predictions stay as they are", "", Features, M
     }
 }
 
-// Its covariance covers only what it has seen since, but the weights are still the best guess elsewhere.
-TEST_CASE("an arm that has changed keeps what it learned where it has not been since") {
+// The covariance describes only the samples since the change, but the weights are still the best estimate
+// elsewhere.
+TEST_CASE("after a change the model keeps its predictions where the arm has not been since") {
     DFDYN_SEEDED_ENGINE(engine);
     StrayArm<Features> arm(engine);
     arm.know();
-    arm.now = 2900; // where it has been
+    arm.now = 2900; // within the learned motion
     const auto before = arm.estimate_at(0);
     arm.now = 3100;
     arm.estimator.restart_window();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bytes that maps and learners say they keep are those they take, whatever the sizes: beyond them are
-// only pointers and indices, as many for all sizes.
+// Maps and learners take the bytes that they declare, plus pointers and indices whose number does not depend
+// on the sizes.
 #include "dfdyn/dfdyn.hpp"
 
 #include "tests/support/catch.hpp"
@@ -11,7 +11,7 @@ namespace {
 
 using namespace dfdyn;
 
-/// Alignment included.
+/// Including alignment.
 constexpr std::int64_t most_beside_arrays = 5 * storage_alignment;
 
 template <class Part>
@@ -44,14 +44,14 @@ void check_learner() {
 
 } // namespace
 
-TEST_CASE("numbers in place take what `storage_bytes` says") {
+TEST_CASE("numbers in place take the bytes of `storage_bytes`") {
     CHECK(sizeof(Storage<float, 1>) == storage_bytes<float>(1));
     CHECK(sizeof(Storage<float, 8>) == storage_bytes<float>(8));
     CHECK(sizeof(Storage<float, 9>) == storage_bytes<float>(9));
     CHECK(sizeof(Storage<double, 101>) == storage_bytes<double>(101));
 }
 
-TEMPLATE_TEST_CASE("an input map keeps the bytes that it says", "", DerivativeFree<3>, DerivativeFree<40>,
+TEMPLATE_TEST_CASE("an input map takes the bytes that it declares", "", DerivativeFree<3>, DerivativeFree<40>,
                    DerivativeFreeWeighted<10>, (DerivativeFreeReduced<10, 3>), (DerivativeFreeReduced<60, 5>),
                    DerivativeFreeStructured<30>, DerivativeFreeStructuredRecursive<30>, Standard<6>,
                    Standard<40>, StandardMeasured) {
@@ -60,38 +60,38 @@ TEMPLATE_TEST_CASE("an input map keeps the bytes that it says", "", DerivativeFr
     check_input<TestType, 30>();
 }
 
-TEMPLATE_TEST_CASE_SIG("a learner keeps the bytes that it says", "",
+TEMPLATE_TEST_CASE_SIG("a learner takes the bytes that it declares", "",
                        ((int columns, int outputs), columns, outputs), (1, 1), (4, 2), (7, 6), (50, 6),
                        (100, 1), (201, 6), (1000, 6)) {
     check_learner<UdCovariance, columns, outputs>();
     check_learner<CholeskyInformation, columns, outputs>();
 }
 
-TEMPLATE_TEST_CASE_SIG("SPK's learner keeps the bytes that it says", "",
+TEMPLATE_TEST_CASE_SIG("the learner of SPK takes the bytes that it declares", "",
                        ((int columns, int parameters, int outputs), columns, parameters, outputs), (4, 1, 1),
                        (50, 13, 6), (500, 52, 6)) {
     using Learner = BlockArrow<float, columns, parameters, outputs>;
     const auto bytes = static_cast<std::int64_t>(sizeof(Learner));
     const std::int64_t state_bytes = Learner::state_bytes(columns, parameters, outputs);
     CHECK(bytes >= state_bytes);
-    CHECK(bytes <= state_bytes + 2 * most_beside_arrays); // it holds a learner
+    CHECK(bytes <= state_bytes + 2 * most_beside_arrays); // contains a learner
 }
 
-TEST_CASE("a feature map's constants take the bytes that it says") {
+TEST_CASE("the constants of a feature map take the bytes that it declares") {
     check_bytes<RandomFourier<50>::Constants<float, 12>>(RandomFourier<50>::constant_bytes<float>(12, 50));
     check_bytes<RandomFourier<250>::Constants<double, 18>>(
         RandomFourier<250>::constant_bytes<double>(18, 250));
 }
 
-TEST_CASE("a physics map keeps the bytes that it says") {
+TEST_CASE("a physics map takes the bytes that it declares") {
     using Arm = Chain<6>;
     using Columns = Physics<DerivativeFreeReduced<20, 3>, 40, ViscousFriction<6>>;
     using Map = Columns::Map<float, Arm>;
     check_bytes<Map>(Map::state_bytes({}));
 }
 
-// The estimator is its parts, its columns, its outputs and its counters.
-TEST_CASE("a firmware model keeps what its parts keep") {
+// An estimator contains its parts, its columns, its outputs and its counters.
+TEST_CASE("a firmware model takes the bytes of its parts") {
     using Arm = Joints<6, 6>;
     using Whole = Estimator<Model<float, Arm, DerivativeFreeReduced<10, 3>, RandomFourier<100>>>;
     const std::int64_t parts = DerivativeFreeReduced<10, 3>::Map<float, 6>::state_bytes(6, 10, 3) +

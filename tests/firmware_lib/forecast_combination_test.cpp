@@ -31,7 +31,7 @@ Combination<Scalar> combination(Scalar memory) {
     return {Extent<members>{}, Extent<outputs>{}, memory};
 }
 
-/// Deviations of the members' noise: 0.5, 1, 2 in the first output, 1 in the second.
+/// Standard deviations of the members' noise: 0.5, 1, 2 for the first output, 1 for the second.
 template <class Scalar>
 constexpr Values<Scalar> noise{Scalar(0.5), 1, 1, 1, 2, 1};
 
@@ -40,7 +40,7 @@ Combination<Scalar> scaled_combination(Scalar memory) {
     return {Extent<members>{}, Extent<outputs>{}, memory, noise<Scalar>.data()};
 }
 
-/// Predictions of an output 0 whose error has the deviations 1, 2, 4 (first output) and 3, 3, 0.3 (second).
+/// Predictions of an output 0, with error deviations 1, 2, 4 (first output) and 3, 3, 0.3 (second).
 template <class Scalar>
 Values<Scalar> predictions(std::mt19937_64& engine) {
     constexpr std::array deviation{1.0, 3.0, 2.0, 3.0, 4.0, 0.3};
@@ -52,8 +52,7 @@ Values<Scalar> predictions(std::mt19937_64& engine) {
     return values;
 }
 
-/// The weights from all errors at once, in double: what the recursion must come to while its memory is not
-/// full.
+/// The weights from all errors at once, in double: the recursion must agree while its memory is not full.
 template <class Scalar>
 std::vector<double> batch_weights(const std::vector<Values<Scalar>>& errors) {
     std::vector<double> weights(static_cast<std::size_t>(members) * outputs);
@@ -74,7 +73,7 @@ std::vector<double> batch_weights(const std::vector<Values<Scalar>>& errors) {
     return weights;
 }
 
-TEMPLATE_TEST_CASE("members weigh alike until they have been seen to predict", "", float, double) {
+TEMPLATE_TEST_CASE("members have equal weights before the first errors", "", float, double) {
     const Combination<TestType> combined = combination<TestType>(100);
     const Values<TestType> from{1, 10, 2, 20, 6, 60};
     std::array<TestType, outputs> to{};
@@ -83,7 +82,7 @@ TEMPLATE_TEST_CASE("members weigh alike until they have been seen to predict", "
     CHECK(to[1] == Approx(30));
 }
 
-TEMPLATE_TEST_CASE("weights are in inverse proportion to the square of the mean square error", "", float,
+TEMPLATE_TEST_CASE("weights are inversely proportional to the square of the mean square error", "", float,
                    double) {
     DFDYN_SEEDED_ENGINE(engine);
     Combination<TestType> combined = combination<TestType>(500);
@@ -100,7 +99,7 @@ TEMPLATE_TEST_CASE("weights are in inverse proportion to the square of the mean 
     CHECK(combined.weights()[0] > TestType(0.85)); // 1 against 1/16 and 1/256
 }
 
-TEST_CASE("when the members change places, the weights follow within the memory") {
+TEST_CASE("if members exchange their errors, the weights follow within the memory") {
     Combination<double> combined = combination<double>(50);
     const std::array<double, outputs> measured{};
     const Values<double> first_good{0.1, 0.1, 1, 1, 5, 5};
@@ -117,7 +116,7 @@ TEST_CASE("when the members change places, the weights follow within the memory"
     CHECK(combined.weights()[0] == Approx(1.0 / 3));
 }
 
-TEMPLATE_TEST_CASE("whatever it has seen, the combination lies among its members", "", float, double) {
+TEMPLATE_TEST_CASE("after any errors the combination lies between its members", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr TestType infinite = std::numeric_limits<TestType>::infinity();
     const std::array<TestType, 6> odd{0,
@@ -143,7 +142,7 @@ TEMPLATE_TEST_CASE("whatever it has seen, the combination lies among its members
         combined.learn(from.data(), ahead.data(), measured.data());
         if (pick(engine) % 2 == 0) {
             combined.skip();
-            combined.weigh(ahead.data()); // deviations may be anything
+            combined.weigh(ahead.data()); // any deviations are allowed
         }
         from = predictions<TestType>(engine);
         combined.combine(from.data(), to.data());
@@ -156,7 +155,7 @@ TEMPLATE_TEST_CASE("whatever it has seen, the combination lies among its members
     }
 }
 
-TEMPLATE_TEST_CASE("an absurd error is forgotten within five memories", "", float, double) {
+TEMPLATE_TEST_CASE("an absurdly large error is forgotten within five memories", "", float, double) {
     Combination<TestType> combined = combination<TestType>(50);
     const std::array<TestType, outputs> measured{};
     const Values<TestType> good{1, 1, TestType(0.1), TestType(0.1), 2, 2};
@@ -174,7 +173,7 @@ TEMPLATE_TEST_CASE("an absurd error is forgotten within five memories", "", floa
     CHECK(combined.weights()[outputs] > TestType(0.99));
 }
 
-TEMPLATE_TEST_CASE("members of known noise weigh by it until they have been seen to predict", "", float,
+TEMPLATE_TEST_CASE("before the first errors, members with known noise are weighted by it", "", float,
                    double) {
     const Combination<TestType> combined = scaled_combination<TestType>(100);
     const double sum = 16 + 1 + 1.0 / 16; // 1/σ⁴
@@ -184,7 +183,7 @@ TEMPLATE_TEST_CASE("members of known noise weigh by it until they have been seen
     CHECK(combined.weights()[1] == Approx(1.0 / 3));
 }
 
-TEMPLATE_TEST_CASE("a member whose parameters are uncertain at an input counts less there", "", float,
+TEMPLATE_TEST_CASE("a member with uncertain parameters at an input has less weight there", "", float,
                    double) {
     const TestType factor =
         GENERATE(Combination<TestType>::variance_factor, Combination<TestType>::calibrated_variance_factor);
@@ -193,7 +192,7 @@ TEMPLATE_TEST_CASE("a member whose parameters are uncertain at an input counts l
     combined.weigh(deviations.data());
     const TestType before = combined.weights()[1];
     CHECK(before == Approx(1.0 / 3));
-    deviations[1] = 2; // a variance of 3 of the parameters, besides 1 of the noise
+    deviations[1] = 2; // a variance of 3 of the parameters plus 1 of the noise
     combined.weigh(deviations.data());
     const double doubtful = 1 + 3 * static_cast<double>(factor);
     CHECK(combined.weights()[1] == Approx(1 / (doubtful * doubtful) / (2 + 1 / (doubtful * doubtful))));
@@ -201,15 +200,16 @@ TEMPLATE_TEST_CASE("a member whose parameters are uncertain at an input counts l
     deviations[1] = std::numeric_limits<TestType>::infinity();
     combined.weigh(deviations.data());
     CHECK(combined.weights()[1] < TestType(1e-6));
-    combined.weigh(noise<TestType>.data()); // of this input only: nothing of it stays
+    combined.weigh(noise<TestType>.data()); // the effect is limited to one input
     CHECK(combined.weights()[1] == before);
 }
 
-TEST_CASE("how much variances weigh changes with the first error, and back within memories without any") {
+TEST_CASE(
+    "the factor on variances changes with the first error, and returns within memories without errors") {
     const double unjudged = Combination<double>::calibrated_variance_factor;
     Combination<double> combined({}, {}, 50, noise<double>.data(), unjudged);
     Values<double> deviations = noise<double>;
-    deviations[1] = 2; // a variance of 3 of the parameters, besides 1 of the noise
+    deviations[1] = 2; // a variance of 3 of the parameters plus 1 of the noise
     const auto ratio = [&](double factor) { return 1 / (1 + 3 * factor) / (1 + 3 * factor); };
     const auto weights = [&] {
         combined.weigh(deviations.data());
@@ -217,7 +217,7 @@ TEST_CASE("how much variances weigh changes with the first error, and back withi
     };
     CHECK(weights() == Approx(ratio(unjudged)));
     const std::array<double, outputs> measured{};
-    const Values<double> error{0.5, 1, 1, 1, 2, 1}; // as large as the noise
+    const Values<double> error{0.5, 1, 1, 1, 2, 1}; // the deviations of the noise
     combined.learn(error.data(), measured.data());
     CHECK(weights() == Approx(ratio(Combination<double>::variance_factor)));
     for (int t = 0; t < 1000; ++t) {
@@ -226,11 +226,11 @@ TEST_CASE("how much variances weigh changes with the first error, and back withi
     CHECK(weights() == Approx(ratio(unjudged)).epsilon(1e-3));
 }
 
-TEST_CASE("after a memory without samples the noise decides again, and the errors return with the next") {
+TEST_CASE("after a memory without samples the noise decides again, until the next sample") {
     Combination<double> combined = scaled_combination<double>(50);
     const std::array<double, outputs> measured{};
     const double start = combined.weights()[0];
-    const Values<double> standing{3, 3, 0.01, 0.01, 3, 3}; // the second is good where the arm stands
+    const Values<double> standing{3, 3, 0.01, 0.01, 3, 3}; // the second member is good at standstill
     for (int t = 0; t < 300; ++t) {
         combined.learn(standing.data(), measured.data());
     }
@@ -246,7 +246,7 @@ TEST_CASE("after a memory without samples the noise decides again, and the error
     CHECK(combined.weights()[2] > 0.99);
 }
 
-TEST_CASE("a member that only tracks weighs less than one that predicts ahead as well") {
+TEST_CASE("a member that only tracks has less weight than one that also predicts ahead") {
     Combination<double> combined = scaled_combination<double>(50);
     const std::array<double, outputs> measured{};
     const Values<double> one_step{0.1, 0.1, 0.3, 0.3, 5, 5};
@@ -262,7 +262,7 @@ TEST_CASE("a member that only tracks weighs less than one that predicts ahead as
     CHECK(tracking.weights()[0] > 0.98);
 }
 
-TEST_CASE("a combination goes on from its snapshot, and takes no other") {
+TEST_CASE("a combination continues from its snapshot and rejects any other") {
     DFDYN_SEEDED_ENGINE(engine);
     Combination<float> combined = combination<float>(100);
     const std::array<float, outputs> measured{};
@@ -289,7 +289,7 @@ TEST_CASE("a combination goes on from its snapshot, and takes no other") {
     CHECK(other.restore(bytes) == SnapshotResult::corrupted);
 }
 
-/// Multiply-adds of a call.
+/// Counts the multiply-adds of a call.
 template <class Call>
 std::int64_t count(const Call& call) {
     dfdyn::tests::counted_operations = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the gate makes of pushes, changes and models that are never right.
+// The gate's response to pushes, changes and models that never fit.
 #include "dfdyn/innovation_gate.hpp"
 
 #include "tests/support/catch.hpp"
@@ -19,17 +19,18 @@ constexpr float plausible = 1;
 
 using Gate = InnovationGate<float>;
 
-TEST_CASE("the further a sample is beyond the limit, the less it teaches, and far beyond nothing") {
+TEST_CASE("a sample beyond the limit has less weight the further it is, and none far beyond") {
     Gate gate(limit, patience);
     CHECK(gate.judge(0) == 1);
     CHECK(gate.judge(limit) == 1);
     CHECK(gate.judge(2 * limit) == Approx(16));
-    CHECK(gate.judge(5 * limit) == Approx(15 * 15 * 15 * 15)); // alarmed: in units of what is ordinary
+    // after the alarm, in units of the ordinary contradiction
+    CHECK(gate.judge(5 * limit) == Approx(15 * 15 * 15 * 15));
     CHECK(gate.judge(11 * limit) == 0);
     CHECK(gate.judge(std::numeric_limits<float>::infinity()) == 0);
 }
 
-TEST_CASE("the end of a push teaches little, though it is below the limit, until it has been forgotten") {
+TEST_CASE("the end of a push has little weight below the limit until the count returns to zero") {
     Gate gate(limit, patience);
     CHECK(gate.judge(0.9F * limit) == 1);
     CHECK(gate.judge(plausible) == 1);
@@ -43,7 +44,7 @@ TEST_CASE("the end of a push teaches little, though it is below the limit, until
     CHECK(gate.judge(0.9F * limit) == 1);
 }
 
-TEST_CASE("pushes shorter than the patience teach nothing, as long as there is as much time between them") {
+TEST_CASE("pushes shorter than the patience are not learned if the pauses are equally long") {
     Gate gate(limit, patience);
     for (int push = 0; push < 20; ++push) {
         for (int t = 0; t < patience; ++t) {
@@ -56,7 +57,7 @@ TEST_CASE("pushes shorter than the patience teach nothing, as long as there is a
     CHECK_FALSE(gate.change_pending());
 }
 
-TEST_CASE("an arm that has changed is reported once and learned until plausible samples have settled it") {
+TEST_CASE("a change is reported once, and every sample is learned until plausible ones dominate") {
     Gate gate(limit, patience);
     for (int t = 0; t < patience; ++t) {
         CHECK(gate.judge(pushed) == 0);
@@ -67,7 +68,7 @@ TEST_CASE("an arm that has changed is reported once and learned until plausible 
     CHECK(gate.take_change());
     CHECK_FALSE(gate.take_change());
     for (int t = 0; t < 10 * patience; ++t) {
-        REQUIRE(gate.judge(t % 2 == 0 ? pushed : plausible) == 1); // they do not outnumber each other
+        REQUIRE(gate.judge(t % 2 == 0 ? pushed : plausible) == 1); // equal numbers: the change does not end
     }
     for (int t = 0; t < Gate::settling * patience; ++t) {
         REQUIRE(gate.judge(plausible) == 1);
@@ -84,7 +85,7 @@ TEST_CASE("a change that is known from elsewhere is reported once, and its sampl
     CHECK_FALSE(gate.take_change());
 }
 
-TEST_CASE("plausible samples at reversals delay a change by their number and do not begin the wait anew") {
+TEST_CASE("plausible samples at reversals delay a change by their number and do not reset the count") {
     Gate gate(limit, patience);
     int refused = 0;
     int samples = 0;
@@ -97,7 +98,7 @@ TEST_CASE("plausible samples at reversals delay a change by their number and do 
     CHECK(refused == Approx(1.5 * patience).margin(4));
 }
 
-TEST_CASE("a model that is never right is not found to have changed again and again") {
+TEST_CASE("a model that never fits is not reported as changed again and again") {
     DFDYN_SEEDED_ENGINE(engine);
     std::exponential_distribution<float> innovation(1 / (3 * limit));
     Gate gate(limit, patience);
@@ -126,7 +127,7 @@ TEST_CASE("a new motion begins with an empty count") {
     CHECK(gate.judge(pushed) == 1);
 }
 
-TEST_CASE("the largest patience never ends, and none or a negative one learns everything") {
+TEST_CASE("the largest patience never ends, and zero or a negative patience learns everything") {
     Gate patient(limit, std::numeric_limits<std::int32_t>::max());
     for (int t = 0; t < 100'000; ++t) {
         REQUIRE(patient.judge(pushed) == 0);
@@ -138,7 +139,7 @@ TEST_CASE("the largest patience never ends, and none or a negative one learns ev
     }
 }
 
-TEST_CASE("a new motion does not lose a change that nobody has taken") {
+TEST_CASE("a new motion does not discard an unreported change") {
     Gate gate(limit, patience);
     for (int t = 0; t <= patience; ++t) {
         static_cast<void>(gate.judge(pushed));
@@ -147,7 +148,7 @@ TEST_CASE("a new motion does not lose a change that nobody has taken") {
     CHECK(gate.take_change());
 }
 
-TEST_CASE("after a fault of any size and length the gate sees pushes again within a bounded time") {
+TEST_CASE("after a fault of any size and length the gate detects pushes again within a bounded time") {
     Gate gate(limit, patience);
     for (int t = 0; t < 100 * patience; ++t) {
         static_cast<void>(gate.judge(1e30F));
@@ -159,10 +160,10 @@ TEST_CASE("after a fault of any size and length the gate sees pushes again withi
             REQUIRE(gate.judge(plausible) == 1);
         }
     }
-    CHECK(patiences > 4); // the change is settled first
+    CHECK(patiences > 4); // the change has ended before
 }
 
-TEST_CASE("a limit that is none makes every sample a contradiction") {
+TEST_CASE("an invalid limit makes every sample a contradiction") {
     for (const float none : {0.F, -1.F, -std::numeric_limits<float>::infinity(), std::nanf("")}) {
         Gate gate(none, patience);
         for (int t = 0; t < patience; ++t) {

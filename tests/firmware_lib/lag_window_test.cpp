@@ -23,7 +23,7 @@ Row random_row(std::mt19937_64& engine, int joints) {
     return row;
 }
 
-/// Whether the window holds exactly the rows of `expected`, newest first, in one block.
+/// Returns true if the window contains exactly the rows of `expected`, newest first, in one block.
 template <class Window>
 bool holds(const Window& window, const std::deque<Row>& expected) {
     bool same = window.filled() == static_cast<int>(expected.size());
@@ -64,7 +64,7 @@ constexpr int newest_after_wrapping() {
     return 100 * *window.row(0) + 10 * *window.row(1) + *window.row(2);
 }
 
-TEST_CASE("the window holds the last M+1 rows, newest first, in one block") {
+TEST_CASE("the window contains the last M+1 rows, newest first, in one block") {
     DFDYN_SEEDED_ENGINE(engine);
     compare_with_deque(engine, Extent<1>{}, Extent<0>{});
     compare_with_deque(engine, Extent<1>{}, Extent<1>{});

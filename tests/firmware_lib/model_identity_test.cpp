@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A snapshot belongs to a type of model, also where two types have the same sizes and their constants the
-// same identity: the same numbers would mean something else.
+// A snapshot belongs to one type of model. Types with equal sizes and identities of their constants are
+// different models, because the same numbers have a different meaning.
 #include "dfdyn/estimator.hpp"
 
 #include "tests/firmware_lib/support/test_model.hpp"
@@ -16,7 +16,7 @@ using namespace dfdyn;
 using namespace dfdyn::tests;
 using Bytes = std::vector<std::byte>;
 
-constexpr int lags = 2; // so that DF has three features per joint too
+constexpr int lags = 2; // so that DF also has three features per joint
 using Reduced = DerivativeFreeReduced<lags, 3>;
 template <class Motion, PhysicsEffect Effect>
 using OtherPhysics = Physics<Motion, two_link_column_count, Effect, OutputOffset<2>>;
@@ -67,7 +67,7 @@ std::vector<ModelKind> kinds(std::mt19937_64& engine) {
     };
 }
 
-TEST_CASE("a snapshot of one type of model is refused by every other type, whatever their identities") {
+TEST_CASE("a snapshot of one type of model is refused by every other type, also with equal identities") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::vector<ModelKind> all = kinds(engine);
     for (const ModelKind& from : all) {
@@ -80,7 +80,7 @@ TEST_CASE("a snapshot of one type of model is refused by every other type, whate
     }
 }
 
-TEST_CASE("a snapshot belongs to the columns of the physics that are selected") {
+TEST_CASE("a snapshot belongs to the selected columns of the physics") {
     DFDYN_SEEDED_ENGINE(engine);
     auto constants = make_constants<TestParametric<float>>(engine);
     const Estimator<TestParametric<float>> estimator(constants);

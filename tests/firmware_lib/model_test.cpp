@@ -13,7 +13,7 @@ namespace model_test {
 using namespace dfdyn;
 using namespace dfdyn::tests;
 
-/// The model of the paper's size and more, as an embedding writes it: all of it in .bss.
+/// A model at least as large as the paper's, as in an embedding: all of it in .bss.
 using LargeModel = TestModel<float, DerivativeFreeReduced<10, 3>, 500>;
 LargeModel::Constants large_constants;
 Estimator<LargeModel> large_estimator{large_constants};
@@ -60,7 +60,7 @@ DynamicModel::Constants on_heap(const FixedModel::Constants& fixed) {
     return constants;
 }
 
-TEST_CASE("500 features, 1,000 columns, in static storage") {
+TEST_CASE("a model with 500 features, 1,000 columns, works in static storage") {
     DFDYN_SEEDED_ENGINE(engine);
     large_constants = make_constants<LargeModel>(engine);
     large_estimator.reset();
@@ -74,8 +74,9 @@ TEST_CASE("500 features, 1,000 columns, in static storage") {
     CHECK(large_estimator.snapshot_bytes() <= Estimator<LargeModel>::snapshot_capacity);
 }
 
-// The host's tools run models of any size through the same code: what they report is what the firmware does.
-TEST_CASE("a model whose sizes are known at run time behaves as the firmware's") {
+// The host's tools run models of any size with the same code, so that their results are those of the
+// firmware.
+TEST_CASE("a model with run-time sizes behaves as the firmware's") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<FixedModel>(engine, 0.999);
     const auto host_constants = on_heap(constants);
@@ -95,7 +96,7 @@ TEST_CASE("a model whose sizes are known at run time behaves as the firmware's")
             REQUIRE(estimate.standard_deviation[k] == Approx(expected.standard_deviation[k]).epsilon(1e-4));
         }
     }
-    // and takes over what the firmware has learned
+    // It also accepts the firmware's snapshot.
     CHECK(host.restore(snapshot_of(firmware)) == SnapshotResult::ok);
     CHECK((snapshot_of(host) == snapshot_of(firmware)));
 }

@@ -13,11 +13,11 @@ namespace sample_clock_test {
 
 using namespace dfdyn;
 
-/// What a sender does with the time: its true period, and jitter of each stamp about its grid.
+/// Timing of a sender: its true period, and the jitter of each stamp on its grid.
 struct Sender {
     double nominal_ns;
     double relative_period = 1;
-    double jitter = 0; ///< each stamp is early or late by at most this, in periods
+    double jitter = 0; ///< maximum deviation of a stamp, early or late, in periods
     int samples = 5000;
 };
 
@@ -25,7 +25,7 @@ double uniform(std::mt19937_64& engine, double from, double to) {
     return std::uniform_real_distribution<double>(from, to)(engine);
 }
 
-/// A sender's stamps (ns), without those of the samples in `lost`.
+/// Returns a sender's stamps (ns) without those of the samples in `lost`.
 std::vector<std::int64_t> stamps(std::mt19937_64& engine, const Sender& sender,
                                  const std::vector<int>& lost = {}) {
     std::vector<std::int64_t> result;
@@ -42,7 +42,7 @@ std::vector<std::int64_t> stamps(std::mt19937_64& engine, const Sender& sender,
     return result;
 }
 
-/// Indices of the stamps before which the clock sees a loss.
+/// Returns the indices of the stamps before which the clock reports a loss.
 std::vector<int> losses(double nominal_ns, const std::vector<std::int64_t>& stamps) {
     SampleClock clock;
     std::vector<int> result;
@@ -55,7 +55,8 @@ std::vector<int> losses(double nominal_ns, const std::vector<std::int64_t>& stam
     return result;
 }
 
-/// Where a clock should see the losses of these samples, of which no two are neighbours.
+/// Returns the indices at which a clock should report the losses of these samples, no two of which are
+/// adjacent.
 std::vector<int> expected_at(const std::vector<int>& lost) {
     std::vector<int> result;
     for (std::size_t i = 0; i < lost.size(); ++i) {
@@ -64,7 +65,7 @@ std::vector<int> expected_at(const std::vector<int>& lost) {
     return result;
 }
 
-/// Samples at random distances, the first after `first` samples.
+/// Returns samples at random distances, the first one after `first` samples.
 std::vector<int> random_losses(std::mt19937_64& engine, int samples, int first, int least, int most) {
     std::vector<int> lost;
     std::uniform_int_distribution<int> distance(least, most);
@@ -76,7 +77,7 @@ std::vector<int> random_losses(std::mt19937_64& engine, int samples, int first, 
 
 constexpr double periods_ns[] = {20e6, 8e6, 2e6, 1e6, 200e3}; // 50 Hz to 5 kHz
 
-TEST_CASE("jitter of half a period, and a nominal period wrong by percents, are no losses") {
+TEST_CASE("jitter of half a period and an error of the nominal period by percents are not losses") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const double nominal_ns : periods_ns) {
         std::size_t taken_for_losses = 0;
@@ -84,11 +85,11 @@ TEST_CASE("jitter of half a period, and a nominal period wrong by percents, are 
             const Sender sender{nominal_ns, uniform(engine, 0.99, 1.03), uniform(engine, 0.3, 0.49)};
             taken_for_losses += losses(nominal_ns, stamps(engine, sender)).size();
         }
-        CHECK(taken_for_losses <= 4); // of 40,000; a limit of 1.5 periods per step takes thousands
+        CHECK(taken_for_losses <= 4); // of 40,000; a limit of 1.5 periods per step gives thousands
     }
 }
 
-TEST_CASE("jitter of a third of a period is never taken for a loss") {
+TEST_CASE("jitter of a third of a period is never mistaken for a loss") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const double nominal_ns : periods_ns) {
         const Sender sender{nominal_ns, uniform(engine, 0.99, 1.01), 0.33, 20'000};
@@ -96,7 +97,7 @@ TEST_CASE("jitter of a third of a period is never taken for a loss") {
     }
 }
 
-TEST_CASE("every lost sample of a clock with little jitter is found at once, from the second sample on") {
+TEST_CASE("every lost sample of a clock with little jitter is detected at once, from the second sample on") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const double nominal_ns : periods_ns) {
         for (const double jitter : {0.0, 0.1}) {
@@ -107,7 +108,7 @@ TEST_CASE("every lost sample of a clock with little jitter is found at once, fro
     }
 }
 
-TEST_CASE("a single lost sample is found under jitter of a quarter of a period") {
+TEST_CASE("a single lost sample is detected under jitter of a quarter of a period") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const double nominal_ns : periods_ns) {
         const Sender sender{nominal_ns, uniform(engine, 0.99, 1.01), 0.25, 20'000};
@@ -116,7 +117,7 @@ TEST_CASE("a single lost sample is found under jitter of a quarter of a period")
     }
 }
 
-TEST_CASE("steps of 10 and 12 ms in turn are one grid, whichever of them is the nominal period") {
+TEST_CASE("alternating steps of 10 and 12 ms are one grid for either nominal period") {
     for (const double nominal_ns : {10e6, 10.66e6, 11e6, 12e6}) {
         std::vector<std::int64_t> stamps{0};
         for (int k = 0; k < 1000; ++k) {
@@ -128,7 +129,7 @@ TEST_CASE("steps of 10 and 12 ms in turn are one grid, whichever of them is the 
     }
 }
 
-TEST_CASE("a sender that waits after each sample has no grid, and its losses are found all the same") {
+TEST_CASE("losses of a sender without a grid, which waits after each sample, are detected") {
     DFDYN_SEEDED_ENGINE(engine);
     std::vector<std::int64_t> stamps;
     double now_ns = 0;
@@ -147,7 +148,7 @@ TEST_CASE("a sender that waits after each sample has no grid, and its losses are
     CHECK(losses(1e6, rest) == expected_at(lost));
 }
 
-TEST_CASE("a clock that is much faster or slower than the nominal one has no gaps as long as steps are below "
+TEST_CASE("a clock much faster or slower than the nominal one has no gaps while steps are below "
           "one and a half periods") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const double relative : {0.1, 0.5, 0.8, 1.2, 1.3, 1.4}) {
@@ -156,7 +157,7 @@ TEST_CASE("a clock that is much faster or slower than the nominal one has no gap
     }
 }
 
-TEST_CASE("one sample that is late by half a period leaves no trace") {
+TEST_CASE("one sample that is late by half a period has no lasting effect") {
     std::vector<std::int64_t> stamps;
     for (int k = 0; k < 1000; ++k) {
         stamps.push_back(1'000'000 * k + (k % 100 == 50 ? 500'000 : 0));
@@ -164,7 +165,7 @@ TEST_CASE("one sample that is late by half a period leaves no trace") {
     CHECK(losses(1e6, stamps).empty());
 }
 
-TEST_CASE("after a jump of the sender's phase losses are found") {
+TEST_CASE("after a jump of the sender's phase losses are detected") {
     std::vector<std::int64_t> stamps{0};
     for (int k = 1; k < 2000; ++k) {
         stamps.push_back(stamps.back() + (k % 300 == 0 ? 1'400'000 : 1'000'000));
@@ -174,7 +175,7 @@ TEST_CASE("after a jump of the sender's phase losses are found") {
     CHECK(losses(1e6, stamps) == std::vector<int>{1203});
 }
 
-TEST_CASE("the period is learned from the stamps") {
+TEST_CASE("the period is estimated from the stamps") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const double relative : {0.95, 1.0, 1.07}) {
         SampleClock clock;
@@ -188,7 +189,7 @@ TEST_CASE("the period is learned from the stamps") {
     }
 }
 
-TEST_CASE("steps of any length are judged") {
+TEST_CASE("steps of any length are handled") {
     constexpr auto longest = std::numeric_limits<std::uint64_t>::max();
     for (const std::int64_t period_ns : {std::int64_t{1}, std::int64_t{200'000}, std::int64_t{1} << 62}) {
         SampleClock clock;

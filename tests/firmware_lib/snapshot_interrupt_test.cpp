@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Snapshots while something else ticks: a timer's signal that interrupts the copy at any instruction, as an
-// interrupt does on a microcontroller, and a thread on another core. Afterwards a replay of the same ticks
-// gives every state that the estimator ever had; an accepted snapshot must be one of them.
+// Snapshots during ticks: a timer signal interrupts the copy at any instruction, as an interrupt does on a
+// microcontroller, or a thread ticks on another core. A replay of the same ticks then gives every state that
+// the estimator had; an accepted snapshot must be one of them.
 #include "dfdyn/snapshot_writer.hpp"
 
 #include "tests/firmware_lib/support/test_model.hpp"
@@ -22,12 +22,12 @@ using namespace dfdyn::tests;
 using Bytes = std::vector<std::byte>;
 using Model = TestModel<float, DerivativeFreeReduced<6, 3>, 24>;
 
-// A slow or busy machine uses up the ticks sooner: what is required counts against the attempts made.
+// A slow or busy machine uses up the ticks sooner, so requirements are relative to the number of attempts.
 constexpr std::size_t attempts = 1500;
 constexpr std::size_t most_ticks = 10'000;
 constexpr std::size_t least_attempts = 50;
 
-/// An estimator that somebody else ticks, with all that a replay needs.
+/// An estimator that is ticked by another context, with all data for a replay.
 class Ticked {
   public:
     explicit Ticked(std::mt19937_64& engine)
@@ -39,7 +39,7 @@ class Ticked {
         }
     }
 
-    /// The next tick, in whatever context; false when there are no more.
+    /// Performs the next tick, in any context; returns false if there are no more.
     bool tick() noexcept {
         const std::size_t now = ticks_.load(std::memory_order_relaxed);
         if (now == most_ticks) {
@@ -51,7 +51,7 @@ class Ticked {
         return true;
     }
 
-    /// Waits for the next tick; false if there is none.
+    /// Waits for the next tick; returns false if there is none.
     [[nodiscard]] bool wait() const noexcept {
         const std::size_t before = ticks_;
         while (ticks_ == before && before < most_ticks) {
@@ -63,14 +63,14 @@ class Ticked {
         return static_cast<std::size_t>(std::count(held_.begin(), held_.end(), 1));
     }
 
-    /// How many of the snapshots are the state after some tick, and restored predict as the estimator did
+    /// Counts the snapshots that equal the state after some tick and, restored, predict as the estimator did
     /// then.
     [[nodiscard]] std::size_t true_ones(std::map<Bytes, int> snapshots) const {
         std::size_t found = 0;
         Estimator<Model> replayed(constants_);
         Estimator<Model> restored(constants_);
         for (std::size_t t = 0; t < ticks_; ++t) {
-            // with no budget at all U-D does nothing, as where it is held
+            // With a budget of zero U-D does nothing, as during a hold.
             replayed.tick(samples_[t], held_[t] != 0 ? Budget::predict_only() : budgets_[t]);
             const auto snapshot = snapshots.find(snapshot_of(replayed));
             if (snapshot != snapshots.end()) {
@@ -105,9 +105,9 @@ class Ticked {
     std::atomic<std::size_t> ticks_ = 0;
 };
 
-/// What became of many attempts.
+/// Results of many attempts.
 struct Attempts {
-    std::map<Bytes, int> accepted; ///< and how often each
+    std::map<Bytes, int> accepted; ///< with the number of occurrences
     std::size_t accepted_count = 0;
     std::size_t refused = 0;
 
@@ -125,7 +125,7 @@ struct Attempts {
 };
 
 /// Takes many snapshots in pieces of random sizes, some with a wait for a tick between two pieces. A tick may
-/// learn before each. `max_held_ticks(attempt)`: that it may take.
+/// learn before each snapshot. `max_held_ticks(attempt)`: maximum ticks of that snapshot.
 template <class MaxHeldTicks>
 Attempts write_many(Ticked& ticked, std::mt19937_64& engine, const MaxHeldTicks& max_held_ticks) {
     Attempts result;
@@ -147,7 +147,7 @@ constexpr auto no_limit = [](std::size_t /*attempt*/) { return std::uint32_t{mos
 
 Ticked* interrupted = nullptr; // by the timer
 
-/// Ticks `ticked` by a signal every 40 us, or as fast as the system allows, while it exists.
+/// While it exists, ticks `ticked` by a signal every 40 us, or as fast as the system allows.
 class Timer {
   public:
     explicit Timer(Ticked& ticked) {
@@ -174,7 +174,7 @@ class Timer {
     struct sigaction before_ {};
 };
 
-TEST_CASE("a snapshot in pieces that a timer's ticks interrupt is always whole") {
+TEST_CASE("a snapshot in pieces that a timer's ticks interrupt is always consistent") {
     DFDYN_SEEDED_ENGINE(engine);
     Ticked ticked(engine);
     Attempts result;
@@ -189,7 +189,7 @@ TEST_CASE("a snapshot in pieces that a timer's ticks interrupt is always whole")
     CHECK(ticked.true_ones(result.accepted) == result.accepted_count);
 }
 
-TEST_CASE("of snapshots that take longer than they may, those that are accepted are whole") {
+TEST_CASE("among snapshots that exceed their ticks, every accepted one is consistent") {
     DFDYN_SEEDED_ENGINE(engine);
     Ticked ticked(engine);
     Attempts result;
@@ -220,7 +220,7 @@ TEST_CASE("a snapshot in one call that a learning tick interrupts is refused") {
     CHECK(ticked.true_ones(result.accepted) == result.accepted_count);
 }
 
-TEST_CASE("a snapshot in pieces beside a thread that ticks is always whole") {
+TEST_CASE("a snapshot in pieces during ticks of another thread is always consistent") {
     DFDYN_SEEDED_ENGINE(engine);
     Ticked ticked(engine);
     std::atomic<bool> done = false;

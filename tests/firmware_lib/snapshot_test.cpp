@@ -36,7 +36,7 @@ std::vector<std::byte> written(const State& state) {
     return bytes;
 }
 
-/// What reading gives; checks that a rejected snapshot changes nothing.
+/// Reads a snapshot and returns the result; checks that a rejected snapshot changes nothing.
 SnapshotResult read(const std::vector<std::byte>& bytes) {
     State state{{7, 7, 7}, {7, 7}, 7};
     const State before = state;
@@ -55,7 +55,7 @@ TEST_CASE("the checksum is the CRC-32 of ISO 3309") {
     CHECK(crc32(bytes.subspan(4), crc32(bytes.first(4))) == 0xCBF43926U);
 }
 
-TEST_CASE("a state comes back as it was") {
+TEST_CASE("a state is restored unchanged") {
     const State state{{0.5F, -0.0F, 1e30F}, {1e-300, 2}, 9};
     const auto bytes = written(state);
     CHECK(bytes.size() == sizeof(SnapshotHeader) + 3 * sizeof(float) + 2 * sizeof(double) + sizeof(int) +
@@ -65,7 +65,7 @@ TEST_CASE("a state comes back as it was") {
     CHECK(restored == state);
 }
 
-TEST_CASE("a snapshot uses the front of a larger buffer and leaves the rest alone") {
+TEST_CASE("a snapshot uses the front of a larger buffer and does not change the rest") {
     const State state;
     std::vector<std::byte> buffer(snapshot_bytes(state) + 10, std::byte{0xAB});
     CHECK(write_snapshot(state, model, buffer) == SnapshotResult::ok);
@@ -74,7 +74,7 @@ TEST_CASE("a snapshot uses the front of a larger buffer and leaves the rest alon
     CHECK(read(buffer) == SnapshotResult::ok);
 }
 
-TEST_CASE("a buffer that is too small is left alone") {
+TEST_CASE("a buffer that is too small is not changed") {
     const State state;
     for (std::size_t size = 0; size < snapshot_bytes(state); ++size) {
         std::vector<std::byte> buffer(size, std::byte{0xAB});
@@ -83,7 +83,7 @@ TEST_CASE("a buffer that is too small is left alone") {
     }
 }
 
-TEST_CASE("every flipped bit and every truncation is rejected, and changes nothing") {
+TEST_CASE("every flipped bit and every truncation is rejected and changes nothing") {
     const auto bytes = written({});
     for (std::size_t place = 0; place < bytes.size(); ++place) {
         for (int bit = 0; bit < 8; ++bit) {
@@ -96,7 +96,7 @@ TEST_CASE("every flipped bit and every truncation is rejected, and changes nothi
     }
 }
 
-TEST_CASE("each part of the head has its own reason") {
+TEST_CASE("each part of the header has its own reason") {
     const auto bytes = written({});
     const auto with_word = [&](std::size_t word, std::uint32_t value) {
         auto changed = bytes;
@@ -108,12 +108,11 @@ TEST_CASE("each part of the head has its own reason") {
     CHECK(with_word(2, model + 1) == SnapshotResult::wrong_model);
     CHECK(with_word(3, 0) == SnapshotResult::wrong_size);
     CHECK(with_word(3, 0xFFFFFFFF) == SnapshotResult::wrong_size);
-    CHECK(with_word(4, 0) ==
-          SnapshotResult::corrupted); // the first number, of a state whose checksum differs
+    CHECK(with_word(4, 0) == SnapshotResult::corrupted); // the first number of a state whose checksum differs
     CHECK(with_word(bytes.size() / 4 - 1, 0) == SnapshotResult::corrupted); // the checksum
 }
 
-TEST_CASE("content that cannot be a state is rejected although its checksum is right") {
+TEST_CASE("content that is not a valid state is rejected despite a correct checksum") {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     constexpr double infinity = std::numeric_limits<double>::infinity();
     CHECK(read_of({{1, 2, nan}, {1, 1}, 0}) == SnapshotResult::corrupted);

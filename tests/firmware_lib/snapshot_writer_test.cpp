@@ -20,7 +20,7 @@ using Parametric = TestParametric<float>;
 using Mean = TestMean<float, DerivativeFreeReduced<6, 3>, 5>;
 using Kernel = TestKernel<float, DerivativeFreeReduced<6, 3>, 5>;
 
-/// An estimator that has learned for 80 ticks; with a sample half learned if `half`.
+/// Returns an estimator that has learned for 80 ticks, with a half-learned sample if `half`.
 template <class Model>
 struct Learned {
     typename Model::Constants constants;
@@ -39,7 +39,7 @@ struct Learned {
     }
 };
 
-/// The whole snapshot in pieces of at most `largest_piece` bytes, which may be empty.
+/// Takes the whole snapshot in pieces of 0 to `largest_piece` bytes.
 template <class Model>
 Bytes in_pieces(Estimator<Model>& estimator, std::size_t largest_piece, std::mt19937_64& engine) {
     SnapshotWriter writer(estimator);
@@ -55,7 +55,7 @@ Bytes in_pieces(Estimator<Model>& estimator, std::size_t largest_piece, std::mt1
     return bytes;
 }
 
-TEMPLATE_TEST_CASE("pieces of any size make the snapshot that one call makes", "", UdFloat, InformationDouble,
+TEMPLATE_TEST_CASE("pieces of any size give the same snapshot as one call", "", UdFloat, InformationDouble,
                    Parametric, Mean, Kernel) {
     DFDYN_SEEDED_ENGINE(engine);
     for (const bool half_learned : {false, true}) {
@@ -68,7 +68,7 @@ TEMPLATE_TEST_CASE("pieces of any size make the snapshot that one call makes", "
     }
 }
 
-TEST_CASE("steps fill a buffer by at most so many bytes each, and leave what is behind it") {
+TEST_CASE("each step writes at most the given number of bytes and nothing beyond the snapshot") {
     DFDYN_SEEDED_ENGINE(engine);
     Learned<UdFloat> arm(engine);
     const Bytes whole = snapshot_of(arm.estimator);
@@ -89,7 +89,7 @@ TEST_CASE("steps fill a buffer by at most so many bytes each, and leave what is 
 }
 
 // The twin gets no output and no budget in the ticks of the snapshot.
-TEMPLATE_TEST_CASE("while a snapshot is taken every tick predicts and none learns; then learning goes on", "",
+TEMPLATE_TEST_CASE("ticks during a snapshot predict and do not learn, and learning continues afterwards", "",
                    UdFloat, InformationDouble, Parametric, Mean, Kernel) {
     DFDYN_SEEDED_ENGINE(engine);
     for (const bool half_learned : {false, true}) {
@@ -126,7 +126,7 @@ TEMPLATE_TEST_CASE("while a snapshot is taken every tick predicts and none learn
     }
 }
 
-TEST_CASE("learning goes on after the ticks that a snapshot may take, and the late one is refused") {
+TEST_CASE("a snapshot that exceeds its ticks is refused and learning continues") {
     DFDYN_SEEDED_ENGINE(engine);
     Learned<UdFloat> arm(engine);
     Bytes buffer(arm.estimator.snapshot_bytes());
@@ -142,11 +142,11 @@ TEST_CASE("learning goes on after the ticks that a snapshot may take, and the la
     }
     Estimator<UdFloat> other(arm.constants);
     CHECK(other.restore(buffer) != SnapshotResult::ok);
-    // and the next one is a new attempt
+    // The next snapshot is a new attempt.
     CHECK((in_pieces(arm.estimator, 100, engine) == snapshot_of(arm.estimator)));
 }
 
-TEST_CASE("a snapshot is refused if the estimator was reset, restored or overwritten meanwhile") {
+TEST_CASE("a snapshot is refused if the estimator was reset, restored or overwritten during the copy") {
     DFDYN_SEEDED_ENGINE(engine);
     Learned<UdFloat> arm(engine);
     const Bytes whole = snapshot_of(arm.estimator);
@@ -166,7 +166,7 @@ TEST_CASE("a snapshot is refused if the estimator was reset, restored or overwri
     CHECK(result_after([&] { arm.estimator.restart_window(); }) == SnapshotResult::ok);
 }
 
-TEST_CASE("an abandoned snapshot lets learning go on, and a second one takes the first one's place") {
+TEST_CASE("learning continues after an abandoned snapshot, and a second snapshot replaces the first") {
     DFDYN_SEEDED_ENGINE(engine);
     Learned<UdFloat> arm(engine);
     Bytes buffer(arm.estimator.snapshot_bytes());
@@ -189,7 +189,7 @@ TEST_CASE("an abandoned snapshot lets learning go on, and a second one takes the
     CHECK(first.step(buffer, buffer.size()) == SnapshotResult::changed);
 }
 
-TEST_CASE("a snapshot in pieces makes no use of the heap") {
+TEST_CASE("a snapshot in pieces does not use the heap") {
     DFDYN_SEEDED_ENGINE(engine);
     Learned<UdFloat> arm(engine);
     Bytes buffer(arm.estimator.snapshot_bytes());

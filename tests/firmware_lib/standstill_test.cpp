@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An arm that stands still for a long time under forgetting, and then moves on.
+// A long standstill under forgetting, followed by motion.
 #include "dfdyn/estimator.hpp"
 
 #include "tests/firmware_lib/support/test_model.hpp"
@@ -33,7 +33,8 @@ using KernelDouble = TestKernel<double, DerivativeFreeStructuredRecursive<6>, 32
 constexpr int stop_ticks = 500;
 constexpr double encoder_count = 6e-6; // 20 bits per turn
 
-/// An arm that moves, stops smoothly, stands and starts smoothly: the moving arm's path at another rate.
+/// An arm that moves, stops smoothly, rests and starts smoothly, on the path of the moving arm at a variable
+/// rate.
 class StoppingArm {
   public:
     explicit StoppingArm(std::mt19937_64& engine) : engine_(&engine) {}
@@ -46,7 +47,7 @@ class StoppingArm {
     typename Model::Sample standing() {
         return next<Model>(0, 0);
     }
-    /// Tick number `t` of `stop_ticks` of a stop.
+    /// Returns the sample of tick `t` of the `stop_ticks` of a stop.
     template <class Model>
     typename Model::Sample stopping(int t) {
         const auto [rate, change] = half_cosine(t);
@@ -65,7 +66,7 @@ class StoppingArm {
                 -0.5 * std::acos(-1.0) / (stop_ticks * period_s) * std::sin(angle)};
     }
 
-    /// `rate` is that of the path, per second of the moving arm, and `change` its derivative.
+    /// `rate`: of the path, in seconds of the moving arm per second; `change`: its derivative, 1/s.
     template <class Model>
     typename Model::Sample next(double rate, double change) {
         path_s_ += rate * period_s;
@@ -82,8 +83,7 @@ class StoppingArm {
     std::int64_t tick_ = 0;
 };
 
-/// Of an arm with low-pass filters, so that one count of the encoder makes less of an acceleration than the
-/// motion.
+/// Constants with low-pass filters, so that one encoder count gives less acceleration than the motion.
 template <class Model>
 typename Model::Constants filtered_constants(std::mt19937_64& engine, double forgetting_factor) {
     using Scalar = typename Model::Scalar;
@@ -95,14 +95,18 @@ typename Model::Constants filtered_constants(std::mt19937_64& engine, double for
 }
 
 struct Restart {
-    double largest_variance = 0; ///< of a parameter during the standstill, in units of the prior's
-    double first_error = 0; ///< rms of the innovations in the first second after it, over those of a twin …
-    double later_error = 0; ///< … in the third second …
-    double twins_error = 0; ///< … that learned nothing during the standstill: its rms in the first second
+    /// Largest variance of a parameter during the standstill, in units of the prior's.
+    double largest_variance = 0;
+    /// RMS innovation in the first second after it, relative to a twin without learning at standstill.
+    double first_error = 0;
+    /// Same, in the third second.
+    double later_error = 0;
+    /// RMS innovation of the twin in the first second.
+    double twins_error = 0;
     bool finite = true;
 };
 
-/// The learner whose parameters' variances are looked at: of SPK that of the physics' parameters.
+/// Returns the learner whose variances are checked: for SPK that of the physics' parameters.
 template <class Model>
 const auto& watched_learner(const Estimator<Model>& estimator) {
     const auto& learner = estimator.regression().learner();
@@ -115,14 +119,14 @@ const auto& watched_learner(const Estimator<Model>& estimator) {
     }
 }
 
-/// How many parameters it has.
+/// Number of parameters of that learner.
 template <class Model>
 constexpr int
     watched = std::is_base_of_v<SemiparametricMean<typename Model::Physics>, typename Model::Structure>
                   ? Model::columns
                   : (Model::parameters > 0 ? Model::parameters : Model::columns);
 
-/// In units of the prior's.
+/// Returns the largest variance of a parameter, in units of the prior's.
 template <class Model>
 double largest_parameter_variance(const Estimator<Model>& estimator,
                                   const typename Model::Constants& constants) {
@@ -180,7 +184,7 @@ class Standstill {
                 result_.largest_variance =
                     std::max(result_.largest_variance, largest_parameter_variance(*estimator_, constants_));
             }
-            if (ticks - t <= 20) { // only its window follows
+            if (ticks - t <= 20) { // only the window is updated
                 sample.output_valid = false;
                 tick(twin, sample);
             }
@@ -196,7 +200,7 @@ class Standstill {
         result_.twins_error = twins_error;
     }
 
-    /// Root mean square innovations of the estimator and of its twin.
+    /// Returns the root mean square innovations of the estimator and of its twin over one second.
     std::pair<double, double> errors_of_a_second(Estimator<Model>& twin, bool starting) {
         double squares = 0;
         double twins_squares = 0;
@@ -228,8 +232,8 @@ Restart after_standstill(std::mt19937_64& engine, double forgetting_factor, doub
     return Standstill<Model>(engine, forgetting_factor, noise).run(slow_build ? ticks / 20 : ticks);
 }
 
-/// A variance that reached the prior's just after it was looked at grows for another p - 1 samples, then it
-/// is taken back.
+/// A variance that reaches the prior's just after it was checked grows for another p - 1 samples before it is
+/// bounded.
 template <class Model>
 double variance_bound(double forgetting_factor) {
     return std::pow(forgetting_factor, -watched<Model>) * 1.001;
@@ -248,7 +252,7 @@ class TextbookForgetting {
           covariance_(Eigen::MatrixXd::Identity(columns, columns) * prior_variance),
           weights_(Eigen::VectorXd::Zero(columns)) {}
 
-    /// Learns a row; returns the innovation.
+    /// Learns a row and returns the innovation.
     double learn(const Eigen::VectorXd& row, double target) {
         const Eigen::VectorXd projected = covariance_ * row;
         const Eigen::VectorXd gain = projected / (factor_ + row.dot(projected));
@@ -264,9 +268,10 @@ class TextbookForgetting {
     Eigen::VectorXd weights_;
 };
 
-// One horizon's worth of forgetting is given away at a standstill, no more: variances grow by at most e. A
-// twin whose parameters cost it p (1-λ) = 6 % of the noise's variance then pays 17 %: 5 % in the root.
-TEMPLATE_TEST_CASE("after a long rest the motion is predicted as if learning had been switched off", "",
+// A standstill discards at most one horizon of forgetting: variances grow by at most the factor e. A twin
+// whose parameters add p (1-λ) = 6 % to the noise variance then adds 17 %, which is 5 % more standard
+// deviation.
+TEMPLATE_TEST_CASE("after a long standstill the motion is predicted as if learning had been switched off", "",
                    UdFloat, UdDouble, InformationFloat, InformationDouble, Parametric, Mean, Kernel,
                    KernelDouble) {
     DFDYN_SEEDED_ENGINE(engine);
@@ -281,9 +286,9 @@ TEMPLATE_TEST_CASE("after a long rest the motion is predicted as if learning had
     }
 }
 
-// The encoder's noise looks like motion that needs no torque: near this position the model is taught so, and
-// has to unlearn it in the first tenths of a second of motion.
-TEMPLATE_TEST_CASE("after a long rest with an encoder's noise the motion is predicted nearly as well", "",
+// Encoder noise looks like motion without torque. Near this position the model learns that, and unlearns it
+// in the first tenths of a second of motion.
+TEMPLATE_TEST_CASE("after a long standstill with encoder noise the motion is predicted nearly as well", "",
                    UdFloat, UdDouble, InformationFloat, InformationDouble, Parametric, Mean, Kernel,
                    KernelDouble) {
     DFDYN_SEEDED_ENGINE(engine);
@@ -299,10 +304,10 @@ TEMPLATE_TEST_CASE("after a long rest with an encoder's noise the motion is pred
     }
 }
 
-TEST_CASE("textbook forgetting does not survive the same standstill, even in double") {
+TEST_CASE("textbook forgetting fails after the same standstill, even in double") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = filtered_constants<UdDouble>(engine, 0.999);
-    Estimator<UdDouble> columns(constants); // not told of any output: it makes the rows
+    Estimator<UdDouble> columns(constants); // gets no outputs: it computes the rows
     TextbookForgetting textbook(UdDouble::columns, 1000, 0.999);
     StoppingArm arm(engine);
     const auto learn = [&](UdDouble::Sample sample) {
@@ -324,7 +329,7 @@ TEST_CASE("textbook forgetting does not survive the same standstill, even in dou
     double largest = 0;
     for (int t = 1; t <= stop_ticks; ++t) {
         const double innovation = std::abs(learn(arm.starting<UdDouble>(t)));
-        largest = innovation <= largest ? largest : innovation; // also if it is no number
+        largest = innovation <= largest ? largest : innovation; // also if the innovation is NaN
     }
     CHECK_FALSE(largest < 100 * torque_noise);
 }

@@ -12,7 +12,7 @@ namespace status_test {
 using dfdyn::Reason;
 using dfdyn::Status;
 
-/// The numbers and names that recordings and logs hold: they never change.
+/// The numbers and names in recordings and logs, which never change.
 constexpr std::pair<int, const char*> published[] = {
     {0, "ok"},
     {1, "window_filling"},

@@ -32,18 +32,18 @@ TEST_CASE("storage of a fixed size is an aggregate in place, aligned for vectors
     CHECK(aligned(storage, 32));
     static_assert(std::is_aggregate_v<Storage<float, 7>> && std::is_trivially_copyable_v<Storage<float, 7>>);
     static_assert(sizeof(Storage<float, 8>) == 32);
-    static constexpr Storage<double, 2> table{{1, 2}}; // as a table of constants in flash
+    static constexpr Storage<double, 2> table{{1, 2}}; // as for a table of constants in flash
     static_assert(table[1] == 2 && table.size() == 2);
 }
 
-TEST_CASE("the host's storage of a size known at run time does the same") {
+TEST_CASE("the host's storage with run-time sizes behaves the same") {
     auto storage = Storage<float, dynamic>::zeros({7});
     CHECK(storage.size() == 7);
     check_holds_numbers(storage);
     CHECK(aligned(storage, 16));
 }
 
-TEST_CASE("an extent of a fixed size takes no memory and knows its number") {
+TEST_CASE("an extent of fixed size takes no memory and converts to its value") {
     struct Holder {
         [[no_unique_address]] Extent<3> three;
         float number;

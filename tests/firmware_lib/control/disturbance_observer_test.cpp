@@ -20,8 +20,8 @@ constexpr double step_s = 1e-5;
 constexpr JointLoop<double> joint_loop{1.5, 500, 60, 0, 0};
 constexpr double bandwidth = 40;
 
-/// e(t) of (J s² + D s + P)(s + b) e = s · disturbance for a step of 1 N·m: the sum of three exponentials, as
-/// their partial fractions give them.
+/// e(t) of (J s² + D s + P)(s + b) e = s · disturbance for a step of 1 N·m: the sum of three exponentials of
+/// the partial fractions.
 double error_after_step(double t) {
     const auto [inertia, stiffness, damping, delay, other_delay] = joint_loop;
     const double centre = damping / (2 * inertia);
@@ -35,7 +35,7 @@ double error_after_step(double t) {
     return sum;
 }
 
-TEST_CASE("after a step of torque the error is that of the feedback's poles and one at the bandwidth") {
+TEST_CASE("after a torque step the error has the feedback's poles and one at the bandwidth") {
     ServoJoint joint(joint_loop, step_s);
     Observer observer({}, {step_s, {{bandwidth}}, {{100}}});
     double largest = 0;
@@ -54,7 +54,7 @@ TEST_CASE("after a step of torque the error is that of the feedback's poles and 
     CHECK(std::abs(joint.position()) < 1e-3 * largest);
 }
 
-TEST_CASE("no estimate leaves its limit, and none grows against the limit of the command") {
+TEST_CASE("an estimate stays within its limit and does not grow against the command's limit") {
     DFDYN_SEEDED_ENGINE(engine);
     std::normal_distribution<double> size(0, 50);
     Observer observer({}, {1e-3, {{bandwidth}}, {{3}}});
@@ -72,11 +72,11 @@ TEST_CASE("no estimate leaves its limit, and none grows against the limit of the
     }
     CHECK(observer.estimate()[0] == 0);
     const double back = -push;
-    observer.update(&back, &none, &none, &excess); // away from the limit it may go
+    observer.update(&back, &none, &none, &excess); // away from the limit it may change
     CHECK(observer.estimate()[0] < 0);
 }
 
-TEST_CASE("what is no number leaves the estimate as it was") {
+TEST_CASE("NaN inputs do not change the estimate") {
     DisturbanceObserver<float, 2> observer({}, {0.001F, {{20, 20}}, {{5, 5}}});
     const float inertia[] = {1, 1};
     const float zero[] = {0, 0};

@@ -21,7 +21,7 @@ constexpr std::int64_t period_ns = 2'000'000;
 constexpr double period_s = 2e-3;
 constexpr int ticks_per_sample = 4;
 
-/// A learner that says what a test wants, and notes what it is asked.
+/// A learner with predictions set by the test, which records its calls.
 struct ToldLearner {
     using Scalar = double;
     static constexpr int outputs = 1;
@@ -55,7 +55,7 @@ Reference<double, 1> reference_at(double time_s) {
     return {{{std::sin(time_s)}}, {{std::cos(time_s)}}, {{-std::sin(time_s)}}};
 }
 
-/// Runs a feed-forward under a loop that in the end commands `needed`.
+/// Runs a feed-forward in a loop whose final command is `needed`.
 struct Run {
     ToldLearner learner;
     Forward forward{learner, settings};
@@ -82,7 +82,7 @@ struct Run {
     }
 };
 
-TEST_CASE("what is learned comes in without a step, and only after a second that was judged") {
+TEST_CASE("the learned part enters without a step, after a second of comparisons") {
     Run run;
     run.learner.forecast = 50;
     run.go(1.0, 10, 50);
@@ -95,12 +95,12 @@ TEST_CASE("what is learned comes in without a step, and only after a second that
     CHECK(run.largest_step <= 40 * period_s / 0.5 + 1e-9);
 }
 
-TEST_CASE("a learner that has gone wrong is out within a second, and back when it is right again") {
+TEST_CASE("a wrong learner is excluded within a second, and included when it is correct again") {
     Run run;
     run.learner.forecast = 50;
     run.go(3, 10, 50);
     REQUIRE(run.forward.share()[0] > 0.99);
-    run.learner.forecast = -30; // 80 N·m off, the nominal torque 40
+    run.learner.forecast = -30; // an error of 80 N·m; that of the nominal torque is 40
     run.go(1, 10, 50);
     CHECK(run.forward.share()[0] < 0.1);
     run.learner.forecast = 50;
@@ -108,7 +108,7 @@ TEST_CASE("a learner that has gone wrong is out within a second, and back when i
     CHECK(run.forward.share()[0] > 0.9);
 }
 
-TEST_CASE("switching off and on makes no step, and learning goes on in between") {
+TEST_CASE("switching off and on causes no step, and learning continues in between") {
     Run run;
     run.learner.forecast = 50;
     run.go(3, 10, 50);
@@ -124,7 +124,7 @@ TEST_CASE("switching off and on makes no step, and learning goes on in between")
     CHECK(run.largest_step <= 40 * period_s / 0.2 + 1e-9);
 }
 
-TEST_CASE("no torque leaves the limit, no learned part the cap, and none is faster than the rate") {
+TEST_CASE("torque, learned part and its rate stay within their limits") {
     DFDYN_SEEDED_ENGINE(engine);
     std::normal_distribution<double> size(0, 200);
     std::bernoulli_distribution rarely(0.01);
@@ -144,8 +144,7 @@ TEST_CASE("no torque leaves the limit, no learned part the cap, and none is fast
     }
 }
 
-TEST_CASE(
-    "the learner is asked for the next knot, where the reference will be, and learns one sample per knot") {
+TEST_CASE("the learner predicts the reference at the next knot and learns one sample per knot") {
     Run run;
     run.go(10 * ticks_per_sample * period_s, 0, 0);
     CHECK(run.learner.began_at == 0);
@@ -160,7 +159,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a position that was not measured is not learned") {
+TEST_CASE("a missing position is not learned") {
     Run run;
     run.go(0.1, 0, 0);
     const std::size_t learned = run.learner.learned.size();
@@ -211,8 +210,7 @@ class LoadedJoint {
     std::int64_t tick_ = 0;
 };
 
-TEST_CASE(
-    "in a closed loop the right forecast takes over, and a wrong or a swaying one is left out in a second") {
+TEST_CASE("in a closed loop a correct forecast is used, and a wrong or swaying one excluded in a second") {
     const auto right = [](double /*time_s*/) { return LoadedJoint::load; };
     const auto biased = [](double /*time_s*/) { return LoadedJoint::load + 40; };
     const auto swaying = [](double time_s) {
@@ -222,7 +220,7 @@ TEST_CASE(
     joint.go(3, right);
     CHECK(joint.share() > 0.95);
     joint.go(1, right);
-    const double sag = LoadedJoint::load / 800; // under feedback alone
+    const double sag = LoadedJoint::load / 800; // with feedback alone
     CHECK(joint.largest_error < sag / 10);
     for (const auto& wrong :
          {std::function<double(double)>(biased), std::function<double(double)>(swaying)}) {
@@ -230,7 +228,7 @@ TEST_CASE(
         other.go(3, right);
         other.go(1, wrong);
         CHECK(other.share() < 0.2);
-        CHECK(other.largest_error < 40.0 / 800 + sag); // what the wrong torque can do at most
+        CHECK(other.largest_error < 40.0 / 800 + sag); // the largest effect of the wrong torque
         other.go(1, wrong);
         CHECK(other.largest_error < 3 * sag);
     }

@@ -9,22 +9,22 @@
 
 namespace dfdyn::tests {
 
-/// A joint that is nothing but inertia, under PD feedback about zero and an observer, in continuous time but
-/// for steps so short that they do not matter: the truth of the tests of both.
+/// A joint with inertia only, under PD feedback about zero and an observer. Quasi-continuous, with negligibly
+/// short steps: the reference for the tests of both.
 class ServoJoint {
   public:
     explicit ServoJoint(const JointLoop<double>& loop, double step_s)
         : loop_(loop), step_s_(step_s), position_delay_(ticks(loop.delay_s) + 1),
           velocity_delay_(ticks(loop.delay_s + loop.velocity_delay_s) + 1) {}
 
-    /// What the controller knows of the tracking error now, and how fast it changes.
+    /// The controller's delayed measurement of the tracking error and its rate.
     [[nodiscard]] double error() const { return -position_delay_.front(); }
     [[nodiscard]] double error_rate() const { return -velocity_delay_.front(); }
     [[nodiscard]] double feedback() const {
         return loop_.position_gain * error() + loop_.velocity_gain * error_rate();
     }
 
-    /// Takes a torque for a step.
+    /// Applies a torque for one step.
     void advance(double torque) {
         velocity_ += step_s_ * torque / loop_.inertia;
         position_ += step_s_ * velocity_;

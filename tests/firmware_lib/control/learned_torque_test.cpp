@@ -30,7 +30,7 @@ bool close(const typename Model::Scalar* a, const Storage<typename Model::Scalar
            std::abs(static_cast<double>(a[1] - b[1])) < tolerance;
 }
 
-/// A learner that has learned the moving arm for a while.
+/// Returns a learner that has learned the moving arm for a while.
 template <class Model>
 std::unique_ptr<LearnedTorque<Model>> learner_of(const typename Model::Constants& constants,
                                                  std::mt19937_64& engine, int samples = 400) {
@@ -42,9 +42,9 @@ std::unique_ptr<LearnedTorque<Model>> learner_of(const typename Model::Constants
     return learner;
 }
 
-// The estimator's own prediction, of the window that it measured, is the truth.
-TEMPLATE_TEST_CASE("for the motion that was measured it predicts what the estimator does", "", Features,
-                   Physical, Mean, Kernel, KernelDouble) {
+// The reference is the estimator's own prediction for the measured window.
+TEMPLATE_TEST_CASE("for the measured motion the prediction equals the estimator's", "", Features, Physical,
+                   Mean, Kernel, KernelDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine);
     Estimator<TestType> estimator(constants);
@@ -65,7 +65,7 @@ TEMPLATE_TEST_CASE("for the motion that was measured it predicts what the estima
     CHECK(different == 0);
 }
 
-TEMPLATE_TEST_CASE("where the arm really is does not change the prediction for the reference", "", Features,
+TEMPLATE_TEST_CASE("the measured position does not change the prediction for the reference", "", Features,
                    Kernel) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine);
@@ -75,7 +75,7 @@ TEMPLATE_TEST_CASE("where the arm really is does not change the prediction for t
     one->begin(0, start);
     other->begin(0, start);
     for (int t = 1; t < 50; ++t) {
-        const auto sample = moving_sample<TestType>(t, engine); // not learned: no torque
+        const auto sample = moving_sample<TestType>(t, engine); // not learned, because the torque is unknown
         other->learn(sample.time_ns, sample.position.data(), nullptr);
         const float reference[] = {0.1F + 0.01F * static_cast<float>(t), -0.2F};
         float of_one[2];
@@ -87,7 +87,7 @@ TEMPLATE_TEST_CASE("where the arm really is does not change the prediction for t
     }
 }
 
-TEST_CASE("a sample learned in slices changes the prediction when it is done, not before") {
+TEST_CASE("a sample learned in slices changes the prediction when it is complete") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<Kernel>(engine);
     constexpr int ticks = 8;
@@ -114,7 +114,7 @@ TEST_CASE("a sample learned in slices changes the prediction when it is done, no
     CHECK(learned.tick_cost() < 2 * Estimator<Kernel>::cost().predict + Estimator<Kernel>::cost().learn);
 }
 
-TEST_CASE("what is beyond the model's limit, or no number, is not known and gives zeros") {
+TEST_CASE("NaN or a prediction beyond the model's limit is reported and gives zeros") {
     DFDYN_SEEDED_ENGINE(engine);
     auto constants = make_constants<Kernel>(engine);
     constants.prediction_limit = {{3, 3}};
@@ -131,7 +131,7 @@ TEST_CASE("what is beyond the model's limit, or no number, is not known and give
     CHECK(refused > 20);
 }
 
-TEST_CASE("a reference that is no number is not known, and forgotten after a window") {
+TEST_CASE("a NaN reference is reported, and has no effect after one window") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<Kernel>(engine);
     const auto learned = learner_of<Kernel>(constants, engine);
@@ -142,13 +142,13 @@ TEST_CASE("a reference that is no number is not known, and forgotten after a win
     REQUIRE(learned->predict(period_ns, rest, torque));
     CHECK_FALSE(learned->predict(2 * period_ns, nothing, torque));
     CHECK(torque[0] == 0);
-    constexpr int window = 7; // of six lags
+    constexpr int window = 7; // six lags
     for (int t = 0; t < window; ++t) {
         CHECK(learned->predict((3 + t) * period_ns, rest, torque) == (t == window - 1));
     }
 }
 
-TEST_CASE("what was learned can be saved, and goes on from there after a restart") {
+TEST_CASE("the learned state can be saved and restored after a restart") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<Kernel>(engine);
     const auto learned = learner_of<Kernel>(constants, engine);

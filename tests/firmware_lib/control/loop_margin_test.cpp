@@ -30,7 +30,7 @@ JointLoop<double> random_loop(std::mt19937_64& engine) {
     return loop;
 }
 
-/// Largest position in the first and in the last tenth of 10 s after a small blow.
+/// Returns the largest position in the first and in the last tenth of 10 s after a small impulse.
 std::pair<double, double> after_a_blow(const JointLoop<double>& loop, double observer_inertia,
                                        double bandwidth) {
     ServoJoint joint(loop, step_s);
@@ -51,12 +51,12 @@ std::pair<double, double> after_a_blow(const JointLoop<double>& loop, double obs
     return largest;
 }
 
-TEST_CASE("a joint of pure damping has the margin of the closed form") {
+TEST_CASE("a joint with pure damping has the phase margin of the closed form") {
     JointLoop<double> loop{2, 1e-9, 30, 0.004, 0};
     const double crossover = loop.velocity_gain / loop.inertia;
     const LoopMargin<double> margin(loop, loop.inertia);
     CHECK(margin.phase(0) == Approx(std::numbers::pi / 2 - crossover * loop.delay_s).margin(1e-6));
-    // an observer of bandwidth b that knows the inertia adds b to the crossover of D/J, all damping
+    // An observer of bandwidth b with the correct inertia adds b to the crossover of D/J, all of it damping.
     const double b = 10;
     loop.velocity_gain = 0;
     loop.position_gain = 1e-9;
@@ -64,7 +64,7 @@ TEST_CASE("a joint of pure damping has the margin of the closed form") {
           Approx(std::numbers::pi / 2 - b * loop.delay_s).margin(1e-6));
 }
 
-TEST_CASE("a joint dies down where the margin is positive, and oscillates where it is not") {
+TEST_CASE("a joint settles if the phase margin is positive and oscillates if it is negative") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int trial = 0; trial < 12; ++trial) {
         const JointLoop<double> loop = random_loop(engine);
@@ -79,7 +79,7 @@ TEST_CASE("a joint dies down where the margin is positive, and oscillates where 
     }
 }
 
-TEST_CASE("the largest bandwidth leaves the margin that was asked for") {
+TEST_CASE("the largest bandwidth leaves the requested phase margin") {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr double wanted = 0.5;
     for (int trial = 0; trial < 100; ++trial) {

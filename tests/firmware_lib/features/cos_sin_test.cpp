@@ -20,7 +20,8 @@ using dfdyn::largest_cos_sin_argument;
 template <class Scalar>
 constexpr double documented_error = std::is_same_v<Scalar, float> ? 1.2e-7 : 3e-16;
 
-/// The largest absolute error of either over some arguments, against the C library in extended precision.
+/// Returns the largest absolute error of either function over some arguments, against the C library in
+/// extended precision.
 template <class Scalar>
 double largest_error(const std::vector<Scalar>& arguments, Scalar amplitude = 1) {
     const auto count = arguments.size();
@@ -36,7 +37,7 @@ double largest_error(const std::vector<Scalar>& arguments, Scalar amplitude = 1)
     return static_cast<double>(largest);
 }
 
-/// A few thousand neighbours, in the last place, of multiples of π/4.
+/// A few thousand values, adjacent in the last place, near multiples of π/4.
 template <class Scalar>
 std::vector<Scalar> quadrant_borders() {
     std::vector<Scalar> arguments;
@@ -58,8 +59,8 @@ std::vector<Scalar> random_arguments(std::mt19937_64& engine, double largest, in
     return arguments;
 }
 
-/// The largest absolute error over all floats whose bits are `first` … `last` - 1, against double precision,
-/// whose own error is nothing beside it.
+/// Returns the largest absolute error over all floats with bits `first` … `last` - 1, against double
+/// precision, whose own error is negligible.
 double largest_error_of_all(std::uint32_t first, std::uint32_t last) {
     constexpr int count = 2048;
     std::array<float, count> argument{};
@@ -70,8 +71,7 @@ double largest_error_of_all(std::uint32_t first, std::uint32_t last) {
     std::array<double, count> exact_sine{};
     std::array<double, count> errors{};
     for (std::uint32_t bits = first; bits < last; bits += count) {
-        for (std::uint32_t i = 0; i < count;
-             ++i) { // the last stretch ends with the last float again and again
+        for (std::uint32_t i = 0; i < count; ++i) { // the last block repeats the last float
             argument[i] = std::bit_cast<float>(std::min(bits + i, last - 1));
             exact_argument[i] = static_cast<double>(argument[i]);
         }
@@ -106,8 +106,9 @@ TEMPLATE_TEST_CASE("cosine and sine are as accurate as documented over the whole
     CHECK(largest_error(quadrant_borders<TestType>()) < documented_error<TestType>);
 }
 
-// Below 2⁻¹² the cosine is 1 - x²/2 and the sine x to the last bit but one: random arguments suffice there.
-TEST_CASE("every float of the first quadrant's half is as accurate as documented") {
+// Below 2⁻¹² the cosine is 1 - x²/2 and the sine x up to the last bit but one, so random arguments suffice
+// there.
+TEST_CASE("every float in the first half of the first quadrant is as accurate as documented") {
     const auto eighth_turn = std::bit_cast<std::uint32_t>(0.7853983F);
     const auto small = std::bit_cast<std::uint32_t>(0x1p-12F);
     CHECK(largest_error_of_all(small, eighth_turn) < documented_error<float>);
@@ -118,14 +119,14 @@ TEST_CASE("every float of the whole range is as accurate as documented", "[.long
     CHECK(largest_error_of_all(sign_bit, sign_bit + largest_bits + 1) < documented_error<float>);
 }
 
-// What the bound for double rests on.
-TEMPLATE_TEST_CASE("the reduction's products are exact, and the polynomials leave out less than a rounding",
-                   "", float, double) {
+// The assumptions of the bound for double.
+TEMPLATE_TEST_CASE("the products of the reduction are exact and the truncation error is below a rounding", "",
+                   float, double) {
     constexpr auto& parts = dfdyn::detail::HalfPi<TestType>::parts;
     constexpr int last = static_cast<int>(std::size(parts)) - 1;
     const auto quarters = static_cast<int>(largest_cos_sin_argument<double> / 1.57 + 1);
     bool exact = true;
-    long double error = -0x1.921fb544p0L; // less π/2 in two exact pieces
+    long double error = -0x1.921fb544p0L; // minus π/2 in two exact parts
     for (int i = 0; i <= last; ++i) {
         error += static_cast<long double>(parts[i]);
         for (int k = 1; k <= quarters && i < last; ++k) {
@@ -138,13 +139,13 @@ TEMPLATE_TEST_CASE("the reduction's products are exact, and the polynomials leav
     error -= 0x4.2d18469898cc517p-36L;
     CHECK(std::abs(error) * quarters < precision / 100);
     constexpr int terms =
-        dfdyn::detail::taylor_terms<TestType>; // of cosine beyond the 1; the next has this power
+        dfdyn::detail::taylor_terms<TestType>; // of the cosine beyond the 1; the next term has this power
     const long double eighth_turn = std::acos(-1.0L) / 4;
     CHECK(std::pow(eighth_turn, 2 * terms + 2) / std::tgamma(2.0L * terms + 3) < precision / 50);
     CHECK(std::pow(eighth_turn, 2 * terms + 1) / std::tgamma(2.0L * terms + 2) < precision / 4);
 }
 
-TEMPLATE_TEST_CASE("zero, the smallest and the largest arguments", "", float, double) {
+TEMPLATE_TEST_CASE("zero, the smallest and the largest arguments are correct", "", float, double) {
     using Limits = std::numeric_limits<TestType>;
     const TestType largest = largest_cos_sin_argument<TestType>;
     CHECK(largest_error<TestType>({0, -TestType(0), Limits::denorm_min(), -Limits::denorm_min(),
@@ -158,13 +159,13 @@ TEMPLATE_TEST_CASE("zero, the smallest and the largest arguments", "", float, do
     CHECK(sine == 0);
 }
 
-TEMPLATE_TEST_CASE("the amplitude scales both", "", float, double) {
+TEMPLATE_TEST_CASE("the amplitude scales cosine and sine", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto arguments = random_arguments<TestType>(engine, 100, 1000);
     CHECK(largest_error(arguments, TestType(0.0625)) < documented_error<TestType> / 16);
 }
 
-TEMPLATE_TEST_CASE("arguments that mean nothing are flagged, wherever they are", "", float, double) {
+TEMPLATE_TEST_CASE("invalid arguments are flagged in any position", "", float, double) {
     using Limits = std::numeric_limits<TestType>;
     const TestType outside = std::nextafter(largest_cos_sin_argument<TestType>, TestType(1e9));
     for (const TestType bad :
@@ -180,7 +181,7 @@ TEMPLATE_TEST_CASE("arguments that mean nothing are flagged, wherever they are",
     }
 }
 
-TEMPLATE_TEST_CASE("one argument gives what it gives among others, and no number beyond the range", "", float,
+TEMPLATE_TEST_CASE("one argument gives the same values as among others, and NaN beyond the range", "", float,
                    double) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto arguments = random_arguments<TestType>(engine, 100, 83);
@@ -197,7 +198,7 @@ TEMPLATE_TEST_CASE("one argument gives what it gives among others, and no number
     CHECK((std::isnan(c) && std::isnan(s)));
 }
 
-TEMPLATE_TEST_CASE("the cosines may be written over the arguments", "", float, double) {
+TEMPLATE_TEST_CASE("the cosines may overwrite the arguments", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     auto arguments = random_arguments<TestType>(engine, 100, 83);
     std::vector<TestType> cosine(83);

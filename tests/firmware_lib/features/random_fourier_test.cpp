@@ -70,7 +70,7 @@ double kernel_error(std::mt19937_64& engine, int feature_count) {
     return std::sqrt(sum / draws);
 }
 
-TEST_CASE("the columns are the cosines, then the sines, of the frequencies' products with the input") {
+TEST_CASE("the columns are the cosines, then the sines, of frequencies times input") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const std::size_t feature_count : {1U, 2U, 7U, 33U, 250U}) {
         const Constants constants = random_constants(engine, static_cast<int>(feature_count));
@@ -87,7 +87,7 @@ TEST_CASE("the columns are the cosines, then the sines, of the frequencies' prod
     }
 }
 
-TEST_CASE("the columns of any input have length one") {
+TEST_CASE("the column vector of any input has norm one") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int trial = 0; trial < 100; ++trial) {
         const Constants constants = random_constants(engine, 1 + trial);
@@ -96,9 +96,9 @@ TEST_CASE("the columns of any input have length one") {
     }
 }
 
-// φ'φ' is a mean of d bounded terms whose expectation is the kernel: its error falls as 1/√d. 400 draws know
-// each error to about 4 %.
-TEST_CASE("the columns approximate the Gaussian kernel, better with the square root of their number") {
+// φ'φ' is a mean of d bounded terms whose expectation is the kernel, so its error is proportional to 1/√d.
+// 400 draws determine each error to about 4 %.
+TEST_CASE("the error of the kernel approximation falls with the square root of the number of columns") {
     DFDYN_SEEDED_ENGINE(engine);
     const double few = kernel_error(engine, 16);
     const double many = kernel_error(engine, 256);
@@ -107,7 +107,7 @@ TEST_CASE("the columns approximate the Gaussian kernel, better with the square r
     CHECK(few / many == Approx(4).epsilon(0.25));
 }
 
-TEST_CASE("inputs that are not numbers, or far outside anything trained, are flagged") {
+TEST_CASE("inputs that are NaN or far outside the training data are flagged") {
     DFDYN_SEEDED_ENGINE(engine);
     const Constants constants = random_constants(engine, 20);
     for (const double bad :

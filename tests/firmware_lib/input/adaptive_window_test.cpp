@@ -16,7 +16,7 @@ using Signal = std::function<double(double)>;
 
 constexpr double period = 1e-3;
 
-/// Samples of a signal, newest first, at given ages (times ≤ 0 relative to `now`).
+/// Returns samples of a signal, newest first, at given ages (times ≤ 0 relative to `now`).
 template <class Scalar>
 struct Samples {
     std::vector<Scalar> ages;
@@ -52,7 +52,7 @@ std::vector<double> uneven_ages(std::mt19937_64& engine, int count) {
     return ages;
 }
 
-/// The largest error of the velocity at 1,000 instants.
+/// Returns the largest error of the velocity at 1,000 times.
 double largest_velocity_error(const Signal& signal, const Signal& derivative, int count, double noise_bound) {
     double largest = 0;
     for (int t = 0; t < 1000; ++t) {
@@ -65,7 +65,7 @@ double largest_velocity_error(const Signal& signal, const Signal& derivative, in
 
 double quantised(double value, double count) { return std::floor(value / count) * count; }
 
-TEMPLATE_TEST_CASE("a straight line and a parabola are met exactly, at uneven times", "", float, double) {
+TEMPLATE_TEST_CASE("a straight line and a parabola are fitted exactly, at uneven times", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     const double tolerance = std::is_same_v<TestType, float> ? 1e-3 : 1e-9;
     for (int trial = 0; trial < 50; ++trial) {
@@ -82,9 +82,10 @@ TEMPLATE_TEST_CASE("a straight line and a parabola are met exactly, at uneven ti
     }
 }
 
-// A line over a parabola of acceleration a leaves a h²/3 at the ends of a window of length 2h, and is wrong
-// by a h at the newest sample: when the window is as long as the noise bound δ allows, by sqrt(3 δ a).
-TEST_CASE("on a smooth motion the error is as small as the noise bound promises") {
+// A line fitted to a parabola with acceleration a has the error a h²/3 at the ends of a window of length 2h,
+// and its slope has the error a h at the newest sample. With the longest window that the noise bound δ allows
+// this is sqrt(3 δ a).
+TEST_CASE("on a smooth motion the error is within that of the noise bound") {
     constexpr double omega = 4;
     const Signal sine = [](double t) { return std::sin(omega * t); };
     const Signal cosine = [](double t) { return omega * std::cos(omega * t); };
@@ -97,9 +98,9 @@ TEST_CASE("on a smooth motion the error is as small as the noise bound promises"
     }
 }
 
-// A line through L values, each wrong by at most half a count, has a slope wrong by at most 1.5 counts / L
-// per sample; the difference of two values is wrong by up to one count per sample.
-TEST_CASE("on a quantised ramp the window grows, and the ripple is far below one count per sample") {
+// The slope of a line through L values, each with an error of at most half a count, has an error of at most
+// 1.5 counts / L per sample. The difference of two values has an error of up to one count per sample.
+TEST_CASE("on a quantised ramp the window grows and the ripple is far below one count per sample") {
     constexpr double count = 1e-4;
     constexpr int length = 50;
     for (const double counts_per_sample : {0.03, 0.3, 0.77, 3.2}) {
@@ -112,7 +113,7 @@ TEST_CASE("on a quantised ramp the window grows, and the ripple is far below one
     }
 }
 
-TEST_CASE("after a sudden change the window shrinks to what came after it") {
+TEST_CASE("after a sudden change the window shrinks to the samples since then") {
     const Signal corner = [](double t) { return t < 0 ? 0 : 5 * t; };
     for (int samples_after = 1; samples_after < 10; ++samples_after) {
         const Samples<double> samples(corner, samples_after * period, uniform_ages(50));
@@ -122,7 +123,7 @@ TEST_CASE("after a sudden change the window shrinks to what came after it") {
     CHECK(long_before.window(1e-4).velocity() == 0);
 }
 
-TEST_CASE("the acceleration of a quantised parabola is found to a few percent") {
+TEST_CASE("the acceleration of a quantised parabola has an error of a few percent") {
     constexpr double count = 1e-5;
     const Signal parabola = [](double t) { return quantised(5 * t * t, count); };
     for (int t = 0; t < 100; ++t) {
@@ -131,10 +132,9 @@ TEST_CASE("the acceleration of a quantised parabola is found to a few percent") 
     }
 }
 
-// Whatever the bound, two positions give a velocity: rounding must not turn a fast joint into one that stands
-// still.
-TEMPLATE_TEST_CASE("a noise bound below the rounding leaves the difference of the newest samples", "", float,
-                   double) {
+// Two positions give a velocity for any bound: rounding must not turn a fast joint into a stationary one.
+TEMPLATE_TEST_CASE("with a noise bound below rounding the velocity is the difference of the newest samples",
+                   "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     for (int trial = 0; trial < 200; ++trial) {
         std::uniform_real_distribution<double> position(-3, 3);
@@ -151,20 +151,20 @@ TEMPLATE_TEST_CASE("a noise bound below the rounding leaves the difference of th
     }
 }
 
-TEST_CASE("too few samples have no derivative") {
+TEST_CASE("too few samples give a derivative of zero") {
     const Signal ramp = [](double t) { return 5 * t; };
     CHECK(Samples<double>(ramp, 0, uniform_ages(1)).window(1).velocity() == 0);
     CHECK(Samples<double>(ramp, 0, uniform_ages(2)).window(1).velocity() == Approx(5));
     CHECK(Samples<double>(ramp, 0, uniform_ages(2)).window(1).acceleration() == 0);
 }
 
-TEST_CASE("the values may lie apart") {
+TEST_CASE("the values may have a stride") {
     const double ages[] = {0, -1, -2};
     const double values[] = {7, 99, 5, 99, 3, 99};
     CHECK(AdaptiveWindow<double>(ages, values, 2, 3, 1e-9).velocity() == Approx(2));
 }
 
-TEST_CASE("the slope of a reference over the window of the readings has the readings' delay") {
+TEST_CASE("the slope of a reference over the window of the measurements has the same delay") {
     const Signal reference = [](double t) { return std::sin(3 * t); };
     const Signal position = [&](double t) { return reference(t) - 0.02 * t; };
     constexpr double noise_bound = 1e-4;
@@ -180,7 +180,7 @@ TEST_CASE("the slope of a reference over the window of the readings has the read
         largest_delay = std::max(largest_delay, std::abs(3 * std::cos(3 * now) - 0.02 - window.velocity()));
     }
     CHECK(largest_error < 1e-9);
-    CHECK(largest_delay > 0.05); // which a comparison with the reference's velocity of now would have
+    CHECK(largest_delay > 0.05); // the delay relative to the present velocity of the reference
     constexpr double alone = 0;
     CHECK(AdaptiveWindow<double>(&alone, &alone, 1, 1, noise_bound).slope_of(&alone) == 0);
 }

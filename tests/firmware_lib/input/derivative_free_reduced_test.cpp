@@ -50,7 +50,7 @@ Sum product_with(const Rows& matrix, const Positions& positions, std::size_t i, 
     return sum;
 }
 
-/// The largest errors of one row's feature along a motion: of the map, and of the plain product in the same
+/// Largest errors of one row's feature along a motion: of the map, and of the plain product in the same
 /// precision.
 struct Errors {
     double map = 0;
@@ -82,7 +82,7 @@ Errors float_errors(const Rows& matrix, std::size_t j) {
     return errors;
 }
 
-TEST_CASE("DFR: the inputs are the scaled product of R with each joint's window") {
+TEST_CASE("DFR gives the scaled product of R with each joint's window") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int trial = 0; trial < 50; ++trial) {
         Rows matrix;
@@ -103,14 +103,14 @@ TEST_CASE("DFR: the inputs are the scaled product of R with each joint's window"
     }
 }
 
-TEST_CASE("the difference form keeps a row's entries and puts its sum in front, in place too") {
+TEST_CASE("the difference form keeps the entries of a row and puts its sum in front, also in place") {
     std::array<double, 6> matrix{1, -2, 4, 8, 16, -32};
     to_difference_form(matrix.data(), 2, 2, matrix.data());
     CHECK(matrix == std::array<double, 6>{3, -2, 4, -8, 16, -32});
 }
 
-// At 1 kHz the entries of the acceleration row are around 1e6 and almost cancel.
-TEST_CASE("in single precision at 1 kHz the difference form keeps what the plain product loses") {
+// At 1 kHz the entries of the acceleration row are about 1e6 and nearly cancel.
+TEST_CASE("in float at 1 kHz the difference form is accurate where the plain product is not") {
     Rows matrix{};
     structured_rows<double>({1 / period_s, 1 / (period_s * period_s), 0.3, 0.3}, lags, matrix.data());
     const Errors velocity = float_errors(matrix, 1);
@@ -123,7 +123,7 @@ TEST_CASE("in single precision at 1 kHz the difference form keeps what the plain
     CHECK(acceleration.plain_product > 20 * acceleration.map);
 }
 
-TEST_CASE("DFR is ready once it holds M+1 samples") {
+TEST_CASE("DFR is ready after M+1 samples") {
     const Constants<float> constants{};
     Map<float> map(constants, {}, {}, {});
     CHECK(ready_after<float, joints>(map, lags + 1));

@@ -22,8 +22,7 @@ std::vector<double> fir_rows() {
     return rows;
 }
 
-/// The filters as difference equations, straight from their transfer functions, at rest before the first
-/// position.
+/// The filters as difference equations of their transfer functions, at rest before the first position.
 struct DirectRecursion {
     std::vector<double> velocity, acceleration;
 
@@ -45,7 +44,7 @@ using RecursiveMap = Recursive::Map<double, 1>;
 
 Recursive::Constants<double, 1> recursive_constants() { return {filters, {{0.5, 2, 4}}}; }
 
-/// The positions of joint 1 of a smooth motion.
+/// Positions of joint 1 during a smooth motion.
 std::vector<double> smooth_joint(int count) {
     std::vector<double> q;
     for (const std::vector<double>& row : smooth_positions(count)) {
@@ -58,7 +57,7 @@ void push(RecursiveMap& map, double position) {
     map.push(Sample<double, 1, 1>{0, {{position}}, {{0}}, false});
 }
 
-TEST_CASE("DFSR's rows are the paper's") {
+TEST_CASE("the rows of DFSR equal the paper's") {
     const std::vector<double> rows = fir_rows();
     const auto [alpha1, alpha2, beta1, beta2] = filters;
     for (int lag = 0; lag <= lags; ++lag) {
@@ -75,7 +74,7 @@ TEST_CASE("DFSR's rows are the paper's") {
     }
 }
 
-TEST_CASE("DFSR's rows are the impulse responses of their transfer functions") {
+TEST_CASE("the rows of DFSR are the impulse responses of their transfer functions") {
     const std::vector<double> rows = fir_rows();
     std::vector<double> impulse(lags + 1, 0);
     impulse[0] = 1;
@@ -86,7 +85,7 @@ TEST_CASE("DFSR's rows are the impulse responses of their transfer functions") {
     }
 }
 
-TEST_CASE("the recursive filter is the difference equation, at rest before its first position") {
+TEST_CASE("the recursive filter equals the difference equation, at rest before its first position") {
     DFDYN_SEEDED_ENGINE(engine);
     std::vector<double> q(300);
     std::generate(q.begin(), q.end(), [&] { return std::uniform_real_distribution<double>(-3, 3)(engine); });
@@ -107,9 +106,9 @@ TEST_CASE("the recursive filter is the difference equation, at rest before its f
     }
 }
 
-// What the rows cut off is a geometric tail: α₁β₁^M |q| of the velocity, α₂β₂^(M-1)(1-β₂) |q| of the
-// acceleration.
-TEST_CASE("the recursive filter differs from the rows by no more than these cut off") {
+// The truncation error of the rows is a geometric tail: α₁β₁^M |q| for the velocity, α₂β₂^(M-1)(1-β₂) |q| for
+// the acceleration.
+TEST_CASE("the recursive filter differs from the rows by at most their truncation error") {
     const std::vector<double> q = smooth_joint(400);
     const std::vector<double> rows = fir_rows();
     const double largest = *std::max_element(q.begin(), q.end());
@@ -148,7 +147,7 @@ TEST_CASE("an arm that never moved has exactly no velocity and no acceleration")
     }
 }
 
-TEST_CASE("after a motion the filters come to rest at exactly zero, not among denormals") {
+TEST_CASE("after a motion the filters reach exactly zero, without denormals") {
     const auto constants = recursive_constants();
     RecursiveMap map(constants, {}, {}, {});
     push(map, 0);

@@ -28,7 +28,7 @@ Constants random_constants(std::mt19937_64& engine) {
     return constants;
 }
 
-TEST_CASE("DF: each input is a scaled position, by joints and then by lags") {
+TEST_CASE("DF gives scaled positions, by joints and then by lags") {
     DFDYN_SEEDED_ENGINE(engine);
     const Constants constants = random_constants(engine);
     Map map(constants, {}, {}, {});
@@ -45,13 +45,13 @@ TEST_CASE("DF: each input is a scaled position, by joints and then by lags") {
     }
 }
 
-TEST_CASE("DF is ready once it holds M+1 samples") {
+TEST_CASE("DF is ready after M+1 samples") {
     const Constants constants{};
     Map map(constants, {}, {}, {});
     CHECK(ready_after<double, joints>(map, lags + 1));
 }
 
-TEST_CASE("DFW computes what DF does: its weights are part of the scale") {
+TEST_CASE("DFW equals DF with the weights as part of the scale") {
     static_assert(std::is_base_of_v<Input, DerivativeFreeWeighted<lags>>);
     static_assert(DerivativeFreeWeighted<lags>::features_per_joint == lags + 1);
     static_assert(Map::cost(joints, lags, lags + 1) == joints * (lags + 1));

@@ -27,7 +27,7 @@ Constants<Scalar> constants() {
     return {Scalar(1e-5), {{1, 2, 4, 8, 16, 32}}};
 }
 
-/// Two joints under constant accelerations.
+/// Two joints with constant accelerations.
 template <class Scalar>
 Sample<Scalar, joints, 1> parabolas_at(std::int64_t time_ns) {
     const double t = 1e-9 * static_cast<double>(time_ns);
@@ -37,7 +37,7 @@ Sample<Scalar, joints, 1> parabolas_at(std::int64_t time_ns) {
             false};
 }
 
-TEMPLATE_TEST_CASE("STD: position, velocity and acceleration of each joint, scaled, at uneven times", "",
+TEMPLATE_TEST_CASE("STD gives position, velocity and acceleration of each joint, scaled, at uneven times", "",
                    float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto model = constants<TestType>();
@@ -60,7 +60,7 @@ TEMPLATE_TEST_CASE("STD: position, velocity and acceleration of each joint, scal
     CHECK(static_cast<double>(xi[5]) == Approx(32 * 60).epsilon(0.01));
 }
 
-TEST_CASE("STD is the adaptive window of each joint") {
+TEST_CASE("STD equals the adaptive window of each joint") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto model = constants<double>();
     Map<double> map(model, {}, {}, {});
@@ -77,14 +77,15 @@ TEST_CASE("STD is the adaptive window of each joint") {
     CHECK(xi[5] == Approx(32 * window.acceleration()).epsilon(1e-9));
 }
 
-TEST_CASE("STD is ready once it holds M+1 samples, and forgets positions and times in a restart") {
+TEST_CASE("STD is ready after M+1 samples, and a restart discards positions and times") {
     const auto model = constants<double>();
     Map<double> map(model, {}, {}, {});
     CHECK(ready_after<double, joints>(map, lags + 1));
     map.restart();
     for (int t = 0; t <= lags; ++t) {
         map.push(
-            parabolas_at<double>(1'000'000'000'000 + t * period_ns)); // a jump of all: nothing old may show
+            // a jump of all positions: old ones must not appear
+            parabolas_at<double>(1'000'000'000'000 + t * period_ns));
     }
     REQUIRE(map.ready());
     Map<double> fresh(model, {}, {}, {});
@@ -98,7 +99,7 @@ TEST_CASE("STD is ready once it holds M+1 samples, and forgets positions and tim
     CHECK(std::equal(std::begin(xi), std::end(xi), std::begin(expected)));
 }
 
-TEST_CASE("STD with measured derivatives passes them on, scaled") {
+TEST_CASE("STD with measured derivatives returns them scaled") {
     const StandardMeasured::Constants<double, joints> model{{{1, 2, 4, 8, 16, 32}}};
     StandardMeasured::Map<double, joints> map(model, {}, {}, {});
     CHECK_FALSE(map.ready());

@@ -28,7 +28,7 @@ using Eigen::VectorXd;
 template <class Scalar>
 using RowMajor = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// y_k = φ'w_k + ψ_k'π + e at N instants.
+/// y_k = φ'w_k + ψ_k'π + e at N times.
 struct ArrowProblem {
     int columns, parameters, outputs;
     double feature_variance = 20; ///< of each w
@@ -62,7 +62,7 @@ struct ArrowProblem {
     [[nodiscard]] int instants() const { return static_cast<int>(phi.rows()); }
     [[nodiscard]] int unknowns() const { return outputs * columns + parameters; }
 
-    /// The row of output k with all unknowns [w_1 … w_m, π].
+    /// Returns the row of output k for all unknowns [w_1 … w_m, π].
     [[nodiscard]] VectorXd dense_row(int t, int k) const {
         VectorXd row = VectorXd::Zero(unknowns());
         row.segment(k * columns, columns) = phi.row(t);
@@ -71,7 +71,7 @@ struct ArrowProblem {
     }
 };
 
-/// Mean and covariance of all unknowns after the first `instants`, by the normal equations.
+/// Mean and covariance of all unknowns after the first `instants` samples, by the normal equations.
 struct DenseSolution {
     VectorXd mean;
     MatrixXd covariance;
@@ -98,7 +98,7 @@ struct DenseSolution {
     }
 };
 
-/// The learner with its constants, spoken to in double.
+/// The learner with its constants and an interface in double.
 template <class Scalar>
 class Arrow {
   public:
@@ -106,7 +106,7 @@ class Arrow {
 
     explicit Arrow(const ArrowProblem& problem)
         : outputs_(problem.outputs), columns_(problem.columns),
-          // Starts with the prior far below the ceiling of variances: the bound has its own test.
+          // Starts far below the ceiling of variances, which has its own test.
           constants_{{ceiling, static_cast<Scalar>(problem.forgetting_factor), &feature_start_},
                      {ceiling, static_cast<Scalar>(problem.forgetting_factor), &common_start_}},
           feature_start_(prior<decltype(feature_start_)>(
@@ -205,7 +205,7 @@ void check_equal_to_dense(const ArrowProblem& problem, double tolerance) {
     }
 }
 
-TEST_CASE("the block arrow is the dense solution of all unknowns, for every size") {
+TEST_CASE("the block arrow equals the dense solution of all unknowns, for every size") {
     DFDYN_SEEDED_ENGINE(engine);
     struct Size {
         int columns, parameters, outputs;
@@ -223,10 +223,10 @@ TEST_CASE("the block arrow is the dense solution of all unknowns, for every size
     }
 }
 
-TEST_CASE("the block arrow learns in slices what it learns at once, bit for bit") {
+TEST_CASE("the block arrow learned in slices equals learning at once, bit for bit") {
     DFDYN_SEEDED_ENGINE(engine);
     ArrowProblem problem(engine, 60, 12, 5, 3);
-    problem.forgetting_factor = 0.95; // variances outgrow their bound: that is sliced too
+    problem.forgetting_factor = 0.95; // variances exceed their bound: that is sliced too
     const Cost cost = Arrow<double>::Learner::cost(12, 5, 3);
     Arrow<double> whole(problem);
     Arrow<double> sliced(problem);
@@ -248,10 +248,10 @@ TEST_CASE("the block arrow learns in slices what it learns at once, bit for bit"
     CHECK(steps > 3 * problem.instants());
 }
 
-TEST_CASE("while a sample is learned in slices, predictions are those before it, of some of its rows, or "
+TEST_CASE("while a sample is learned in slices, predictions are those before it, after some of its rows, or "
           "after it") {
     DFDYN_SEEDED_ENGINE(engine);
-    ArrowProblem problem(engine, 60, 12, 5, 1); // one output: no state between its rows
+    ArrowProblem problem(engine, 60, 12, 5, 1); // one output: no state between rows
     const Cost cost = Arrow<double>::Learner::cost(12, 5, 1);
     Arrow<double> whole(problem);
     Arrow<double> sliced(problem);
@@ -282,7 +282,7 @@ TEST_CASE("while a sample is learned in slices, predictions are those before it,
     CHECK(looks > 100);
 }
 
-TEST_CASE("reset gives back the state after construction") {
+TEST_CASE("reset returns to the state after construction") {
     DFDYN_SEEDED_ENGINE(engine);
     const ArrowProblem problem(engine, 30, 9, 4, 2);
     Arrow<float> used(problem);
@@ -298,7 +298,7 @@ TEST_CASE("reset gives back the state after construction") {
     CHECK(a == b);
 }
 
-TEST_CASE("a sample predicted before another one was learned is learned as if predicted after it") {
+TEST_CASE("a sample predicted before another was learned is learned as if predicted after it") {
     DFDYN_SEEDED_ENGINE(engine);
     const ArrowProblem problem(engine, 40, 9, 4, 2);
     Arrow<double> usual(problem);
@@ -308,7 +308,7 @@ TEST_CASE("a sample predicted before another one was learned is learned as if pr
         usual.learn(problem, t + 1);
         late.predict(problem, t);
         late.begin(problem, t);
-        late.predict(problem, t + 1); // while t is in hand
+        late.predict(problem, t + 1); // while t is being learned
         Budget budget = Budget::unlimited();
         late.learner().advance(budget);
         late.begin(problem, t + 1);
@@ -317,7 +317,7 @@ TEST_CASE("a sample predicted before another one was learned is learned as if pr
     CHECK(relative_error(late.all_unknowns(), usual.all_unknowns()) < 1e-12);
 }
 
-TEST_CASE("the block arrow spends what it says it costs") {
+TEST_CASE("the block arrow spends its declared cost") {
     DFDYN_SEEDED_ENGINE(engine);
     const ArrowProblem problem(engine, 20, 30, 7, 3);
     const Cost cost = Arrow<float>::Learner::cost(30, 7, 3);
@@ -333,7 +333,7 @@ TEST_CASE("the block arrow spends what it says it costs") {
     }
 }
 
-TEST_CASE("the cost of the block arrow is that of its parts, far below that of all unknowns at once") {
+TEST_CASE("the block arrow costs the sum of its parts, far less than the dense solution") {
     constexpr int columns = 500;
     constexpr int parameters = 40;
     constexpr int outputs = 6;
@@ -348,8 +348,7 @@ TEST_CASE("the cost of the block arrow is that of its parts, far below that of a
     SUCCEED();
 }
 
-TEMPLATE_TEST_CASE("a covariance taken back to the prior's leaves the predictions, in any slices", "", float,
-                   double) {
+TEMPLATE_TEST_CASE("a covariance reset keeps the predictions, in any slices", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     const double tolerance = std::is_same_v<TestType, float> ? 1e-4 : 1e-12;
     const ArrowProblem problem(engine, 120, 16, 5, 3);
@@ -383,7 +382,7 @@ TEMPLATE_TEST_CASE("a covariance taken back to the prior's leaves the prediction
     }
 }
 
-TEMPLATE_TEST_CASE("instants of other noise weigh as the dense solution says", "", float, double) {
+TEMPLATE_TEST_CASE("samples with other noise are weighted as in the dense solution", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     const double tolerance = std::is_same_v<TestType, float> ? 1e-3 : 1e-9;
     ArrowProblem problem(engine, 120, 16, 5, 3);

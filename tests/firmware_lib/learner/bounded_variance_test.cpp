@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forgetting from the prior itself: a variance that outgrows the prior's is taken back, exactly as
+// Forgetting from the prior's covariance: a variance that exceeds the prior's is bounded exactly as
 // documented.
 #include "dfdyn/learner/forgetting.hpp"
 
@@ -16,7 +16,7 @@ using namespace dfdyn::tests;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The same, dense and slow: the information matrix and the right-hand sides, solved anew for every row.
+/// The same algorithm, dense and slow: information matrix and right-hand sides, solved for every row.
 class DenseBoundedForgetting {
   public:
     DenseBoundedForgetting(int columns, int outputs, double prior_variance)
@@ -39,8 +39,7 @@ class DenseBoundedForgetting {
     [[nodiscard]] int bounded() const { return bounded_; }
 
   private:
-    /// A measurement of parameter i alone, at its present value, that brings its variance back to the
-    /// prior's.
+    /// A measurement of parameter i alone, with its present value, that reduces its variance to the prior's.
     void bound(int i) {
         const BatchSolution present = solution();
         const double variance = present.parameter_variances()[i];
@@ -59,7 +58,7 @@ class DenseBoundedForgetting {
     int bounded_ = 0;
 };
 
-/// Rows in which half of the columns are silent, the first half of the time these and then those.
+/// Rows in which half of the columns are zero, a different half in each half of the time.
 Regression partly_excited(std::mt19937_64& engine, RegressionSize size) {
     Regression regression =
         with_prior(random_regression(engine, size, Columns::independent), 100, static_cast<double>(0.99F));
@@ -72,13 +71,12 @@ Regression partly_excited(std::mt19937_64& engine, RegressionSize size) {
     return regression;
 }
 
-TEMPLATE_TEST_CASE("variances that outgrow the prior's are taken back as documented", "", UdFloat, UdDouble,
+TEMPLATE_TEST_CASE("variances that exceed the prior's are bounded as documented", "", UdFloat, UdDouble,
                    InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     for (const int columns : {2, 5, 8, 13}) {
         CAPTURE(columns);
-        // 90 rows with 0.99: less than one horizon, so that forgetting is not yet held back for want of
-        // excitation
+        // 90 rows with 0.99 are less than one horizon, so forgetting is not yet limited by the excitation.
         const Regression regression = partly_excited(engine, {90, columns, 2});
         DenseBoundedForgetting dense(columns, 2, regression.prior_variance);
         LearnerUnderTest<TestType> learned(columns, 2, regression.prior_variance,

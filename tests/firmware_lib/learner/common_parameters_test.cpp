@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parameters that several outputs share: the rows of an instant one after the other equal the batch solution.
+// Parameters common to several outputs: learning the rows of a sample one after the other equals the batch
+// solution.
 #include "dfdyn/learner/common_parameters.hpp"
 
 #include "tests/firmware_lib/support/regression.hpp"
@@ -17,7 +18,7 @@ using namespace dfdyn::tests;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Rows of the same instant follow one another in the regression.
+/// The rows of a sample follow one another in the regression.
 struct Instants {
     Regression regression;
     int outputs;
@@ -31,7 +32,7 @@ struct Instants {
     }
 };
 
-/// The batch solution with forgetting once per instant: every row weighed by λ^(instants since).
+/// The batch solution with forgetting once per sample: the weight of a row is λ^(samples since).
 BatchSolution batch(const Instants& instants, double lambda) {
     Regression weighed = instants.regression;
     const int count = instants.count();
@@ -48,7 +49,7 @@ BatchSolution batch(const Instants& instants, double lambda) {
 
 constexpr int parameters = 10;
 
-/// The prior's variance 10, far below the ceiling under forgetting: that has its own test.
+/// Prior variance 10, far below the ceiling under forgetting, which has its own test.
 const LearnerStart<double, parameters, 1>& start_below_ceiling() {
     static const auto start = [] {
         LearnerStart<double, parameters, 1> zeros{};
@@ -60,7 +61,7 @@ const LearnerStart<double, parameters, 1>& start_below_ceiling() {
 
 using Shared = CommonParameters<double, parameters, dynamic>;
 
-TEST_CASE("common parameters are those of the batch solution, forgetting once per instant") {
+TEST_CASE("common parameters equal the batch solution, with forgetting once per sample") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const int outputs : {1, 2, 6}) {
         for (const double lambda : {1.0, 0.99}) {
@@ -92,7 +93,7 @@ TEST_CASE("common parameters are those of the batch solution, forgetting once pe
     }
 }
 
-TEST_CASE("the noise of an instant weighs its rows") {
+TEST_CASE("the rows of a sample are weighted by its noise") {
     DFDYN_SEEDED_ENGINE(engine);
     const Regression regression =
         with_prior(random_regression(engine, {40, parameters, 1}, Columns::independent), 10, 1);

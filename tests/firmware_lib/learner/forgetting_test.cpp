@@ -11,10 +11,10 @@ namespace forgetting_test {
 
 using dfdyn::Forgetting;
 
-/// Nats given away per nat that a sample brings, as documented, by 40 parameters or more.
+/// Nats discarded per nat that a sample contributes, as documented, for 40 parameters or more.
 constexpr double payback = 20;
 
-/// Nats per parameter that were forgotten over `samples` samples, each of which brought nothing.
+/// Returns the nats per parameter that were discarded over `samples` samples without information.
 template <class Scalar>
 double forgotten_at_rest(Forgetting<Scalar>& forgetting, int samples) {
     double nats = 0;
@@ -31,7 +31,7 @@ TEMPLATE_TEST_CASE("a factor of one never forgets", "", float, double) {
     CHECK(forgetting.factor_after(1) == 1);
 }
 
-TEMPLATE_TEST_CASE("while samples bring enough, the factor is applied exactly", "", float, double) {
+TEMPLATE_TEST_CASE("the factor is applied exactly while samples contribute enough", "", float, double) {
     const auto factor = TestType(0.999);
     constexpr int parameters = 100;
     const double price = -parameters * std::log(static_cast<double>(factor));
@@ -45,7 +45,7 @@ TEMPLATE_TEST_CASE("while samples bring enough, the factor is applied exactly", 
     CHECK(exact == 100'000);
 }
 
-TEMPLATE_TEST_CASE("a standstill forgets one horizon, and then nothing", "", float, double) {
+TEMPLATE_TEST_CASE("a standstill forgets one horizon and then nothing", "", float, double) {
     for (const int parameters : {1, 7, 1000}) {
         for (const double horizon : {1.0, 3.0, 10.0}) { // in samples per parameter
             const double factor = parameters == 1 ? 0.9 : 1 - 1 / (horizon * parameters);
@@ -58,21 +58,20 @@ TEMPLATE_TEST_CASE("a standstill forgets one horizon, and then nothing", "", flo
     }
 }
 
-TEMPLATE_TEST_CASE("excitation is not saved up beyond one horizon, and restart fills the account", "", float,
-                   double) {
+TEMPLATE_TEST_CASE("the account is limited to one horizon, and restart fills it", "", float, double) {
     Forgetting<TestType> forgetting(TestType(0.99), 5);
     for (int t = 0; t < 1000; ++t) {
         static_cast<void>(forgetting.factor_after(1000));
     }
     const double tolerance = 1e4 * static_cast<double>(std::numeric_limits<TestType>::epsilon());
-    // the last of the samples has taken its share
+    // The last sample has used its share.
     CHECK(forgotten_at_rest(forgetting, 10'000) == Approx(1 + std::log(0.99)).epsilon(tolerance));
     CHECK(forgotten_at_rest(forgetting, 10'000) == 0);
     forgetting.restart();
     CHECK(forgotten_at_rest(forgetting, 10'000) == Approx(1).epsilon(tolerance));
 }
 
-TEST_CASE("what is forgotten is never more than was brought in, and as much as that allows") {
+TEST_CASE("forgetting is limited to what the account covers, and uses all of that") {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr int parameters = 40;
     constexpr double factor = 0.99;
@@ -94,9 +93,10 @@ TEST_CASE("what is forgotten is never more than was brought in, and as much as t
     CHECK(paid_in_full < 9000);
 }
 
-// Of p parameters the rows of an instant always show the same directions; v is their variance. What is
-// forgotten of all p is then bounded by what these directions learn, about log(ticks (1 - factor)) each.
-TEMPLATE_TEST_CASE("a standstill stops forgetting, however many rows an instant has", "", float, double) {
+// The rows of a sample always excite the same directions of p parameters; v is their variance. The
+// information discarded about all p is then bounded by that learned in these directions, about log(ticks (1 -
+// factor)) each.
+TEMPLATE_TEST_CASE("a standstill stops forgetting for any number of rows per sample", "", float, double) {
     const struct { int parameters, rows; } cases[] = {{10, 2}, {23, 6}, {60, 6}, {16, 1}, {64, 1}};
     for (const auto& one : cases) {
         CAPTURE(one.parameters, one.rows);
@@ -110,11 +110,12 @@ TEMPLATE_TEST_CASE("a standstill stops forgetting, however many rows an instant 
             nats -= std::log(applied);
             variance = variance / (1 + variance) / applied;
         }
-        CHECK(nats < 8); // of 100 at the full factor
+        CHECK(nats < 8); // of 100 with the full factor
     }
 }
 
-TEMPLATE_TEST_CASE("rows that bring no more than standing still pay for no forgetting", "", float, double) {
+TEMPLATE_TEST_CASE("rows with no more information than at standstill pay for no forgetting", "", float,
+                   double) {
     const auto paid = [](int rows, double brought) {
         Forgetting<TestType> forgetting(TestType(0.999), 32, rows);
         static_cast<void>(forgotten_at_rest(forgetting, 30'000)); // the account is empty
@@ -127,19 +128,19 @@ TEMPLATE_TEST_CASE("rows that bring no more than standing still pay for no forge
     }
 }
 
-TEST_CASE("a moving arm of fewer parameters than rows forgets at the full factor") {
+TEST_CASE("a moving arm with fewer parameters than rows forgets with the full factor") {
     for (const int parameters : {2, 4, 8}) {
         CAPTURE(parameters);
         constexpr double factor = 0.99;
         Forgetting<double> forgetting(factor, parameters, 6);
-        const double brought = std::pow(factor, -parameters); // what a steady motion brings
+        const double brought = std::pow(factor, -parameters); // contribution of a steady motion
         for (int t = 0; t < 1000; ++t) {
             REQUIRE(forgetting.factor_after(brought) == factor);
         }
     }
 }
 
-TEST_CASE("rows that bring no more than rounding pay for no forgetting, however long the memory") {
+TEST_CASE("rows with no more than rounding error pay for no forgetting, for any memory") {
     constexpr float epsilon = std::numeric_limits<float>::epsilon();
     const auto paid = [](float brought) {
         Forgetting<float> forgetting(0.99999F, 32);
@@ -150,7 +151,7 @@ TEST_CASE("rows that bring no more than rounding pay for no forgetting, however 
     CHECK(paid(4000 * epsilon));
 }
 
-TEST_CASE("the parameters come in turn") {
+TEST_CASE("the parameters are checked in cyclic order") {
     Forgetting<float> forgetting(0.99F, 3);
     for (const int parameter : {0, 1, 2, 0, 1}) {
         CHECK(forgetting.next_parameter() == parameter);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hours of samples in float: what was learned is neither given away nor lost to rounding.
+// Hours of samples in float: the learned state is lost neither to forgetting nor to rounding.
 #include "dfdyn/learner/ud_covariance.hpp"
 
 #include "tests/support/catch.hpp"
@@ -18,8 +18,8 @@ namespace hours_test {
 using namespace dfdyn;
 using dfdyn::tests::slow_build;
 
-/// A smooth motion of two joints that comes back to its start after `instants` samples, as the rows of
-/// `columns` random features of unit length in sum.
+/// Smooth periodic motion of two joints with a period of `instants` samples, as rows of `columns` random
+/// features with total norm one.
 template <int columns>
 class Motion {
   public:
@@ -67,7 +67,7 @@ class Motion {
     std::vector<Row> rows_;
 };
 
-/// Noise of unit variance, fast: a sum of the four parts of a number of 64 random bits.
+/// Fast noise of unit variance: the sum of the four parts of a 64-bit random number.
 class Noise {
   public:
     explicit Noise(std::uint64_t seed) : state_(seed | 1) {}
@@ -86,7 +86,7 @@ class Noise {
     std::uint64_t state_;
 };
 
-/// A learner of `Scalar` of an arm with weights as the prior expects them.
+/// A learner in `Scalar` of an arm with weights drawn from the prior.
 template <class Scalar, int columns = 32>
 class Arm {
   public:
@@ -109,7 +109,7 @@ class Arm {
         }
     }
 
-    /// Root mean square over the motion of the mean's error, in standard deviations of the noise.
+    /// Returns the root mean square error of the mean over the motion, in standard deviations of the noise.
     [[nodiscard]] double error() const {
         double squares = 0;
         for (int t = 0; t < Motion<columns>::instants; ++t) {
@@ -121,7 +121,7 @@ class Arm {
         return std::sqrt(squares / Motion<columns>::instants);
     }
 
-    /// The same of the learner's own standard deviation.
+    /// Returns the root mean square of the learner's own standard deviation, in the same unit.
     [[nodiscard]] double deviation() const {
         double sum = 0;
         for (int t = 0; t < Motion<columns>::instants; ++t) {
@@ -130,7 +130,7 @@ class Arm {
         return std::sqrt(sum / Motion<columns>::instants);
     }
 
-    /// Mean square of the innovations since the last call, each in units of its variance.
+    /// Returns the mean square of the innovations since the last call, each in units of its variance.
     [[nodiscard]] double normalised_innovation() {
         const double mean = innovation_squares_ / static_cast<double>(learned_);
         innovation_squares_ = 0;
@@ -180,8 +180,9 @@ class Arm {
     std::int64_t learned_ = 0;
 };
 
-// What a row at rest brings falls as 1/t in exact arithmetic: neither that nor its rounding pays for more.
-TEST_CASE("an arm that stands for an hour keeps what it knows of its motion, in float as in double") {
+// The information of a repeated row falls as 1/t in exact arithmetic. Neither that nor its rounding error
+// pays for more forgetting.
+TEST_CASE("an arm that rests for an hour keeps the model of its motion, in float as in double") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const double forgetting_factor : {0.999, 0.9999}) {
         CAPTURE(forgetting_factor);
@@ -194,16 +195,15 @@ TEST_CASE("an arm that stands for an hour keeps what it knows of its motion, in 
         const double moved = exact.deviation();
         arm.stand(slow_build ? 200'000 : 3'000'000);
         exact.stand(slow_build ? 200'000 : 3'000'000);
-        CHECK(exact.deviation() <
-              10 * moved); // two horizons of forgetting, and no more however long it stands
+        CHECK(exact.deviation() < 10 * moved); // two horizons of forgetting, for a standstill of any length
         CHECK(arm.deviation() <= 1.01 * exact.deviation());
         CHECK(arm.error() < 0.25);
         CHECK(arm.normalised_innovation() == Approx(1).margin(0.1));
     }
 }
 
-/// That a motion of `samples` samples is learned as well as the learner says, at a high signal to noise
-/// ratio.
+/// Checks that a motion of `samples` samples at a high signal-to-noise ratio is learned as accurately as the
+/// learner's standard deviation predicts.
 template <int columns>
 void check_motion(std::mt19937_64& engine, double prior_variance, std::int64_t samples) {
     CAPTURE(prior_variance, columns);
@@ -215,12 +215,12 @@ void check_motion(std::mt19937_64& engine, double prior_variance, std::int64_t s
     CHECK(arm.normalised_innovation() == Approx(1).margin(0.02));
 }
 
-TEST_CASE("an arm that moves for hours without forgetting is learned as well as the learner says") {
+TEST_CASE("an arm that moves for hours without forgetting has the error that the learner predicts") {
     DFDYN_SEEDED_ENGINE(engine);
     check_motion<32>(engine, 1e7, slow_build ? 200'000 : 10'000'000);
 }
 
-TEST_CASE("an arm that moves for a day without forgetting is learned as well as the learner says",
+TEST_CASE("an arm that moves for a day without forgetting has the error that the learner predicts",
           "[.long]") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const double prior_variance : {1e4, 1e7}) {
@@ -229,7 +229,7 @@ TEST_CASE("an arm that moves for a day without forgetting is learned as well as 
     }
 }
 
-/// How an arm spends its time.
+/// Schedule of motion and standstill.
 enum class Day { moving, coming_and_going, standing };
 
 template <class Arm>
@@ -247,7 +247,7 @@ void spend(Arm& arm, Day day, std::int64_t samples) {
     arm.stand(day == Day::moving ? 0 : samples - standing);
 }
 
-/// At a signal to noise ratio of 10⁴.
+/// At a signal-to-noise ratio of 10⁴.
 template <int columns>
 void check_day(std::mt19937_64& engine, std::int64_t samples) {
     for (const double forgetting_factor : {1.0, 0.9999}) {
@@ -269,12 +269,13 @@ void check_day(std::mt19937_64& engine, std::int64_t samples) {
     }
 }
 
-TEST_CASE("minutes of moving, coming and going, and standing are in float as in double") {
+TEST_CASE("minutes of moving, of both in turn, and of standstill give in float the error of double") {
     DFDYN_SEEDED_ENGINE(engine);
     check_day<32>(engine, slow_build ? 120'000 : 600'000);
 }
 
-TEST_CASE("a day of moving, coming and going, and standing is in float as in double", "[.long]") {
+TEST_CASE("a day of moving, of both in turn, and of standstill gives in float the error of double",
+          "[.long]") {
     DFDYN_SEEDED_ENGINE(engine);
     check_day<32>(engine, 100'000'000);
     check_day<100>(engine, 10'000'000);

@@ -16,9 +16,9 @@ namespace kernels_test {
 using namespace dfdyn;
 using detail::panel_width;
 
-constexpr int largest_count = 132; // several vectors of any machine and a rest
+constexpr int largest_count = 132; // several vectors of any machine and a remainder
 
-/// Numbers of size 1, with a guard behind them that no kernel may touch.
+/// Random numbers of magnitude up to 1, followed by a guard that no kernel may change.
 template <class Scalar>
 std::vector<Scalar> random_numbers(std::mt19937_64& engine, int count) {
     std::uniform_real_distribution<Scalar> number(-1, 1);
@@ -27,7 +27,7 @@ std::vector<Scalar> random_numbers(std::mt19937_64& engine, int count) {
     return numbers;
 }
 
-/// What rounding may do to a sum of `count` products of numbers of size 1.
+/// Bound of the rounding error of a sum of `count` products of such numbers.
 template <class Scalar>
 double rounding(int count) {
     return (count + 2) * static_cast<double>(std::numeric_limits<Scalar>::epsilon());
@@ -47,7 +47,7 @@ bool close(Scalar value, double exact, double tolerance) {
     return std::abs(static_cast<double>(value) - exact) <= tolerance;
 }
 
-/// Element i of a panel's column c.
+/// Returns element i of column c of a panel.
 template <class Scalar>
 std::size_t place(int i, int c) {
     constexpr int rows = detail::block_rows<Scalar>;
@@ -70,7 +70,7 @@ void naive_panel_update(std::vector<Scalar>& panel, std::vector<Scalar>& gain,
     }
 }
 
-/// Whether `products` are those of the panel's columns with the row.
+/// Returns true if `products` are those of the panel's columns with the row.
 template <class Scalar>
 bool are_products(const Scalar (&products)[panel_width], const std::vector<Scalar>& panel,
                   const std::vector<Scalar>& row) {
@@ -94,7 +94,7 @@ bool all_close(const std::vector<Scalar>& values, const std::vector<Scalar>& exp
                       [&](Scalar a, Scalar b) { return close(a, static_cast<double>(b), tolerance); });
 }
 
-TEMPLATE_TEST_CASE("dot and add_scaled are right for every count, and stay within it", "", float, double) {
+TEMPLATE_TEST_CASE("dot and add_scaled are correct for every count and do not exceed it", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     for (int count = 0; count <= largest_count; ++count) {
         CAPTURE(count);
@@ -111,7 +111,7 @@ TEMPLATE_TEST_CASE("dot and add_scaled are right for every count, and stay withi
     }
 }
 
-TEMPLATE_TEST_CASE("a panel's products are those of its four columns", "", float, double) {
+TEMPLATE_TEST_CASE("the products of a panel equal those of its four columns", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     for (int blocks = 0; blocks <= most_blocks; ++blocks) {
         CAPTURE(blocks);
@@ -123,7 +123,7 @@ TEMPLATE_TEST_CASE("a panel's products are those of its four columns", "", float
     }
 }
 
-TEMPLATE_TEST_CASE("a panel's update is that of its columns one after the other", "", float, double) {
+TEMPLATE_TEST_CASE("the update of a panel equals that of its columns in turn", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     const detail::PanelFactors<TestType> factors = {
         {TestType(0.3), TestType(-0.8), TestType(0.5), TestType(0.1)},
@@ -141,9 +141,9 @@ TEMPLATE_TEST_CASE("a panel's update is that of its columns one after the other"
     }
 }
 
-// Bit for bit: whether a sweep is sliced after a panel must not show.
-TEMPLATE_TEST_CASE("an update with the next panel's products is the update, and they are the products", "",
-                   float, double) {
+// Bit for bit, so that slicing after a panel does not change the result.
+TEMPLATE_TEST_CASE("the combined kernel equals the update and the products of the next panel", "", float,
+                   double) {
     DFDYN_SEEDED_ENGINE(engine);
     const detail::PanelFactors<TestType> factors = {
         {TestType(0.3), TestType(-0.8), TestType(0.5), TestType(0.1)},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recursive equals batch: what every form of learner promises.
+// Recursive equals batch, for every form of learner.
 #include "dfdyn/learner/learner.hpp"
 
 #include "tests/firmware_lib/support/learner_under_test.hpp"
@@ -24,7 +24,7 @@ constexpr double some_forgetting = 0.999F;
 constexpr std::array all_columns{Columns::independent, Columns::badly_scaled, Columns::collinear,
                                  Columns::fourier_features};
 
-/// A regression, rows that it has not seen, and its solution.
+/// A regression, rows that are not part of it, and its solution.
 struct Problem {
     Regression regression;
     MatrixXd new_rows;
@@ -47,7 +47,7 @@ struct Problem {
 };
 
 /// The learner after all rows of a regression. It starts from the prior's covariance far below its ceiling,
-/// so that forgetting is never held back by the bound on the variances: that has its own test.
+/// so that the bound on the variances, which has its own test, never applies.
 template <class Kind, int p = dynamic, int m = dynamic>
 class Learned : public LearnerUnderTest<Kind, p, m> {
   public:
@@ -72,7 +72,7 @@ class Learned : public LearnerUnderTest<Kind, p, m> {
     }
 };
 
-/// The weights as far as they are determined, and what they predict along the rows that were learned.
+/// Checks the weights in the norm of the information, and the predictions for the learned rows.
 template <class Kind>
 void check_weights(const Problem& problem, const Learned<Kind>& learned) {
     CHECK(information_error(problem.truth, learned.weights()) < Kind::tolerance);
@@ -107,7 +107,7 @@ void with_each_learner(const Problem& problem, const Check& check) {
     with(InformationFloat{});
 }
 
-/// Each weight by itself: double has the digits for that even where columns are nearly the same.
+/// Checks each weight: double has enough digits even if columns are nearly equal.
 template <class Kind>
 void check_each_weight(const Problem& problem, const Learned<Kind>& learned) {
     if constexpr (std::is_same_v<typename Kind::Scalar, double>) {
@@ -122,7 +122,7 @@ constexpr auto all_checks = [](const Problem& problem, const auto& learned) {
     check_variances(problem, learned);
 };
 
-TEST_CASE("weights and variances are those of the batch solution, for every size and kind of columns") {
+TEST_CASE("weights and variances equal the batch solution, for every size and kind of columns") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const int columns : {1, 2, 3, 4, 5, 7, 8, 15, 16, 33, 64}) {
         for (const Columns kind : all_columns) {
@@ -135,7 +135,7 @@ TEST_CASE("weights and variances are those of the batch solution, for every size
     }
 }
 
-TEST_CASE("weights and variances are those of the batch solution, for hundreds of columns") {
+TEST_CASE("weights and variances equal the batch solution, for hundreds of columns") {
     DFDYN_SEEDED_ENGINE(engine);
     int turn = 0;
     for (const int columns : {100, 250, 500}) {
@@ -147,9 +147,9 @@ TEST_CASE("weights and variances are those of the batch solution, for hundreds o
     }
 }
 
-// Where columns have similar sizes and are not collinear, each weight by itself is determined, and the normal
-// equations have digits enough to be a second truth.
-TEST_CASE("each weight is that of the normal equations, where they can tell") {
+// If columns have similar sizes and are not collinear, each weight is determined, and the normal equations
+// are accurate enough to be a second reference.
+TEST_CASE("each weight equals that of the normal equations for well-conditioned columns") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const int columns : {1, 4, 10, 33, 100}) {
         const Problem problem(engine, {200, columns, 2}, Columns::independent, 100, some_forgetting);
@@ -163,7 +163,7 @@ TEST_CASE("each weight is that of the normal equations, where they can tell") {
     }
 }
 
-TEST_CASE("a weak prior costs single precision no more than a thousandth in 1,000 rows of features") {
+TEST_CASE("with a weak prior the error in float is below a thousandth over 1,000 rows of features") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const int columns : {2, 16, 100, 250}) {
         for (const double lambda : {no_forgetting, some_forgetting}) {
@@ -177,11 +177,10 @@ TEST_CASE("a weak prior costs single precision no more than a thousandth in 1,00
     }
 }
 
-// The prior alone decides between copies of a column, and it says 1e-6 against the data's 1e3: nine digits,
-// which single precision does not have for each weight. The weights as far as they are determined, and what
-// they predict, are right.
-TEST_CASE(
-    "copies of a column under a weak prior spoil neither the predictions nor what is known of the weights") {
+// Only the prior distinguishes copies of a column, with weight 1e-6 against 1e3 of the data. That takes nine
+// digits, more than a float has. The weights in the norm of the information, and the predictions, are still
+// accurate.
+TEST_CASE("copies of a column under a weak prior affect neither predictions nor determined weights") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const int columns : {2, 3, 16, 33, 100}) {
         for (const double lambda : {no_forgetting, some_forgetting}) {
@@ -195,7 +194,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("sizes that are template arguments learn the same as sizes known at run time") {
+TEST_CASE("fixed sizes give the same result as run-time sizes") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto check = [&]<int p, int m>(Extent<p>, Extent<m>) {
         CAPTURE(p, m);
@@ -212,8 +211,8 @@ TEST_CASE("sizes that are template arguments learn the same as sizes known at ru
     check(Extent<13>{}, Extent<6>{});
 }
 
-TEMPLATE_TEST_CASE("a start equals having learned the rows that made it", "", UdFloat, UdDouble,
-                   InformationFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("an initial state equals having learned its rows", "", UdFloat, UdDouble, InformationFloat,
+                   InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     for (const int columns : {1, 3, 8, 33}) {
         CAPTURE(columns);
@@ -235,7 +234,7 @@ TEMPLATE_TEST_CASE("a start equals having learned the rows that made it", "", Ud
     }
 }
 
-TEMPLATE_TEST_CASE("reset forgets all that was learned", "", UdFloat, UdDouble, InformationFloat,
+TEMPLATE_TEST_CASE("reset returns to the initial state", "", UdFloat, UdDouble, InformationFloat,
                    InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     const Problem problem(engine, {50, 9, 2}, Columns::independent, 100, some_forgetting);
@@ -250,7 +249,7 @@ TEMPLATE_TEST_CASE("reset forgets all that was learned", "", UdFloat, UdDouble, 
     CHECK(learned.weights() == Learned<TestType>(problem.regression).weights());
 }
 
-TEMPLATE_TEST_CASE("the ratio of a row is one plus its variance before it was learned", "", UdFloat, UdDouble,
+TEMPLATE_TEST_CASE("the ratio of a row is one plus its variance before learning", "", UdFloat, UdDouble,
                    InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     const Problem problem(engine, {40, 10, 2}, Columns::independent, 100, some_forgetting);
@@ -263,7 +262,7 @@ TEMPLATE_TEST_CASE("the ratio of a row is one plus its variance before it was le
     }
 }
 
-TEMPLATE_TEST_CASE("rows of other noise weigh as the batch solution says", "", UdFloat, UdDouble,
+TEMPLATE_TEST_CASE("rows with other noise are weighted as in the batch solution", "", UdFloat, UdDouble,
                    InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr int columns = 20;
@@ -282,8 +281,8 @@ TEMPLATE_TEST_CASE("rows of other noise weigh as the batch solution says", "", U
           TestType::tolerance);
 }
 
-TEMPLATE_TEST_CASE("a covariance taken back to the prior's leaves the weights, and goes on as from a start",
-                   "", UdFloat, UdDouble, InformationFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("a covariance reset keeps the weights and learns as from that initial state", "", UdFloat,
+                   UdDouble, InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr int columns = 20;
     const Regression regression =

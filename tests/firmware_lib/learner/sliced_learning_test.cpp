@@ -25,7 +25,7 @@ constexpr Cost cost_of() {
     return Fixed<Kind>::Learner::cost(columns, outputs);
 }
 
-/// Learns one row with random budgets, so small that it takes many steps; returns the number of steps.
+/// Learns one row with random small budgets; returns the number of steps.
 template <class Learner>
 int learn_in_slices(Learner& learned, const Cost& cost, std::mt19937_64& engine) {
     std::uniform_int_distribution<std::int64_t> operations(0, 2 * cost.largest_step);
@@ -41,14 +41,14 @@ bool same_state(const Fixed<Kind>& a, const Fixed<Kind>& b) {
     return a.weights() == b.weights() && a.parameter_variances() == b.parameter_variances();
 }
 
-/// Few rows for many columns: variances keep outgrowing the prior's, so that taking them back is sliced too.
+/// Few rows for many columns: variances often exceed the prior's, so that bounding them is sliced too.
 Regression rows_for_slices(std::mt19937_64& engine, double forgetting_factor) {
     Regression regression = random_regression(engine, {60, columns, outputs}, Columns::independent);
     regression.rows.rightCols(columns / 2).setZero();
     return with_prior(regression, 100, forgetting_factor);
 }
 
-TEMPLATE_TEST_CASE("any sequence of budgets learns the same, bit for bit", "", UdFloat, UdDouble,
+TEMPLATE_TEST_CASE("any sequence of budgets gives the same result, bit for bit", "", UdFloat, UdDouble,
                    InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     for (const double lambda : {1.0, 0.98}) {
@@ -65,15 +65,15 @@ TEMPLATE_TEST_CASE("any sequence of budgets learns the same, bit for bit", "", U
         }
         CAPTURE(lambda);
         CHECK(same == regression.row_count());
-        CHECK(steps > regression.row_count()); // it was sliced
+        CHECK(steps > regression.row_count()); // learning was sliced
     }
 }
 
-TEMPLATE_TEST_CASE("while a row is being learned, predictions are those of the last whole state", "", UdFloat,
-                   UdDouble, InformationFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("while a row is being learned, predictions are those of the last complete state", "",
+                   UdFloat, UdDouble, InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     const Regression regression = rows_for_slices(engine, 0.98);
-    const double tolerance = TestType::tolerance / 10; // rounding alone
+    const double tolerance = TestType::tolerance / 10; // only rounding
     Fixed<TestType> before(columns, outputs, regression.prior_variance, 0.98);
     Fixed<TestType> during(columns, outputs, regression.prior_variance, 0.98);
     int looks = 0;
@@ -118,8 +118,8 @@ TEMPLATE_TEST_CASE("a budget below the largest step never finishes a row, one of
     CHECK_FALSE(learned.weights().isZero(0));
 }
 
-TEMPLATE_TEST_CASE("learning spends what it says it costs, and never more than it was given", "", UdFloat,
-                   UdDouble, InformationFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("learning spends its declared cost and never more than its budget", "", UdFloat, UdDouble,
+                   InformationFloat, InformationDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr Cost cost = cost_of<TestType>();
     const Regression regression = rows_for_slices(engine, 1);

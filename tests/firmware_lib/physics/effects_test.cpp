@@ -19,7 +19,7 @@ using namespace dfdyn;
 /// (q, q̇, q̈) of two joints.
 constexpr double xi[] = {0.3, -0.7, 2.5, -1.1, 0.2, -4};
 
-/// An effect of a user's own: nothing else has to know of it.
+/// A user-defined effect; no other code refers to it.
 struct CubicDamping {
     static constexpr int identity = 1000;
     static constexpr int columns = 1;
@@ -39,7 +39,7 @@ struct CubicDamping {
     }
 };
 
-TEST_CASE("each effect is its formula") {
+TEST_CASE("each effect evaluates its formula") {
     CHECK(ViscousFriction<1>::value(ViscousFriction<1>::Constants<double>{{{0}}}, 0, xi) == -0.7);
     CHECK(RotorInertia<2>::value(RotorInertia<2>::Constants<double>{{{0, 1}}}, 1, xi) == -4);
     CHECK(JointSpring<1>::value(JointSpring<1>::Constants<double>{{{1}}}, 0, xi) == -1.1);
@@ -67,7 +67,7 @@ TEST_CASE("in single precision a ripple of 200 cycles per turn keeps its phase")
     }
 }
 
-TEST_CASE("at three times its velocity the smooth sign is within half a percent of the sign") {
+TEST_CASE("at three times the sign velocity the smooth sign is within half a percent of the sign") {
     const CoulombFriction<1>::Constants<double> coulomb{{{0}}, {{0.01}}};
     for (const double sign : {-1.0, 1.0}) {
         const double motion[] = {0, sign * 0.03, 0};
@@ -75,7 +75,7 @@ TEST_CASE("at three times its velocity the smooth sign is within half a percent 
     }
 }
 
-TEST_CASE("effects fill their columns after the bodies', each in the row that it acts on") {
+TEST_CASE("effect columns follow the body columns, each in the row it acts on") {
     using Arm = Chain<2>;
     using Effects = Physics<StandardMeasured, 6, ViscousFriction<2>, CubicDamping, OutputOffset<1>,
                             JointSpring<2>>; // 20 columns of bodies, then 2 + 1 + 1 + 2
@@ -95,7 +95,7 @@ TEST_CASE("effects fill their columns after the bodies', each in the row that it
     }
 }
 
-TEST_CASE("a scalar that carries derivatives gives those of the effects") {
+TEST_CASE("a scalar with derivatives gives the derivatives of the effects") {
     using Arm = Chain<2>;
     using Effects = Physics<StandardMeasured, 14, ViscousFriction<2>, CoulombFriction<2>, StribeckFriction<2>,
                             RotorInertia<2>, JointSpring<2>, TorqueRipple<2>, OutputOffset<2>>;
@@ -134,7 +134,7 @@ TEST_CASE("a scalar that carries derivatives gives those of the effects") {
     }
 }
 
-TEST_CASE("a sensor's bias is an offset of an output") {
+TEST_CASE("a sensor bias is an offset of an output") {
     using Arm = Chain<1, WrenchAtSensor<1>>;
     using Bias = Physics<StandardMeasured, 2, OutputOffset<6>>;
     Bias::Constants<double, Arm> constants{};

@@ -23,11 +23,11 @@ constexpr int all_columns = 10 * joints + 14;
 using Arm = Chain<joints>;
 using HostArm = Chain<dynamic>;
 
-/// Some effects, of joints of the arm.
+/// Some effects on joints of the arm.
 template <class Motion, int p>
 using FirmwarePhysics = Physics<Motion, p, ViscousFriction<3>, CoulombFriction<2>, StribeckFriction<1>,
                                 RotorInertia<2>, JointSpring<1>, TorqueRipple<2>, OutputOffset<3>>;
-/// Every effect there is, of as many joints as there may be.
+/// Every effect, with a number of joints known at run time.
 template <class Motion>
 using HostPhysics =
     Physics<Motion, dynamic, ViscousFriction<dynamic>, CoulombFriction<dynamic>, StribeckFriction<dynamic>,
@@ -53,7 +53,7 @@ Placement<Scalar> cast(const Placement<double>& placement) {
     return result;
 }
 
-/// Chain, selection, scales and gains, for fixed and run-time sizes alike.
+/// Sets chain, selection, scales and gains, for fixed and run-time sizes.
 template <class Constants>
 void set_common(Constants& constants, const tools::Robot& robot, const std::vector<double>& selected) {
     constants.chain.joint = decltype(constants.chain.joint)::zeros({});
@@ -128,7 +128,7 @@ std::vector<double> range(int count) {
 
 const std::vector<double> some_columns{1, 2, 6, 9, 13, 21, 24, 29, 30, 32, 34, 35, 36, 38, 41};
 
-/// ψ of a sample through a map without a past.
+/// Computes ψ of a sample with a new map.
 template <class PhysicsType, class AnyArm, class Constants, class Sizes, class Sample>
 std::vector<float> psi_of(const Constants& constants, const Sizes& sizes, const Sample& sample) {
     typename PhysicsType::template Map<float, AnyArm> map(constants, sizes);
@@ -140,7 +140,7 @@ std::vector<float> psi_of(const Constants& constants, const Sizes& sizes, const 
 
 using Measured = FirmwarePhysics<StandardMeasured, 15>;
 
-TEST_CASE("selected columns are those of all, scaled, in units of the outputs") {
+TEST_CASE("selected columns equal those of the full matrix, scaled, in units of the outputs") {
     DFDYN_SEEDED_ENGINE(engine);
     const tools::Robot robot = random_robot(engine, joints);
     using All = FirmwarePhysics<StandardMeasured, all_columns>;
@@ -161,7 +161,7 @@ TEST_CASE("selected columns are those of all, scaled, in units of the outputs") 
     }
 }
 
-TEST_CASE("all columns are the rigid body's and then the effects', in the order they were named") {
+TEST_CASE("the columns are those of the rigid body, then those of the effects in order") {
     DFDYN_SEEDED_ENGINE(engine);
     const tools::Robot robot = random_robot(engine, joints);
     using All = FirmwarePhysics<StandardMeasured, all_columns>;
@@ -199,7 +199,7 @@ TEST_CASE("all columns are the rigid body's and then the effects', in the order 
     }
 }
 
-TEST_CASE("a map whose sizes are known at run time gives the firmware's columns") {
+TEST_CASE("a map with run-time sizes gives the firmware's columns") {
     DFDYN_SEEDED_ENGINE(engine);
     using Host = HostPhysics<StandardMeasured>;
     for (int trial = 0; trial < 100; ++trial) {
@@ -214,7 +214,7 @@ TEST_CASE("a map whose sizes are known at run time gives the firmware's columns"
     }
 }
 
-TEST_CASE("an effect may act on no joint, where sizes are known at run time") {
+TEST_CASE("with run-time sizes an effect may have no columns") {
     DFDYN_SEEDED_ENGINE(engine);
     using Host = HostPhysics<StandardMeasured>;
     Host::Constants<float, HostArm> constants{};
@@ -228,7 +228,7 @@ TEST_CASE("an effect may act on no joint, where sizes are known at run time") {
     CHECK(psi[8] == Approx(sample.position[2] * 4 * 4)); // column scale and gain
 }
 
-TEST_CASE("nothing that is not finite is passed off as a row") {
+TEST_CASE("a row that is not finite is reported as invalid") {
     DFDYN_SEEDED_ENGINE(engine);
     tools::Robot robot = random_robot(engine, joints);
     robot.joints[1].prismatic = false;
@@ -246,7 +246,7 @@ TEST_CASE("nothing that is not finite is passed off as a row") {
     CHECK(map.evaluate(psi));
 }
 
-TEST_CASE("the motion may come from positions alone") {
+TEST_CASE("the motion may be estimated from positions alone") {
     DFDYN_SEEDED_ENGINE(engine);
     using Motion = DerivativeFreeStructured<4>;
     using Structured = FirmwarePhysics<Motion, 15>;
@@ -278,7 +278,7 @@ TEST_CASE("the motion may come from positions alone") {
     }
 }
 
-TEST_CASE("nothing in a map's life calls the heap") {
+TEST_CASE("no call of a map uses the heap") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants =
         firmware_constants<StandardMeasured, 15>(random_robot(engine, joints), some_columns);
@@ -295,12 +295,12 @@ TEST_CASE("nothing in a map's life calls the heap") {
     CHECK(calls.allocations == 0);
 }
 
-TEST_CASE("a map's cost is known when compiling, and grows with the square of the joints") {
+TEST_CASE("the cost of a map is known at compile time and grows with the square of the joints") {
     constexpr auto cost = [](auto arm) { return Measured::Map<float, decltype(arm)>::cost({}); };
     static_assert(cost(Chain<3>{}) > rigid_body_cost<Chain<3>, float>({}));
     static_assert(cost(Chain<6>{}) < 5000);
     static_assert(cost(Chain<48>{}) < 5 * cost(Chain<24>{}));
-    // constants in flash: no constructor runs
+    // Constants in flash: no constructor runs.
     static_assert(std::is_aggregate_v<Measured::Constants<float, Arm>>);
     static_assert(std::is_trivially_copyable_v<Measured::Constants<float, Arm>>);
     CHECK(sizeof(Measured::Map<float, Arm>) < 256);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of the regressor of any chain. Torques and wrenches themselves: tests/truth.
+// Properties of the regressor of any chain. Torques and wrenches themselves: tests/truth.
 #include "dfdyn/physics/rigid_body.hpp"
 
 #include "tests/firmware_lib/support/counted.hpp"
@@ -44,7 +44,7 @@ tools::Robot revolute_robot(std::mt19937_64& engine, int n) {
     return robot;
 }
 
-/// The number of combinations of parameters that motions can tell apart.
+/// Returns the number of identifiable combinations of parameters.
 Eigen::Index identifiable(std::mt19937_64& engine, int n,
                           const std::function<Rows<double>(const Eigen::VectorXd&)>& rows_of) {
     Rows<double> stacked;
@@ -65,7 +65,7 @@ Eigen::Index identifiable_by_torques(std::mt19937_64& engine, const tools::Robot
     });
 }
 
-/// Joint positions and their derivatives at a time.
+/// Joint positions and their derivatives at a given time.
 struct Trajectory {
     Eigen::VectorXd size, rate, phase;
 
@@ -81,7 +81,7 @@ struct Trajectory {
     }
 };
 
-/// Kinetic and potential energy, in the base's frame.
+/// Kinetic and potential energy in the base's frame, J.
 double energy(const tools::Robot& robot, const Eigen::VectorXd& xi) {
     Eigen::Isometry3d link = Eigen::Isometry3d::Identity();
     Eigen::Vector3d angular = Eigen::Vector3d::Zero();
@@ -122,7 +122,7 @@ double power(const tools::Robot& robot, const Eigen::VectorXd& xi) {
     return total;
 }
 
-TEST_CASE("the joints' power is the rate of the energy") {
+TEST_CASE("the joints' power equals the rate of change of the energy") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int trial = 0; trial < 50; ++trial) {
         const int n = 1 + trial % 7;
@@ -144,9 +144,9 @@ TEST_CASE("the joints' power is the rate of the energy") {
 }
 
 // M. Gautier, W. Khalil, "Direct calculation of minimum set of inertial parameters of serial robots", IEEE
-// Trans. Robotics and Automation 6(3), 1990: a turning joint brings 7 combinations and a sliding one 4; the
-// base keeps 4 from the first joint, two more if that turns about gravity.
-TEST_CASE("as many combinations of parameters show in the torques as theory says") {
+// Trans. Robotics and Automation 6(3), 1990: a revolute joint adds 7 combinations and a prismatic joint 4.
+// The total is reduced by 4, or by 6 if the first joint rotates about the direction of gravity.
+TEST_CASE("the number of identifiable parameter combinations of the torques agrees with theory") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int n = 2; n <= 6; ++n) {
         CAPTURE(n);
@@ -160,7 +160,7 @@ TEST_CASE("as many combinations of parameters show in the torques as theory says
     CHECK(identifiable_by_torques(engine, robot) == 7 * 4 + 4 - 4);
 }
 
-TEST_CASE("a sensor's wrench shows all ten parameters of its own link and seven of each later one") {
+TEST_CASE("a wrench identifies ten parameters of the sensor's link and seven of each later link") {
     DFDYN_SEEDED_ENGINE(engine);
     const tools::Robot robot = revolute_robot(engine, 5);
     auto chain = chain_of<Wrench>(robot);
@@ -171,7 +171,7 @@ TEST_CASE("a sensor's wrench shows all ten parameters of its own link and seven 
     CHECK(count == 10 + 7 + 7);
 }
 
-TEST_CASE("single precision gives the regressor to single precision") {
+TEST_CASE("the regressor in float has the accuracy of float") {
     DFDYN_SEEDED_ENGINE(engine);
     using Arm = Chain<6>;
     for (int trial = 0; trial < 200; ++trial) {
@@ -192,7 +192,7 @@ TEST_CASE("single precision gives the regressor to single precision") {
     }
 }
 
-TEST_CASE("a scalar that carries derivatives gives those of the regressor") {
+TEST_CASE("a scalar with derivatives gives the derivatives of the regressor") {
     DFDYN_SEEDED_ENGINE(engine);
     using Dual = Eigen::AutoDiffScalar<Eigen::VectorXd>;
     constexpr int n = 3;
@@ -211,13 +211,14 @@ TEST_CASE("a scalar that carries derivatives gives those of the regressor") {
             2e-5;
         for (Eigen::Index k = 0; k < psi.size(); ++k) {
             const Eigen::VectorXd& derivatives = psi.data()[k].derivatives();
-            const double derivative = derivatives.size() == 0 ? 0 : derivatives[i]; // of a constant zero
+            // a constant zero has none
+            const double derivative = derivatives.size() == 0 ? 0 : derivatives[i];
             REQUIRE(derivative == Approx(slope.data()[k]).epsilon(1e-6).margin(1e-6));
         }
     }
 }
 
-TEST_CASE("rows lie a stride apart, and what is between them is left alone") {
+TEST_CASE("rows are a stride apart and the gaps are not written") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto chain = chain_of<Torques>(random_robot(engine, 2));
     const Column<double> xi = random_motion(engine, 2);
@@ -228,7 +229,7 @@ TEST_CASE("rows lie a stride apart, and what is between them is left alone") {
     CHECK((psi.rightCols(3).array() == 77).all());
 }
 
-TEMPLATE_TEST_CASE("the stated cost is the work", "", Chain<1>, Chain<4>, Chain<7>,
+TEMPLATE_TEST_CASE("the rigid body costs what it declares", "", Chain<1>, Chain<4>, Chain<7>,
                    (Chain<4, WrenchAtSensor<4>>), (Chain<7, WrenchAtSensor<3>>)) {
     using Arm = TestType;
     using Number = Counted<double>;
@@ -242,7 +243,7 @@ TEMPLATE_TEST_CASE("the stated cost is the work", "", Chain<1>, Chain<4>, Chain<
     rigid_body_regressor<Arm, Number>(chain, {}, xi.data(), psi.data(), Arm::parameters);
     CHECK(counted_operations == rigid_body_cost<Arm, Number>({}));
     for (ChainJoint<Number>& joint : chain.joint) {
-        joint.prismatic = true; // no sine and cosine
+        joint.prismatic = true; // without sine and cosine
     }
     counted_operations = 0;
     rigid_body_regressor<Arm, Number>(chain, {}, xi.data(), psi.data(), Arm::parameters);

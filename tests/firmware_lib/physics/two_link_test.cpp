@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The regressor against the planar two-link arm of the textbooks, written out by hand.
+// The regressor against the textbook equations of the planar two-link arm, written out by hand.
 #include "dfdyn/physics/rigid_body.hpp"
 
 #include "tests/support/catch.hpp"
@@ -22,7 +22,7 @@ constexpr Arm::Constants<double> chain{{{{{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0
                                        {0, -gravity, 0},
                                        {}};
 
-/// In the plane: mass, first moment and the moment of inertia about the joint's axis.
+/// Planar parameters: mass, first moment, and moment of inertia about the joint's axis.
 struct PlanarBody {
     double mass, first_x, first_y, inertia;
 };
@@ -31,8 +31,8 @@ struct Torques {
     double first, second;
 };
 
-/// From the kinetic energy T = ½ I₁ q̇₁² + ½ m₂ l² q̇₁² + ½ I₂ ω² + l q̇₁ ω h, ω = q̇₁ + q̇₂, h = mx₂ cos q₂ -
-/// my₂ sin q₂, and the heights of the centres of mass, by Lagrange's equations.
+/// Lagrange's equations with the kinetic energy T = ½ I₁ q̇₁² + ½ m₂ l² q̇₁² + ½ I₂ ω² + l q̇₁ ω h, ω = q̇₁ +
+/// q̇₂, h = mx₂ cos q₂ - my₂ sin q₂, and the heights of the centres of mass.
 Torques by_hand(const PlanarBody& one, const PlanarBody& two, const double* xi) {
     const double q1 = xi[0];
     const double v1 = xi[1];
@@ -71,7 +71,7 @@ TEST_CASE("a planar arm of two links has the textbook's torques") {
                 torques[k] += psi[20 * k + c] * parameters[c];
             }
         }
-        // whatever moves out of the plane, as the other parameters do, acts on no joint
+        // Forces out of the plane, such as those of the other parameters, act on no joint.
         const Torques expected =
             by_hand({parameters[0], parameters[1], parameters[2], parameters[9]},
                     {parameters[10], parameters[11], parameters[12], parameters[19]}, xi);
@@ -80,7 +80,7 @@ TEST_CASE("a planar arm of two links has the textbook's torques") {
     }
 }
 
-TEST_CASE("a sliding joint holds the weight of what it carries, and accelerates it") {
+TEST_CASE("the force of a prismatic joint carries and accelerates the mass beyond it") {
     using Slider = Chain<1>;
     constexpr Slider::Constants<double> vertical{
         {{{{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}, {0, 0, 1}, true}}}, {0, 0, -gravity}, {}};

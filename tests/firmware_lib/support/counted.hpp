@@ -13,8 +13,8 @@ namespace dfdyn::tests {
 
 inline std::int64_t counted_operations = 0;
 
-/// A number that counts the work done with its kind, as `Budget` defines it. Otherwise it behaves as `Real`,
-/// so that whatever runs with a plain number runs with this one.
+/// A number that counts its operations, as defined by `Budget`. Otherwise it behaves as `Real`, so that code
+/// for a plain number accepts it.
 template <class Real>
 struct Counted {
     Real value = 0;
@@ -22,9 +22,9 @@ struct Counted {
     Counted() = default;
     template <class Number>
     requires std::is_arithmetic_v<Number>
-    // As plain numbers do: NOLINTNEXTLINE(google-explicit-constructor)
+    // Implicit, as for plain numbers: NOLINTNEXTLINE(google-explicit-constructor)
     constexpr Counted(Number number) : value(static_cast<Real>(number)) {}
-    // For comparisons, and what only looks at a number: NOLINTNEXTLINE(google-explicit-constructor)
+    // For comparisons and inspection: NOLINTNEXTLINE(google-explicit-constructor)
     constexpr operator Real() const { return value; }
 
     static Counted counted(Real number, int cost = 1) {
@@ -53,7 +53,7 @@ struct Counted {
     }
 };
 
-// With a plain number on one side: without these the conversions of both kinds would be equally good.
+// Operators with a plain number on one side: without them, the conversions of both types would be ambiguous.
 template <class Number>
 concept Plain = std::is_arithmetic_v<Number>;
 template <class Real, Plain Number>
@@ -89,7 +89,7 @@ Counted<Real> operator/(Number a, Counted<Real> b) {
     return Counted<Real>(a) / b;
 }
 
-/// Whole numbers and conditions beside `CountedLanes`; their work does not count.
+/// Integers and conditions for `CountedLanes`; their operations do not count.
 template <int lanes>
 struct WholeLanes {
     std::int64_t lane[lanes] = {};
@@ -125,7 +125,7 @@ struct WholeLanes {
     }
 };
 
-/// As many of them as a vector of the machine has lanes: each lane's work counts.
+/// A vector register of counted numbers: the operations of each lane count.
 template <class Real, int lanes>
 struct CountedLanes {
     using Scalar = Counted<Real>;
@@ -179,7 +179,7 @@ struct CountedLanes {
 
 } // namespace dfdyn::tests
 
-/// The limits of the number that it stands for.
+/// The limits of the underlying number.
 template <class Real>
 struct std::numeric_limits<dfdyn::tests::Counted<Real>> : std::numeric_limits<Real> {
     using Number = dfdyn::tests::Counted<Real>;

@@ -13,7 +13,7 @@
 
 namespace dfdyn::tests {
 
-/// A form of learner and its precision, and how close to the batch solution it must come.
+/// A form of learner, its precision, and its tolerance with respect to the batch solution.
 template <template <class, int, int> class FormType, class ScalarType>
 struct LearnerKind {
     using Scalar = ScalarType;
@@ -31,7 +31,7 @@ using UdDouble = LearnerKind<UdCovariance, double>;
 using InformationFloat = LearnerKind<CholeskyInformation, float>;
 using InformationDouble = LearnerKind<CholeskyInformation, double>;
 
-/// Where a learner under test starts: weights, and the covariance P = U D U' (U full, with ones on its
+/// Initial state of a learner under test: weights, and the covariance P = U D U' (U full, with unit
 /// diagonal).
 struct Start {
     Eigen::MatrixXd weights;    ///< p × m
@@ -45,14 +45,14 @@ struct Start {
     }
 };
 
-/// A learner with its constants, spoken to in double. `p` and `m` may be `dynamic`.
+/// A learner with its constants and an interface in double. `p` and `m` may be `dynamic`.
 template <class Kind, int p = dynamic, int m = dynamic>
 class LearnerUnderTest {
   public:
     using Scalar = typename Kind::Scalar;
     using Learner = typename Kind::template Learner<p, m>;
 
-    /// From the prior.
+    /// Starts from the prior.
     LearnerUnderTest(int columns, int outputs, double prior_variance, double forgetting_factor)
         : LearnerUnderTest(Start::prior(columns, outputs, prior_variance), prior_variance,
                            forgetting_factor) {
@@ -60,7 +60,8 @@ class LearnerUnderTest {
         learner_.reset();
     }
 
-    /// From `start`; `ceiling` is the prior's variance, which bounds every parameter's under forgetting.
+    /// Starts from `start`. `ceiling` is the prior's variance, which bounds that of every parameter under
+    /// forgetting.
     LearnerUnderTest(const Start& start, double ceiling, double forgetting_factor)
         : columns_(static_cast<int>(start.weights.rows())), outputs_(static_cast<int>(start.weights.cols())),
           start_(converted(start)), constants_{static_cast<Scalar>(ceiling),
@@ -76,7 +77,7 @@ class LearnerUnderTest {
         learner_.begin(scalars(row).data(), scalars(target).data());
     }
 
-    /// A row whose targets have `noise_variance` in units of their noise.
+    /// Learns a row whose targets have `noise_variance`, in units of their noise variance.
     void learn_noisy(const Eigen::VectorXd& row, const Eigen::VectorXd& target, double noise_variance) {
         learner_.begin(scalars(row).data(), scalars(target).data(), static_cast<Scalar>(noise_variance));
         advance(Budget::unlimited());

@@ -17,7 +17,7 @@ inline constexpr std::int64_t period_ns = 1'000'000;
 /// Positions of n joints over time, one row per sample, oldest first.
 using Positions = std::vector<std::vector<double>>;
 
-/// White positions within ±3 rad.
+/// Random independent positions within ±3 rad.
 inline Positions random_positions(std::mt19937_64& engine, int count, int joints) {
     std::uniform_real_distribution<double> position(-3, 3);
     Positions rows(static_cast<std::size_t>(count), std::vector<double>(static_cast<std::size_t>(joints)));
@@ -39,7 +39,7 @@ inline Positions smooth_positions(int count) {
     return rows;
 }
 
-/// The sample number `index` of `positions`, without outputs.
+/// Returns sample number `index` of `positions`, without outputs.
 template <class Scalar, int n>
 Sample<Scalar, n, 1> sample_at(const Positions& positions, int index) {
     Sample<Scalar, n, 1> sample{};
@@ -51,7 +51,7 @@ Sample<Scalar, n, 1> sample_at(const Positions& positions, int index) {
     return sample;
 }
 
-/// The inputs ξ that a map gives after the last of `positions`.
+/// Returns the inputs ξ of a map after the last of `positions`.
 template <class Map, class Scalar, int n>
 std::vector<Scalar> inputs_after(Map& map, const Positions& positions, int count) {
     for (int t = 0; t < static_cast<int>(positions.size()); ++t) {
@@ -62,7 +62,7 @@ std::vector<Scalar> inputs_after(Map& map, const Positions& positions, int count
     return xi;
 }
 
-/// Whether a map is ready after exactly `samples` samples, also after a restart.
+/// Returns true if a map is ready after exactly `samples` samples, also after a restart.
 template <class Scalar, int n, class Map>
 bool ready_after(Map& map, int samples) {
     bool right = true;

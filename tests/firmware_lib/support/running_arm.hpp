@@ -23,7 +23,7 @@ class RunningArm {
     RunningArm(const RunningArm&) = delete;
     RunningArm& operator=(const RunningArm&) = delete;
 
-    /// The sample that is due next; the time goes on.
+    /// Returns the next sample and advances the time.
     Sample due() {
         Sample sample = moving_sample<Model>(now, *engine_);
         sample.time_ns += clock_offset_ns;
@@ -31,18 +31,18 @@ class RunningArm {
         return sample;
     }
 
-    /// A tick with all the budget it wants; the reason it reports.
+    /// Performs a tick with an unlimited budget; returns its reason.
     Reason tick(const Sample& sample) { return estimator.tick(sample, Budget::unlimited()).status.reason(); }
 
-    /// A tick that must not change what has been learned; the reason it reports.
+    /// Performs a tick that must not change the learned state; returns its reason.
     Reason refused(const Sample& sample) {
         const auto before = snapshot_of(estimator);
         const Reason reason = tick(sample);
-        CHECK((snapshot_of(estimator) == before)); // without printing both
+        CHECK((snapshot_of(estimator) == before)); // in parentheses, so that Catch does not print them
         return reason;
     }
 
-    /// Ticks until the estimator predicts again.
+    /// Counts the ticks until the estimator predicts again.
     int ticks_to_recover() {
         int ticks = 0;
         while (!estimator.tick(due(), Budget::unlimited()).status.predicted()) {
@@ -57,7 +57,7 @@ class RunningArm {
   public:
     typename Model::Constants constants;
     Estimator<Model> estimator;
-    std::int64_t now = 0;             ///< number of the sample due next
+    std::int64_t now = 0;             ///< number of the next sample
     std::int64_t clock_offset_ns = 0; ///< added to every stamp
 };
 

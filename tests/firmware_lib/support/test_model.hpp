@@ -16,7 +16,7 @@
 
 namespace dfdyn::tests {
 
-/// A small model of a two-jointed arm with two outputs.
+/// A small model of a two-joint arm with two outputs.
 template <class Scalar, class Input = DerivativeFreeReduced<6, 3>, int d = 8,
           template <class, int, int> class Form = UdCovariance>
 using TestModel = Model<Scalar, Joints<2, 2>, Input, RandomFourier<d>, Nonparametric<Form>>;
@@ -48,12 +48,12 @@ inline ArmState moving_arm(double time_s) {
     return arm;
 }
 
-/// An arm that stands where the moving arm would be at `time_s`.
+/// The state of an arm at rest at the position of the moving arm at `time_s`.
 inline ArmState standing_arm(double time_s) { return {moving_arm(time_s).position, {0, 0}, {0, 0}}; }
 
 inline constexpr double torque_noise = 0.05;
 
-/// The torques of the arm that a model is tested on: that of its physics where it has one, or the plain one.
+/// Returns the torques of the arm under test: that of the model's physics, or the plain arm without physics.
 template <class Model>
 std::array<double, 2> torques_of(const ArmState& arm) {
     if constexpr (Model::parameters == 0) {
@@ -63,7 +63,7 @@ std::array<double, 2> torques_of(const ArmState& arm) {
     }
 }
 
-/// What the sensors of an arm show, at tick number `tick`.
+/// Returns the sensor readings of an arm at tick `tick`.
 template <class Model>
 typename Model::Sample sample_of(const ArmState& arm, std::int64_t tick, std::mt19937_64& engine) {
     using Scalar = typename Model::Scalar;
@@ -84,16 +84,17 @@ typename Model::Sample sample_of(const ArmState& arm, std::int64_t tick, std::mt
     return sample;
 }
 
-/// The sample of the moving arm at tick number `tick`.
+/// Returns the sample of the moving arm at tick `tick`.
 template <class Model>
 typename Model::Sample moving_sample(std::int64_t tick, std::mt19937_64& engine) {
     return sample_of<Model>(moving_arm(period_s * static_cast<double>(tick)), tick, engine);
 }
 
-/// Constants of an input such that (q, q̇, q̈) of a joint come out times `sizes`; other elements as they are.
+/// Sets the constants of an input such that its elements are (q, q̇, q̈) of each joint times `sizes`; other
+/// elements stay unchanged.
 template <class Input, class Constants>
 void set_input(Constants& input, const std::array<double, 3>& sizes) {
-    constexpr double beta = 0.05; // so small that six lags leave nothing of the tail
+    constexpr double beta = 0.05; // so small that the tail vanishes after six lags
     constexpr double alpha1 = (1 - beta) / period_s;
     constexpr double alpha2 = (1 - beta) / (period_s * period_s);
     using Scalar = std::remove_cvref_t<decltype(input.scale[0])>;
@@ -116,7 +117,7 @@ void set_input(Constants& input, const std::array<double, 3>& sizes) {
     }
 }
 
-/// Prior and forgetting of all of a structure's learners.
+/// Sets prior and forgetting of all learners of a structure.
 template <class Scalar, class Learner>
 void set_learner(Learner& learner, double forgetting_factor) {
     const auto lambda = static_cast<Scalar>(forgetting_factor);
@@ -131,7 +132,8 @@ void set_learner(Learner& learner, double forgetting_factor) {
     }
 }
 
-/// Chain and columns of a test model's physics; SP's fixed parameters are a bit off the true ones.
+/// Sets chain and columns of a test model's physics. SP's fixed parameters deviate slightly from the true
+/// ones.
 template <class Model>
 void set_physics(typename Model::Constants& constants) {
     using Scalar = typename Model::Scalar;
@@ -152,7 +154,7 @@ void set_physics(typename Model::Constants& constants) {
     }
 }
 
-/// The constants of a test model with random frequencies.
+/// Returns the constants of a test model with random frequencies.
 template <class Model>
 typename Model::Constants make_constants(std::mt19937_64& engine, double forgetting_factor = 1) {
     using Scalar = typename Model::Scalar;
@@ -175,12 +177,12 @@ typename Model::Constants make_constants(std::mt19937_64& engine, double forgett
     constants.output_noise_std = {{Scalar(0.05), Scalar(0.08)}};
     constants.position_limit = {{10, 10}};
     constants.output_limit = {{100, 100}};
-    constants.innovation_limit = std::numeric_limits<Scalar>::max(); // learn everything
+    constants.innovation_limit = std::numeric_limits<Scalar>::max(); // learn every sample
     set_learner<Scalar>(constants.learner, forgetting_factor);
     return constants;
 }
 
-/// The snapshot of an estimator: all that it has learned.
+/// Returns the snapshot of an estimator, which contains its whole learned state.
 template <class Estimator>
 std::vector<std::byte> snapshot_of(const Estimator& estimator) {
     std::vector<std::byte> bytes(estimator.snapshot_bytes());
@@ -190,7 +192,7 @@ std::vector<std::byte> snapshot_of(const Estimator& estimator) {
     return bytes;
 }
 
-/// What a regression has learned as plain numbers.
+/// Returns the learned state of a regression as plain numbers.
 template <class Model>
 std::vector<typename Model::Scalar> weights_of(const Estimator<Model>& estimator) {
     std::vector<typename Model::Scalar> weights(
@@ -204,7 +206,7 @@ bool same(const Storage<Scalar, m>& a, const Storage<Scalar, m>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end());
 }
 
-/// Whether two estimates are the same in every bit.
+/// Returns true if two estimates are bitwise equal.
 template <class Scalar, int m>
 bool same(const Estimate<Scalar, m>& a, const Estimate<Scalar, m>& b) {
     return same(a.prediction, b.prediction) && same(a.standard_deviation, b.standard_deviation) &&

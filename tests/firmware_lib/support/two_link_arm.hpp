@@ -11,7 +11,7 @@
 
 namespace dfdyn::tests {
 
-/// Where a two-jointed arm is at a time, and the torque that takes it there.
+/// State of a two-joint arm at a time, and the corresponding torque.
 struct ArmState {
     std::array<double, 2> position, velocity, acceleration;
 
@@ -37,15 +37,15 @@ constexpr void set_two_links(Constants& chain) {
     chain.gravity[1] = Scalar(-9.81);
 }
 
-/// The columns that its torques depend on, each in its own way: first moments and inertia of both bodies,
-/// then viscous friction and offset of both joints.
+/// The columns that the torques depend on, all linearly independent: first moments and inertia of both
+/// bodies, then viscous friction and offset of both joints.
 inline constexpr int two_link_column_count = 10;
 inline constexpr std::array<std::int32_t, two_link_column_count> two_link_columns{1,  2,  9,  11, 12,
                                                                                   19, 20, 21, 22, 23};
 inline constexpr std::array<double, two_link_column_count> two_link_parameters{0.4,  0.05, 0.2, 0.15, -0.02,
                                                                                0.06, 0.3,  0.2, 0.5,  -0.3};
 
-/// Torques of that arm, and of something beside its physics.
+/// Returns the torques of that arm, optionally plus a term outside its physics.
 inline std::array<double, 2> two_link_torques(const ArmState& arm, bool with_unknown) {
     using Plant = Physics<StandardMeasured, two_link_column_count, ViscousFriction<2>, OutputOffset<2>>;
     Plant::Constants<double, Chain<2>> constants{};
