@@ -11,11 +11,12 @@ namespace block_noise_test {
 
 using namespace dfdyn;
 
-/// A joint that stands and moves in turn; its residuals are large and slow, and small and quick.
+/// A joint that rests and moves in turn. Its residuals are large and slow at rest, and small and fast in
+/// motion.
 struct Joint {
     static constexpr std::array<double, 3> scale{2, 0.7, 0.3}, alike{0.9, 0.4, 0.1};
     int speed_class = 2, last_class = -1;
-    double unit = 0; ///< of unit deviation
+    double unit = 0; ///< residual of unit deviation
 
     double next(std::mt19937_64& engine) {
         std::normal_distribution<double> normal;
@@ -30,7 +31,7 @@ struct Joint {
     }
 };
 
-TEMPLATE_TEST_CASE("scale and autocorrelation are those of each class of speed, and whitening frees of both",
+TEMPLATE_TEST_CASE("scale and autocorrelation are estimated per class of speed, and whitening removes both",
                    "[monitor]", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     BlockNoise<TestType> noise;
@@ -61,7 +62,7 @@ TEMPLATE_TEST_CASE("scale and autocorrelation are those of each class of speed, 
     CHECK(std::abs(product / square) < 0.1);
 }
 
-TEST_CASE("of a class that was hardly seen nothing is known, and its blocks tell nothing", "[monitor]") {
+TEST_CASE("a rarely visited class of speed has no estimate, and its blocks are ignored", "[monitor]") {
     BlockNoise<float> noise;
     CHECK(noise.smallest() == 0);
     for (int block = 0; block < 29; ++block) {
@@ -71,11 +72,11 @@ TEST_CASE("of a class that was hardly seen nothing is known, and its blocks tell
     CHECK(noise.whitening(0, 0).of(5, 1) == 0);
     noise.learn(1, 1, 0, 0);
     CHECK(noise.known(0));
-    CHECK(noise.whitening(0, -1).of(5, 1) > 1); // after a gap: by its scale alone
+    CHECK(noise.whitening(0, -1).of(5, 1) > 1); // after a gap only the scale is used
     CHECK(noise.whitening(1, 0).of(5, 1) == 0);
 }
 
-TEST_CASE("bursts count for little, and a scale never vanishes", "[monitor]") {
+TEST_CASE("bursts have little influence, and a scale stays positive", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     std::normal_distribution<float> normal;
     BlockNoise<float> noise;

@@ -16,14 +16,14 @@ using namespace dfdyn;
 constexpr std::size_t outputs = 3;
 constexpr double blocks_per_hour = 36000; // of 0.1 s
 
-/// What is added to the innovations.
+/// A disturbance added to the innovations.
 struct Extra {
     double growth = 1, shift = 0, friction = 0, payload = 0, force = 0, burst = 0;
 };
 
-/// Block means of the innovations of an arm whose joints stand and move in turn: larger and slower while a
-/// joint stands, with a first-order autocorrelation from block to block, and tails of Student's t with four
-/// degrees of freedom or none.
+/// Block means of the innovations of an arm whose joints rest and move in turn. They are larger and slower at
+/// rest, with a first-order autocorrelation from block to block, and have normal tails or those of Student's
+/// t with four degrees of freedom.
 template <class Scalar>
 class Innovations {
   public:
@@ -31,7 +31,7 @@ class Innovations {
 
     Innovations(double autocorrelation, bool heavy) : a_(autocorrelation), heavy_(heavy) {}
 
-    /// The next block, by `extra` away from what is usual on output 1 (or in all, if it shows in all).
+    /// Returns the next block, with `extra` on output 1, or on all outputs for extras that affect all.
     const Blocks& next(std::mt19937_64& engine, const Extra& extra = {}) {
         before_ = now_;
         ++block_;
@@ -83,7 +83,7 @@ bool step(Detector<Scalar>& detector, Innovations<Scalar>& innovations, std::mt1
     return detector.add(now.data(), innovations.before(), speed<Scalar>);
 }
 
-/// Alarms that begin within so many blocks.
+/// Counts the alarms that begin within a number of blocks.
 template <class Scalar>
 int alarms(Detector<Scalar>& detector, Innovations<Scalar>& innovations, int blocks,
            std::mt19937_64& engine) {
@@ -95,20 +95,19 @@ int alarms(Detector<Scalar>& detector, Innovations<Scalar>& innovations, int blo
     return count;
 }
 
-TEMPLATE_TEST_CASE("white, coloured and heavy-tailed innovations raise no more false alarms than stated",
+TEMPLATE_TEST_CASE("white, coloured and heavy-tailed innovations raise no more false alarms than specified",
                    "[monitor]", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     const bool heavy = GENERATE(false, true);
     const double autocorrelation = GENERATE(0.0, 0.6, 0.9);
     CAPTURE(heavy, autocorrelation);
     Innovations<TestType> innovations(autocorrelation, heavy);
-    // one in six minutes, so that some might come
+    // One alarm in six minutes, so that some are likely to occur.
     Detector<TestType> detector({}, true, TestType(blocks_per_hour / 10));
     CHECK(alarms(detector, innovations, static_cast<int>(3 * blocks_per_hour), engine) <= 30);
 }
 
-TEMPLATE_TEST_CASE("every departure is found, with its onset, and is over in the end", "[monitor]", float,
-                   double) {
+TEMPLATE_TEST_CASE("every departure is detected with its onset, and ends", "[monitor]", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto [kind, extra, channel] =
         GENERATE(table<Departure, Extra, int>({{Departure::growth, {.growth = 6}, 1},
@@ -128,11 +127,12 @@ TEMPLATE_TEST_CASE("every departure is found, with its onset, and is over in the
     }
     CAPTURE(block);
     REQUIRE(detector.alarm());
-    if (kind == Departure::friction || kind == Departure::burst) { // others may look alike over a second
+    // the other kinds may look alike over a second
+    if (kind == Departure::friction || kind == Departure::burst) {
         CHECK(static_cast<int>(detector.departure()) == static_cast<int>(kind));
         CHECK(detector.channel() == channel);
     }
-    CHECK(detector.blocks_since_onset() >= block - 10); // earlier only if the sum happened to be above zero
+    CHECK(detector.blocks_since_onset() >= block - 10); // earlier only if the sum was above zero by chance
     CHECK(detector.blocks_since_onset() <= block + 80);
     int over = 0;
     for (; over < 300 && detector.alarm(); ++over) {
@@ -142,7 +142,7 @@ TEMPLATE_TEST_CASE("every departure is found, with its onset, and is over in the
     CHECK(alarms(detector, innovations, 5000, engine) == 0);
 }
 
-TEST_CASE("one block, however large, raises no alarm", "[monitor]") {
+TEST_CASE("a single block of any size raises no alarm", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     Innovations<float> innovations(0.3, false);
     Detector<float> detector({}, true, 10 * static_cast<float>(blocks_per_hour));
@@ -151,8 +151,8 @@ TEST_CASE("one block, however large, raises no alarm", "[monitor]") {
     CHECK(alarms(detector, innovations, 1000, engine) == 0);
 }
 
-/// Blocks until the alarm of a payload that comes after 1,500 blocks, the first of which or one in the middle
-/// is absurd: all of its means are `spike`.
+/// Returns the blocks until the alarm of a payload that begins after 1,500 blocks. The first block of it or
+/// one in the middle is absurd: all of its means are `spike`.
 template <class Scalar>
 int blocks_to_payload(std::optional<Scalar> spike, int at, std::mt19937_64 engine) {
     Innovations<Scalar> innovations(0.3, false);
@@ -239,7 +239,7 @@ TEST_CASE("innovations far smaller than predicted raise no alarm", "[monitor]") 
     CHECK(alarm(1e-6, 0.08));
 }
 
-TEST_CASE("alarms that were nothing raise the limit of their kind", "[monitor]") {
+TEST_CASE("false alarms raise the limit of their kind", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     Innovations<double> innovations(0.3, false);
     Detector<double> detector({}, true, 10 * blocks_per_hour);
@@ -253,7 +253,7 @@ TEST_CASE("alarms that were nothing raise the limit of their kind", "[monitor]")
     CHECK(detector.limit(detector.departure()) > limit + 0.5);
 }
 
-TEST_CASE("a level that stays is adopted as usual", "[monitor]") {
+TEST_CASE("a persistent level is adopted as the new reference", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     Innovations<double> innovations(0, false);
     Detector<double> detector({}, true, 10 * blocks_per_hour);
@@ -271,7 +271,7 @@ TEST_CASE("a level that stays is adopted as usual", "[monitor]") {
     CHECK(detector.noise(1).scale(2) == Approx(8).epsilon(0.2));
 }
 
-TEST_CASE("after a gap the block before does not count", "[monitor]") {
+TEST_CASE("after a gap the previous block is ignored", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     Innovations<double> innovations(0.9, false);
     Detector<double> detector({}, true, 10 * blocks_per_hour);

@@ -8,12 +8,13 @@ namespace excursion_tail_test {
 
 using namespace dfdyn;
 
-/// A sum of random steps with a drift of -1, whatever their distribution; heights of its excursions.
+/// A sum of random steps with a drift of -1 and several distributions; provides the heights of its
+/// excursions.
 class Walk {
   public:
     explicit Walk(int kind) : kind_(kind) {}
 
-    /// One step; the height of an excursion that is over, or 0.
+    /// Performs one step; returns the height of an excursion that ended, or 0.
     double step(std::mt19937_64& engine) {
         sum_ += draw(engine) - 1;
         if (sum_ > 0) {
@@ -40,7 +41,8 @@ class Walk {
     double sum_ = 0, peak_ = 0, slow_ = 0;
 };
 
-TEMPLATE_TEST_CASE("a limit is exceeded as often as stated, whatever is summed", "[monitor]", float, double) {
+TEMPLATE_TEST_CASE("a limit is exceeded as often as specified, for every distribution", "[monitor]", float,
+                   double) {
     DFDYN_SEEDED_ENGINE(engine);
     const int kind = GENERATE(0, 1, 2);
     CAPTURE(kind);
@@ -50,7 +52,7 @@ TEMPLATE_TEST_CASE("a limit is exceeded as often as stated, whatever is summed",
     for (int repetition = 0; repetition < repetitions; ++repetition) {
         ExcursionTail<TestType> tail;
         Walk walk(kind);
-        for (int block = 0; block < 3000; ++block) { // not much is known of the tail
+        for (int block = 0; block < 3000; ++block) { // few blocks, so the tail is poorly known
             tail.add(static_cast<TestType>(walk.step(engine)));
             tail.add_block();
         }
@@ -60,10 +62,10 @@ TEMPLATE_TEST_CASE("a limit is exceeded as often as stated, whatever is summed",
         }
     }
     CHECK(exceeded < 2 * repetitions);
-    CHECK(exceeded > repetitions / 20); // the limit is not absurdly high either
+    CHECK(exceeded > repetitions / 20); // the limit is not far too high either
 }
 
-TEST_CASE("the limit falls as more is known of a tail", "[monitor]") {
+TEST_CASE("the limit falls as more excursions of a tail are known", "[monitor]") {
     ExcursionTail<double> tail;
     double last = tail.limit(1e6);
     for (int seen : {10, 100, 1000}) {
@@ -80,7 +82,7 @@ TEST_CASE("the limit falls as more is known of a tail", "[monitor]") {
     CHECK(tail.mean() == Approx(1.5).epsilon(0.01));
 }
 
-TEST_CASE("one height that is out of all proportion does not blind", "[monitor]") {
+TEST_CASE("a single extreme height raises the limit by less than a factor of three", "[monitor]") {
     ExcursionTail<double> tail;
     const double before = tail.limit(1e6);
     tail.add(1e9);

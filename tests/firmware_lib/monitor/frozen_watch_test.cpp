@@ -15,7 +15,7 @@ constexpr int joints = 2;
 constexpr int channels = 3;
 constexpr double count_rad = 4e-4; ///< of the encoders
 
-/// Two joints that swing, the second one with rests, and a noisy output; each can be frozen.
+/// Two oscillating joints, the second with pauses, and a noisy output. Each reading can be frozen.
 struct Readings {
     std::array<float, joints> position{};
     std::array<float, 1> output{};
@@ -35,7 +35,7 @@ struct Readings {
     }
 };
 
-TEST_CASE("A reading that freezes while the arm moves is told from one that rests", "[monitor]") {
+TEST_CASE("a reading that freezes while the arm moves is distinguished from one at rest", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     FrozenWatch<float, channels> watch({}, joints);
     Readings readings;
@@ -52,11 +52,11 @@ TEST_CASE("A reading that freezes while the arm moves is told from one that rest
         return most;
     };
     run(1000, -1);
-    CHECK(run(3000, -1) < 15); // the rests of the second joint are no evidence
+    CHECK(run(3000, -1) < 15); // the pauses of the second joint are not evidence
     const int frozen = GENERATE(0, 1, 2);
     CAPTURE(frozen);
     while (std::abs(std::sin(0.04 * tick)) < 0.7 ||
-           std::cos(0.013 * tick) < 0.2) { // both joints on their way
+           std::cos(0.013 * tick) < 0.2) { // both joints are between their turning points
         run(1, -1);
     }
     CHECK(run(30, frozen) < 15);
@@ -66,7 +66,7 @@ TEST_CASE("A reading that freezes while the arm moves is told from one that rest
     CHECK(watch.run(frozen) < 25);
 }
 
-TEST_CASE("An arm that stands as a whole repeats without evidence", "[monitor]") {
+TEST_CASE("repeated readings of an arm at standstill are not evidence", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     FrozenWatch<double, 2> watch({}, 2);
     for (int tick = 0; tick < 3000; ++tick) {

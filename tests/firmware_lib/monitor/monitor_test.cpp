@@ -46,7 +46,7 @@ typename TestMonitor<Scalar>::Constants constants() {
     return result;
 }
 
-/// What changes, if anything.
+/// The change to detect, if any.
 struct Hidden {
     std::optional<Cause> cause;
     double from_s = 0, to_s = 1e9;
@@ -60,10 +60,11 @@ constexpr double coulomb = 0.9;
 constexpr double moved = 0.7;
 constexpr double force_x = 12;
 
-/// What a fault of a sample does to its values; nothing by itself.
+/// Applies a fault to the values of a sample; kind 0 has no effect.
 struct Fault {
     int kind = 0;
-    double size = 0; ///< of kinds 5 to 8, a spike on output, prediction or position, or two on the output
+    /// Value of a spike, for kinds 5 to 8: on output, prediction, position, or again on the output.
+    double size = 0;
 
     template <class Scalar>
     void operator()(Scalar* position, Scalar* output, Scalar* predicted) const {
@@ -98,13 +99,14 @@ struct Fault {
     }
 };
 
-/// A planar arm that swings in two tones per joint; its torques beyond what is predicted.
+/// A planar arm with a motion of two frequencies per joint, and the torques that the prediction does not
+/// contain.
 template <class Scalar>
 class Swinging {
   public:
     explicit Swinging(Hidden hidden) : hidden_(hidden) { set_two_links(chain_); }
 
-    /// The next sample into the monitor. True: there is news.
+    /// Passes the next sample to the monitor; returns true if the monitor reports a change of its state.
     bool step(TestMonitor<Scalar>& monitor, std::mt19937_64& engine, const Fault& fault = {}) {
         const double t = period_s * tick_++;
         std::normal_distribution<double> normal;
@@ -160,7 +162,7 @@ class Swinging {
         }
     }
 
-    /// By the regressor of all bodies, not by the monitor's columns.
+    /// Computed from the regressor of all bodies, independently of the monitor's columns.
     std::array<double, 2> payload(const ArmState& arm) const {
         std::array<double, 6> xi{};
         for (std::size_t i = 0; i < 2; ++i) {
@@ -179,7 +181,7 @@ class Swinging {
         return torque;
     }
 
-    /// A force along the base's x on the tip, 0.3 m beyond the second joint: less its lever arms.
+    /// A force along the base's x axis on the tip, 0.3 m beyond the second joint; minus its lever arms.
     static std::array<double, 2> push(const ArmState& arm) {
         const double second = 0.3 * std::sin(arm.position[0] + arm.position[1]);
         const double first = first_link_length * std::sin(arm.position[0]);
@@ -194,7 +196,7 @@ class Swinging {
     int tick_ = 0;
 };
 
-/// Runs until a change is over, at most to `until_s`; how often there was news.
+/// Runs until a change is over, but at most until `until_s`; returns the number of reports.
 template <class Scalar>
 int run(TestMonitor<Scalar>& monitor, Swinging<Scalar>& arm, double until_s, std::mt19937_64& engine) {
     int news = 0;
@@ -207,7 +209,7 @@ int run(TestMonitor<Scalar>& monitor, Swinging<Scalar>& arm, double until_s, std
     return news;
 }
 
-TEMPLATE_TEST_CASE("The monitor names what changed, where and by how much, without the heap", "[monitor]",
+TEMPLATE_TEST_CASE("the monitor reports cause, place and size of a change without the heap", "[monitor]",
                    float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     const Cause cause = GENERATE(Cause::payload, Cause::friction, Cause::bias, Cause::contact, Cause::frozen);
@@ -290,7 +292,7 @@ TEST_CASE("held weights do not age while the arm stands", "[monitor]") {
     CHECK(due_after(0.1));
 }
 
-TEST_CASE("Where nothing changes the monitor is silent, and it survives gaps", "[monitor]") {
+TEST_CASE("without a change the monitor reports nothing, also with gaps", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto fixed = constants<float>();
     TestMonitor<float> monitor(fixed);
@@ -301,7 +303,7 @@ TEST_CASE("Where nothing changes the monitor is silent, and it survives gaps", "
     }
 }
 
-TEST_CASE("samples that are not numbers count as gaps, and the monitor goes on", "[monitor]") {
+TEST_CASE("samples with NaN count as gaps and the monitor continues", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto fixed = constants<float>();
     TestMonitor<float> monitor(fixed);
@@ -317,8 +319,8 @@ TEST_CASE("samples that are not numbers count as gaps, and the monitor goes on",
     CHECK(std::isfinite(monitor.change().confidence));
 }
 
-TEMPLATE_TEST_CASE("after a spike of any size nothing is announced, and a change is found as soon as ever",
-                   "[monitor]", float, double) {
+TEMPLATE_TEST_CASE("a spike of any size is not reported, and a later change is detected in time", "[monitor]",
+                   float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     const int kind = GENERATE(5, 6, 7, 8);
     const double size = GENERATE(1e6, 1e10, 1e15, 1e20, 1e25, 1e38, -3e38);
@@ -340,7 +342,7 @@ TEMPLATE_TEST_CASE("after a spike of any size nothing is announced, and a change
     CHECK(monitor.change().confidence > TestType(0.8));
 }
 
-TEST_CASE("after a restart the monitor begins anew: no alarm by what was before", "[monitor]") {
+TEST_CASE("after a restart no earlier sample causes an alarm", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto fixed = constants<double>();
     TestMonitor<double> monitor(fixed);
@@ -356,7 +358,7 @@ TEST_CASE("after a restart the monitor begins anew: no alarm by what was before"
     CHECK_FALSE(monitor.changing());
 }
 
-TEST_CASE("no tick of the monitor costs more than it says", "[monitor]") {
+TEST_CASE("no tick of the monitor exceeds its declared cost", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     using Scalar = Counted<double>;
     constexpr std::int64_t cost = TestMonitor<Scalar>::cost({}, lags);
@@ -379,10 +381,10 @@ TEST_CASE("no tick of the monitor costs more than it says", "[monitor]") {
     CHECK(changes >= 8);
     CAPTURE(most, cost);
     CHECK(most <= cost);
-    CHECK(2 * most > cost); // nor is the bound absurd
+    CHECK(2 * most > cost); // and the bound is not far too large
 }
 
-TEST_CASE("Held weights are between one and two periods old", "[monitor]") {
+TEST_CASE("held weights are between one and two periods old", "[monitor]") {
     HeldWeights<float, 2> held({});
     for (int period = 0; period < 5; ++period) {
         const auto now = static_cast<float>(10 + period);
@@ -391,7 +393,7 @@ TEST_CASE("Held weights are between one and two periods old", "[monitor]") {
     }
 }
 
-TEST_CASE("Centred rows give a parabola's position, velocity and acceleration exactly", "[monitor]") {
+TEST_CASE("centred rows give position, velocity and acceleration of a parabola exactly", "[monitor]") {
     constexpr int window = 6;
     std::array<double, 3 * (window + 1)> rows{};
     centred_motion_rows(window, 0.02, rows.data());

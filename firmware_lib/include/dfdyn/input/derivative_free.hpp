@@ -73,7 +73,7 @@ struct DerivativeFree {
 };
 
 /// Input DFW: ξ_i = diag(r) q_i(t⁻) (paper, Section V-A). The weight of each lag is part of the element's
-/// scale, so the computation is that of DF.
+/// scale, so the computation is the same as for DF.
 template <int M>
 struct DerivativeFreeWeighted : DerivativeFree<M> {
     static constexpr int identity = 2;

@@ -33,7 +33,7 @@ namespace dfdyn {
 ///
 /// A moving arm forgets with λ as long as one row in `payback` contributes more than both limits. If the
 /// memory is much longer than p / (1024 ε) samples (8000 p in float, 4·10¹² p in double), no row does, and
-/// the memory becomes longer than that of λ.
+/// the memory becomes longer than λ specifies.
 template <class Scalar>
 class Forgetting {
   public:
