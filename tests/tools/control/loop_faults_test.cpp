@@ -279,10 +279,13 @@ TEST_CASE("a bus' own clock that is set moves the stamps of all later samples, n
             CHECK(ticks[i].begun_s == Approx(ticks[i].due_s));
         }
     }
+}
+
+TEST_CASE("where a bus has the clock of the ticks and that is set, samples go on in the time from before") {
     const BusDescription bus = one_drive(at_sync);
     const std::vector<Tick> ticks =
         run(R"([{"kind": "clock_jump", "clock": "bus", "at_s": 0.1, "by_s": 0.004}])", 0.2, &bus);
-    CHECK(ticks.back().measured_ns - ticks.at(50).measured_ns == 149'000'000 + 4'000'000);
+    CHECK(ticks.back().measured_ns - ticks.at(50).measured_ns == 149'000'000);
 }
 
 TEST_CASE("a wall clock that is set while frames wait moves no sample, as on SocketCAN") {
