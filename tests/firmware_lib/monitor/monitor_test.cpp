@@ -50,8 +50,6 @@ typename TestMonitor<Scalar>::Constants constants() {
 struct Hidden {
     std::optional<Cause> cause;
     double from_s = 0, to_s = 1e9;
-    bool weightless = false; ///< a payload of no weight, but with a first moment
-    bool forgotten = false;  ///< the present prediction alone is off, by as much as a bias
 };
 
 constexpr double payload_mass = 0.8;
@@ -123,10 +121,8 @@ class Swinging {
         }
         fault(position_.data(), output_.data(), predicted_.data());
         const auto time_ns = static_cast<std::int64_t>(std::llround(1e9 * t));
-        const std::array<Scalar, 2> held = predicted_;
-        predicted_[0] += hidden_.forgotten && t >= hidden_.from_s ? Scalar(moved) : Scalar(0);
-        return monitor.tick(
-            {time_ns, position_.data(), output_.data(), predicted_.data(), deviation_.data(), held.data()});
+        return monitor.tick({time_ns, position_.data(), output_.data(), predicted_.data(), deviation_.data(),
+                             predicted_.data()});
     }
 
     [[nodiscard]] double time_s() const { return period_s * tick_; }
@@ -174,9 +170,8 @@ class Swinging {
         rigid_body_regressor<Arm, double>(chain_, {}, xi.data(), psi.data(), 20);
         std::array<double, 2> torque{};
         for (std::size_t k = 0; k < 2; ++k) {
-            torque[k] = hidden_.weightless ? 0.5 * psi[20 * k + 11]
-                                           : payload_mass * (psi[20 * k + 10] + payload_x * psi[20 * k + 11] +
-                                                             payload_x * payload_x * psi[20 * k + 19]);
+            torque[k] = payload_mass * (psi[20 * k + 10] + payload_x * psi[20 * k + 11] +
+                                        payload_x * payload_x * psi[20 * k + 19]);
         }
         return torque;
     }
@@ -253,45 +248,6 @@ TEMPLATE_TEST_CASE("the monitor reports cause, place and size of a change withou
     }
 }
 
-TEST_CASE("what only a payload of no weight, metres away, would explain is not named a payload",
-          "[monitor]") {
-    DFDYN_SEEDED_ENGINE(engine);
-    const auto fixed = constants<float>();
-    TestMonitor<float> monitor(fixed);
-    Swinging<float> arm({Cause::payload, 25, 1e9, true});
-    REQUIRE(run(monitor, arm, 25, engine) == 0);
-    REQUIRE(run(monitor, arm, 55, engine) > 0);
-    CHECK(name(monitor.change().cause) != std::string(name(Cause::payload)));
-}
-
-TEST_CASE("what held weights predict as ever has not changed, whatever the present ones do", "[monitor]") {
-    DFDYN_SEEDED_ENGINE(engine);
-    const auto fixed = constants<float>();
-    TestMonitor<float> monitor(fixed);
-    Swinging<float> arm({{}, 25, 1e9, false, true});
-    CHECK(run(monitor, arm, 60, engine) == 0);
-}
-
-TEST_CASE("held weights do not age while the arm stands", "[monitor]") {
-    const auto fixed = constants<double>();
-    TestMonitor<double> monitor(fixed);
-    monitor.renewed();
-    monitor.renewed();
-    const std::array<double, 2> deviation{1, 1}, output{0.1, 0.1}, predicted{};
-    std::array<double, 2> position{};
-    int tick = 0;
-    const auto due_after = [&](double speed) {
-        for (const int end = tick + 400; tick < end; ++tick) {
-            position[1] += period_s * speed;
-            monitor.tick({10'000'000LL * tick, position.data(), output.data(), predicted.data(),
-                          deviation.data(), predicted.data()});
-        }
-        return monitor.renewal_due();
-    };
-    CHECK_FALSE(due_after(0.01));
-    CHECK(due_after(0.1));
-}
-
 TEST_CASE("without a change the monitor reports nothing, also with gaps", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto fixed = constants<float>();
@@ -364,8 +320,7 @@ TEST_CASE("no tick of the monitor exceeds its declared cost", "[monitor]") {
     constexpr std::int64_t cost = TestMonitor<Scalar>::cost({}, lags);
     std::int64_t most = 0;
     int changes = 0;
-    for (int arms = 0; arms < 10; ++arms) {
-        const auto cause = static_cast<Cause>(1 + arms % (cause_count - 1));
+    for (const Cause cause : {Cause::payload, Cause::friction, Cause::bias, Cause::contact, Cause::frozen}) {
         const auto fixed = constants<Scalar>();
         TestMonitor<Scalar> monitor(fixed);
         Swinging<Scalar> arm({cause, 25, cause == Cause::contact ? 26.5 : 1e9});
@@ -378,7 +333,7 @@ TEST_CASE("no tick of the monitor exceeds its declared cost", "[monitor]") {
         }
         changes += changed ? 1 : 0;
     }
-    CHECK(changes >= 8);
+    CHECK(changes >= 4);
     CAPTURE(most, cost);
     CHECK(most <= cost);
     CHECK(2 * most > cost); // and the bound is not far too large

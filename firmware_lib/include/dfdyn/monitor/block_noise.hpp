@@ -49,10 +49,6 @@ class BlockNoise {
 
     static constexpr int cost = 2 * function_cost + 25; ///< of `learn`, `smallest` and `whitening`
 
-    BlockNoise() noexcept = default;
-    /// `smallest`: no scale is less.
-    explicit BlockNoise(Scalar smallest) noexcept : least_(smallest * smallest) {}
-
     /// A block of class `c`, after one of class `before` (-1: after none). One that is no number is passed
     /// over.
     void learn(Scalar block, Scalar block_before, int c, int before) noexcept {
@@ -64,12 +60,12 @@ class BlockNoise {
         one.blocks = std::min(one.blocks + 1, 2 * memory);
         if (one.blocks <= first) {
             one.square =
-                std::max(std::min(value * value, one.blocks > 1 ? one.square : largest * largest), least_);
+                std::max(std::min(value * value, one.blocks > 1 ? one.square : largest * largest), least);
             return;
         }
         const Scalar gain = 2 / (one.blocks + 2);
         const Scalar square = std::min(value * value, clip * clip * one.square);
-        one.square = std::max(one.square + gain * (square / consistency - one.square), least_);
+        one.square = std::max(one.square + gain * (square / consistency - one.square), least);
         if (c == before) {
             const Scalar limit = clip * scale(c);
             const Scalar now = std::clamp(value, -limit, limit) / limit;
@@ -119,6 +115,7 @@ class BlockNoise {
     }
 
   private:
+    static constexpr Scalar least = Scalar(1e-12);  ///< square of a scale
     static constexpr Scalar largest = Scalar(1e15); ///< value that is looked at
     static constexpr Scalar first = 5;              ///< blocks
     static constexpr Scalar clip = Scalar(2.5);
@@ -130,7 +127,6 @@ class BlockNoise {
         Scalar blocks = 0;
     };
     Class class_[SpeedClasses<Scalar>::count];
-    Scalar least_ = Scalar(1e-12); ///< square of a scale
 };
 
 } // namespace dfdyn

@@ -4,7 +4,6 @@
 #include "dfdyn/learner/ud_covariance.hpp"
 
 #include <cmath>
-#include <cstdint>
 
 namespace dfdyn {
 
@@ -77,9 +76,8 @@ class CauseFit {
         evidence_.restart();
     }
 
-    /// One instant: `rows` (m × p) and `targets` (m), in units of the noise. Outputs that were not `measured`
-    /// (0) (m) are no evidence; their rows and targets are zero.
-    void add(const Scalar* rows, const Scalar* targets, const std::uint8_t* measured) noexcept {
+    /// One instant: `rows` (m × p) and `targets` (m), in units of the noise.
+    void add(const Scalar* rows, const Scalar* targets) noexcept {
         for (int k = 0; k < outputs_; ++k) {
             const Scalar* row = rows + k * p;
             Scalar mean = 0;
@@ -87,21 +85,13 @@ class CauseFit {
             learner_.begin_row(row, targets + k, 1, k + 1 == outputs_);
             Budget all = Budget::unlimited();
             learner_.advance(all);
-            if (measured[k]) {
-                evidence_.add(k, targets[k] - mean, learner_.last_ratio());
-            }
+            evidence_.add(k, targets[k] - mean, learner_.last_ratio());
         }
     }
 
     [[nodiscard]] const Evidence<Scalar, m>& evidence() const noexcept { return evidence_; }
     /// In units of the scaled columns, p values.
     [[nodiscard]] const Scalar* parameters() const noexcept { return learner_.weights(0); }
-    /// Standard deviation of parameter i, in the same units. `deviation_cost` multiply-adds.
-    [[nodiscard]] Scalar deviation(int i) const noexcept {
-        using std::sqrt;
-        return sqrt(learner_.parameter_variance(i));
-    }
-    static constexpr int deviation_cost = function_cost + 2 * p;
 
     /// Multiply-adds of `add`, at most.
     static constexpr std::int64_t cost(int outputs) noexcept {

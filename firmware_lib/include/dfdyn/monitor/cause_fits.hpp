@@ -22,14 +22,14 @@ class CauseFits {
     template <int p, bool forgets>
     using OfOutput = CauseFit<Scalar, p, 1, forgets>;
 
-    CauseFits(Extent<m> outputs, bool of_joints) noexcept
+    explicit CauseFits(Extent<m> outputs) noexcept
         : nothing(outputs), payload(outputs), force(outputs),
           friction(Storage<OfOutput<friction_columns, false>, m>::zeros(outputs)),
           bias(Storage<OfOutput<1, false>, m>::zeros(outputs)),
-          push(Storage<OfOutput<1, true>, m>::zeros(outputs)), outputs_(outputs), has_friction_(of_joints),
+          push(Storage<OfOutput<1, true>, m>::zeros(outputs)), outputs_(outputs),
           noise_(Storage<BlockNoise<Scalar>, m>::zeros(outputs)),
           whitening_(Storage<Whitening<Scalar>, m>::zeros(outputs)),
-          targets_(Storage<Scalar, m>::zeros(outputs)), measured_(Storage<std::uint8_t, m>::zeros(outputs)),
+          targets_(Storage<Scalar, m>::zeros(outputs)),
           rows_(Rows::zeros(extent<product(m, payload_columns)>(outputs * payload_columns))) {}
 
     /// A block while nothing happens, and the one before it (null after a gap).
@@ -37,9 +37,7 @@ class CauseFits {
         for (int k = 0; k < outputs_; ++k) {
             const Block& other = before == nullptr ? now[k] : before[k];
             const int last = before == nullptr ? -1 : speed.of(other.speed);
-            if (const int c = speed.of(now[k].speed); c > 0 || !has_friction_) {
-                noise_[k].learn(now[k].residual, other.residual, c, last);
-            }
+            noise_[k].learn(now[k].residual, other.residual, speed.of(now[k].speed), last);
         }
     }
     /// The noise is learned anew, from where it is.
@@ -77,18 +75,14 @@ class CauseFits {
             const Scalar scale = unit(k);
             whitening_[k] = whitening;
             targets_[k] = whitening.of(now[k].residual, before[k].residual);
-            measured_[k] = whitening.now > 0 ? 1 : 0;
-            if (measured_[k] == 0) {
-                continue;
-            }
             nothing.add(k, targets_[k], 1);
             const Scalar constant = scale * whitening.of(1, 1);
-            bias[k].add(&constant, &targets_[k], &measured_[k]);
-            push[k].add(&constant, &targets_[k], &measured_[k]);
+            bias[k].add(&constant, &targets_[k]);
+            push[k].add(&constant, &targets_[k]);
             const Scalar rubbing[friction_columns] = {
                 scale * whitening.of(now[k].friction[0], before[k].friction[0]),
                 scale * whitening.of(now[k].friction[1], before[k].friction[1])};
-            friction[k].add(rubbing, &targets_[k], &measured_[k]);
+            friction[k].add(rubbing, &targets_[k]);
         }
         add_shared(payload, payload_scale, &Block::payload, now, before);
         add_shared(force, force_scale, &Block::force, now, before);
@@ -106,8 +100,6 @@ class CauseFits {
         return most;
     }
 
-    /// Whether the last block was evidence of the output.
-    [[nodiscard]] bool measured(int output) const noexcept { return measured_[output] != 0; }
     [[nodiscard]] const BlockNoise<Scalar>& noise(int output) const noexcept { return noise_[output]; }
     /// What a parameter of 1 of a bias, a friction or a push is in the output's unit.
     [[nodiscard]] Scalar unit(int output) const noexcept { return noise_[output].smallest(); }
@@ -172,15 +164,13 @@ class CauseFits {
                 rows_[p * k + i] = scale[i] * whitening_[k].of((now[k].*columns)[i], (before[k].*columns)[i]);
             }
         }
-        fit.add(rows_.data(), targets_.data(), measured_.data());
+        fit.add(rows_.data(), targets_.data());
     }
 
     [[no_unique_address]] Extent<m> outputs_;
-    bool has_friction_;
     Storage<BlockNoise<Scalar>, m> noise_;
     Storage<Whitening<Scalar>, m> whitening_;
     Storage<Scalar, m> targets_;
-    Storage<std::uint8_t, m> measured_;
     Rows rows_;
 };
 

@@ -29,9 +29,7 @@ inline constexpr int departure_count = 6;
 /// deviations of a block (`shift_size`, `force_size`). For what is short and large there is one more sum:
 /// - burst: log(e²/2²) of each innovation of e > 2 deviations, all outputs together, less 2 per block; a
 ///   block counts `burst_limit` at most.
-/// So no single block raises an alarm. A standing joint's torque is anywhere within its friction: blocks of
-/// joints below the lowest class of speed are not evidence; their sums, and where no joint moves all, fall by
-/// `standing_drift` per block, as usual blocks make them fall.
+/// So no single block raises an alarm.
 ///
 /// The alarm is at a limit that each kind's own excursions set (`ExcursionTail`), so that all kinds together
 /// exceed theirs at most once in `blocks_between_false_alarms` while innovations stay as they were. The onset
@@ -51,20 +49,16 @@ class ChangeDetector {
     static constexpr Scalar burst_from = 2;
     static constexpr Scalar burst_drift = 2;
     static constexpr Scalar burst_limit = 12;
-    static constexpr Scalar standing_drift = Scalar(0.5);
     /// The limits are for so many times fewer false alarms than asked for: tails of real arms' sums are a bit
     /// heavier than exponential (docs/monitor.md: measured).
     static constexpr Scalar caution = 20;
 
     /// `friction`: whether outputs are the torques of joints. `blocks_between_false_alarms` > 1: their mean.
-    /// `least_scale`: of the noise of block means; smaller ones count as this.
-    ChangeDetector(Extent<m> outputs, bool friction, Scalar blocks_between_false_alarms,
-                   Scalar least_scale = Scalar(1e-6)) noexcept
+    ChangeDetector(Extent<m> outputs, bool friction, Scalar blocks_between_false_alarms) noexcept
         : outputs_(outputs), has_friction_(friction),
           blocks_between_(departure_count * caution * blocks_between_false_alarms),
           noise_(Storage<BlockNoise<Scalar>, m>::zeros(outputs)),
           sums_(Storage<Cusum, sums_of(m)>::zeros(extent<sums_of(m)>(sums_of(outputs)))) {
-        std::fill(noise_.begin(), noise_.end(), BlockNoise<Scalar>(least_scale));
         set_limits();
     }
 
@@ -72,14 +66,8 @@ class ChangeDetector {
     /// is on.
     bool add(const Block* now, const Block* before, const SpeedClasses<Scalar>& speed) noexcept {
         Shared shared;
-        bool measured = false;
         for (int k = 0; k < outputs_; ++k) {
             const int c = speed.of(now[k].speed);
-            if (has_friction_ && c == 0) {
-                pass_over(k);
-                continue;
-            }
-            measured = true;
             const int last = before == nullptr ? -1 : speed.of(before[k].speed);
             const Block& other = before == nullptr ? now[k] : before[k];
             const Whitening<Scalar> whitening = noise_[k].whitening(c, last);
@@ -90,12 +78,8 @@ class ChangeDetector {
                 noise_[k].learn(now[k].innovation, other.innovation, c, last);
             }
         }
-        if (measured) {
-            sum_shared(shared);
-            decide();
-        } else {
-            stand();
-        }
+        sum_shared(shared);
+        decide();
         return alarm_;
     }
 
@@ -199,23 +183,6 @@ class ChangeDetector {
             shared.product[i] += column * e;
             shared.square[i] += column * column;
         }
-    }
-
-    /// A standing joint's torque, anywhere within its friction, is evidence of nothing.
-    void pass_over(int k) noexcept {
-        rise(k, -standing_drift);
-        for (int sign = 0; sign < 2; ++sign) {
-            rise(outputs_ + 2 * k + sign, -standing_drift);
-            rise(3 * outputs_ + 2 * k + sign, -standing_drift);
-        }
-    }
-
-    /// Nothing has been measured; time goes on.
-    void stand() noexcept {
-        for (int index = 5 * outputs_; index < sums_.size(); ++index) {
-            rise(index, -standing_drift);
-        }
-        since_onset_ += alarm_ ? 1 : 0;
     }
 
     void sum_shared(const Shared& shared) noexcept {

@@ -24,10 +24,7 @@ struct Observation {
 
 /// Watches an estimator's innovations for a change of the arm or its sensors, and says what changed.
 ///
-/// Innovations are averaged over blocks and watched by a `ChangeDetector`. They are those of one-step-ahead
-/// predictions, or of the held ones where these are smaller, and 0 where the output is between the two: while
-/// an arm stands, what is learned of its motion is forgotten, and that is no change of the arm. Held weights
-/// age by the blocks in which a joint moves. On
+/// Innovations of one-step-ahead predictions are averaged over blocks and watched by a `ChangeDetector`. On
 /// an alarm a `CauseBank` fits the causes to the block means since the onset, up to `history` blocks back, of
 /// the measured outputs less what was known before (`held_prediction`): the estimator may learn the change
 /// meanwhile. The verdict is refined until the change is over, when the innovations are as usual again, or
@@ -78,9 +75,6 @@ class Monitor {
     /// Deviations that an innovation or a residual counts at most. One spike then cannot overflow a square or
     /// outweigh all later blocks in a mean; what is as large as this for long is still an alarm.
     static constexpr Scalar largest_deviation = 1000;
-    /// The usual scale of a block's innovation is at least this share of that of white ones of the predicted
-    /// deviation. What is far smaller than predicted is evidence of nothing.
-    static constexpr Scalar least_scale = Scalar(0.25);
     static constexpr Scalar largest_position = 10'000; ///< rad, m: beyond it a sample counts as a gap
 
     explicit Monitor(const Constants&&) = delete; // it would refer to a temporary
@@ -97,8 +91,7 @@ class Monitor {
           scaled_(Outputs::zeros(constants.sizes.output_count)), deviations_(scaled_),
           block_(Storage<OutputBlock<Scalar>, m>::zeros(constants.sizes.output_count)),
           past_(Past::zeros(extent<product(history, m)>(history * outputs()))),
-          detector_(constants.sizes.output_count, torques, constants.blocks_between_false_alarms,
-                    least_scale / std::sqrt(static_cast<Scalar>(constants.block_samples))),
+          detector_(constants.sizes.output_count, torques, constants.blocks_between_false_alarms),
           bank_(constants.sizes.output_count, torques),
           frozen_(extent<sum(n, m)>(joints() + outputs()), joints()),
           repeats_limit_(2 * std::log(constants.blocks_between_false_alarms *
@@ -167,7 +160,7 @@ class Monitor {
         const int outputs = sizes.output_count;
         const std::int64_t tick =
             Motion::template Map<Scalar, n>::cost(joints, lags, 3) + tool_columns_cost(joints, outputs) +
-            FrozenWatch<Scalar, 1>::cost * (joints + outputs) + std::int64_t{outputs} * (function_cost + 33);
+            FrozenWatch<Scalar, 1>::cost * (joints + outputs) + std::int64_t{outputs} * (function_cost + 30);
         using Bank = CauseBank<Scalar, m>;
         return tick + ChangeDetector<Scalar, m>::cost(outputs) + catch_up * Bank::cost_of_add(outputs) +
                std::max(Bank::cost_of_start(outputs, history), Bank::cost_of_judge(outputs));
@@ -212,10 +205,7 @@ class Monitor {
         motion_.push(Pose{{observation.position}});
         for (int k = 0; k < outputs(); ++k) {
             deviations_[k] = observation.standard_deviation[k];
-            const Scalar now = (observation.output[k] - observation.prediction[k]) / deviations_[k];
-            const Scalar held = (observation.output[k] - observation.held_prediction[k]) / deviations_[k];
-            using std::abs;
-            scaled_[k] = now * held <= 0 ? Scalar(0) : bounded(abs(held) < abs(now) ? held : now, 1);
+            scaled_[k] = bounded((observation.output[k] - observation.prediction[k]) / deviations_[k], 1);
         }
         innovations_.push(scaled_.data());
         for (int k = 0; k < outputs(); ++k) {
@@ -242,10 +232,6 @@ class Monitor {
     void accumulate() noexcept {
         const int middle = constants_->lags / 2;
         const Scalar share = 1 / static_cast<Scalar>(constants_->block_samples);
-        for (int i = 0; i < joints(); ++i) {
-            using std::abs;
-            fastest_ = std::max(fastest_, Scalar(abs(xi_[3 * i + 1])));
-        }
         for (int k = 0; k < outputs(); ++k) {
             OutputBlock<Scalar>& sum = block_[k];
             sum.innovation += share * innovations_.row(middle)[k];
@@ -270,15 +256,11 @@ class Monitor {
         ends_ns_[slot(newest_)] = time_ns;
         unbroken_ = follows_ ? std::min(unbroken_ + 1, history) : 1;
         follows_ = true;
-        since_renewal_ += moves() ? 1 : 0;
+        ++since_renewal_;
     }
-
-    /// In the block at hand, any joint.
-    [[nodiscard]] bool moves() const noexcept { return constants_->speed.of(fastest_) > 0; }
 
     void drop_block() noexcept {
         samples_ = 0;
-        fastest_ = 0;
         for (int k = 0; k < outputs(); ++k) {
             block_[k] = {};
         }
@@ -404,8 +386,7 @@ class Monitor {
     FrozenWatch<Scalar, sum(n, m)> frozen_;
     Scalar repeats_limit_; ///< evidence of a channel that repeats itself
     Change change_;
-    int samples_ = 0;    ///< of the block at hand …
-    Scalar fastest_ = 0; ///< … and the largest speed of any joint in it
+    int samples_ = 0; ///< of the block at hand
     std::int64_t newest_ = 0, onset_ = 0, next_ = 0, alarm_ = 0;
     int unbroken_ = 0; ///< blocks up to the newest without a gap
     int since_renewal_ = 0;
