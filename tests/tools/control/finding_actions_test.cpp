@@ -133,15 +133,15 @@ TEST_CASE("an offset of the torque that is compensated makes no second worse, an
 }
 
 TEST_CASE("a change whose action is to stop stops the loop within four seconds, by its name") {
-    const std::string fault = R"([{"kind": "push", "joint": 1, "torque_nm": 2.5, "from_s": 24}])";
-    const Outcome outcome = run(fault, {"bias_moved=stop"}, 30);
+    const std::string fault = R"([{"kind": "friction_step", "factor": 3, "from_s": 40}])";
+    const Outcome outcome = run(fault, {"friction_changed=stop"}, 46);
     CHECK(outcome.state == LoopState::stopped);
     CHECK(outcome.cause == StopCause::finding);
     CHECK(std::string(name(outcome.cause)) == "finding");
     REQUIRE(outcome.actions.size() == 1);
-    CHECK(outcome.actions.front().cause == Cause::bias);
-    CHECK(outcome.actions.front().time_s < 27.5);
-    CHECK(outcome.end_s < 28);
+    CHECK(outcome.actions.front().cause == Cause::friction);
+    CHECK(outcome.actions.front().time_s < 43.5);
+    CHECK(outcome.end_s < 44);
 }
 
 } // namespace finding_actions_test
