@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 namespace dfdyn::tools {
@@ -46,7 +47,7 @@ class AnyBoard {
     static constexpr int joints = 2;
 
     AnyBoard() = default;
-    explicit AnyBoard(Device device) : device_(device) {}
+    explicit AnyBoard(Device device) : device_(std::move(device)) {}
 
     hal::Decoded decode(const hal::Frame& frame) noexcept {
         return use_device([&](auto& device) { return device.decode(frame); }, device_);
@@ -78,7 +79,7 @@ class AnySensor {
   public:
     using Device = std::variant<hal::icub::StrainBoard, hal::RobotousRft, hal::AtiNetcan, DbcSensor>;
 
-    explicit AnySensor(Device device) : device_(device) {}
+    explicit AnySensor(Device device) : device_(std::move(device)) {}
 
     hal::Decoded decode(const hal::Frame& frame) noexcept {
         return use_device([&](auto& device) { return device.decode(frame); }, device_);

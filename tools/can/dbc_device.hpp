@@ -9,6 +9,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -71,7 +72,7 @@ class DbcJoint {
         bool claims_effort = true;
     };
 
-    explicit DbcJoint(const Config& config) noexcept : config_(config) {}
+    explicit DbcJoint(Config config) noexcept : config_(std::move(config)) {}
 
     [[nodiscard]] const Config& config() const noexcept { return config_; }
     [[nodiscard]] bool claims(std::uint32_t id) const noexcept;

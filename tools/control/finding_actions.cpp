@@ -52,6 +52,11 @@ Cause cause_named(const std::string& text, const std::string& option) {
                      text + "\"");
 }
 
+InputError no_such_action(Cause cause, const std::string& text, const std::string& option) {
+    return InputError(option + ": " + dfdyn::name(cause) + ": expected " + actions_of(cause) + ", found \"" +
+                      text + "\"");
+}
+
 } // namespace
 
 const char* name(FindingAction action) noexcept {
@@ -77,8 +82,7 @@ FindingActions::FindingActions(const std::vector<std::string>& choices, const st
         const auto* const action = std::ranges::find_if(
             all_actions, [&](FindingAction one) { return makes_sense(cause, one) && text == name(one); });
         if (action == all_actions.end()) {
-            throw InputError(option + ": " + dfdyn::name(cause) + ": expected " + actions_of(cause) +
-                             ", found \"" + text + "\"");
+            throw no_such_action(cause, text, option);
         }
         actions_[static_cast<std::size_t>(cause)] = *action;
     }

@@ -89,11 +89,11 @@ class FocBoard {
         value.position_reason = encoder_fault_ ? Reason::encoder_fault : Reason::ok;
         value.raw_zero = counts == 0;
         value.position_rad = counts * radians_per_count / config_.motor_per_joint + config_.zero_rad;
-        const auto current_mA = load_little<std::int16_t>(frame.data.data());
-        value.effort_reason = device_fault_           ? Reason::device_fault
-                              : is_at_end(current_mA) ? Reason::output_saturated
-                                                      : Reason::ok;
-        value.effort = 1e-3 * current_mA;
+        const auto milliamperes = load_little<std::int16_t>(frame.data.data());
+        value.effort_reason = device_fault_             ? Reason::device_fault
+                              : is_at_end(milliamperes) ? Reason::output_saturated
+                                                        : Reason::ok;
+        value.effort = 1e-3 * milliamperes;
         return decoded;
     }
 
