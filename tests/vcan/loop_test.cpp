@@ -33,6 +33,13 @@ std::string call(const std::string& arguments, const std::string& scenario = "")
            (scenario.empty() ? data + "/scenarios/small_arm_loop.json" : scenario);
 }
 
+/// The small arm's scenario with another field, as a file in `directory`.
+std::string scenario_with(const TemporaryDirectory& directory, const std::string& field) {
+    std::string text = file_content(data + "/scenarios/small_arm_loop.json");
+    text.insert(text.find(R"("encoders")"), field + ", ");
+    return directory.write("s.json", text);
+}
+
 /// Both programs print so many lines when they end.
 constexpr std::size_t loop_lines = 4, plant_lines = 2;
 
@@ -108,11 +115,8 @@ TEST_CASE("a loop whose arm falls silent stops by itself, and says why", "[virtu
 
 TEST_CASE("a plant loses the frames that its scenario's faults say, from their time on", "[virtual_time]") {
     const TemporaryDirectory directory;
-    std::string text = file_content(data + "/scenarios/small_arm_loop.json");
-    const std::string place = R"("encoders")";
-    text.replace(text.find(place), place.size(),
-                 R"("faults": [{"kind": "cycles_lost", "cycles": 1000, "at_s": 1.5}], "encoders")");
-    const std::string scenario = directory.write("s.json", text);
+    const std::string scenario =
+        scenario_with(directory, R"("faults": [{"kind": "cycles_lost", "cycles": 1000, "at_s": 1.5}])");
     const std::string said = undisturbed(
         [&] {
             const Background plant(call("plant --can vcan0", scenario));
@@ -127,11 +131,8 @@ TEST_CASE("a plant loses the frames that its scenario's faults say, from their t
 TEST_CASE("over three lost cycles and a loop that is late no command steps by a tenth of its limit",
           "[virtual_time]") {
     const TemporaryDirectory directory;
-    std::string text = file_content(data + "/scenarios/small_arm_loop.json");
-    const std::string place = R"("encoders")";
-    text.replace(text.find(place), place.size(),
-                 R"("faults": [{"kind": "cycles_lost", "cycles": 3, "at_s": 1}], "encoders")");
-    const std::string scenario = directory.write("s.json", text);
+    const std::string scenario =
+        scenario_with(directory, R"("faults": [{"kind": "cycles_lost", "cycles": 3, "at_s": 1}])");
     const std::string said = undisturbed([&] {
         const Background plant(call("plant --can vcan0", scenario));
         const Background loop(call("loop --can vcan0", scenario));
@@ -199,11 +200,8 @@ TEST_CASE("beside a flood a tick reads no more than its bound; the loop goes on,
 TEST_CASE("over the bus a loop learns the payload of the arm that it moves", "[virtual_time]") {
     const TemporaryDirectory directory;
     const auto path = [&](const std::string& name) { return (directory.path() / name).string(); };
-    std::string text = file_content(data + "/scenarios/small_arm_loop.json");
-    const std::string place = R"("encoders")";
-    text.replace(text.find(place), place.size(),
-                 R"("payloads": [{"mass_kg": 0.5, "centre_m": [0, 0, 0]}], "encoders")");
-    const std::string scenario = directory.write("s.json", text);
+    const std::string scenario =
+        scenario_with(directory, R"("payloads": [{"mass_kg": 0.5, "centre_m": [0, 0, 0]}])");
     const std::string nominal = run(call("loop --simulate --duration 10.1 -o " + path("nominal"), scenario));
     run(std::string(DFDYN_PROGRAM) + " train --outputs tau --model P --own-motion --starts 1 --tip tool" +
         robot + " --effects viscous_friction,rotor_inertia --log " + path("nominal/nominal.csv") + " -o " +

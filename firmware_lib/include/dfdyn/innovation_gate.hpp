@@ -107,8 +107,7 @@ class InnovationGate {
         } else if (count_ < (changed_ ? settling : 1) * patience_) {
             ++count_;
         } else if (patience_ > 0 && !changed_) {
-            changed_ = change_pending_ = true;
-            count_ = settling * patience_;
+            report_change();
         }
     }
 
