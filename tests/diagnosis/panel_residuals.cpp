@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/diagnosis/panel_setup.hpp"
+#include "tools/common/linear_algebra.hpp"
 #include "tools/recording/zero_phase_derivatives.hpp"
-
-#include <Eigen/QR>
 
 #include <cmath>
 
@@ -55,7 +54,7 @@ std::vector<std::vector<double>> residuals() {
                                                     motion.position.col(joint).segment(50, inner),
                                                     motion.velocity.col(joint).segment(50, inner));
         const Eigen::VectorXd left =
-            current.col(joint) - columns * columns.colPivHouseholderQr().solve(current.col(joint));
+            current.col(joint) - columns * tools::least_squares(columns, Eigen::VectorXd(current.col(joint)));
         result.emplace_back(left.begin(), left.end());
     }
     return result;

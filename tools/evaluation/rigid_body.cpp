@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/evaluation/rigid_body.hpp"
 
+#include "tools/common/linear_algebra.hpp"
 #include "tools/common/to_vector.hpp"
 #include "tools/physics/chain_model.hpp"
 #include "tools/physics/machine_size.hpp"
@@ -10,7 +11,7 @@
 #include "tools/robot/motion.hpp"
 #include "tools/training/column_selection.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -84,9 +85,9 @@ class TriangularFactor {
     static constexpr Index block = 400;
 
     void reduce() {
-        const Eigen::HouseholderQR<MatrixXd> qr(rows_.topRows(filled_));
-        filled_ = std::min(filled_, rows_.cols());
-        rows_.topRows(filled_) = qr.matrixQR().topRows(filled_).triangularView<Eigen::Upper>();
+        const MatrixXd reduced = triangular_factor(rows_.topRows(filled_));
+        filled_ = reduced.rows();
+        rows_.topRows(filled_) = reduced;
     }
 
     MatrixXd rows_;
@@ -135,8 +136,11 @@ ReducedRows reduce_rows(MotionColumns& columns, std::span<const Recording> recor
 /// rows to units of the outputs' deviations, for `sizes` as of select_columns().
 VectorXd solve(const MatrixXd& columns, const VectorXd& right, double scale, const VectorXd& sizes) {
     const std::vector<Index> chosen = select_columns(scale * columns, column_threshold, sizes).columns;
+    const VectorXd found = least_squares(columns(Eigen::all, chosen), right);
     VectorXd solution = VectorXd::Zero(columns.cols());
-    solution(chosen) = MatrixXd(columns(Eigen::all, chosen)).colPivHouseholderQr().solve(right);
+    for (Index i = 0; i < found.size(); ++i) {
+        solution[chosen[static_cast<std::size_t>(i)]] = found[i];
+    }
     return solution;
 }
 

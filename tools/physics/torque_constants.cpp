@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/physics/torque_constants.hpp"
 
+#include "tools/common/linear_algebra.hpp"
 #include "tools/common/quantile.hpp"
 #include "tools/physics/chain_model.hpp"
 #include "tools/physics/robot_regressor.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <iterator>
@@ -43,7 +44,7 @@ double gain_of(const VectorXd& current, const VectorXd& torque, const VectorXd& 
                double sign_velocity) {
     MatrixXd columns(current.size(), 4);
     columns << torque, velocity, (velocity / sign_velocity).array().tanh(), VectorXd::Ones(current.size());
-    return columns.colPivHouseholderQr().solve(current)[0];
+    return least_squares(columns, current)[0];
 }
 
 } // namespace

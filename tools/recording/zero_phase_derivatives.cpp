@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/recording/zero_phase_derivatives.hpp"
 
+#include "tools/common/linear_algebra.hpp"
 #include "tools/recording/columns_matrix.hpp"
 #include "tools/recording/stretches.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 
 #include <utility>
 
@@ -37,11 +38,8 @@ Eigen::MatrixXd polynomial_weights(const Recording& recording, std::size_t begin
             power *= t;
         }
     }
-    const Eigen::Index terms = powers.cols();
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(powers);
-    const Eigen::MatrixXd orthogonal = qr.householderQ() * Eigen::MatrixXd::Identity(count, terms);
-    Eigen::MatrixXd weights =
-        qr.matrixQR().topRows(terms).triangularView<Eigen::Upper>().solve(orthogonal.transpose()).topRows(3);
+    const auto [q, r] = orthogonal_factors(powers);
+    Eigen::MatrixXd weights = r.triangularView<Eigen::Upper>().solve(q.transpose()).topRows(3);
     weights.row(1) /= span;
     weights.row(2) *= 2 / (span * span);
     return weights;

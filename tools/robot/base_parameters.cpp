@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/robot/base_parameters.hpp"
 
-#include <Eigen/QR>
+#include "tools/common/linear_algebra.hpp"
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -58,14 +60,10 @@ BaseParameters find_base_parameters(const Eigen::MatrixXd& regressor) {
     }
     // A column that is nothing but rounding must not be scaled up to count.
     length = (length.array() > relative_rounding * longest).select(length, longest);
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(regressor * length.cwiseInverse().asDiagonal());
-    const auto [rank, gap] = rank_at_largest_drop(qr.matrixR().diagonal().cwiseAbs());
+    const auto [r, order] = pivoted_factor(regressor * length.cwiseInverse().asDiagonal());
+    const auto [rank, gap] = rank_at_largest_drop(r.diagonal().cwiseAbs());
     const Eigen::MatrixXd scaled =
-        qr.matrixR()
-            .topLeftCorner(rank, rank)
-            .triangularView<Eigen::Upper>()
-            .solve(qr.matrixR().topRows(rank).triangularView<Eigen::Upper>().toDenseMatrix());
-    const auto& order = qr.colsPermutation().indices();
+        r.topLeftCorner(rank, rank).triangularView<Eigen::Upper>().solve(r.topRows(rank));
     std::vector<Eigen::Index> taken(static_cast<std::size_t>(rank));
     std::iota(taken.begin(), taken.end(), 0);
     std::ranges::sort(taken, {}, [&order](Eigen::Index i) { return order[i]; });

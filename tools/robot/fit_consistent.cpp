@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/common/linear_algebra.hpp"
 #include "tools/robot/fit_parameters.hpp"
 #include "tools/robot/log_cholesky.hpp"
 #include "tools/robot/regressor.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <unsupported/Eigen/LevenbergMarquardt>
 
 #include <algorithm>
@@ -84,8 +85,7 @@ void add_data(const FitData& data, const FitNoise& noise, Problem& problem) {
     Eigen::MatrixXd equations = Eigen::MatrixXd::Zero(std::max(data.regressor.rows(), p + 1), p + 1);
     equations.topLeftCorner(data.regressor.rows(), p) = weights.asDiagonal() * data.regressor;
     equations.col(p).head(data.regressor.rows()) = weights.cwiseProduct(stacked(data.outputs));
-    const Eigen::MatrixXd r =
-        Eigen::HouseholderQR<Eigen::MatrixXd>(equations).matrixQR().topRows(p).triangularView<Eigen::Upper>();
+    const Eigen::MatrixXd r = triangular_factor(equations).topRows(p);
     problem.data_factor = r.leftCols(p);
     problem.data_target = r.col(p);
 }

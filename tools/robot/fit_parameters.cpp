@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/robot/fit_parameters.hpp"
 
+#include "tools/common/linear_algebra.hpp"
 #include "tools/robot/regressor.hpp"
 
-#include <Eigen/SVD>
+#include <Eigen/Core>
 
 #include <cmath>
 #include <limits>
@@ -53,21 +54,19 @@ Solution solve(const Eigen::MatrixXd& columns, const Eigen::VectorXd& error, con
     Eigen::VectorXd length = weighted.colwise().norm();
     length = (length.array() > 0).select(length, 1.0);
     weighted *= length.cwiseInverse().asDiagonal();
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(weighted, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const Eigen::VectorXd& s = svd.singularValues();
+    const auto [u, s, v] = singular_values(weighted);
     const Eigen::VectorXd inverse = (s.array() > not_excited * s[0]).select(s.cwiseInverse(), 0.0);
-    const Eigen::MatrixXd spread = svd.matrixV() * inverse.asDiagonal();
+    const Eigen::MatrixXd spread = v * inverse.asDiagonal();
     Solution solution;
     solution.condition = s[0] / s[s.size() - 1];
-    solution.change =
-        (spread * (svd.matrixU().transpose() * weight.cwiseProduct(error))).cwiseQuotient(length);
+    solution.change = (spread * (u.transpose() * weight.cwiseProduct(error))).cwiseQuotient(length);
     // Each output's rows count with the correlation of its noise: (A⁺) diag(correlation) (A⁺)ᵀ.
     const Eigen::VectorXd root = row_weights(noise.correlation_length.cwiseSqrt(), samples);
-    const Eigen::MatrixXd middle = root.asDiagonal() * svd.matrixU() * spread.transpose();
+    const Eigen::MatrixXd middle = root.asDiagonal() * u * spread.transpose();
     solution.deviation = middle.colwise().norm().transpose().cwiseQuotient(length);
     for (Eigen::Index i = 0; i < s.size(); ++i) {
         for (Eigen::Index j = 0; inverse[i] == 0 && j < columns.cols(); ++j) {
-            if (std::abs(svd.matrixV()(j, i)) > negligible) {
+            if (std::abs(v(j, i)) > negligible) {
                 solution.deviation[j] = std::numeric_limits<double>::infinity();
             }
         }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/setup_check/signed_fit.hpp"
 
-#include <Eigen/Cholesky>
+#include "tools/common/linear_algebra.hpp"
+
+#include <Eigen/Core>
 
 #include <cmath>
 #include <vector>
@@ -65,7 +67,8 @@ SignedFit fit_signed(const VectorXd& output, const MatrixXd& free, const MatrixX
         }
         const VectorXd scale = gram.diagonal()(chosen).cwiseSqrt().cwiseInverse();
         const MatrixXd scaled = scale.asDiagonal() * gram(chosen, chosen) * scale.asDiagonal();
-        const VectorXd found = scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * product(chosen));
+        const VectorXd found =
+            scale.asDiagonal() * solve_symmetric(scaled, VectorXd(scale.asDiagonal() * product(chosen)));
         if (!found.allFinite() || found.minCoeff() < 0) {
             continue;
         }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/column_selection.hpp"
 
-#include <Eigen/QR>
+#include "tools/common/linear_algebra.hpp"
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -20,11 +22,11 @@ ColumnChoice select_columns(const Eigen::MatrixXd& psi, double threshold, const 
     for (Index c = 0; c < psi.cols(); ++c) {
         unit.col(c) *= effects[c] > least ? 1 / norms[c] : 0;
     }
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(unit);
+    const auto [r, order] = pivoted_factor(unit);
     ColumnChoice choice;
-    for (Index j = 0; j < std::min(psi.rows(), psi.cols()); ++j) {
-        if (std::abs(qr.matrixQR()(j, j)) > threshold) {
-            choice.columns.push_back(qr.colsPermutation().indices()[j]);
+    for (Index j = 0; j < r.rows(); ++j) {
+        if (std::abs(r(j, j)) > threshold) {
+            choice.columns.push_back(order[j]);
         }
     }
     std::sort(choice.columns.begin(), choice.columns.end());

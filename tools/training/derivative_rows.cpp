@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/derivative_rows.hpp"
 
-#include <Eigen/QR>
+#include "tools/common/linear_algebra.hpp"
+
+#include <Eigen/Core>
 
 #include <cmath>
 
@@ -67,7 +69,7 @@ Eigen::VectorXd polynomial_derivative_row(int order, int degree, int lags) {
             powers(lag, power) = std::pow(-static_cast<double>(lag) / lags, static_cast<double>(power));
         }
     }
-    const Eigen::MatrixXd fit = powers.completeOrthogonalDecomposition().pseudoInverse();
+    const Eigen::MatrixXd fit = pseudo_inverse(powers);
     return fit.row(order).transpose();
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/input_rows.hpp"
 
+#include "tools/common/linear_algebra.hpp"
 #include "tools/training/derivative_rows.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
@@ -117,7 +118,7 @@ class StructuredRows final : public RowFamily {
 class FreeRows final : public RowFamily {
   public:
     FreeRows(int lags, int count, const MatrixXd& pooled_factor)
-        : lags_(lags), free_(count - 1), factor_(pooled_factor), basis_(pooled_factor.inverse()) {}
+        : lags_(lags), free_(count - 1), factor_(pooled_factor), basis_(inverse_matrix(pooled_factor)) {}
 
     Bounds bounds() const override {
         const Index count = free_ * (lags_ + 1);

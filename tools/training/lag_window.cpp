@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/lag_window.hpp"
 
-#include <Eigen/QR>
+#include "tools/common/linear_algebra.hpp"
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +20,7 @@ constexpr std::size_t block_rows = 512;
 Eigen::MatrixXd stacked_factor(const Eigen::MatrixXd& factor, const Eigen::MatrixXd& rows) {
     Eigen::MatrixXd stacked(factor.rows() + rows.rows(), factor.cols());
     stacked << factor, rows;
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
-    return qr.matrixQR().topRows(factor.cols()).triangularView<Eigen::Upper>();
+    return triangular_factor(stacked);
 }
 
 RowList block_of(const RowList& rows, std::size_t first) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/random_features.hpp"
 
+#include "tools/common/linear_algebra.hpp"
 #include "tools/training/random_source.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -18,9 +19,9 @@ constexpr std::uint32_t frequency_stream = 0xffffffff; // the optimiser's starts
 /// Uniformly distributed orthogonal matrix: Q of a normal matrix, with the signs that make R's diagonal
 /// positive.
 Eigen::MatrixXd random_rotation(Eigen::Index size, NormalSource& random) {
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(random.matrix(size, size));
-    const Eigen::VectorXd signs = qr.matrixQR().diagonal().array().sign();
-    return Eigen::MatrixXd(qr.householderQ()) * signs.asDiagonal();
+    const auto [q, r] = orthogonal_factors(random.matrix(size, size));
+    const Eigen::VectorXd signs = r.diagonal().array().sign();
+    return q * signs.asDiagonal();
 }
 
 RowMajor orthogonal_frequencies(Eigen::Index count, Eigen::Index inputs, NormalSource& random) {

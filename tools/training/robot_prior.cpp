@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/robot_prior.hpp"
 
+#include "tools/common/linear_algebra.hpp"
 #include "tools/training/random_source.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +55,7 @@ MatrixXd expressed_by(const TrainingSetup& setup, const ColumnChoice& choice, co
     MatrixXd all(data.rows() + random.rows(), data.cols());
     all << data, share * random;
     const MatrixXd chosen = all(Eigen::all, choice.columns) * choice.scale.asDiagonal();
-    return chosen.colPivHouseholderQr().solve(all);
+    return least_squares(chosen, all);
 }
 
 } // namespace
@@ -74,8 +74,8 @@ ParameterPrior robot_prior(const TrainingSetup& setup, const ColumnChoice& choic
     const MatrixXd root = expressed * physics.nominal_deviation.asDiagonal();
     const MatrixXd covariance = root * root.transpose();
     const Index p = covariance.rows();
-    return {expressed * physics.nominal,
-            parameter_variance_factor(setup) * covariance.ldlt().solve(MatrixXd::Identity(p, p))};
+    return {expressed * physics.nominal, parameter_variance_factor(setup) *
+                                             solve_symmetric(covariance, MatrixXd(MatrixXd::Identity(p, p)))};
 }
 
 } // namespace dfdyn::tools

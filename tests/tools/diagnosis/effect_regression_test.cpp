@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/common/linear_algebra.hpp"
 #include "tools/diagnosis/effect_regression.hpp"
 
 #include "tests/support/catch.hpp"
@@ -6,7 +7,6 @@
 #include "tests/tools/diagnosis/swinging_arm.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 
 #include <cmath>
 #include <random>
@@ -51,14 +51,13 @@ TEST_CASE("what a fit spends is the diagonal of its hat matrix, and in slow bins
     EffectRegression regression(rows, MatrixXd::Ones(measured.time_s.size(), 1), rows.frames());
     set_columns(regression, columns);
     const std::vector<Index> fitted{0, 1, 2, 3, 4, 5};
-    const MatrixXd covariance = regression.weighed_sums().gram.inverse();
+    const MatrixXd covariance = inverse_matrix(regression.weighed_sums().gram);
 
     MatrixXd spectral(rows.count(), 6);
     for (Index i = 0; i < 6; ++i) {
         spectral.col(i) = rows.analyse(columns.col(i)).reshaped();
     }
-    const MatrixXd basis =
-        spectral.householderQr().householderQ() * MatrixXd::Identity(spectral.rows(), spectral.cols());
+    const MatrixXd basis = orthogonal_factors(spectral).q;
     const VectorXd expected =
         basis.rowwise().squaredNorm().reshaped(rows.bins(), rows.frames()).rowwise().sum();
     const VectorXd spent = regression.spent(0, fitted, covariance);
@@ -80,8 +79,8 @@ TEST_CASE("the noise where many columns were fitted is not taken for less than i
         EffectRegression regression(rows, white_noise(measured.time_s.size(), 1, engine), rows.frames());
         set_columns(regression, columns);
         const WeighedSums sums = regression.weighed_sums();
-        const MatrixXd left = regression.residual(0, sums.gram.ldlt().solve(sums.moment));
-        const VectorXd spent = regression.spent(0, fitted, sums.gram.inverse());
+        const MatrixXd left = regression.residual(0, solve_symmetric(sums.gram, sums.moment));
+        const VectorXd spent = regression.spent(0, fitted, inverse_matrix(sums.gram));
         // bin 5: the first that no persistence is looked for in
         estimated += noise_spectrum(left, rows.filled(0), spent)[5] / trials;
         naive += noise_spectrum(left, rows.filled(0), VectorXd::Zero(rows.bins()))[5] / trials;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/common/linear_algebra.hpp"
 #include "tools/diagnosis/effect_search.hpp"
 
 #include "tests/support/catch.hpp"
@@ -61,7 +62,7 @@ TEST_CASE("what was planted is found, with its coefficients; noise alone yields 
         const std::vector<ChosenShape> chosen = search_effects(problem, {});
         CHECK(found(problem) == std::vector<std::size_t>{7, 31});
         const EffectFit fit = fit_effects(problem, chosen);
-        const VectorXd exact = columns(Eigen::all, fit.columns).colPivHouseholderQr().solve(target);
+        const VectorXd exact = least_squares(columns(Eigen::all, fit.columns), target);
         CHECK((fit.coefficients - exact).cwiseAbs().maxCoeff() < 1e-8);
     }
 }
@@ -140,7 +141,7 @@ TEST_CASE("nuisance is paid for by what it was before anything was measured") {
     REQUIRE(fit.columns.size() == 2);
     MatrixXd system = (columns.leftCols(2).transpose() * columns.leftCols(2)).eval();
     system(0, 0) += 1 / (0.058 * 0.058);
-    const VectorXd exact = system.ldlt().solve(columns.leftCols(2).transpose() * target);
+    const VectorXd exact = solve_symmetric(system, VectorXd(columns.leftCols(2).transpose() * target));
     CHECK((fit.coefficients - exact).cwiseAbs().maxCoeff() < 1e-9);
 }
 
@@ -184,7 +185,7 @@ TEST_CASE("the held-out score is that of each block by the least squares of all 
             others << columns(Eigen::seqN(0, block * size), chosen),
                 columns(Eigen::seqN((block + 1) * size, rows - (block + 1) * size), chosen);
             wanted << target.head(block * size), target.tail(rows - (block + 1) * size);
-            const VectorXd fit = others.colPivHouseholderQr().solve(wanted);
+            const VectorXd fit = least_squares(others, wanted);
             const VectorXd here = target.segment(block * size, size);
             const VectorXd left = here - columns(Eigen::seqN(block * size, size), chosen) * fit;
             score += 0.5 * (here.squaredNorm() - left.squaredNorm());

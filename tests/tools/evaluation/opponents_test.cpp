@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/common/linear_algebra.hpp"
 #include "tools/evaluation/opponents.hpp"
 
 #include "tests/support/catch.hpp"
@@ -69,7 +70,7 @@ Eigen::Vector3d batch_coefficients(const std::vector<double>& series, std::size_
         information += x * x.transpose();
         right += x * series[t];
     }
-    return information.ldlt().solve(right);
+    return solve_symmetric(information, right);
 }
 
 TEST_CASE("every forecast of the autoregression is the batch solution of the samples before it") {

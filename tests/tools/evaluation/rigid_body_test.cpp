@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/common/linear_algebra.hpp"
 #include "tools/evaluation/rigid_body.hpp"
 
 #include "tests/support/catch.hpp"
@@ -7,8 +8,6 @@
 #include "tools/physics/chain_model.hpp"
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/robot/regressor.hpp"
-
-#include <Eigen/QR>
 
 #include <array>
 #include <cmath>
@@ -158,7 +157,7 @@ VectorXd weighted_solution(const Recording& recording, const std::array<double, 
     VectorXd right(2 * rows);
     columns << joint_rows(recording, 0) / deviation[0], joint_rows(recording, 1) / deviation[1];
     right << measured(recording, 0) / deviation[0], measured(recording, 1) / deviation[1];
-    return columns.householderQr().solve(right);
+    return least_squares(columns, right);
 }
 
 std::array<double, 2> left_over(const Recording& recording, const VectorXd& parameters) {
@@ -198,7 +197,7 @@ TEST_CASE("with the robot file's inertia, gain and friction are the least-square
         MatrixXd columns(rows.rows(), 4);
         columns << rows.leftCols<6>() * planar_parameters(),
             rows.middleCols<3>(6 + 3 * static_cast<Index>(joint));
-        const VectorXd truth = columns.householderQr().solve(measured(training, joint));
+        const VectorXd truth = least_squares(columns, measured(training, joint));
         CHECK(fits[0].output_gain[joint] == Approx(truth[0]).epsilon(1e-8));
         for (std::size_t term = 0; term < 3; ++term) {
             CHECK(fits[0].friction[3 * joint + term] ==

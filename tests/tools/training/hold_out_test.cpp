@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/common/linear_algebra.hpp"
 #include "tools/training/hold_out.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tools/training/random_source.hpp"
-
-#include <Eigen/LU>
 
 #include <cmath>
 #include <limits>
@@ -49,7 +48,7 @@ TEST_CASE("the hold-out error is that of the kernel's prediction of what it has 
         const MatrixXd seen = kernel.topLeftCorner(training, training) +
                               point.noise_ratio * MatrixXd::Identity(training, training);
         const MatrixXd predicted =
-            kernel.bottomLeftCorner(20, training) * seen.inverse() * outputs.topRows(training);
+            kernel.bottomLeftCorner(20, training) * tools::inverse_matrix(seen) * outputs.topRows(training);
         CHECK(point.error == Approx(relative_error(predicted, outputs.bottomRows(20))).epsilon(1e-6));
     }
     const tools::HoldOutPoint& best = tools::best_point(points);
@@ -77,8 +76,8 @@ TEST_CASE("the hold-out error of physics is that of ridge regression") {
     VectorXd parameters;
     const VectorXd y = outputs.topRows(training).reshaped();
     for (int i = 0; i < 50; ++i) {
-        parameters = (design.transpose() * weights.asDiagonal() * design).inverse() * design.transpose() *
-                     weights.asDiagonal() * y;
+        parameters = tools::inverse_matrix(design.transpose() * weights.asDiagonal() * design) *
+                     design.transpose() * weights.asDiagonal() * y;
         const VectorXd residual = y - design * parameters;
         weights.head(training).setConstant(training / residual.head(training).squaredNorm());
         weights.tail(training).setConstant(training / residual.tail(training).squaredNorm());

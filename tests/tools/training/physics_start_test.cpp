@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/common/linear_algebra.hpp"
 #include "tools/training/physics_start.hpp"
 
 #include "tests/support/catch.hpp"
@@ -132,7 +133,7 @@ TEST_CASE("SPK's start in block-arrow form is the solution for all unknowns") {
         problem.know();
     }
     const tools::JointStart start = tools::joint_start(problem.physics(), problem.prior);
-    const MatrixXd inverse = problem.information(true, true).fullPivLu().inverse();
+    const MatrixXd inverse = tools::inverse_matrix(problem.information(true, true));
     const VectorXd truth = inverse * problem.right_hand_side(true, true);
     CHECK(error_of(start.physics.parameters, truth.tail(parameters)) < 1e-9);
     const MatrixXd physics = covariance(start.physics.unit_upper, start.physics.diagonal);
@@ -160,7 +161,7 @@ TEST_CASE("P's start is the solution of ridge regression") {
         problem.know();
     }
     const tools::JointStart start = tools::parametric_start(problem.physics(), problem.prior);
-    const MatrixXd inverse = problem.information(false, true).fullPivLu().inverse();
+    const MatrixXd inverse = tools::inverse_matrix(problem.information(false, true));
     CHECK(error_of(start.physics.parameters,
                    (inverse * problem.right_hand_side(false, true)).tail(parameters)) < 1e-9);
     CHECK(error_of(covariance(start.physics.unit_upper, start.physics.diagonal),

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/common/linear_algebra.hpp"
 #include "tools/training/robot_prior.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tests/tools/training/synthetic_physics.hpp"
-
-#include <Eigen/LU>
 
 namespace robot_prior_test {
 
@@ -76,7 +75,7 @@ TEST_CASE("the robot's knowledge of a column left out goes to the columns that r
     const double samples = tools::residual_correlation_s / arm.data.sample_period_s;
     REQUIRE(samples > 1);
     CHECK(tools::parameter_variance_factor(setup) == Approx(samples));
-    const MatrixXd covariance = samples * prior.information.inverse();
+    const MatrixXd covariance = samples * tools::inverse_matrix(prior.information);
     const MatrixXd expected = deviation.cwiseQuotient(scale).cwiseAbs2().asDiagonal();
     CHECK((covariance - expected).norm() < 1e-6 * expected.norm());
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/common/linear_algebra.hpp"
 #include "tools/training/start_state.hpp"
 
 #include "tests/support/catch.hpp"
@@ -6,9 +7,6 @@
 #include "tests/tools/training/arm_data.hpp"
 #include "tools/training/input_map.hpp"
 #include "tools/training/random_features.hpp"
-
-#include <Eigen/LU>
-#include <Eigen/QR>
 
 #include <cmath>
 #include <limits>
@@ -78,7 +76,7 @@ TEST_CASE("the start's U D U' is the inverse of the information matrix") {
     const MatrixXd upper = unit_upper(start, 2 * features);
     const VectorXd diagonal = Eigen::Map<const VectorXd>(start.diagonal.data(), 2 * features);
     const MatrixXd covariance = upper * diagonal.asDiagonal() * upper.transpose();
-    const MatrixXd truth = information.fullPivLu().inverse();
+    const MatrixXd truth = tools::inverse_matrix(information);
     CHECK((covariance - truth).norm() < 1e-10 * truth.norm());
 }
 
@@ -104,7 +102,7 @@ TEST_CASE("the start's weights are the least-squares solution") {
                          problem.model.outputs.offset[static_cast<std::size_t>(k)]) /
                         problem.model.outputs.noise_std[static_cast<std::size_t>(k)];
         }
-        const VectorXd truth = design.colPivHouseholderQr().solve(target);
+        const VectorXd truth = tools::least_squares(design, target);
         const VectorXd found =
             Eigen::Map<const VectorXd>(start.weights.data() + k * 2 * features, 2 * features);
         CHECK((found - truth).norm() < 1e-9 * truth.norm());
