@@ -6,7 +6,7 @@ foreach(config IN ITEMS Debug Release RelWithDebInfo MinSizeRel)
     string(TOUPPER "${config}" config_upper)
     string(APPEND dfdyn_config_flags "$<$<CONFIG:${config}>:${CMAKE_CXX_FLAGS_${config_upper}}>")
 endforeach()
-set(dfdyn_target_flags "$<JOIN:$<REMOVE_DUPLICATES:$<FILTER:$<TARGET_PROPERTY:dfdyn_tools,COMPILE_OPTIONS>,EXCLUDE,^-W>>, >")
+set(dfdyn_target_flags "$<JOIN:$<REMOVE_DUPLICATES:$<FILTER:$<TARGET_PROPERTY:dfdyn_tools,COMPILE_OPTIONS>,EXCLUDE,^(-W|--param)>>, >")
 
 configure_file(build_flags.cpp.in "${CMAKE_CURRENT_BINARY_DIR}/build_flags.cpp.genex" @ONLY)
 file(GENERATE
