@@ -3,7 +3,8 @@
 # loop_demo.sh DFDYN OUT [--vcan]: a loop that learns the arm it moves, on the simulated UR5 and on the iCub's right arm, over the
 # frames of their devices. For each arm: half a minute under the nominal rigid body, without payload, for the hyperparameters; then a
 # minute and a half of another motion with friction and a payload that nothing knows of, and a second payload at 65 s, under the
-# nominal rigid body and under a model that begins with nothing learned. Prints both tables.
+# nominal rigid body and under a model that begins with nothing learned. Prints the tables, and without --vcan recursive least
+# squares of rigid body and friction (model P, a memory of 8 s) beside them.
 # Without --vcan in simulated time, frames in memory, in a minute; writes OUT/ARM/tracking.{csv,svg,html} and recordings.
 # With --vcan arm and loop are two programs on a virtual CAN interface, at the devices' rates, in a user-mode Linux whose time stands
 # still while programs run, a machine per run: some 6 minutes of two cores, and 5 for that kernel the first time (build/virtual_time).
@@ -23,15 +24,20 @@ cores=$(taskset --cpu-list --pid $$ | sed -E 's/.*: //') # that we may use
 first_core=${cores%%[,-]*}
 last_core=${cores##*[,-]}
 
+# hyperparameters MODEL FOLDER URDF TIP: FOLDER/MODEL.json, from the commissioning motion.
+hyperparameters() {
+    "$dfdyn" train --robot "$3" --tip "$4" --log "$2/commissioning/nominal.csv" --outputs tau --model "$1" \
+        --effects viscous_friction,coulomb_friction,rotor_inertia,torque_offset --own-motion --features 60 --forgetting 0.999 \
+        --likelihood-rows 500 --starts 4 --refinement 10 -o "$2/$1.json" >"$2/$1.txt"
+}
+
 # demo SHOW FOLDER URDF TIP SCENARIO BUS: hyperparameters, then SHOW FOLDER ARM_OPTION...
 demo() {
-    local folder=$2 urdf=$data/robots/$3 scenario=$data/scenarios/$5
+    local folder=$2 urdf=$data/robots/$3 tip=$4 scenario=$data/scenarios/$5
     mkdir -p "$folder"
     sed '/"payloads"/d; s/"seed": /"seed": 1/' "$scenario" >"$folder/commissioning.json"
     "$dfdyn" loop --simulate --robot "$urdf" --scenario "$folder/commissioning.json" --duration 30 -o "$folder/commissioning" >/dev/null
-    "$dfdyn" train --robot "$urdf" --tip "$4" --log "$folder/commissioning/nominal.csv" --outputs tau --model SPK \
-        --effects viscous_friction,coulomb_friction,rotor_inertia,torque_offset --own-motion --features 60 --forgetting 0.999 \
-        --likelihood-rows 500 --starts 4 --refinement 10 -o "$folder/model.json" >"$folder/training.txt"
+    hyperparameters SPK "$folder" "$urdf" "$tip"
     "$1" "$folder" --robot "$urdf" --scenario "$scenario" --bus "$data/can/$6"
 }
 ur5=(ur5/ur5_robot.urdf ee_link ur5_loop.json)
@@ -39,8 +45,15 @@ icub=(icub_right_arm/icub_right_arm.urdf r_hand icub_loop.json)
 
 # in_memory FOLDER ARM_OPTION...
 in_memory() {
+    local loop=("$dfdyn" loop --simulate "${@:2}" --from-prior --duration 95.001)
     basename "$1"
-    "$dfdyn" loop --simulate "${@:2}" --model "$1/model.json" --from-prior --duration 95.001 -o "$1"
+    "${loop[@]}" --model "$1/SPK.json" -o "$1"
+    hyperparameters P "$1" "$3" "$tip"
+    "${loop[@]}" --model "$1/P.json" --observer-bandwidth 0 -o "$1/least_squares" >/dev/null
+    awk -F, 'BEGIN { print "beside recursive least squares, mrad\n  window (s)  least squares  learned" }
+        $1 != "learned" { next }
+        NR == FNR { least_squares[$2] = $4; next }
+        { printf "%6d to %2d%15.2f%9.2f\n", $2, $3, least_squares[$2], $4 }' "$1/least_squares/tracking.csv" "$1/tracking.csv"
 }
 
 # one_run CORE FOLDER ARM_OPTION... -- [LOOP_OPTION...]: in a machine of its own, on that core.
@@ -55,7 +68,7 @@ one_run() {
 # on_vcan FOLDER ARM_OPTION...: nominal on one core, learned on another, where there is one.
 on_vcan() {
     local folder=$1 nominal
-    local learned=(--model "$folder/model.json" --from-prior)
+    local learned=(--model "$folder/SPK.json" --from-prior)
     one_run "$first_core" "$folder/nominal" "${@:2}" -- --observer-bandwidth 0 &
     nominal=$!
     one_run "$last_core" "$folder/learned" "${@:2}" -- "${learned[@]}"
@@ -82,7 +95,7 @@ compare() {
 # again FOLDER ARM_OPTION...: the learned run once more has to give the same recording, bit for bit.
 again() {
     local sum
-    one_run "$last_core" "$1/again" "${@:2}" -- --model "$1/model.json" --from-prior
+    one_run "$last_core" "$1/again" "${@:2}" -- --model "$1/SPK.json" --from-prior
     sum=$(sha256sum <"$1/learned/learned.csv")
     if [[ $(sha256sum <"$1/again/learned.csv") != "$sum" ]]; then
         echo "the second learned run gave another recording" >&2
