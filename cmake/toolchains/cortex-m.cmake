@@ -21,7 +21,7 @@ set(CMAKE_SYSTEM_PROCESSOR ${DFDYN_CORE})
 set(CMAKE_CXX_COMPILER arm-none-eabi-g++)
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 set(CMAKE_CXX_FLAGS_INIT "-mthumb ${dfdyn_core_flags} -mfloat-abi=hard -fno-exceptions -fno-rtti \
--fno-threadsafe-statics -fno-unwind-tables -fno-asynchronous-unwind-tables -ffunction-sections -fdata-sections -DEIGEN_NO_MALLOC")
+-fno-threadsafe-statics -fno-unwind-tables -fno-asynchronous-unwind-tables -ffunction-sections -fdata-sections")
 set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG" CACHE STRING "Flags of the release build")
-# Eigen is headers only, so the host's copy serves; programs are looked for on the host.
+# Packages of headers serve as installed for the host; programs are looked for on the host.
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)

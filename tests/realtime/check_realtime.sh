@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_realtime.sh SOURCE_FOLDER EIGEN: nothing that runs within the control loop's period blocks: by clang's check of function
+# check_realtime.sh SOURCE_FOLDER: nothing that runs within the control loop's period blocks: by clang's check of function
 # effects when compiling, and by RealtimeSanitizer when running; and both find what does. Needs clang 20 or later with its
 # runtime; where there is none it says so and checks nothing.
 set -euo pipefail
@@ -21,7 +21,7 @@ if [[ -z $compiler ]] || ! "$compiler" -fsanitize=realtime -x c++ - -o "$scratch
 fi
 
 compile=("$compiler" -std=c++20 -O1 -Wfunction-effects -Werror=function-effects -fsanitize=realtime -DNDEBUG
-    -I. -Ifirmware_lib/include -Ihal/include -isystem "$2" tests/realtime/realtime.cpp)
+    -I. -Ifirmware_lib/include -Ihal/include tests/realtime/realtime.cpp)
 if "${compile[@]}" -DDFDYN_MUST_NOT_COMPILE -fsyntax-only 2>"$scratch/refused.txt"; then
     echo "realtime: a function that may not block allocates, and compiles"
     exit 1

@@ -1,18 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_bare_metal.sh COMPILER SOURCE EIGEN INCLUDE...: compiles SOURCE for a Cortex-M7 without an operating system; a failure
+# check_bare_metal.sh COMPILER SOURCE INCLUDE...: compiles SOURCE for a Cortex-M7 without an operating system; a failure
 # unless nothing is asked of the outside but moving memory and arithmetic.
 set -euo pipefail
-compiler=$1 source=$2 eigen=$3
-shift 3
+compiler=$1 source=$2
+shift 2
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-ln -s "$eigen/Eigen" "$scratch/Eigen" # the folder around it has the host's headers
-"$compiler" -std=c++20 -mthumb -mcpu=cortex-m7 -mfloat-abi=hard -mfpu=fpv5-d16 -O2 -DNDEBUG -DEIGEN_NO_MALLOC \
+"$compiler" -std=c++20 -mthumb -mcpu=cortex-m7 -mfloat-abi=hard -mfpu=fpv5-d16 -O2 -DNDEBUG \
     -ffreestanding -fno-exceptions -fno-rtti -fno-threadsafe-statics \
     -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wdouble-promotion -Werror \
-    "${@/#/-I}" -isystem "$scratch" -c "$source" -o "$scratch/object.o"
+    "${@/#/-I}" -c "$source" -o "$scratch/object.o"
 
 nm=${compiler%g++}nm
 needed=$("$nm" --undefined-only --demangle "$scratch/object.o" | sed 's/^ *[Uw] //')
