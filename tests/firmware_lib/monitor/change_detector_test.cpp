@@ -190,6 +190,64 @@ TEMPLATE_TEST_CASE("an absurd block raises no alarm and hides no later change", 
     CHECK(found <= usual + 10);
 }
 
+/// An arm that rests for half a minute between motions of 2 s. At each stop the static friction of a joint
+/// takes another level within ±1 and relaxes over a second; then only a tremble of 0.01 is left.
+class Resting {
+  public:
+    using Blocks = std::array<OutputBlock<double>, outputs>;
+    static constexpr int rest = 300, motion = 20; ///< blocks
+
+    /// Returns the next block; `push` is a torque on all joints.
+    const Blocks& next(std::mt19937_64& engine, double push = 0) {
+        before_ = now_;
+        const int phase = block_++ % (rest + motion);
+        for (std::size_t k = 0; k < outputs; ++k) {
+            OutputBlock<double>& block = now_[k];
+            block = {};
+            block.deviation = 0.3;
+            block.speed = phase < motion ? 0.4 : 0;
+            block.friction[0] = phase < motion ? 1 : 0;
+            if (phase == motion) {
+                friction_[k] = std::uniform_real_distribution<double>(-1, 1)(engine);
+            }
+            const double learned = std::exp(-(phase - motion) / 10.);
+            const double stiction = phase < motion ? 0 : friction_[k] * learned * (1 - learned) * 4;
+            const double noise = (phase < motion ? 0.1 : 0.01) * normal_(engine);
+            block.innovation = (stiction + noise + push) / block.deviation;
+        }
+        return now_;
+    }
+    const OutputBlock<double>* before() const { return block_ > 1 ? before_.data() : nullptr; }
+
+  private:
+    int block_ = 0;
+    Blocks now_{}, before_{};
+    std::array<double, outputs> friction_{};
+    std::normal_distribution<double> normal_;
+};
+
+TEST_CASE("joints that stop at another level of static friction each time raise no alarm, pushed ones do",
+          "[monitor]") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Resting arm;
+    Detector<double> detector({}, true, 10 * blocks_per_hour);
+    for (int block = 0; block < 60 * (Resting::rest + Resting::motion); ++block) {
+        const auto& now = arm.next(engine);
+        REQUIRE_FALSE(detector.add(now.data(), arm.before(), speed<double>));
+    }
+    for (int block = 0; block < Resting::rest / 2; ++block) {
+        const auto& now = arm.next(engine);
+        REQUIRE_FALSE(detector.add(now.data(), arm.before(), speed<double>));
+    }
+    int pushed = 0; // back and forth, four times the static friction
+    bool alarm = false;
+    while (pushed < 20 && !alarm) {
+        const auto& now = arm.next(engine, 4 * std::sin(1.2 * ++pushed));
+        alarm = detector.add(now.data(), arm.before(), speed<double>);
+    }
+    CHECK(pushed <= 8);
+}
+
 TEST_CASE("false alarms raise the limit of their kind", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     Innovations<double> innovations(0.3, false);

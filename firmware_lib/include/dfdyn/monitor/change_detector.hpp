@@ -5,6 +5,7 @@
 #include "dfdyn/monitor/block_noise.hpp"
 #include "dfdyn/monitor/excursion_tail.hpp"
 #include "dfdyn/monitor/output_block.hpp"
+#include "dfdyn/monitor/standstill_range.hpp"
 #include "dfdyn/storage.hpp"
 
 #include <cmath>
@@ -49,6 +50,10 @@ class ChangeDetector {
     static constexpr Scalar burst_from = 2;
     static constexpr Scalar burst_drift = 2;
     static constexpr Scalar burst_limit = 12;
+    /// Standard deviations of a standing joint's error and of its change, as shares of their usual maxima.
+    static constexpr Scalar level_scale = Scalar(1. / 3);
+    static constexpr Scalar change_scale = Scalar(0.1);
+    static constexpr Scalar least_range = Scalar(0.1); ///< smallest maximum, in predicted deviations
     /// The limits are for so many times fewer false alarms than asked for: tails of real arms' sums are a bit
     /// heavier than exponential (docs/monitor.md: measured).
     static constexpr Scalar caution = 20;
@@ -58,6 +63,7 @@ class ChangeDetector {
         : outputs_(outputs), has_friction_(friction),
           blocks_between_(departure_count * caution * blocks_between_false_alarms),
           noise_(Storage<BlockNoise<Scalar>, m>::zeros(outputs)),
+          range_(Storage<StandstillRange<Scalar>, m>::zeros(outputs)),
           sums_(Storage<Cusum, sums_of(m)>::zeros(extent<sums_of(m)>(sums_of(outputs)))) {
         set_limits();
     }
@@ -70,9 +76,15 @@ class ChangeDetector {
             const int c = speed.of(now[k].speed);
             const int last = before == nullptr ? -1 : speed.of(before[k].speed);
             const Block& other = before == nullptr ? now[k] : before[k];
+            if (has_friction_ && c == 0) {
+                sum_standing(k, now[k], last == 0 ? before + k : nullptr, shared);
+                continue;
+            }
+            range_[k].end();
             const Whitening<Scalar> whitening = noise_[k].whitening(c, last);
             if (whitening.now > 0) {
-                sum_output(k, whitening, now[k], other, shared);
+                const Scalar whole = whitening.of(now[k].innovation, other.innovation);
+                sum_output(k, whole, whitening, now[k], other, shared);
             }
             if (!alarm_) {
                 noise_[k].learn(now[k].innovation, other.innovation, c, last);
@@ -103,6 +115,9 @@ class ChangeDetector {
         for (BlockNoise<Scalar>& noise : noise_) {
             noise.relearn();
         }
+        for (StandstillRange<Scalar>& range : range_) {
+            range.relearn();
+        }
         settled_ = 0;
         restart();
     }
@@ -116,7 +131,7 @@ class ChangeDetector {
     /// Multiply-adds of `add`, at most.
     static constexpr std::int64_t cost(int outputs) noexcept {
         const std::int64_t limits = std::int64_t{departure_count} * ExcursionTail<Scalar>::limit_cost;
-        return limits + outputs * (BlockNoise<Scalar>::cost + function_cost + 60) +
+        return limits + outputs * (BlockNoise<Scalar>::cost + function_cost + 66) +
                shared_columns * (function_cost + 8) + 2 * sums_of(outputs);
     }
 
@@ -159,9 +174,30 @@ class ChangeDetector {
         return index < outputs_ ? index : index < 5 * outputs_ ? (index - outputs_) / 2 % outputs_ : outputs_;
     }
 
-    void sum_output(int k, const Whitening<Scalar>& whitening, const Block& now, const Block& before,
-                    Shared& shared) noexcept {
-        const Scalar whole = whitening.of(now.innovation, before.innovation);
+    /// Adds a block of a joint that stands; `before` is null unless it stood in the block before.
+    void sum_standing(int k, const Block& now, const Block* before, Shared& shared) noexcept {
+        using std::abs;
+        StandstillRange<Scalar>& range = range_[k];
+        const Scalar level = now.innovation * now.deviation;
+        const Scalar change = before == nullptr ? Scalar(0) : level - before->innovation * before->deviation;
+        const Scalar least = least_range * now.deviation;
+        const Scalar most_change = std::max(range.change(), least);
+        const Scalar most_level = std::max(range.level(), least);
+        if (range.known() && abs(change) > most_change) {
+            const Scalar weight = now.deviation / (change_scale * most_change);
+            const Whitening<Scalar> whitening{weight, BlockNoise<Scalar>::most_alike * weight};
+            sum_output(k, change / (change_scale * most_change), whitening, now, *before, shared);
+        } else if (range.known()) {
+            const Scalar beyond = level - std::clamp(level, -most_level, most_level);
+            const Whitening<Scalar> whitening{now.deviation / (level_scale * most_level), 0};
+            sum_output(k, beyond / (level_scale * most_level), whitening, now, now, shared);
+        }
+        range.add(abs(level), abs(change), alarm_);
+    }
+
+    /// Adds a block with the whitened innovation `whole`.
+    void sum_output(int k, Scalar whole, const Whitening<Scalar>& whitening, const Block& now,
+                    const Block& before, Shared& shared) noexcept {
         const Scalar e = std::clamp(whole, -cut_off, cut_off);
         constexpr Scalar log_two = Scalar(0.693147);
         rise(k, Scalar(0.375) * e * e - log_two);
@@ -287,6 +323,7 @@ class ChangeDetector {
     bool has_friction_;
     Scalar blocks_between_; ///< false alarms of one kind
     Storage<BlockNoise<Scalar>, m> noise_;
+    Storage<StandstillRange<Scalar>, m> range_;
     Storage<Cusum, sums_of(m)> sums_;
     ExcursionTail<Scalar> tails_[departure_count];
     Scalar limits_[departure_count] = {};

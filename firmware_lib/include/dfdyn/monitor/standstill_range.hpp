@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/strict_math.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dfdyn {
+
+/// Learns the range of the prediction error of a joint that stands, within which static friction hides any
+/// load.
+///
+/// At standstill the friction torque takes any value up to the break-away torque. The error of the predicted
+/// torque then has an unknown level, and it changes slowly while the controller and the bristles of the
+/// contact relax. Neither is noise with a variance: in a standstill of minutes almost all blocks are quiet,
+/// and the next stop is not. So this class keeps the largest magnitudes of a standstill, of the error's level
+/// and of its change from block to block, in output units (N·m, A). A larger one in a later standstill raises
+/// the range at once, smaller ones lower it with a memory of `memory` standstills. A standstill of more than
+/// `longest_blocks` continues as another one that may only raise the range.
+///
+/// The bounds have a margin of `margin` / n after n standstills, for what has not been seen yet. Memory: 8
+/// numbers.
+template <class Scalar>
+class StandstillRange {
+  public:
+    static constexpr Scalar needed = 4;  ///< standstills before the range is known
+    static constexpr Scalar memory = 50; ///< standstills
+    static constexpr Scalar margin = 2;
+    static constexpr int longest_blocks = 50;
+    /// Largest growth of a known range in one standstill: without an alarm, and with one.
+    static constexpr Scalar growth = 10;
+    static constexpr Scalar growth_in_alarm = Scalar(1.5);
+
+    /// Adds a block at standstill: magnitudes of the error and of its change since the block before (0 after
+    /// the stop), and whether an alarm is on. Values that are not finite are ignored.
+    void add(Scalar level, Scalar change, bool alarm) noexcept {
+        level_.present = std::max(level_.present, level <= largest ? level : Scalar(0));
+        change_.present = std::max(change_.present, change <= largest ? change : Scalar(0));
+        in_alarm_ = in_alarm_ || alarm;
+        if (++blocks_ >= longest_blocks) {
+            close();
+            after_motion_ = false;
+        }
+    }
+
+    /// Ends a standstill: the joint moves.
+    void end() noexcept {
+        if (blocks_ > 0) {
+            close();
+        }
+        after_motion_ = true;
+    }
+
+    /// Learns the range again, starting from the present one.
+    void relearn() noexcept { standstills_ = 0; }
+
+    [[nodiscard]] bool known() const noexcept { return standstills_ >= needed; }
+    /// Returns the largest usual magnitude of the error, of a known range.
+    [[nodiscard]] Scalar level() const noexcept { return level_.usual * (1 + margin / standstills_); }
+    /// Returns the largest usual magnitude of its change from block to block, of a known range.
+    [[nodiscard]] Scalar change() const noexcept { return change_.usual * (1 + margin / standstills_); }
+
+  private:
+    static constexpr Scalar largest = Scalar(1e15);
+
+    struct Maximum {
+        Scalar usual = 0, present = 0;
+
+        void take_over(Scalar factor, bool may_fall) noexcept {
+            const Scalar limit = usual > 0 ? factor * usual : largest;
+            if (present > usual) {
+                usual = std::min(present, limit);
+            } else if (may_fall) {
+                usual += (present - usual) / memory;
+            }
+            present = 0;
+        }
+    };
+
+    void close() noexcept {
+        const Scalar factor = !known() ? largest : in_alarm_ ? growth_in_alarm : growth;
+        level_.take_over(factor, after_motion_ && !in_alarm_);
+        change_.take_over(factor, after_motion_ && !in_alarm_);
+        standstills_ = std::min(standstills_ + (after_motion_ ? 1 : 0), memory);
+        blocks_ = 0;
+        in_alarm_ = false;
+    }
+
+    Maximum level_, change_;
+    Scalar standstills_ = 0;
+    int blocks_ = 0;
+    bool in_alarm_ = false, after_motion_ = true;
+};
+
+} // namespace dfdyn
