@@ -50,6 +50,7 @@ typename TestMonitor<Scalar>::Constants constants() {
 struct Hidden {
     std::optional<Cause> cause;
     double from_s = 0, to_s = 1e9;
+    bool weightless = false; ///< a payload without mass, but with a first moment
 };
 
 constexpr double payload_mass = 0.8;
@@ -170,8 +171,9 @@ class Swinging {
         rigid_body_regressor<Arm, double>(chain_, {}, xi.data(), psi.data(), 20);
         std::array<double, 2> torque{};
         for (std::size_t k = 0; k < 2; ++k) {
-            torque[k] = payload_mass * (psi[20 * k + 10] + payload_x * psi[20 * k + 11] +
-                                        payload_x * payload_x * psi[20 * k + 19]);
+            torque[k] = hidden_.weightless ? 0.5 * psi[20 * k + 11]
+                                           : payload_mass * (psi[20 * k + 10] + payload_x * psi[20 * k + 11] +
+                                                             payload_x * payload_x * psi[20 * k + 19]);
         }
         return torque;
     }
@@ -248,6 +250,16 @@ TEMPLATE_TEST_CASE("the monitor reports cause, place and size of a change withou
     }
 }
 
+TEST_CASE("a change that only a payload without mass would explain is not named a payload", "[monitor]") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const auto fixed = constants<float>();
+    TestMonitor<float> monitor(fixed);
+    Swinging<float> arm({Cause::payload, 25, 1e9, true});
+    REQUIRE(run(monitor, arm, 25, engine) == 0);
+    REQUIRE(run(monitor, arm, 55, engine) > 0);
+    CHECK(name(monitor.change().cause) != std::string(name(Cause::payload)));
+}
+
 TEST_CASE("without a change the monitor reports nothing, also with gaps", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto fixed = constants<float>();
@@ -320,7 +332,8 @@ TEST_CASE("no tick of the monitor exceeds its declared cost", "[monitor]") {
     constexpr std::int64_t cost = TestMonitor<Scalar>::cost({}, lags);
     std::int64_t most = 0;
     int changes = 0;
-    for (const Cause cause : {Cause::payload, Cause::friction, Cause::bias, Cause::contact, Cause::frozen}) {
+    for (int arms = 0; arms < 10; ++arms) {
+        const auto cause = static_cast<Cause>(1 + arms % (cause_count - 1));
         const auto fixed = constants<Scalar>();
         TestMonitor<Scalar> monitor(fixed);
         Swinging<Scalar> arm({cause, 25, cause == Cause::contact ? 26.5 : 1e9});
@@ -333,7 +346,7 @@ TEST_CASE("no tick of the monitor exceeds its declared cost", "[monitor]") {
         }
         changes += changed ? 1 : 0;
     }
-    CHECK(changes >= 4);
+    CHECK(changes >= 8);
     CAPTURE(most, cost);
     CHECK(most <= cost);
     CHECK(2 * most > cost); // and the bound is not far too large

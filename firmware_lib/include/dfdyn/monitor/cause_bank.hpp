@@ -21,7 +21,9 @@ class CauseBank {
     static constexpr Scalar far = Scalar(3.5); ///< deviations
     /// Log odds against a contact that goes on, and against anything else that was large and went away.
     static constexpr Scalar goes_on = 6;
-    static constexpr Scalar large = 8; ///< mean square of residuals, in units of the noise
+    static constexpr Scalar large = 8;                   ///< mean square of residuals, in units of the noise
+    static constexpr Scalar payload_reach = Scalar(0.5); ///< m: largest distance of a payload from the tip
+    static constexpr Scalar payload_deviations = 2;      ///< least distance of its mass from zero
 
     /// `friction`: whether outputs are the torques of joints of their own.
     CauseBank(Extent<m> outputs, bool friction) noexcept
@@ -90,7 +92,9 @@ class CauseBank {
     }
     static constexpr std::int64_t cost_of_judge(int outputs) noexcept {
         constexpr int evidences = 20; // of an output, those that are asked for twice included
-        return outputs * evidences * (function_cost + 6) + cause_count * (function_cost + 2) + 10;
+        constexpr int payload =
+            payload_columns * (CauseFit<Scalar, payload_columns, m, false>::deviation_cost + 4);
+        return outputs * evidences * (function_cost + 6) + cause_count * (function_cost + 2) + payload + 10;
     }
 
   private:
@@ -147,6 +151,23 @@ class CauseBank {
         return all;
     }
 
+    /// Returns whether the fitted payload is physically possible: its mass (negative: taken off) differs from
+    /// zero, and its centre is within `payload_reach` of the tip along each axis. Both within
+    /// `payload_deviations` standard deviations of the fit, which are large where the motion does not
+    /// identify them.
+    [[nodiscard]] bool payload_possible() const noexcept {
+        using std::abs;
+        const auto size = [&](int i) { return abs(fits_.payload.parameters()[i] * fits_.payload_scale[i]); };
+        const auto uncertain = [&](int i) {
+            return payload_deviations * fits_.payload.deviation(i) * fits_.payload_scale[i];
+        };
+        bool possible = size(0) > uncertain(0);
+        for (int i = 1; i < payload_columns; ++i) {
+            possible = possible && size(i) - uncertain(i) <= payload_reach * size(0);
+        }
+        return possible;
+    }
+
     void weigh(Scalar* logs) const noexcept {
         const auto set = [logs](Cause cause, Scalar value) { logs[static_cast<int>(cause)] = value; };
         const Scalar none = fits_.nothing.of_all();
@@ -154,7 +175,8 @@ class CauseBank {
         const bool passed = ended();
         const Scalar stays = passed && loudest_ > large ? -goes_on : Scalar(0);
         set(Cause::unknown, 0);
-        set(Cause::payload, stays + trust * (fits_.payload.evidence().of_all() - none));
+        set(Cause::payload,
+            payload_possible() ? stays + trust * (fits_.payload.evidence().of_all() - none) : -impossible);
         set(Cause::friction, has_friction_ ? stays + trust * gain_of_some(fits_.friction) : -impossible);
         set(Cause::bias, stays + trust * gain_of_some(fits_.bias));
         set(Cause::contact, trust * contact - (passed ? Scalar(0) : goes_on));

@@ -92,6 +92,13 @@ class CauseFit {
     [[nodiscard]] const Evidence<Scalar, m>& evidence() const noexcept { return evidence_; }
     /// In units of the scaled columns, p values.
     [[nodiscard]] const Scalar* parameters() const noexcept { return learner_.weights(0); }
+    /// Returns the standard deviation of parameter i, in the same units. Cost: `deviation_cost`
+    /// multiply-adds.
+    [[nodiscard]] Scalar deviation(int i) const noexcept {
+        using std::sqrt;
+        return sqrt(learner_.parameter_variance(i));
+    }
+    static constexpr int deviation_cost = function_cost + 2 * p;
 
     /// Multiply-adds of `add`, at most.
     static constexpr std::int64_t cost(int outputs) noexcept {
