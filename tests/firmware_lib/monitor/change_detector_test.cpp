@@ -248,6 +248,28 @@ TEST_CASE("joints that stop at another level of static friction each time raise 
     CHECK(pushed <= 8);
 }
 
+TEST_CASE("innovations far smaller than predicted raise no alarm", "[monitor]") {
+    DFDYN_SEEDED_ENGINE(engine);
+    Innovations<double> innovations(0, false);
+    std::array<OutputBlock<double>, outputs> now{};
+    const auto alarm = [&](double least_scale, double shift) {
+        Detector<double> detector({}, true, blocks_per_hour, least_scale);
+        for (int block = 0; block < 1500; ++block) {
+            now = innovations.next(engine);
+            for (OutputBlock<double>& one : now) {
+                one.innovation = one.innovation / 50 + (block > 1300 ? shift : 0); // noise of 0.01 to 0.04
+            }
+            if (detector.add(now.data(), nullptr, speed<double>)) {
+                return true;
+            }
+        }
+        return false;
+    };
+    CHECK_FALSE(alarm(0.3, 0.08));
+    CHECK(alarm(0.3, 1));
+    CHECK(alarm(1e-6, 0.08));
+}
+
 TEST_CASE("false alarms raise the limit of their kind", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     Innovations<double> innovations(0.3, false);

@@ -38,7 +38,7 @@ struct SpeedClasses {
 ///
 /// The scale is Huber's: s² follows E[min(x², c² s²)] = κ s², c = 2.5, κ its value for Gaussian noise (P. J.
 /// Huber, "Robust Statistics", 1981, proposal 2), so that a burst counts for little. It begins with the
-/// smallest of the `first` blocks of a class; the gain of block n is 2/(n+2), then 1/`memory`. 12 scalars.
+/// smallest of the `first` blocks of a class; the gain of block n is 2/(n+2), then 1/`memory`. 13 scalars.
 template <class Scalar>
 class BlockNoise {
   public:
@@ -48,6 +48,10 @@ class BlockNoise {
         Scalar(0.95); ///< autocorrelation: beyond, a block would tell nothing
 
     static constexpr int cost = 2 * function_cost + 25; ///< of `learn`, `smallest` and `whitening`
+
+    BlockNoise() noexcept = default;
+    /// `least_scale`: lower bound of the scales.
+    explicit BlockNoise(Scalar least_scale) noexcept : least_(least_scale * least_scale) {}
 
     /// A block of class `c`, after one of class `before` (-1: after none). One that is no number is passed
     /// over.
@@ -60,12 +64,12 @@ class BlockNoise {
         one.blocks = std::min(one.blocks + 1, 2 * memory);
         if (one.blocks <= first) {
             one.square =
-                std::max(std::min(value * value, one.blocks > 1 ? one.square : largest * largest), least);
+                std::max(std::min(value * value, one.blocks > 1 ? one.square : largest * largest), least_);
             return;
         }
         const Scalar gain = 2 / (one.blocks + 2);
         const Scalar square = std::min(value * value, clip * clip * one.square);
-        one.square = std::max(one.square + gain * (square / consistency - one.square), least);
+        one.square = std::max(one.square + gain * (square / consistency - one.square), least_);
         if (c == before) {
             const Scalar limit = clip * scale(c);
             const Scalar now = std::clamp(value, -limit, limit) / limit;
@@ -115,7 +119,6 @@ class BlockNoise {
     }
 
   private:
-    static constexpr Scalar least = Scalar(1e-12);  ///< square of a scale
     static constexpr Scalar largest = Scalar(1e15); ///< value that is looked at
     static constexpr Scalar first = 5;              ///< blocks
     static constexpr Scalar clip = Scalar(2.5);
@@ -127,6 +130,7 @@ class BlockNoise {
         Scalar blocks = 0;
     };
     Class class_[SpeedClasses<Scalar>::count];
+    Scalar least_ = Scalar(1e-12); ///< square of a scale
 };
 
 } // namespace dfdyn

@@ -59,12 +59,15 @@ class ChangeDetector {
     static constexpr Scalar caution = 20;
 
     /// `friction`: whether outputs are the torques of joints. `blocks_between_false_alarms` > 1: their mean.
-    ChangeDetector(Extent<m> outputs, bool friction, Scalar blocks_between_false_alarms) noexcept
+    /// `least_scale`: lower bound of the usual scale of block means, in predicted deviations.
+    ChangeDetector(Extent<m> outputs, bool friction, Scalar blocks_between_false_alarms,
+                   Scalar least_scale = Scalar(1e-6)) noexcept
         : outputs_(outputs), has_friction_(friction),
           blocks_between_(departure_count * caution * blocks_between_false_alarms),
           noise_(Storage<BlockNoise<Scalar>, m>::zeros(outputs)),
           range_(Storage<StandstillRange<Scalar>, m>::zeros(outputs)),
           sums_(Storage<Cusum, sums_of(m)>::zeros(extent<sums_of(m)>(sums_of(outputs)))) {
+        std::fill(noise_.begin(), noise_.end(), BlockNoise<Scalar>(least_scale));
         set_limits();
     }
 

@@ -75,6 +75,10 @@ class Monitor {
     /// Deviations that an innovation or a residual counts at most. One spike then cannot overflow a square or
     /// outweigh all later blocks in a mean; what is as large as this for long is still an alarm.
     static constexpr Scalar largest_deviation = 1000;
+    /// Smallest usual scale of a block's innovation, as a share of that of white innovations with the
+    /// predicted deviation. A deviation that the estimator overestimates, as after a standstill, then is no
+    /// evidence.
+    static constexpr Scalar least_scale = Scalar(0.25);
     static constexpr Scalar largest_position = 10'000; ///< rad, m: beyond it a sample counts as a gap
 
     explicit Monitor(const Constants&&) = delete; // it would refer to a temporary
@@ -91,7 +95,8 @@ class Monitor {
           scaled_(Outputs::zeros(constants.sizes.output_count)), deviations_(scaled_),
           block_(Storage<OutputBlock<Scalar>, m>::zeros(constants.sizes.output_count)),
           past_(Past::zeros(extent<product(history, m)>(history * outputs()))),
-          detector_(constants.sizes.output_count, torques, constants.blocks_between_false_alarms),
+          detector_(constants.sizes.output_count, torques, constants.blocks_between_false_alarms,
+                    least_scale / std::sqrt(static_cast<Scalar>(constants.block_samples))),
           bank_(constants.sizes.output_count, torques),
           frozen_(extent<sum(n, m)>(joints() + outputs()), joints()),
           repeats_limit_(2 * std::log(constants.blocks_between_false_alarms *
