@@ -11,7 +11,7 @@ namespace {
 
 std::string numbered(const char* what, int index) { return what + std::to_string(index + 1); }
 
-/// N·m, N or A.
+/// Returns the unit of an output: N·m, N or A.
 std::string unit_of(const std::string& output) {
     if (output.starts_with("i")) {
         return "A";
@@ -19,7 +19,7 @@ std::string unit_of(const std::string& output) {
     return output.starts_with("f") ? "N" : "N·m";
 }
 
-/// Currents whose torque constants are unknown: sizes are in what they cost in current.
+/// Returns true for currents without torque constants. Sizes are then in amperes.
 bool per_current(const MonitorSetup& setup) {
     return setup.outputs.front().starts_with("i") &&
            std::ranges::all_of(setup.output_gain, [](double gain) { return gain == 1; });

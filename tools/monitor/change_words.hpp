@@ -5,7 +5,7 @@
 
 namespace dfdyn::tools {
 
-/// What a monitor of the host found, with the names of the arm that it watches.
+/// Returns a change with the names and units of the arm.
 NamedChange named(const Change<float, dynamic>& change, const MonitorSetup& setup);
 NamedChange named(const Change<float, 6>& change, const MonitorSetup& setup);
 

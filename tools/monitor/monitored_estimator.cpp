@@ -108,7 +108,7 @@ class Monitored final : public MonitoredEstimator {
     std::vector<std::byte> snapshot() const override { return estimator_->snapshot(); }
     bool restore(std::span<const std::byte> snapshot) override { return estimator_->restore(snapshot); }
     std::size_t state_bytes() const override { return estimator_->state_bytes(); }
-    /// With the prediction of the held weights, and the monitor.
+    /// Includes the prediction with the delayed weights, and the monitor.
     Cost cost() const override {
         Cost cost = estimator_->cost();
         cost.predict += cost.predict + HostMonitor<Arm>::cost(constants_.sizes, constants_.lags);
@@ -134,7 +134,7 @@ class Monitored final : public MonitoredEstimator {
     }
 
   private:
-    static constexpr std::size_t kept = 256; ///< changes; older ones are forgotten
+    static constexpr std::size_t kept = 256; ///< changes; older ones are removed
 
     static bool measured(Reason learning) {
         return learning != Reason::output_missing && learning != Reason::output_not_finite &&
@@ -152,8 +152,8 @@ class Monitored final : public MonitoredEstimator {
         }
     }
 
-    /// The first word on a change adds it, every later one replaces it. There is room for all of it already:
-    /// a loop's tick does not touch the heap.
+    /// Adds a change at its first report and replaces it at every later one. Allocates nothing, for ticks of
+    /// a control loop.
     void note() {
         count_ += known_ && count_ > 0 ? 0 : 1;
         changes_[(count_ - 1) % kept] = monitor_.change();
@@ -174,7 +174,7 @@ class Monitored final : public MonitoredEstimator {
         verdict_is_new_ = true;
     }
 
-    /// When it is due and the estimator has nothing left to learn.
+    /// Refreshes the delayed weights, if they are due and the estimator has nothing left to learn.
     void renew() {
         while (monitor_.renewal_due() && estimator_->advance(Budget::predict_only())) {
             estimator_->copy_weights({held_.renew(), weight_count()});
@@ -189,8 +189,8 @@ class Monitored final : public MonitoredEstimator {
     HeldWeights<float, dynamic> held_;
     std::vector<float> held_prediction_, position_, output_;
     std::vector<typename HostMonitor<Arm>::Change> changes_;
-    std::size_t count_ = 0; ///< of them, those forgotten included
-    bool known_ = false;    ///< the last of them is the present one
+    std::size_t count_ = 0; ///< of all changes, including removed ones
+    bool known_ = false;    ///< the last change is the present one
     Verdict verdict_;
     bool verdict_is_new_ = false;
 };

@@ -10,39 +10,40 @@
 
 namespace dfdyn::tools {
 
-/// What a monitor has to know of the arm.
+/// Description of the arm for a monitor.
 struct MonitorSetup {
     ChainModel chain;
     std::vector<std::string> outputs;
     double sample_period_s = 0;
-    std::vector<double> output_gain; ///< per output: output per N·m (N)
+    std::vector<double> output_gain; ///< output per N·m or N, for each output
     Eigen::Isometry3d tip_placement =
-        Eigen::Isometry3d::Identity(); ///< of the tool's frame in the last link's
+        Eigen::Isometry3d::Identity(); ///< tool frame in the frame of the last link
     double false_alarm_hours = 5;      ///< mean time between false alarms, > 0
 };
 
-/// For outputs of `model`: the chain of its physics, or else that of `robot`. Throws InputError, naming
-/// `source`, when there is neither, or the robot has not the model's joints or sensor.
+/// Returns the description for the outputs of `model`: with the chain of its physics, otherwise that of
+/// `robot`. Throws InputError, naming `source`, if there is neither, or if the robot does not have the joints
+/// or the sensor of the model.
 MonitorSetup monitor_setup(const TrainedModel& model, const Robot* robot, const std::string& source);
 
-/// A verdict on a change, for who acts on it.
+/// Cause of a change, for a caller that acts on it.
 struct Verdict {
-    std::size_t number = 0; ///< of the change, from 1
+    std::size_t number = 0; ///< number of the change, from 1
     Cause cause = Cause::unknown;
     double confidence = 0;     ///< 0 … 1
     int joint = -1;            ///< from 0; -1: none in particular
-    std::vector<double> moved; ///< by how much each output's offset moved; of a bias, else zeros
+    std::vector<double> moved; ///< bias: change of each output's offset; other causes: zeros
 };
 
-/// An estimator with a monitor (dfdyn::Monitor) beside it.
+/// An estimator with a monitor (dfdyn::Monitor).
 class MonitoredEstimator : public HostEstimator {
   public:
-    /// What it found, not yet taken; the newest 256.
+    /// Returns the newest 256 changes since the last `take_changes`.
     virtual std::vector<NamedChange> changes() const = 0;
-    /// Likewise, and takes them.
+    /// Returns the same changes and removes them.
     virtual std::vector<NamedChange> take_changes() = 0;
-    /// The last verdict, once: null if there was none since the last call. It lives until the next tick;
-    /// nothing is allocated.
+    /// Returns the last verdict once, valid until the next tick; null if there is no new one since the last
+    /// call. Allocates nothing.
     virtual const Verdict* take_verdict() = 0;
 };
 

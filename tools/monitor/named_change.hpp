@@ -11,16 +11,16 @@
 
 namespace dfdyn::tools {
 
-/// A number that says how large a change is.
+/// One parameter of a change, with its unit.
 struct ChangeParameter {
     std::string name, unit;
     double value = 0;
 };
 
-/// A change that the monitor found, in words and units.
+/// A change with the names and units of the arm.
 struct NamedChange {
     std::int64_t onset_ns = 0, alarm_ns = 0; ///< on the samples' clock
-    std::int64_t end_ns = 0;                 ///< when it was learned or went away; 0: not by the end
+    std::int64_t end_ns = 0;                 ///< when it was learned or had passed; 0: not by the end
     Cause cause = Cause::unknown, runner_up = Cause::unknown;
     double confidence = 0, runner_up_confidence = 0; ///< 0 … 1
     std::string where;                               ///< tool, jointK, encoderK, ft_sensor or an output
@@ -28,18 +28,18 @@ struct NamedChange {
     std::vector<ChangeParameter> parameters;
 };
 
-/// The changes of one recording; times of its own are those on the samples' clock plus `origin_s`.
+/// The changes of one recording. Its own times are those of the samples' clock plus `origin_s`.
 struct RecordedChanges {
     std::string recording;
     double origin_s = 0;
     std::vector<NamedChange> changes;
 };
 
-/// A line per change.
+/// Prints a line for each change.
 void print_changes(std::ostream& out, const RecordedChanges& recorded);
 
-/// The text of changes.json (schema dfdyn.changes/1): docs/monitor.md. `false_alarm_hours`: mean time between
-/// false alarms that the threshold is for.
+/// Returns the text of changes.json (schema dfdyn.changes/1, docs/monitor.md). `false_alarm_hours`: mean time
+/// between false alarms that the threshold is for.
 std::string changes_json(std::span<const RecordedChanges> recordings, double false_alarm_hours);
 
 } // namespace dfdyn::tools

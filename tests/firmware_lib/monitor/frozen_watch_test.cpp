@@ -78,7 +78,7 @@ TEST_CASE("repeated readings of an arm at standstill are not evidence", "[monito
     CHECK(watch.evidence(1) < 15);
 }
 
-TEST_CASE("A joint that stands and trembles by a count is not frozen when the others move on", "[monitor]") {
+TEST_CASE("A stationary joint that trembles by a count is not frozen while the others move", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     FrozenWatch<float, 2> watch({}, 2);
     double phase = 0, tremble = 0;

@@ -8,7 +8,8 @@
 
 namespace dfdyn {
 
-/// What turns a value and the one before it into nearly white noise of unit deviation.
+/// Weights of a first-order whitening filter: of a value and of the one before it. The result is nearly white
+/// with unit variance.
 template <class Scalar>
 struct Whitening {
     Scalar now, before;
@@ -18,34 +19,33 @@ struct Whitening {
     }
 };
 
-/// How fast a joint moves, in classes.
+/// Classes of a joint's speed: stationary, creeping, moving.
 template <class Scalar>
 struct SpeedClasses {
     static constexpr int count = 3;
-    Scalar standing, creeping; ///< rad/s, m/s: a joint below the first stands, below the second it creeps
+    Scalar standing, creeping; ///< rad/s, m/s: upper bounds of the first two classes
 
     [[nodiscard]] constexpr int of(Scalar speed) const noexcept {
         return speed < standing ? 0 : speed < creeping ? 1 : 2;
     }
 };
 
-/// How large one output's block means usually are, and how like the one before: learned while nothing
-/// happens.
+/// Estimates the scale and the first-order autocorrelation of one output's block means while no change is on.
 ///
-/// What a model leaves of a joint's torque is several times as large while the joint stands or creeps
-/// (stiction) as while it moves, and hardly changes from block to block then. So scale and first-order
-/// autocorrelation are kept for each class of its speed; within one, what is left is nearly Gaussian.
+/// At low speed stiction makes the residual of a joint torque several times larger than in motion, and slow.
+/// So both are estimated separately for each class of the joint's speed. Within a class the whitened block
+/// means are nearly Gaussian.
 ///
-/// The scale is Huber's: s² follows E[min(x², c² s²)] = κ s², c = 2.5, κ its value for Gaussian noise (P. J.
-/// Huber, "Robust Statistics", 1981, proposal 2), so that a burst counts for little. It begins with the
-/// smallest of the `first` blocks of a class; the gain of block n is 2/(n+2), then 1/`memory`. 13 scalars.
+/// The scale s is Huber's: s² solves E[min(x², c² s²)] = κ s² with c = 2.5 and κ for Gaussian noise (P. J.
+/// Huber, "Robust Statistics", 1981, proposal 2). It is insensitive to bursts. It starts with the smallest
+/// magnitude of the `first` blocks of a class. The gain of block n is 2/(n+2), later 1/`memory`.
+/// Memory: 13 scalars.
 template <class Scalar>
 class BlockNoise {
   public:
-    static constexpr Scalar memory = 600; ///< blocks of a class
-    static constexpr Scalar needed = 30;  ///< blocks of a class before anything is known of it
-    static constexpr Scalar most_alike =
-        Scalar(0.95); ///< autocorrelation: beyond, a block would tell nothing
+    static constexpr Scalar memory = 600;              ///< blocks of a class
+    static constexpr Scalar needed = 30;               ///< blocks of a class before it is used
+    static constexpr Scalar most_alike = Scalar(0.95); ///< largest autocorrelation
 
     static constexpr int cost = 2 * function_cost + 25; ///< of `learn`, `smallest` and `whitening`
 
@@ -53,8 +53,8 @@ class BlockNoise {
     /// `least_scale`: lower bound of the scales.
     explicit BlockNoise(Scalar least_scale) noexcept : least_(least_scale * least_scale) {}
 
-    /// A block of class `c`, after one of class `before` (-1: after none). One that is no number is passed
-    /// over.
+    /// Adds a block mean of speed class `c` and the one before it, of class `before` (-1: none). Values that
+    /// are not finite are ignored.
     void learn(Scalar block, Scalar block_before, int c, int before) noexcept {
         if (!std::isfinite(block) || !std::isfinite(block_before)) {
             return;
@@ -79,7 +79,7 @@ class BlockNoise {
         }
     }
 
-    /// Takes the noise to have changed for good: it is learned anew, from where it is.
+    /// Learns the noise again, starting from the present estimates: it has changed permanently.
     void relearn() noexcept {
         for (Class& one : class_) {
             one.blocks = std::min(one.blocks, Scalar(10));
@@ -91,12 +91,12 @@ class BlockNoise {
         using std::sqrt;
         return sqrt(class_[c].square);
     }
-    /// 0 … `most_alike`.
+    /// Returns the autocorrelation, 0 … `most_alike`.
     [[nodiscard]] Scalar autocorrelation(int c) const noexcept {
         const Class& one = class_[c];
         return one.power > 0 ? std::clamp(one.product / one.power, Scalar(0), most_alike) : Scalar(0);
     }
-    /// The smallest scale of those known; 0: none is.
+    /// Returns the smallest scale of the known classes, 0 if there is none.
     [[nodiscard]] Scalar smallest() const noexcept {
         Scalar least_square = 0;
         for (int c = 0; c < SpeedClasses<Scalar>::count; ++c) {
@@ -107,7 +107,8 @@ class BlockNoise {
         return sqrt(least_square);
     }
 
-    /// Zero, so that a block tells nothing, where its class is not known.
+    /// Returns the whitening filter of a block of class `c` after one of class `before`. Zero weights if the
+    /// class is not known.
     [[nodiscard]] Whitening<Scalar> whitening(int c, int before) const noexcept {
         if (!known(c)) {
             return {0, 0};
@@ -119,7 +120,7 @@ class BlockNoise {
     }
 
   private:
-    static constexpr Scalar largest = Scalar(1e15); ///< value that is looked at
+    static constexpr Scalar largest = Scalar(1e15); ///< magnitude; larger values are clamped
     static constexpr Scalar first = 5;              ///< blocks
     static constexpr Scalar clip = Scalar(2.5);
     static constexpr Scalar consistency = Scalar(0.9776); ///< E[min(z², clip²)] of a standard normal z

@@ -7,14 +7,14 @@
 
 namespace dfdyn {
 
-/// What may have changed. The numbers are stable.
+/// Possible causes of a change. The numbers are stable.
 enum class Cause : std::uint8_t {
-    unknown = 0,  ///< something, but none of the others
+    unknown = 0,  ///< a change that none of the others explains
     payload = 1,  ///< attached at the tool, or taken off
     friction = 2, ///< of a joint
     bias = 3,     ///< of an output: an offset that moved
-    contact = 4,  ///< a force on the arm, which ends
-    frozen = 5,   ///< a sensor repeats itself
+    contact = 4,  ///< a temporary force on the arm
+    frozen = 5,   ///< a sensor that repeats one reading
 };
 
 inline constexpr int cause_count = 6;
@@ -37,27 +37,30 @@ constexpr const char* name(Cause cause) noexcept {
     return "unknown";
 }
 
-/// A change, and what fits it best.
+/// A change with its most probable cause.
 template <class Scalar, int m>
 struct Change {
     std::int64_t onset_ns = 0; ///< estimated
     std::int64_t alarm_ns = 0;
-    std::int64_t end_ns = 0; ///< when it was learned or went away; 0: not yet
-    int channel = 0; ///< the output that raised the alarm; m: all together; -1: a reading that repeats
+    std::int64_t end_ns = 0; ///< when it was learned or had passed; 0: not yet
+    int channel = 0;         ///< output that raised the alarm; m: all together; -1: a repeated reading
 
     Cause cause = Cause::unknown;
     Cause runner_up = Cause::unknown;
-    Scalar confidence = 0, runner_up_confidence = 0; ///< 0 … 1; those of all causes add up to 1
+    Scalar confidence = 0, runner_up_confidence = 0; ///< 0 … 1; over all causes they sum to 1
 
-    /// Friction: the joint. Bias: the output where it is largest in units of the noise. Contact: the output
-    /// that it acts on most, or -1 where a force at the tool fits better. Frozen: the joint's position, or
-    /// joints + the output. Otherwise -1.
+    /// Index of the place, or -1:
+    /// - friction: joint;
+    /// - bias: output with the largest ratio of bias to noise;
+    /// - contact: output with the largest torque, -1 if a force at the tool fits better;
+    /// - frozen: joint of the position sensor, or number of joints + output.
     int where = -1;
-    /// Payload: mass (kg) and first moment (kg·m, 3) about the tip in the last link's frame. Friction:
-    /// Coulomb (N·m) and viscous (N·m·s/rad). Contact: mean of the force on the tool (N, 3, base frame), or
-    /// of the joint's torque.
+    /// Parameters of the cause:
+    /// - payload: mass (kg), first moment about the tip in the last link's frame (kg·m, 3 values);
+    /// - friction: additional Coulomb (N·m) and viscous friction (N·m·s/rad);
+    /// - contact: mean force on the tool in the base frame (N, 3 values), or mean torque of the joint (N·m).
     Scalar size[4] = {};
-    Storage<Scalar, m> bias; ///< by how much each offset moved, in the outputs' units; bias only
+    Storage<Scalar, m> bias; ///< change of each offset, in output units; bias only
 };
 
 } // namespace dfdyn

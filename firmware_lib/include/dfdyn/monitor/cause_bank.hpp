@@ -6,42 +6,42 @@
 
 namespace dfdyn {
 
-/// Weighs the causes of a change against each other, by how well they explain the residuals since its onset
-/// (`CauseFits`).
+/// Computes posterior probabilities of the causes of a change from their evidence (`CauseFits`) on the
+/// residuals since its onset: fault isolation by Bayesian model comparison.
 ///
-/// A bias, a friction or a push at a joint may show on some outputs only, so for each output the better of
-/// "with" and "without" counts, at the price of log(2 m). Evidence counts a share `trust`: real residuals are
-/// neither Gaussian nor quite white, and columns are not exact.
+/// A bias, a friction or a push at a joint may affect some outputs only. So each output uses the better of
+/// the hypotheses "with" and "without", at the price of log(2 m). The log-evidence is multiplied by `trust`,
+/// because real residuals are neither Gaussian nor white, and the columns are not exact.
 template <class Scalar, int m>
 class CauseBank {
   public:
     using Block = OutputBlock<Scalar>;
     using Speed = SpeedClasses<Scalar>;
     static constexpr Scalar trust = Scalar(0.2);
-    static constexpr Scalar far = Scalar(3.5); ///< deviations
-    /// Log odds against a contact that goes on, and against anything else that was large and went away.
+    static constexpr Scalar far = Scalar(3.5); ///< standard deviations of an unusual residual
+    /// Log odds against a contact that lasts, and against any other cause that was large and has passed.
     static constexpr Scalar goes_on = 6;
-    static constexpr Scalar large = 8;                   ///< mean square of residuals, in units of the noise
+    static constexpr Scalar large = 8;                   ///< mean square of residuals, relative to the noise
     static constexpr Scalar payload_reach = Scalar(0.5); ///< m: largest distance of a payload from the tip
     static constexpr Scalar payload_deviations = 2;      ///< least distance of its mass from zero
 
-    /// `friction`: whether outputs are the torques of joints of their own.
+    /// `friction`: true if each output is the torque of its own joint.
     CauseBank(Extent<m> outputs, bool friction) noexcept
         : outputs_(outputs), has_friction_(friction), fits_(outputs),
           recent_(Storage<Scalar, m>::zeros(outputs)), mean_push_(recent_) {}
 
-    /// A block while nothing happens, and the one before it (null after a gap).
+    /// Adds a block while no change is on, and the one before it (null after a gap), to the noise estimates.
     void learn(const Block* now, const Block* before, const Speed& speed) noexcept {
         fits_.learn(now, before, speed);
     }
     void relearn() noexcept { fits_.relearn(); }
 
-    /// Whether a residual is far from what is usual after the block before.
+    /// Returns true if a whitened residual exceeds `far` standard deviations.
     [[nodiscard]] bool unusual(const Block* now, const Block* before, const Speed& speed) const noexcept {
         return fits_.largest(now, before, speed) > far;
     }
 
-    /// Begins to fit. `block_at(b)`, 0 ≤ b < `count`: what there is of the past.
+    /// Starts the fits. `block_at(b)`, 0 ≤ b < `count`: the stored blocks.
     template <class BlockAt>
     void start(const BlockAt& block_at, int count) noexcept {
         fits_.start(block_at, count);
@@ -52,7 +52,7 @@ class CauseBank {
         loudness_ = loudest_ = 0;
     }
 
-    /// A block since the onset, and the one before it.
+    /// Adds a block since the onset, and the one before it.
     void add(const Block* now, const Block* before, const Speed& speed) noexcept {
         fits_.add(now, before, speed);
         Scalar loudness = 0;
@@ -65,8 +65,8 @@ class CauseBank {
         note_push(loudness);
     }
 
-    /// Fills in cause, runner-up, confidence and size. `frozen`: log odds of a channel that repeats itself,
-    /// 0 for none, and which.
+    /// Writes cause, runner-up, confidence and size into `change`. `frozen`: log odds of a repeated reading,
+    /// 0 if there is none; `channel`: its channel.
     void judge(Scalar frozen, int channel, Change<Scalar, m>& change) const noexcept {
         Scalar logs[cause_count];
         weigh(logs);
@@ -91,7 +91,7 @@ class CauseBank {
         return CauseFits<Scalar, m>::cost_of_start(outputs, count);
     }
     static constexpr std::int64_t cost_of_judge(int outputs) noexcept {
-        constexpr int evidences = 20; // of an output, those that are asked for twice included
+        constexpr int evidences = 20; // evaluations per output, some of them repeated
         constexpr int payload =
             payload_columns * (CauseFit<Scalar, payload_columns, m, false>::deviation_cost + 4);
         return outputs * evidences * (function_cost + 6) + cause_count * (function_cost + 2) + payload + 10;
@@ -100,7 +100,7 @@ class CauseBank {
   private:
     static constexpr Scalar impossible = 50;
 
-    /// Means over the blocks, weighted by how much they show.
+    /// Updates the mean force and torque of a push, with the squared residuals as weights.
     void note_push(Scalar loudness) noexcept {
         loudness_ += loudness;
         const Scalar share = loudness_ > 0 ? loudness / loudness_ : Scalar(0);
@@ -112,14 +112,14 @@ class CauseBank {
         }
     }
 
-    /// Of the fits of output k's own parameters, over none.
+    /// Returns the log-evidence of output k with its own parameters, relative to none.
     template <class Fits>
     [[nodiscard]] Scalar gain(const Fits& fits, int k) const noexcept {
         using std::log;
         return fits[k].evidence().of(0) - fits_.nothing.of(k) - log(static_cast<Scalar>(2 * int{outputs_}));
     }
 
-    /// Where they gain most.
+    /// Returns the output with the largest gain.
     template <class Fits>
     [[nodiscard]] int best_output(const Fits& fits) const noexcept {
         int best = 0;
@@ -129,7 +129,7 @@ class CauseBank {
         return best;
     }
 
-    /// Of the outputs where they are better than none, and of the best one anyway.
+    /// Returns the sum of the positive gains, or the largest gain if none is positive.
     template <class Fits>
     [[nodiscard]] Scalar gain_of_some(const Fits& fits) const noexcept {
         Scalar total = 0;
@@ -142,7 +142,7 @@ class CauseBank {
         return total + std::min(best, Scalar(0));
     }
 
-    /// The residuals are as usual again.
+    /// Returns true if the recent residuals are at the usual noise level.
     [[nodiscard]] bool ended() const noexcept {
         bool all = true;
         for (int k = 0; k < outputs_; ++k) {
@@ -247,9 +247,9 @@ class CauseBank {
     [[no_unique_address]] Extent<m> outputs_;
     bool has_friction_;
     CauseFits<Scalar, m> fits_;
-    Storage<Scalar, m> recent_; ///< mean square of the last residuals, in units of the noise
-    Scalar loudest_ = 0;        ///< `recent_` of any output so far
-    Scalar loudness_ = 0;       ///< of the residuals so far: sum of squares, in units of the noise
+    Storage<Scalar, m> recent_; ///< mean square of the recent residuals, relative to the noise
+    Scalar loudest_ = 0;        ///< largest `recent_` since the onset, over all outputs
+    Scalar loudness_ = 0;       ///< sum of squared residuals since the onset, relative to the noise
     Storage<Scalar, m> mean_push_;
     Scalar mean_force_[force_columns] = {};
 };

@@ -7,9 +7,9 @@
 
 namespace dfdyn {
 
-/// How well m outputs were predicted, one step after the other: the logarithm of the product of the
-/// predictions' densities. Each output's noise has an unknown variance, inverse gamma about 1 as if seen
-/// `noise_weight` times before; what a column explains is thereby judged against what it leaves.
+/// Log-evidence of one-step-ahead predictions of m outputs: the logarithm of the product of their densities
+/// (prequential evidence). Each output's noise variance is unknown, with an inverse gamma prior around 1 that
+/// weighs as much as `noise_weight` samples.
 template <class Scalar, int m>
 class Evidence {
   public:
@@ -25,7 +25,7 @@ class Evidence {
         }
     }
 
-    /// Of output k: an error, and its variance in units of the noise's.
+    /// Adds an error of output k, and its variance relative to that of the noise.
     void add(int k, Scalar error, Scalar variance) noexcept {
         using std::log;
         squares_[k] += error * error / variance;
@@ -33,7 +33,7 @@ class Evidence {
         instants_[k] += 1;
     }
 
-    /// Up to what all predictions of the same outputs have in common. A logarithm.
+    /// Returns the log-evidence of output k, up to a constant common to all predictions of the same data.
     [[nodiscard]] Scalar of(int k) const noexcept {
         using std::log;
         const Scalar weight = (noise_weight + instants_[k]) / 2;
@@ -54,18 +54,18 @@ class Evidence {
     Storage<Scalar, m> instants_;
 };
 
-/// How well p columns explain m outputs: recursive least squares over the rows since `restart`, and the
-/// evidence that comes with it.
+/// Fits p columns to m outputs by recursive least squares over the rows since `restart`, with the
+/// log-evidence of the fit.
 ///
-/// The parameters' prior is N(0, `prior_variance`) each, in units of columns scaled to the noise. Rows come
-/// one after the other, each predicted before it is folded in: with the error e and the variance S = 1 +
-/// h'Ph of each, parameters that do not explain cost by themselves. `forgets`: for what comes and goes.
-/// Memory about p²/2 + 5 p + 3 m.
+/// The prior of each parameter is N(0, `prior_variance`), for columns scaled to the noise. Each row h is
+/// predicted before it is learned, with the error e and the variance S = 1 + h'Ph. So parameters that explain
+/// nothing reduce the evidence (Occam factor). `forgets`: with exponential forgetting, for temporary causes.
+/// Memory: about p²/2 + 5 p + 3 m scalars.
 template <class Scalar, int p, int m, bool forgets>
 class CauseFit {
   public:
     static constexpr Scalar prior_variance = 400;
-    static constexpr Scalar forgetting = Scalar(0.8); ///< per instant
+    static constexpr Scalar forgetting = Scalar(0.8); ///< factor per block
 
     CauseFit() noexcept : CauseFit(Extent<m>{}) {}
     explicit CauseFit(Extent<m> outputs) noexcept
@@ -76,7 +76,7 @@ class CauseFit {
         evidence_.restart();
     }
 
-    /// One instant: `rows` (m × p) and `targets` (m), in units of the noise.
+    /// Adds one block: `rows` (m × p) and `targets` (m), in standard deviations of the noise.
     void add(const Scalar* rows, const Scalar* targets) noexcept {
         for (int k = 0; k < outputs_; ++k) {
             const Scalar* row = rows + k * p;
@@ -90,7 +90,7 @@ class CauseFit {
     }
 
     [[nodiscard]] const Evidence<Scalar, m>& evidence() const noexcept { return evidence_; }
-    /// In units of the scaled columns, p values.
+    /// Returns the p parameters, for the scaled columns.
     [[nodiscard]] const Scalar* parameters() const noexcept { return learner_.weights(0); }
     /// Returns the standard deviation of parameter i, in the same units. Cost: `deviation_cost`
     /// multiply-adds.

@@ -7,11 +7,11 @@
 
 namespace dfdyn {
 
-/// Every cause of a change, fitted to the residuals since its onset.
+/// Fits every cause of a change to the residuals since its onset.
 ///
-/// The residuals are those of a prediction that does not learn the change. Their usual noise is learned while
-/// nothing happens (`BlockNoise`); residuals and columns then pass through the same whitening (D. Cochrane
-/// and G. H. Orcutt, 1949). Columns are scaled to the noise, so that one prior suits all.
+/// The residuals are those of a prediction that does not learn the change. Their noise is estimated while no
+/// change is on (`BlockNoise`). Residuals and columns pass through the same whitening filter (D. Cochrane and
+/// G. H. Orcutt, 1949). Columns are scaled to the noise, so that all have the same prior.
 ///
 /// Cost per block while fitting: `cost(m)`.
 template <class Scalar, int m>
@@ -32,7 +32,7 @@ class CauseFits {
           targets_(Storage<Scalar, m>::zeros(outputs)),
           rows_(Rows::zeros(extent<product(m, payload_columns)>(outputs * payload_columns))) {}
 
-    /// A block while nothing happens, and the one before it (null after a gap).
+    /// Adds a block while no change is on, and the one before it (null after a gap), to the noise estimates.
     void learn(const Block* now, const Block* before, const Speed& speed) noexcept {
         for (int k = 0; k < outputs_; ++k) {
             const Block& other = before == nullptr ? now[k] : before[k];
@@ -40,14 +40,14 @@ class CauseFits {
             noise_[k].learn(now[k].residual, other.residual, speed.of(now[k].speed), last);
         }
     }
-    /// The noise is learned anew, from where it is.
+    /// Learns the noise again, starting from the present estimates.
     void relearn() noexcept {
         for (BlockNoise<Scalar>& noise : noise_) {
             noise.relearn();
         }
     }
 
-    /// Begins to fit. `block_at(b)`, 0 ≤ b < `count`: what there is of the past, for the size of the columns.
+    /// Starts the fits. `block_at(b)`, 0 ≤ b < `count`: the stored blocks, which scale the columns.
     template <class BlockAt>
     void start(const BlockAt& block_at, int count) noexcept {
         scale_columns(block_at, count);
@@ -68,7 +68,7 @@ class CauseFits {
                columns * (function_cost + 1);
     }
 
-    /// A block since the onset, and the one before it.
+    /// Adds a block since the onset, and the one before it.
     void add(const Block* now, const Block* before, const Speed& speed) noexcept {
         for (int k = 0; k < outputs_; ++k) {
             const Whitening<Scalar> whitening = whitening_of(k, now, before, speed);
@@ -88,7 +88,7 @@ class CauseFits {
         add_shared(force, force_scale, &Block::force, now, before);
     }
 
-    /// Of a block's residuals, in deviations.
+    /// Returns the largest whitened residual of a block, in standard deviations.
     [[nodiscard]] Scalar largest(const Block* now, const Block* before, const Speed& speed) const noexcept {
         Scalar most = 0;
         for (int k = 0; k < outputs_; ++k) {
@@ -101,7 +101,7 @@ class CauseFits {
     }
 
     [[nodiscard]] const BlockNoise<Scalar>& noise(int output) const noexcept { return noise_[output]; }
-    /// What a parameter of 1 of a bias, a friction or a push is in the output's unit.
+    /// Returns the unit of the parameters of a bias, a friction or a push, in output units.
     [[nodiscard]] Scalar unit(int output) const noexcept { return noise_[output].smallest(); }
 
     /// Multiply-adds of `add`, at most.
@@ -113,14 +113,14 @@ class CauseFits {
                CauseFit<Scalar, force_columns, m, true>::cost(outputs);
     }
 
-    // Fits that forget follow a push and its end.
+    // Fits with forgetting follow the start and the end of a push.
     Evidence<Scalar, m> nothing;
     CauseFit<Scalar, payload_columns, m, false> payload;
     CauseFit<Scalar, force_columns, m, true> force;
     Storage<OfOutput<friction_columns, false>, m> friction;
     Storage<OfOutput<1, false>, m> bias;
     Storage<OfOutput<1, true>, m> push;
-    /// A parameter of 1 is so much, in kg, kg·m or N.
+    /// Units of the parameters: kg, kg·m or N.
     Scalar payload_scale[payload_columns] = {}, force_scale[force_columns] = {};
 
   private:
@@ -155,7 +155,7 @@ class CauseFits {
         }
     }
 
-    /// Parameters that all outputs share.
+    /// Adds a block to a fit with parameters common to all outputs.
     template <class Fit, int p>
     void add_shared(Fit& fit, const Scalar (&scale)[p], Scalar (Block::*columns)[p], const Block* now,
                     const Block* before) noexcept {

@@ -5,10 +5,10 @@
 
 namespace dfdyn {
 
-/// Rows that give position, velocity and acceleration in the middle of a window of M+1 samples (M even, ≥ 2),
-/// `period` s apart, by the parabola of least squares through it (A. Savitzky and M. J. E. Golay, 1964): 3 ×
-/// (M+1), newest first. Half a window late, but with no lag of their own: who compares them with an output
-/// takes that of M/2 samples ago.
+/// Computes Savitzky-Golay rows for position, velocity and acceleration in the middle of a window of M+1
+/// samples (M even, ≥ 2) with the sample period `period` (s): the least-squares parabola (A. Savitzky and
+/// M. J. E. Golay, 1964). `rows`: 3 × (M+1), newest sample first. The result is M/2 samples old and has no
+/// phase lag at that time.
 template <class Scalar>
 constexpr void centred_motion_rows(int lags, Scalar period, Scalar* rows) noexcept {
     const int half = lags / 2;

@@ -13,52 +13,56 @@
 
 namespace dfdyn {
 
-/// In what way innovations depart from what is usual.
+/// Kinds of deviation of the innovations from their usual distribution.
 enum class Departure : std::uint8_t { growth, shift, friction, payload, force, burst };
 inline constexpr int departure_count = 6;
 
-/// Watches the block means of m normalised innovations for a change.
+/// Detects changes in the block means of m normalised innovations.
 ///
-/// Each is divided by its usual scale at this speed of its joint and freed of its usual autocorrelation
-/// (`BlockNoise`). CUSUMs (E. S. Page, 1954) sum log likelihood ratios of Gaussian noise with against without
-/// - growth, per output: twice the deviation;
+/// Block means are whitened with the usual scale and autocorrelation at the speed of their joint
+/// (`BlockNoise`). CUSUMs (E. S. Page, 1954) of log-likelihood ratios test Gaussian noise against
+/// - growth, per output: twice the standard deviation;
 /// - shift, per output and sign: a constant;
-/// - friction, per joint and sign: a torque against its motion (joint torques only);
-/// - payload, per sign: weight and inertia of a mass at the tool, in all outputs;
-/// - force, per axis of the base and sign: one at the tool, in all outputs;
-/// with each innovation cut off at three deviations; how large a shift, friction … is looked for, is said in
-/// deviations of a block (`shift_size`, `force_size`). For what is short and large there is one more sum:
-/// - burst: log(e²/2²) of each innovation of e > 2 deviations, all outputs together, less 2 per block; a
-///   block counts `burst_limit` at most.
+/// - friction, per joint and sign: a torque against the motion (joint torques only);
+/// - payload, per sign: weight and inertia of a mass at the tool, over all outputs;
+/// - force, per axis of the base and sign: a force at the tool, over all outputs.
+/// Whitened innovations are clamped at three standard deviations. `shift_size` and `force_size` are the sizes
+/// of the alternatives, in standard deviations of a block. One more sum is for short and large disturbances:
+/// - burst: log(e²/2²) of each whitened innovation |e| > 2, over all outputs, at most `burst_limit` per
+/// block,
+///   minus 2 per block.
 /// So no single block raises an alarm.
 ///
-/// The alarm is at a limit that each kind's own excursions set (`ExcursionTail`), so that all kinds together
-/// exceed theirs at most once in `blocks_between_false_alarms` while innovations stay as they were. The onset
-/// is where the alarm's sum last left zero. The alarm is over when every sum is below half its limit: the
-/// change was learned, or went away. An alarm that turns out to be nothing is to be told
-/// (`nothing_happened`).
+/// At standstill (lowest speed class, joint torques only) an innovation is evidence only beyond the range
+/// that stiction has shown in earlier standstills (`StandstillRange`): the excess of its level, or a larger
+/// change from block to block.
 ///
-/// Cost per block: `cost(m)`. Memory: about 45 m numbers.
+/// The threshold of each kind follows from its own excursions (`ExcursionTail`). All kinds together exceed
+/// their thresholds at most once in `blocks_between_false_alarms` while the innovations are stationary. The
+/// onset is the block in which the sum of the alarm last left zero. The alarm ends when every sum is below
+/// half its threshold: the change was learned or has passed. `nothing_happened` reports a false alarm.
+///
+/// Cost per block: `cost(m)`. Memory: about 55 m numbers.
 template <class Scalar, int m>
 class ChangeDetector {
   public:
     using Block = OutputBlock<Scalar>;
-    static constexpr int settling_blocks = 200; ///< before the first alarm
+    static constexpr int settling_blocks = 200; ///< without alarms after the start
     static constexpr Scalar shift_size = Scalar(1.5);
     static constexpr Scalar force_size = Scalar(1.5);
     static constexpr Scalar cut_off = 3;
     static constexpr Scalar burst_from = 2;
     static constexpr Scalar burst_drift = 2;
     static constexpr Scalar burst_limit = 12;
-    /// Standard deviations of a standing joint's error and of its change, as shares of their usual maxima.
+    /// Standard deviations of the error at standstill and of its change, as shares of their usual maxima.
     static constexpr Scalar level_scale = Scalar(1. / 3);
     static constexpr Scalar change_scale = Scalar(0.1);
     static constexpr Scalar least_range = Scalar(0.1); ///< smallest maximum, in predicted deviations
-    /// The limits are for so many times fewer false alarms than asked for: tails of real arms' sums are a bit
-    /// heavier than exponential (docs/monitor.md: measured).
+    /// Factor between the specified rate of false alarms and the rate that the thresholds are for: the tails
+    /// of the sums of real arms are heavier than exponential (measured, docs/monitor.md).
     static constexpr Scalar caution = 20;
 
-    /// `friction`: whether outputs are the torques of joints. `blocks_between_false_alarms` > 1: their mean.
+    /// `friction`: true if outputs are joint torques. `blocks_between_false_alarms` > 1: their mean distance.
     /// `least_scale`: lower bound of the usual scale of block means, in predicted deviations.
     ChangeDetector(Extent<m> outputs, bool friction, Scalar blocks_between_false_alarms,
                    Scalar least_scale = Scalar(1e-6)) noexcept
@@ -71,8 +75,8 @@ class ChangeDetector {
         set_limits();
     }
 
-    /// Takes in the next block, and the one before it (null after a gap); m values each. True while the alarm
-    /// is on.
+    /// Adds the next block, and the one before it (null after a gap); m values each. Returns true during an
+    /// alarm.
     bool add(const Block* now, const Block* before, const SpeedClasses<Scalar>& speed) noexcept {
         Shared shared;
         for (int k = 0; k < outputs_; ++k) {
@@ -99,13 +103,13 @@ class ChangeDetector {
     }
 
     [[nodiscard]] bool alarm() const noexcept { return alarm_; }
-    /// What raised the last alarm, and on which output; m: on all together.
+    /// Returns the kind of the sum that raised the last alarm, and its output; m: all outputs together.
     [[nodiscard]] Departure departure() const noexcept { return kind_of(raised_); }
     [[nodiscard]] int channel() const noexcept { return output_of(raised_); }
-    /// Blocks since the onset of the present alarm, that of the onset included.
+    /// Returns the number of blocks since the onset of the present alarm, including that of the onset.
     [[nodiscard]] int blocks_since_onset() const noexcept { return since_onset_; }
 
-    /// Begins anew, also while an alarm is on; what is usual stays.
+    /// Resets the sums and the alarm. The learned noise and thresholds remain.
     void restart() noexcept {
         alarm_ = false;
         for (Cusum& sum : sums_) {
@@ -113,7 +117,7 @@ class ChangeDetector {
         }
     }
 
-    /// Takes what goes on to be usual from now on.
+    /// Accepts the present innovations as the usual ones: learns noise and ranges again.
     void adopt() noexcept {
         for (BlockNoise<Scalar>& noise : noise_) {
             noise.relearn();
@@ -125,7 +129,7 @@ class ChangeDetector {
         restart();
     }
 
-    /// The last alarm's excursion was one of those that are usual.
+    /// Adds the excursion of the last alarm to the usual ones: it was a false alarm.
     void nothing_happened() noexcept {
         ExcursionTail<Scalar>& tail = tails_[static_cast<int>(departure())];
         tail.add(limits_[static_cast<int>(departure())]);
@@ -145,15 +149,15 @@ class ChangeDetector {
     static constexpr int shared_columns = 1 + force_columns; ///< payload's mass, force
     static constexpr Scalar power_memory = 600;              ///< blocks
     static constexpr Scalar power_first = 5;                 ///< blocks
-    static constexpr Scalar power_outlier = 100;             ///< times the mean, that a block counts at most
-    static constexpr Scalar largest_power = Scalar(1e12);    ///< that the first one counts at most
+    static constexpr Scalar power_outlier = 100;             ///< times the mean: upper bound of a block
+    static constexpr Scalar largest_power = Scalar(1e12);    ///< upper bound of the first block
 
     struct Cusum {
         Scalar sum, peak;
-        int blocks; ///< since it was zero
+        int blocks; ///< since the sum was zero
     };
 
-    /// Of all outputs: Σ g e and Σ g² of the columns g that they share.
+    /// Sums Σ g e and Σ g² over all outputs, for each common column g.
     struct Shared {
         Scalar product[shared_columns] = {}, square[shared_columns] = {};
         Scalar burst = 0;
@@ -177,7 +181,7 @@ class ChangeDetector {
         return index < outputs_ ? index : index < 5 * outputs_ ? (index - outputs_) / 2 % outputs_ : outputs_;
     }
 
-    /// Adds a block of a joint that stands; `before` is null unless it stood in the block before.
+    /// Adds a block of a stationary joint; `before` is null if the joint moved in the block before.
     void sum_standing(int k, const Block& now, const Block* before, Shared& shared) noexcept {
         using std::abs;
         StandstillRange<Scalar>& range = range_[k];
@@ -237,12 +241,12 @@ class ChangeDetector {
         rise(5 * outputs_ + 2 * shared_columns, std::min(shared.burst, burst_limit) - burst_drift);
     }
 
-    /// The mean begins with the smallest of the first few blocks; later none counts for much more than the
-    /// mean. So one of absurd columns, or of none that are numbers, does not hide what follows.
+    /// Updates the mean power of a column. It starts with the smallest of the first few blocks. Later blocks
+    /// are clamped at a multiple of the mean, so that absurd or non-finite columns do not hide later changes.
     void learn_power(int i, Scalar square) noexcept {
         Scalar& power = power_[i];
         const Scalar most = power > 0 ? power_outlier * power : largest_power;
-        const Scalar bounded = std::min(most, square); // `most` if it is no number
+        const Scalar bounded = std::min(most, square); // `most` if it is NaN
         if (powers_ <= power_first) {
             power = power > 0 ? std::min(power, bounded) : bounded;
         } else {
@@ -250,7 +254,7 @@ class ChangeDetector {
         }
     }
 
-    /// Of a shift g δ and one of -g δ: δ Σ g e and δ² Σ g².
+    /// Adds to the sums of a shift g δ and of -g δ: `product` is δ Σ g e, `square` is δ² Σ g².
     void both_signs(int index, Scalar product, Scalar square) noexcept {
         rise(index, product - square / 2);
         rise(index + 1, -product - square / 2);
@@ -274,7 +278,7 @@ class ChangeDetector {
 
     void decide() noexcept {
         if (settled_ < settling_blocks && ++settled_ == settling_blocks) {
-            restart(); // sums of noise that was not known yet
+            restart(); // the first sums were of unknown noise
         }
         if (alarm_) {
             ++since_onset_;
@@ -300,7 +304,7 @@ class ChangeDetector {
         }
     }
 
-    /// Raises the alarm of the sum that is farthest beyond its limit, if one is.
+    /// Raises the alarm of the sum with the largest ratio to its threshold, if one exceeds it.
     void look() noexcept {
         Scalar farthest = 1;
         for (int index = 0; index < sums_.size(); ++index) {
@@ -324,7 +328,7 @@ class ChangeDetector {
 
     [[no_unique_address]] Extent<m> outputs_;
     bool has_friction_;
-    Scalar blocks_between_; ///< false alarms of one kind
+    Scalar blocks_between_; ///< between two false alarms of one kind
     Storage<BlockNoise<Scalar>, m> noise_;
     Storage<StandstillRange<Scalar>, m> range_;
     Storage<Cusum, sums_of(m)> sums_;
@@ -332,7 +336,7 @@ class ChangeDetector {
     Scalar limits_[departure_count] = {};
     Scalar power_[shared_columns] = {}; ///< mean of Σ g²
     Scalar powers_ = 0;
-    int settled_ = 0; ///< blocks seen, as far as they are counted
+    int settled_ = 0; ///< blocks since the start, at most `settling_blocks`
     int since_onset_ = 0;
     int raised_ = 0;
     bool alarm_ = false;

@@ -9,27 +9,28 @@
 
 namespace dfdyn {
 
-/// Looks for readings that repeat exactly while the arm moves: `count` channels, the joints' positions first.
+/// Detects frozen sensors: readings that repeat exactly while other joints move. `count` channels, the
+/// positions of the joints first.
 ///
-/// Evidence of a channel that is frozen: its present run of repeats times log(1 / p), where p is how often it
-/// repeats usually, while other joints move. A joint that comes to rest repeats too, but it slows down
-/// before; so a position counts only if it stopped dead: its last steps before the run were those of a joint
-/// that moves. And a run counts only if it is half as long again as the longest before.
+/// The evidence of a frozen channel is the length of its run of repeats times log(1 / p), where p is the
+/// usual frequency of a repeat while other joints move. Two kinds of runs have no evidence:
+/// - of a position whose joint slowed down before, as a joint that comes to rest does;
+/// - runs of less than 1.5 times the length of the longest earlier run.
 ///
-/// A joint moves if the mean of its last steps is at least `dead` of the usual one and `dither` quantisation
-/// steps: feedback makes the positions of an arm that stands tremble. The usual step is a mean by distance
-/// (each step weighted by itself), to which minutes of trembling contribute nothing. While no other joint
-/// moves no run goes on. Memory: 11 numbers per channel.
+/// A joint moves if the mean of its recent steps is at least `dead` times the usual step and `dither`
+/// quantisation steps, because feedback makes the positions of a stationary arm tremble. The usual step is a
+/// mean with the steps as weights, to which minutes of tremble contribute little. A run does not grow while
+/// no other joint moves. Memory: 11 numbers per channel.
 template <class Scalar, int count>
 class FrozenWatch {
   public:
-    static constexpr Scalar memory = 5000;       ///< samples, of what is usual
-    static constexpr Scalar dead = Scalar(0.25); ///< of the usual step
-    static constexpr Scalar dither = 2;          ///< quantisation steps per sample: a joint may stand so
-    /// Usual steps that one counts at most, once those are known.
+    static constexpr Scalar memory = 5000;       ///< samples, of the usual values
+    static constexpr Scalar dead = Scalar(0.25); ///< share of the usual step
+    static constexpr Scalar dither = 2;          ///< quantisation steps per sample of a stationary joint
+    /// Usual steps; larger ones are clamped once the usual step is known.
     static constexpr Scalar outlier = 20;
-    static constexpr Scalar least_trials = 500; ///< samples, before anything is known of what is usual
-    static constexpr int steps = 5;             ///< just before, that are averaged
+    static constexpr Scalar least_trials = 500; ///< samples before the frequency of repeats is known
+    static constexpr int steps = 5;             ///< memory of the mean of the recent steps
     static constexpr int cost = 14;             ///< multiply-adds per channel of `add`, at most
 
     FrozenWatch(Extent<count> channels, int joints) noexcept
@@ -37,7 +38,7 @@ class FrozenWatch {
 
     void restart() noexcept { samples_ = 0; }
 
-    /// The readings of one instant: `joints` positions, then the rest.
+    /// Adds the readings of one sample: `joints` positions, and the other channels.
     void add(const Scalar* positions, const Scalar* others) noexcept {
         int moving = 0;
         bool changed = false;
@@ -59,7 +60,7 @@ class FrozenWatch {
         samples_ = 1;
     }
 
-    /// log of the odds against chance of the channel's present run; 0 if it came to rest by itself.
+    /// Returns the log odds of the channel's run against chance; 0 if the joint came to rest by itself.
     [[nodiscard]] Scalar evidence(int channel) const noexcept {
         const State& state = states_[channel];
         const bool came_to_rest = channel < joints_ && state.step_before < least_step(state);
@@ -78,17 +79,17 @@ class FrozenWatch {
     struct State {
         Scalar last;
         Scalar recent_step, step_before; ///< mean magnitudes
-        Scalar usual_step;               ///< likewise, each step weighted by itself
+        Scalar usual_step;               ///< mean magnitude with the steps as weights
         Scalar distance;                 ///< sum of the steps, at most `memory` usual ones
         Scalar quantum;                  ///< smallest step so far, 0 before the first
-        Scalar repeats, trials;          ///< while others move
-        int changes;                     ///< samples that differ from the one before; counted to 50
-        int run, longest;                ///< of repeats: the present one, those before
-        bool moves;                      ///< a joint
+        Scalar repeats, trials;          ///< while other joints move
+        int changes;                     ///< samples that differ from the one before; at most 50
+        int run, longest;                ///< repeats: of the present run, of the longest one before
+        bool moves;                      ///< joints only
     };
     using States = Storage<State, count>;
 
-    /// Of a joint that moves.
+    /// Returns the smallest mean step of a moving joint.
     static Scalar least_step(const State& state) noexcept {
         return std::max(dead * state.usual_step, dither * state.quantum);
     }

@@ -5,9 +5,9 @@
 
 namespace dfdyn {
 
-/// What an estimator knew a while ago: two copies of its `count` weights, renewed in turn, so that the older
-/// one is between one and two periods old. What it predicts differs from what is measured by all of a change,
-/// also while the estimator learns it. Memory 2 `count` scalars.
+/// Delayed weights of an estimator: two copies of its `count` weights, refreshed alternately, so that the
+/// older one is between one and two periods old. Its prediction error contains a whole change, also while the
+/// estimator learns it. Memory: 2 `count` scalars.
 template <class Scalar, int count>
 class HeldWeights {
   public:
@@ -16,7 +16,7 @@ class HeldWeights {
 
     [[nodiscard]] const Scalar* older() const noexcept { return (newer_is_first_ ? second_ : first_).data(); }
 
-    /// Where to write the present weights in place of the older ones; the newer ones are then the older.
+    /// Returns the storage of the older weights, for the present ones. The newer copy then becomes the older.
     [[nodiscard]] Scalar* renew() noexcept {
         newer_is_first_ = !newer_is_first_;
         return (newer_is_first_ ? first_ : second_).data();

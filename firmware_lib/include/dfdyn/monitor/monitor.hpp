@@ -11,27 +11,27 @@
 
 namespace dfdyn {
 
-/// What a monitor is told of one tick. Arrays of n or m values.
+/// Input of a monitor for one tick. Arrays of n or m values.
 template <class Scalar>
 struct Observation {
     std::int64_t time_ns;
     const Scalar* position;           ///< rad, m
-    const Scalar* output;             ///< measured
-    const Scalar* prediction;         ///< of it, one step ahead, by who learns it
-    const Scalar* standard_deviation; ///< of the output about that prediction
-    const Scalar* held_prediction;    ///< by what was known a while ago (`HeldWeights`)
+    const Scalar* output;             ///< measured, output units
+    const Scalar* prediction;         ///< one-step-ahead prediction of the estimator
+    const Scalar* standard_deviation; ///< of the output around that prediction
+    const Scalar* held_prediction;    ///< with delayed weights (`HeldWeights`)
 };
 
-/// Watches an estimator's innovations for a change of the arm or its sensors, and says what changed.
+/// Fault detection and isolation (FDI): detects changes of the arm or its sensors from the innovations of an
+/// estimator, and estimates cause, place and size.
 ///
-/// Innovations of one-step-ahead predictions are averaged over blocks and watched by a `ChangeDetector`. On
-/// an alarm a `CauseBank` fits the causes to the block means since the onset, up to `history` blocks back, of
-/// the measured outputs less what was known before (`held_prediction`): the estimator may learn the change
-/// meanwhile. The verdict is refined until the change is over, when the innovations are as usual again, or
-/// after `longest_blocks`. A `FrozenWatch` raises an alarm of its own for a reading that repeats beyond
-/// chance.
+/// A `ChangeDetector` tests block means of the one-step-ahead innovations. After an alarm a `CauseBank` fits
+/// the causes to the block means of the residuals since the onset, at most `history` blocks back. Residuals
+/// are measured outputs minus `held_prediction`, because the estimator may already have learned the change.
+/// The result is updated until the change is over: the innovations are as before, or `longest_blocks` have
+/// passed. A `FrozenWatch` raises its own alarm for a reading that repeats beyond chance.
 ///
-/// Each tick, while the learner is idle:
+/// Use in each tick, while the learner is idle:
 ///
 ///     if (monitor.renewal_due()) {
 ///         regression.copy_weights(held.renew());
@@ -45,8 +45,8 @@ struct Observation {
 ///         monitor.interrupt();
 ///     }
 ///
-/// Cost per tick: `cost()`, at the end of a block while a change is on; otherwise a fraction of it. No heap.
-/// Memory about 13 m `history` + 250 m scalars, see `sizeof`.
+/// Cost per tick: at most `cost()`, at the end of a block during a change; otherwise a fraction of it. No
+/// heap. Memory: about 13 m `history` + 260 m scalars, see `sizeof`.
 template <class Scalar, class Arm, int M, int history = 48>
 class Monitor {
   public:
@@ -57,29 +57,29 @@ class Monitor {
 
     struct Constants {
         [[no_unique_address]] typename Arm::Sizes sizes;
-        [[no_unique_address]] Extent<M> lags; ///< of the motion's window, even
+        [[no_unique_address]] Extent<M> lags; ///< of the window of positions, even
         typename Arm::template Constants<Scalar> chain;
         typename Motion::template Constants<Scalar, n> motion; ///< `centred_motion_rows` in difference form
-        Storage<Scalar, m> output_gain; ///< output per N·m (N): 1, or 1 / torque constant (A/N·m)
-        Scalar tip[3];                  ///< m, where a force on the tool acts, in the last link's frame
-        Scalar sign_velocity;           ///< rad/s: friction's sign is tanh(q̇ / v)
+        Storage<Scalar, m> output_gain; ///< output per N·m or N: 1, or 1 / torque constant (A/N·m)
+        Scalar tip[3];                  ///< m, point of a force on the tool, in the last link's frame
+        Scalar sign_velocity;           ///< rad/s, v of the sign of friction tanh(q̇ / v)
         SpeedClasses<Scalar> speed;
         std::int32_t block_samples;         ///< about 0.1 s
-        Scalar blocks_between_false_alarms; ///< their mean; of all outputs together
+        Scalar blocks_between_false_alarms; ///< mean distance, all outputs together
         std::int32_t report_blocks;         ///< from the onset to the first report, about 2 s
-        std::int32_t longest_blocks;        ///< of a change, about 20 s
-        std::int32_t renewal_blocks;        ///< period of the held weights, about 3 s
+        std::int32_t longest_blocks;        ///< largest duration of a change, about 20 s
+        std::int32_t renewal_blocks;        ///< refresh period of the delayed weights, about 3 s
     };
 
-    static constexpr int catch_up = 3; ///< blocks of the past that the bank takes in per block
-    /// Deviations that an innovation or a residual counts at most. One spike then cannot overflow a square or
-    /// outweigh all later blocks in a mean; what is as large as this for long is still an alarm.
+    static constexpr int catch_up = 3; ///< stored blocks that the bank adds per new block
+    /// Bound of innovations and residuals, in predicted deviations. A clamped spike cannot overflow a square
+    /// or dominate a mean over later blocks. A lasting deviation of this size still raises an alarm.
     static constexpr Scalar largest_deviation = 1000;
     /// Smallest usual scale of a block's innovation, as a share of that of white innovations with the
     /// predicted deviation. A deviation that the estimator overestimates, as after a standstill, then is no
     /// evidence.
     static constexpr Scalar least_scale = Scalar(0.25);
-    static constexpr Scalar largest_position = 10'000; ///< rad, m: beyond it a sample counts as a gap
+    static constexpr Scalar largest_position = 10'000; ///< rad, m; a larger position counts as a gap
 
     explicit Monitor(const Constants&&) = delete; // it would refer to a temporary
     explicit Monitor(const Constants& constants) noexcept
@@ -105,8 +105,8 @@ class Monitor {
         since_renewal_ = 2 * constants.renewal_blocks;
     }
 
-    /// One tick; one of values that are not finite, or of an absurd position, counts as a gap. True: there is
-    /// news of `change()`, which is found, is better known, or is over.
+    /// Processes one tick. Values that are not finite or an absurd position count as a gap. Returns true if
+    /// `change()` is new, has another cause, or is over.
     bool tick(const Observation<Scalar>& observation) noexcept {
         if (!usable(observation)) {
             interrupt();
@@ -129,7 +129,7 @@ class Monitor {
         return take_in(observation.time_ns);
     }
 
-    /// Nothing was measured, or samples are missing: windows and the block at hand begin anew.
+    /// Reports a gap: nothing was measured, or samples are missing. Windows and the current block restart.
     void interrupt() noexcept {
         motion_.restart();
         innovations_.restart();
@@ -139,7 +139,7 @@ class Monitor {
         follows_ = false;
     }
 
-    /// Another recording or motion begins: likewise, and a change under way is left as it is known.
+    /// Starts another recording or motion: a gap that also ends a present change without a further report.
     void restart() noexcept {
         interrupt();
         detector_.restart();
@@ -147,19 +147,19 @@ class Monitor {
         since_renewal_ = 2 * constants_->renewal_blocks;
     }
 
-    /// Whether the held weights are to be renewed; say `renewed` when they are. Twice in a row at the start
-    /// and after a change, so that nothing from before is left.
+    /// Returns true if the delayed weights are due for a refresh; call `renewed` after it. Both copies are
+    /// due at the start and after a change, so that none is from before.
     [[nodiscard]] bool renewal_due() const noexcept {
         return !changing_ && since_renewal_ >= constants_->renewal_blocks;
     }
     void renewed() noexcept { since_renewal_ -= constants_->renewal_blocks; }
 
-    /// From an alarm until the change is over.
+    /// Returns true from an alarm until the change is over.
     [[nodiscard]] bool changing() const noexcept { return changing_; }
-    /// The last one; its verdict counts once `tick` has told of it.
+    /// Returns the last change. Its cause is valid after `tick` has returned true.
     [[nodiscard]] const Change& change() const noexcept { return change_; }
 
-    /// Multiply-adds of a tick, at most: one that ends a block while a change is on.
+    /// Returns the largest cost of a tick, in multiply-adds: at the end of a block during a change.
     [[nodiscard]] static constexpr std::int64_t cost(const typename Arm::Sizes& sizes, int lags) noexcept {
         const int joints = sizes.joint_count;
         const int outputs = sizes.output_count;
@@ -177,7 +177,7 @@ class Monitor {
     using Outputs = Storage<Scalar, m>;
     using Past = Storage<OutputBlock<Scalar>, product(history, m)>;
 
-    /// Positions as the motion's window takes them.
+    /// Adapts a plain array to the interface of the window of positions.
     struct Positions {
         const Scalar* values;
         [[nodiscard]] const Scalar* data() const noexcept { return values; }
@@ -219,7 +219,7 @@ class Monitor {
         residuals_.push(scaled_.data());
     }
 
-    /// Of the block's middle; they change little within it.
+    /// Evaluates the columns of payload and force in the middle of the block.
     void take_tool_columns() noexcept {
         tool_columns<Arm, Scalar>(constants_->chain, constants_->sizes, xi_.data(), constants_->tip,
                                   screws_.data(), payload_.data(), force_.data());
@@ -254,7 +254,7 @@ class Monitor {
         }
     }
 
-    /// Puts the block at hand into the past.
+    /// Stores the current block.
     void end_block(std::int64_t time_ns) noexcept {
         ++newest_;
         std::copy_n(block_.data(), outputs(), past_.data() + slot(newest_) * outputs());
@@ -275,7 +275,7 @@ class Monitor {
         return past_.data() + slot(number) * outputs();
     }
 
-    /// Of a block in the ring.
+    /// Returns the index of a block in the ring.
     [[nodiscard]] static int slot(std::int64_t number) noexcept { return static_cast<int>(number % history); }
 
     bool take_in(std::int64_t time_ns) noexcept {
@@ -294,7 +294,7 @@ class Monitor {
         return news;
     }
 
-    /// The channel that repeats itself beyond chance, or -1.
+    /// Returns the channel with the strongest evidence of a frozen reading beyond chance, or -1.
     [[nodiscard]] int repeats() const noexcept {
         int worst = -1;
         for (int c = 0; c < frozen_.channels(); ++c) {
@@ -323,7 +323,7 @@ class Monitor {
                     static_cast<int>(newest_ - first + 1));
     }
 
-    /// One more block of a change. True when there is news.
+    /// Processes one more block of a change. Returns true if there is something new to report.
     bool follow(std::int64_t time_ns, bool alarm) noexcept {
         for (int b = 0; b < catch_up && next_ <= newest_; ++b, ++next_) {
             if (newest_ - next_ + 1 < unbroken_) { // the one before belongs to it
@@ -350,8 +350,8 @@ class Monitor {
         return news;
     }
 
-    /// From the block on that follows the first unusual one: sums may have begun to rise by chance before the
-    /// change, and it may have begun within that block.
+    /// Fits from the block after the first unusual one: sums may have started to rise by chance before the
+    /// change, and the change may have started within that block.
     void fit(const OutputBlock<Scalar>* now, const OutputBlock<Scalar>* before) noexcept {
         if (fitting_) {
             bank_.add(now, before, constants_->speed);
@@ -378,22 +378,22 @@ class Monitor {
     const Constants* constants_;
     typename Motion::template Map<Scalar, n> motion_;
     LagWindow<Scalar, m, M> innovations_, residuals_;
-    Storage<Screw<Scalar>, m> screws_; ///< room for them
+    Storage<Screw<Scalar>, m> screws_; ///< workspace
     Inputs xi_;
     Storage<Scalar, product(payload_columns, m)> payload_;
     Storage<Scalar, product(force_columns, m)> force_;
     Outputs scaled_, deviations_;
-    Storage<OutputBlock<Scalar>, m> block_;    ///< the one at hand
-    Past past_;                                ///< ring of the last blocks …
-    Storage<std::int64_t, history> ends_ns_{}; ///< … and when they ended
+    Storage<OutputBlock<Scalar>, m> block_;    ///< current block
+    Past past_;                                ///< ring of the last blocks
+    Storage<std::int64_t, history> ends_ns_{}; ///< their end times
     ChangeDetector<Scalar, m> detector_;
     CauseBank<Scalar, m> bank_;
     FrozenWatch<Scalar, sum(n, m)> frozen_;
-    Scalar repeats_limit_; ///< evidence of a channel that repeats itself
+    Scalar repeats_limit_; ///< evidence above which a channel is frozen
     Change change_;
-    int samples_ = 0; ///< of the block at hand
+    int samples_ = 0; ///< in the current block
     std::int64_t newest_ = 0, onset_ = 0, next_ = 0, alarm_ = 0;
-    int unbroken_ = 0; ///< blocks up to the newest without a gap
+    int unbroken_ = 0; ///< consecutive blocks up to the newest, without a gap
     int since_renewal_ = 0;
     int frozen_channel_ = -1, told_frozen_ = -1;
     Scalar frozen_evidence_ = 0;

@@ -8,19 +8,17 @@
 
 namespace dfdyn {
 
-/// Learns the range of the prediction error of a joint that stands, within which static friction hides any
-/// load.
+/// Learns the range of the prediction error of a stationary joint, which stiction causes without any load.
 ///
-/// At standstill the friction torque takes any value up to the break-away torque. The error of the predicted
-/// torque then has an unknown level, and it changes slowly while the controller and the bristles of the
-/// contact relax. Neither is noise with a variance: in a standstill of minutes almost all blocks are quiet,
-/// and the next stop is not. So this class keeps the largest magnitudes of a standstill, of the error's level
-/// and of its change from block to block, in output units (N·m, A). A larger one in a later standstill raises
-/// the range at once, smaller ones lower it with a memory of `memory` standstills. A standstill of more than
-/// `longest_blocks` continues as another one that may only raise the range.
+/// At standstill the friction torque has any value up to the break-away torque. The error of the predicted
+/// torque then has an unknown level, which changes slowly while the controller and the contact relax. This is
+/// no noise with a variance: nearly all blocks of a standstill of minutes are quiet, and the next stop is
+/// not. So the range consists of two largest magnitudes in output units (N·m, A): of the error, and of its
+/// change from block to block. A larger magnitude widens the range at once. Smaller ones narrow it with a
+/// memory of `memory` standstills. After `longest_blocks` a standstill may only widen it.
 ///
-/// The bounds have a margin of `margin` / n after n standstills, for what has not been seen yet. Memory: 8
-/// numbers.
+/// After n standstills the bounds are larger by the factor 1 + `margin` / n, for values not seen yet. Memory:
+/// 8 numbers.
 template <class Scalar>
 class StandstillRange {
   public:
@@ -28,12 +26,12 @@ class StandstillRange {
     static constexpr Scalar memory = 50; ///< standstills
     static constexpr Scalar margin = 2;
     static constexpr int longest_blocks = 50;
-    /// Largest growth of a known range in one standstill: without an alarm, and with one.
+    /// Largest factor by which one standstill widens a known range: without an alarm, and during one.
     static constexpr Scalar growth = 10;
     static constexpr Scalar growth_in_alarm = Scalar(1.5);
 
-    /// Adds a block at standstill: magnitudes of the error and of its change since the block before (0 after
-    /// the stop), and whether an alarm is on. Values that are not finite are ignored.
+    /// Adds a block at standstill. `level`: magnitude of the error; `change`: that of its difference from the
+    /// block before, 0 in the first block; `alarm`: true during an alarm. Ignores values that are not finite.
     void add(Scalar level, Scalar change, bool alarm) noexcept {
         level_.present = std::max(level_.present, level <= largest ? level : Scalar(0));
         change_.present = std::max(change_.present, change <= largest ? change : Scalar(0));
@@ -44,7 +42,7 @@ class StandstillRange {
         }
     }
 
-    /// Ends a standstill: the joint moves.
+    /// Ends the standstill, if there is one: the joint moves.
     void end() noexcept {
         if (blocks_ > 0) {
             close();

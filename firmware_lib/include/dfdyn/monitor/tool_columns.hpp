@@ -8,17 +8,19 @@
 
 namespace dfdyn {
 
-/// Derivatives of the outputs (N·m, N) by a body fixed to the last link, mass and first moment about `point`
-/// (m, in the link's frame), m × 4, and by a force on the link at `point`, m × 3. `xi` as of `for_each_body`,
-/// whose recursion this is, with the base's axes carried along. `screws`: room for m. At most
-/// `tool_columns_cost` multiply-adds.
+/// Computes partial derivatives of the outputs (N·m, N):
+/// - `payload`, m × 4: with respect to mass and first moment about `point` of a body fixed to the last link;
+/// - `force`, m × 3: with respect to a force on that link at `point`, in the base frame.
+///
+/// `point`: m, in the frame of the last link. `xi`: 3 n, position, velocity and acceleration of each joint,
+/// as for `for_each_body`. `screws`: workspace of m. Cost: at most `tool_columns_cost` multiply-adds.
 template <class Arm, class Scalar>
 void tool_columns(const typename Arm::template Constants<Scalar>& chain, const typename Arm::Sizes& sizes,
                   const Scalar* xi, const Scalar* point, Screw<Scalar>* screws, Scalar* payload,
                   Scalar* force) noexcept {
     const auto none = Vector3<Scalar>::zero();
     LinkMotion<Scalar> motion{none, none, none - Vector3<Scalar>::from(chain.gravity)};
-    Vector3<Scalar> axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}; // of the base, in the link's frame
+    Vector3<Scalar> axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}; // axes of the base in the link's frame
     const ChainJoint<Scalar>* joints = chain.joint.data();
     int count = Arm::Output::begin(chain.output, joints, 0, screws);
     for (int i = 0; i < sizes.joint_count; ++i) {
@@ -45,8 +47,8 @@ void tool_columns(const typename Arm::template Constants<Scalar>& chain, const t
     }
 }
 
-/// Of revolute joints: per joint its frame and motion and the axes, per output and joint the change of
-/// frames, per output the rows.
+/// Returns an upper bound of the cost: frame, motion and axes for each joint, a change of frame for each pair
+/// of output and joint, and the rows for each output.
 constexpr std::int64_t tool_columns_cost(int joints, int outputs) noexcept {
     constexpr int joint = 2 * function_cost + 57 + 57 + 27;
     return std::int64_t{joint} * joints + std::int64_t{24} * outputs * joints + std::int64_t{75} * outputs +
