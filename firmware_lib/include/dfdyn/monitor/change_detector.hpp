@@ -187,17 +187,17 @@ class ChangeDetector {
         StandstillRange<Scalar>& range = range_[k];
         const Scalar level = now.innovation * now.deviation;
         const Scalar change = before == nullptr ? Scalar(0) : level - before->innovation * before->deviation;
-        const Scalar least = least_range * now.deviation;
-        const Scalar most_change = std::max(range.change(), least);
-        const Scalar most_level = std::max(range.level(), least);
-        if (range.known() && abs(change) > most_change) {
-            const Scalar weight = now.deviation / (change_scale * most_change);
-            const Whitening<Scalar> whitening{weight, BlockNoise<Scalar>::most_alike * weight};
-            sum_output(k, change / (change_scale * most_change), whitening, now, *before, shared);
-        } else if (range.known()) {
-            const Scalar beyond = level - std::clamp(level, -most_level, most_level);
-            const Whitening<Scalar> whitening{now.deviation / (level_scale * most_level), 0};
-            sum_output(k, beyond / (level_scale * most_level), whitening, now, now, shared);
+        if (range.known()) {
+            const Scalar least = least_range * now.deviation;
+            const Scalar most_change = std::max(range.change(), least);
+            const Scalar most = std::max(range.level(), least);
+            const bool changed = abs(change) > most_change;
+            const Scalar unit = changed ? change_scale * most_change : level_scale * most;
+            const Scalar beyond = changed ? change : level - std::clamp(level, -most, most);
+            const Scalar weight = now.deviation / unit;
+            const Whitening<Scalar> whitening{weight,
+                                              changed ? BlockNoise<Scalar>::most_alike * weight : Scalar(0)};
+            sum_output(k, beyond / unit, whitening, now, changed ? *before : now, shared);
         }
         range.add(abs(level), abs(change), alarm_);
     }
