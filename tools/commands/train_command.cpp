@@ -12,6 +12,7 @@
 #include "tools/common/text.hpp"
 #include "tools/evaluation/contradiction.hpp"
 #include "tools/evaluation/rigid_body.hpp"
+#include "tools/model/effects.hpp"
 #include "tools/model/model_file.hpp"
 #include "tools/model/model_header.hpp"
 #include "tools/physics/model_training.hpp"
@@ -57,8 +58,8 @@ void add_physics_options(CLI::App& command, TrainOptions& options) {
     options.robot.add_to(command, false);
     command
         .add_option("--effects", options.effects,
-                    "Named effects that the physics learns beside the rigid body, as viscous_friction,"
-                    "coulomb_friction,torque_offset")
+                    "Named effects that the physics learns beside the rigid body, of " +
+                        trainable_effect_names())
         ->delimiter(',')
         ->type_name("NAME[,NAME...]");
     command
@@ -298,10 +299,14 @@ void add_train_command(CLI::App& app, Command& chosen) {
     options->setup.add_to(*command);
     add_training_options(*command, options->training);
     add_physics_options(*command, *options);
+    const std::string friction =
+        std::string(effect_kinds::viscous_friction.name) + ',' + effect_kinds::coulomb_friction.name;
     command->footer(
         "Example:\n  dfdyn train --log run.csv --rows :3400 --outputs i --input DFR -o model.json\n"
         "  dfdyn train --log run.csv --outputs tau --model SPK --robot arm.urdf --tip tool0 --own-motion"
-        " --effects viscous_friction,coulomb_friction -o model.json\n"
+        " --effects " +
+        friction +
+        " -o model.json\n"
         "Exit status: 0 done, 1 a mistake in the set-up of a recording (nothing is trained), 2 bad usage or "
         "input.");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,18 @@ struct EffectParameter {
     double value = 0;
     double of_nothing = 0; ///< what it is where there is no such effect
     double unsettled = 0;  ///< share of the value, as a deviation, that no amount of data settles
+};
+
+/// A parameter of an effect, as the catalogue has it.
+struct ParameterKind {
+    const char* name;
+    const char* unit;
+    std::optional<double> null_value = 0; ///< what it is where there is no such effect; none: any value is
+    double unsettled = 0;                 ///< as EffectParameter's
+
+    EffectParameter at(double value) const {
+        return {name, unit, value, null_value.value_or(value), unsettled};
+    }
 };
 
 /// Whether a machine can have these coefficients.
@@ -52,6 +65,7 @@ struct Candidate {
     std::string family;     ///< of several candidates of one family at most one is chosen; empty: none
     double tried = 1;       ///< of how many alternatives this one was picked beforehand
     double extra_price = 0; ///< what it must explain, in units of the evidence, because others of its kind do
+    bool event = false;     ///< it happens at a time: no other time can tell of it
     std::vector<EffectColumn> columns;
     std::vector<EffectShape> shapes;
     /// The last column of a shape for another value of its parameter; empty where there is none, or only the

@@ -60,11 +60,9 @@ inline EffectShape whole_shape(const Candidate& candidate, CoefficientRule allow
     return shape;
 }
 
-/// A candidate of one column. Its parameters are still to be said.
-inline Candidate single_column(std::string effect, std::string where, EffectColumn column,
-                               CoefficientRule allowed) {
+/// A candidate of one column, without parameters.
+inline Candidate single_column(std::string where, EffectColumn column, CoefficientRule allowed) {
     Candidate candidate;
-    candidate.effect = std::move(effect);
     candidate.where = std::move(where);
     candidate.columns.push_back(std::move(column));
     candidate.shapes.push_back(whole_shape(candidate, std::move(allowed)));
@@ -72,13 +70,11 @@ inline Candidate single_column(std::string effect, std::string where, EffectColu
 }
 
 /// The same where the coefficient is the parameter.
-inline Candidate single_column(std::string effect, std::string where, EffectColumn column,
-                               CoefficientRule allowed, std::string parameter, std::string unit) {
-    Candidate candidate =
-        single_column(std::move(effect), std::move(where), std::move(column), std::move(allowed));
-    candidate.parameters = [parameter = std::move(parameter),
-                            unit = std::move(unit)](const Eigen::VectorXd& coefficients, const EffectShape&) {
-        return std::vector<EffectParameter>{{parameter, unit, coefficients[0]}};
+inline Candidate single_column(std::string where, EffectColumn column, CoefficientRule allowed,
+                               const ParameterKind& parameter) {
+    Candidate candidate = single_column(std::move(where), std::move(column), std::move(allowed));
+    candidate.parameters = [parameter](const Eigen::VectorXd& coefficients, const EffectShape&) {
+        return std::vector<EffectParameter>{parameter.at(coefficients[0])};
     };
     return candidate;
 }

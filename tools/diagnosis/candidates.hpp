@@ -8,26 +8,8 @@
 
 namespace dfdyn::tools {
 
-/// Friction, spring, ripple, rotor inertia and offset of every joint; none for a wrench, which does not see
-/// them.
-std::vector<Candidate> joint_candidates(const DiagnosisSignals& signals);
-
-/// Payload, single links' inertia, gravity's direction.
-std::vector<Candidate> body_candidates(const DiagnosisSignals& signals);
-
-/// Encoders' errors, and the flexibility between encoder and link.
-std::vector<Candidate> position_candidates(const DiagnosisSignals& signals);
-
-/// Gains, delays, biases, drifts and crosstalk of what was measured. `modelled` (T x m): what the model at
-/// hand says the sensors should have shown. `delays_s` (m): delays that it has; a delay's column is what it
-/// adds about there, per second. `gains_known`: whether a joint's unit can be trusted (not for currents of
-/// unknown constants).
-std::vector<Candidate> sensor_candidates(const DiagnosisSignals& signals, const Eigen::MatrixXd& modelled,
-                                         const Eigen::VectorXd& delays_s, bool gains_known);
-
-/// The level of a joint's friction changing with time, where `friction` (T x n) is what the model at hand
-/// has; none for joints without any.
-std::vector<Candidate> drift_candidates(const DiagnosisSignals& signals, const Eigen::MatrixXd& friction);
+// Candidates whose time or shape a scan of the residual finds, by the effects' own files; and those without a
+// name.
 
 /// What has no name: dependences of each output on each joint's position or velocity, and of a joint's own
 /// friction on its position. None is larger than `unexplained` (T x m), what the rigid body leaves: one that

@@ -4,6 +4,7 @@
 #include "tools/diagnosis/candidate_entry.hpp"
 #include "tools/diagnosis/candidate_parts.hpp"
 #include "tools/diagnosis/candidates.hpp"
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/scans.hpp"
 #include "tools/diagnosis/settle_explanation.hpp"
 #include "tools/robot/firmware_chain.hpp"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -22,21 +24,11 @@ constexpr int most_rounds = 10;
 constexpr int white_rounds = 3;
 constexpr double mass_deviation = 0.058; ///< of a link's relative mass error that is uniform within ±10 %
 
-bool is_friction(const Candidate& candidate) {
-    return candidate.effect == "viscous_friction" || candidate.effect == "coulomb_friction" ||
-           candidate.effect == "stribeck_friction" || candidate.effect == "presliding_hysteresis" ||
-           candidate.effect == "load_dependent_friction";
-}
-
-bool is_of_the_arm(const Candidate& candidate) {
-    return candidate.where != "ft_sensor" && candidate.where.rfind("actuator", 0) != 0 &&
-           candidate.effect != "external_contact";
-}
-
 /// A chosen candidate, made anew about what was found of it. That it has other shapes now makes it no
 /// likelier.
 Candidate about(const Candidate& chosen, const EffectShape& shape, const Eigen::VectorXd& coefficients) {
     Candidate result = chosen.about(shape, coefficients);
+    result.effect = chosen.effect;
     result.family = chosen.family;
     result.extra_price = chosen.extra_price;
     result.tried =
@@ -48,13 +40,15 @@ class Search {
   public:
     Search(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
            const ExplanationOptions& options)
-        : signals_(signals), options_(options), rows_(signals.measured), sites_(contact_sites(signals)),
-          payload_(payload_columns(signals)), play_(signals, rows_),
+        : signals_(signals), options_(options), rows_(signals.measured),
           regression_(rows_, measured - signals.nominal, rows_.frames_within(options.fitted_share)) {
         add_nuisance();
-        for (auto* make : {&joint_candidates, &body_candidates, &position_candidates}) {
-            for (Candidate& candidate : (*make)(signals_)) {
-                lasting_.emplace_back(rows_, std::move(candidate));
+        for (Candidate& candidate : lasting_candidates(signals_)) {
+            lasting_.emplace_back(rows_, std::move(candidate));
+        }
+        for (const Effect& effect : effect_catalogue()) {
+            if (effect.scan != nullptr) {
+                scans_.push_back({&effect, effect.scan(signals_, rows_)});
             }
         }
         for (Candidate& candidate : dependence_candidates(signals_, measured - signals.nominal)) {
@@ -93,8 +87,8 @@ class Search {
 
   private:
     void add_nuisance();
-    void demand_of_payloads(std::vector<Candidate>& found, const Eigen::MatrixXd& weighed) const;
-    Eigen::VectorXd delays() const;
+    FittedModel fitted_model() const;
+    FittedResidual fitted_residual() const;
     std::vector<CandidateEntry> passing() const;
     void refine();
     void place_nuisance();
@@ -108,9 +102,11 @@ class Search {
     const DiagnosisSignals& signals_;
     const ExplanationOptions& options_;
     SpectralRows rows_;
-    std::vector<ContactSite> sites_;
-    std::vector<EffectColumn> payload_;
-    PlayScan play_;
+    struct Scan {
+        const Effect* effect;
+        std::unique_ptr<EffectScan> scan;
+    };
+    std::vector<Scan> scans_;
     EffectRegression regression_;
     std::vector<CandidateEntry> lasting_; ///< candidates that do not depend on the model at hand
     std::vector<SpectralColumnPointer> nuisance_;
@@ -135,40 +131,30 @@ void Search::add_nuisance() {
     at_.uncertain_masses = parameters.size() / 10;
 }
 
-/// Pushes at a site are all judged alike: once the largest are chosen, those left stand out less against each
-/// other.
-void demand_alike(std::vector<Candidate>& candidates) {
-    for (const Candidate& one : candidates) {
-        for (Candidate& other : candidates) {
-            if (one.effect == "external_contact" && one.effect == other.effect && one.where == other.where) {
-                other.extra_price = std::max(other.extra_price, one.extra_price);
-            }
-        }
-    }
-}
-
-/// A payload that is taken up, chosen already or not, must stand out against its kind in what is left now.
-void Search::demand_of_payloads(std::vector<Candidate>& found, const Eigen::MatrixXd& weighed) const {
-    for (Candidate& candidate : found) {
-        if (candidate.effect == "payload") {
-            candidate.extra_price =
-                demanded_of_payload(signals_, regression_, weighed, payload_, candidate.shapes.front().value);
-        }
-    }
-}
-
-/// Per output, the delay that the model at hand has there.
-Eigen::VectorXd Search::delays() const {
-    Eigen::VectorXd result = Eigen::VectorXd::Zero(signals_.outputs());
+FittedModel Search::fitted_model() const {
+    const auto of = [&](bool Effect::*trait, bool value) {
+        return at_.effects(signals_, [trait, value](const Candidate& candidate) {
+            return has_trait(candidate.effect, trait) == value;
+        });
+    };
+    FittedModel model{signals_.nominal + of(&Effect::beyond_arm, false),
+                      signals_.wrench() ? Eigen::MatrixXd() : of(&Effect::friction, true),
+                      Eigen::VectorXd::Zero(signals_.outputs()), options_.gains_known};
     for (std::size_t i = 0; i < at_.chosen.size(); ++i) {
         const Candidate& candidate = at_.candidates[at_.chosen[i].candidate];
-        if (candidate.effect == "delay") {
+        if (has_trait(candidate.effect, &Effect::delays_output)) {
             for (const EffectColumn::Part& part : candidate.columns.front().parts) {
-                result[part.output] = at_.fit.coefficients[at_.first_column(i)];
+                model.delay_s[part.output] = at_.fit.coefficients[at_.first_column(i)];
             }
         }
     }
-    return result;
+    return model;
+}
+
+FittedResidual Search::fitted_residual() const {
+    const Eigen::VectorXd coefficients = at_.fit.of_all(regression_.columns());
+    return {signals_, regression_, coefficients, of_named(coefficients),
+            weighed_residual(regression_, coefficients)};
 }
 
 /// Candidates that depend on the model at hand.
@@ -181,31 +167,32 @@ std::vector<CandidateEntry> Search::passing() const {
             }
         }
     };
-    add(sensor_candidates(signals_, signals_.nominal + at_.effects(signals_, is_of_the_arm), delays(),
-                          options_.gains_known));
-    if (!signals_.wrench()) {
-        add(drift_candidates(signals_, at_.effects(signals_, is_friction)));
-    }
+    add(fitted_candidates(signals_, fitted_model()));
     for (std::size_t i = 0; i < at_.chosen.size(); ++i) {
         const Candidate& chosen = at_.candidates[at_.chosen[i].candidate];
         if (chosen.about) {
             const Eigen::Index first = at_.first_column(i);
             add({about(chosen, chosen.shapes[at_.chosen[i].shape],
                        at_.fit.coefficients.segment(first, at_.first_column(i + 1) - first))});
-        } else if (chosen.effect == "torque_ripple") { // looked for anew in what each model leaves
+        } else if (has_trait(chosen.effect, &Effect::kept_while_chosen)) {
             add({chosen});
         }
     }
-    const Eigen::VectorXd coefficients = at_.fit.of_all(regression_.columns());
-    // a free function of the position can hide a ripple
-    add(scan_ripples(signals_, regression_, weighed_residual(regression_, of_named(coefficients))));
-    const Eigen::MatrixXd weighed = weighed_residual(regression_, coefficients);
-    add(scan_contacts(signals_, regression_,
-                      weighed_residual_away_from_reversals(signals_, regression_, coefficients), sites_));
-    demand_alike(found);
-    add(scan_taken_payload(signals_, regression_, weighed, payload_));
-    demand_of_payloads(found, weighed);
-    add(play_.candidates(signals_, regression_, weighed));
+    const FittedResidual residual = fitted_residual();
+    for (const auto& [effect, scan] : scans_) {
+        std::vector<Candidate> more = scan->candidates(residual);
+        for (Candidate& candidate : more) {
+            candidate.effect = effect->name;
+        }
+        add(std::move(more));
+        std::vector<Candidate*> own;
+        for (Candidate& candidate : found) {
+            if (candidate.effect == effect->name) {
+                own.push_back(&candidate);
+            }
+        }
+        scan->set_prices(own, residual);
+    }
     std::vector<CandidateEntry> result;
     for (Candidate& candidate : found) {
         result.emplace_back(rows_, std::move(candidate));

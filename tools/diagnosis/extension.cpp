@@ -2,39 +2,17 @@
 #include "tools/diagnosis/extension.hpp"
 
 #include "tools/diagnosis/candidate_parts.hpp"
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/extension_parts.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 namespace dfdyn::tools {
 
 namespace {
-
-using Add = CarriedFinding::How (*)(Extension&, const ChosenEffect&);
-
-const std::map<std::string, Add>& additions_of() {
-    static const std::map<std::string, Add> known{{"viscous_friction", add_viscous},
-                                                  {"coulomb_friction", add_coulomb},
-                                                  {"stribeck_friction", add_stribeck},
-                                                  {"presliding_hysteresis", add_presliding},
-                                                  {"torque_offset", add_offset},
-                                                  {"rotor_inertia", add_rotor},
-                                                  {"joint_spring", add_spring},
-                                                  {"torque_ripple", add_ripple},
-                                                  {"actuator_gain", add_gain},
-                                                  {"payload", add_payload},
-                                                  {"link_inertia_error", add_link_error},
-                                                  {"gravity_tilt", add_tilt},
-                                                  {"encoder_offset", add_encoder_offset},
-                                                  {"ft_bias", add_bias},
-                                                  {"ft_gain", add_gain},
-                                                  {"ft_rotation", add_rotation}};
-    return known;
-}
 
 /// What the diagnosis granted without calling it a finding: masses a little off, torque constants.
 void add_nuisance(Extension& extension, const DiagnosisWork& work) {
@@ -75,14 +53,14 @@ Extension extension_of(const DiagnosisWork& work) {
         const Eigen::VectorXd coefficients = explanation.coefficients(i);
         const Eigen::VectorXd deviations = explanation.covariance(i).diagonal().cwiseMax(0).cwiseSqrt();
         const ChosenEffect chosen{*work.signals, candidate, shape, coefficients, deviations};
-        const auto add = additions_of().find(candidate.effect);
-        const CarriedFinding::How how =
-            add == additions_of().end() ? CarriedFinding::How::left_out : add->second(extension, chosen);
+        const Effect& effect = effect_named(candidate.effect);
+        const EffectDisposition how =
+            effect.extend == nullptr ? EffectDisposition::left_out : effect.extend(extension, chosen);
         extension.carried.push_back({candidate.effect, candidate.where, how});
     }
     for (const StandingContact& push : work.pushes) {
         extension.carried.push_back(
-            {"external_contact", numbered("joint", push.joint), CarriedFinding::How::left_out});
+            {effects::external_contact().name, numbered("joint", push.joint), EffectDisposition::left_out});
     }
     add_nuisance(extension, work);
     sort_columns(extension);

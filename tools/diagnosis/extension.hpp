@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tools/diagnosis/diagnosis.hpp"
+#include "tools/diagnosis/effects/effect.hpp"
 #include "tools/model/model.hpp"
 
 #include <Eigen/Core>
@@ -19,12 +20,7 @@ struct ExtensionColumn {
 
 /// How the extended model has a finding.
 struct CarriedFinding {
-    enum class How {
-        adapting,     ///< coefficients that go on adapting
-        fixed,        ///< a constant of the model: geometry, gravity, a gain
-        approximated, ///< by the nearest effect that depends on the motion of one instant
-        left_out,     ///< it has no form in the firmware
-    };
+    using How = EffectDisposition;
     std::string effect, where;
     How how = How::left_out;
 };
@@ -37,6 +33,12 @@ struct Extension {
     std::vector<ExtensionColumn> columns; ///< in the order of the physics' columns
     Eigen::VectorXd output_gain;          ///< output per N·m (N)
     std::vector<CarriedFinding> carried;  ///< a line per chosen effect
+
+    /// The parameters of `linkK` of the robot; `link`: from 0.
+    auto body(Eigen::Index link) {
+        const Eigen::Index beyond = static_cast<Eigen::Index>(robot.joints.size()) - link;
+        return bodies.segment<10>(bodies.size() - 10 * beyond);
+    }
 };
 
 /// The robot as its file says, without any effect.

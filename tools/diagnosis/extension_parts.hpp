@@ -4,6 +4,7 @@
 #include "tools/diagnosis/candidate.hpp"
 #include "tools/diagnosis/extension.hpp"
 #include "tools/diagnosis/signals.hpp"
+#include "tools/model/effects.hpp"
 
 namespace dfdyn::tools {
 
@@ -19,22 +20,23 @@ struct ChosenEffect {
     Eigen::Index number() const; ///< of `jointK`, `linkK`, …: from 0
 };
 
-// Each adds one effect to the model and says how.
-CarriedFinding::How add_viscous(Extension& extension, const ChosenEffect& chosen);
-CarriedFinding::How add_coulomb(Extension& extension, const ChosenEffect& chosen);
-CarriedFinding::How add_stribeck(Extension& extension, const ChosenEffect& chosen);
-CarriedFinding::How add_presliding(Extension& extension, const ChosenEffect& chosen);
-CarriedFinding::How add_offset(Extension& extension, const ChosenEffect& chosen);
-CarriedFinding::How add_rotor(Extension& extension, const ChosenEffect& chosen);
-CarriedFinding::How add_spring(Extension& extension, const ChosenEffect& chosen);
-CarriedFinding::How add_ripple(Extension& extension, const ChosenEffect& chosen);
-CarriedFinding::How add_bias(Extension& extension, const ChosenEffect& chosen);
-CarriedFinding::How add_gain(Extension& extension, const ChosenEffect& chosen);
-CarriedFinding::How add_payload(Extension& extension, const ChosenEffect& chosen);
-CarriedFinding::How add_link_error(Extension& extension, const ChosenEffect& chosen);
-CarriedFinding::How add_tilt(Extension& extension, const ChosenEffect& chosen);
-CarriedFinding::How add_encoder_offset(Extension& extension, const ChosenEffect& chosen);
-CarriedFinding::How add_rotation(Extension& extension, const ChosenEffect& chosen);
+/// A column of `kind` on the effect's output, with the direction of motion as uncertain as the diagnosis took
+/// it.
+EffectModel on_joint(const ChosenEffect& chosen, const EffectKind& kind);
+
+/// Adds a column, or its value to that of the same one. Coefficients go on adapting: they may be a tenth off,
+/// however well the recording determined them.
+void add_column(Extension& extension, const EffectModel& effect, double value, double deviation);
+
+/// The same with one of the effect's coefficients.
+void add_column(Extension& extension, const ChosenEffect& chosen, const EffectModel& effect,
+                Eigen::Index coefficient);
+
+/// The same with its first coefficient, as a column of `kind`.
+EffectDisposition add_single(Extension& extension, const ChosenEffect& chosen, const EffectKind& kind);
+
+/// A gain of an actuator or a sensor's axis: it multiplies all that the model has on that output.
+EffectDisposition add_gain(Extension& extension, const ChosenEffect& chosen);
 
 /// Multiplies what the rigid body gives on an output. `effects_too`: its columns as well; otherwise they stay
 /// what they are.

@@ -3,7 +3,7 @@
 
 #include "tools/common/number.hpp"
 #include "tools/common/root_mean_square.hpp"
-#include "tools/diagnosis/effect_words.hpp"
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
 
 namespace dfdyn::tools {
 
@@ -46,7 +46,7 @@ bool Gains::tell(Finding& finding, const Eigen::MatrixXd& contribution) const {
     }
     finding.share = contribution.col(finding.output);
     finding.evidence = "the error of " + output_names_[static_cast<std::size_t>(finding.output)] + " " +
-                       effect_signature(finding.effect) + ": with it the error" + band + " falls from " +
+                       effect_named(finding.effect).evidence + ": with it the error" + band + " falls from " +
                        rounded_text(finding.rms_before) + " to " + rounded_text(finding.rms_after);
     return finding.rms_after < finding.rms_before;
 }

@@ -4,7 +4,7 @@
 #include "tools/common/number.hpp"
 #include "tools/diagnosis/candidate_parts.hpp"
 #include "tools/diagnosis/candidates.hpp"
-#include "tools/diagnosis/effect_words.hpp"
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/finding_gain.hpp"
 #include "tools/diagnosis/found_parameters.hpp"
 
@@ -55,6 +55,11 @@ void weigh_alternatives(Finding& finding, const Explanation& explanation, const 
     }
 }
 
+/// The experiment that would settle whether it is there.
+std::string confirmation(const Finding& finding) {
+    return finding.where + ": " + effect_named(finding.effect).experiment;
+}
+
 /// A chosen effect with a name, without its gain.
 Finding of_cause(const Explanation& explanation, const Neighbours& near, const Neighbours& near_named,
                  std::size_t index, double duration_s) {
@@ -69,14 +74,14 @@ Finding of_cause(const Explanation& explanation, const Neighbours& near, const N
     finding.margin_to_nothing =
         std::min(finding.margin_to_nothing, explanation.named.score - near_named.score_without(index));
     finding.confidence = calibrated_confidence(finding, duration_s);
-    finding.confirm = confirming_experiment(finding.effect, finding.where);
+    finding.confirm = confirmation(finding);
     return finding;
 }
 
 Finding of_push(const StandingContact& push) {
     constexpr double surest = 0.95; // on simulated arms all are right; real ones know more ways to surprise
     Finding finding;
-    finding.effect = "external_contact";
+    finding.effect = effects::external_contact().name;
     finding.where = numbered("joint", push.joint);
     finding.detail = start_words(push.pulse);
     // As a rule friction gives way before the motor has to: it takes up nothing to all that it can change by.
@@ -93,7 +98,7 @@ Finding of_push(const StandingContact& push) {
     finding.confidence = surest * push.probability();
     finding.margin_to_nothing = std::log(finding.confidence / (1 - finding.confidence));
     finding.margin_to_others = std::numeric_limits<double>::infinity();
-    finding.confirm = confirming_experiment(finding.effect, finding.where);
+    finding.confirm = confirmation(finding);
     return finding;
 }
 
@@ -143,8 +148,9 @@ bool same_contact(const Finding& one, const Finding& other) {
     constexpr double apart_s = 0.5;
     const auto start_s = [](const Finding& finding) { return finding.parameters[0].value; };
     const auto end_s = [](const Finding& finding) { return finding.parameters[1].value; };
-    return one.effect == "external_contact" && other.effect == one.effect && one.where == other.where &&
-           start_s(one) < end_s(other) + apart_s && start_s(other) < end_s(one) + apart_s;
+    return has_trait(one.effect, &Effect::interval) && other.effect == one.effect &&
+           one.where == other.where && start_s(one) < end_s(other) + apart_s &&
+           start_s(other) < end_s(one) + apart_s;
 }
 
 void sort_by_gain(std::vector<Finding>& findings) {
@@ -184,7 +190,8 @@ double calibrated_confidence(const Finding& finding, double duration_s) {
     // grows with the time as a true cause does.
     const double to_nothing = std::log(std::max(finding.margin_to_nothing, 0.1));
     const double time = std::log(std::clamp(duration_s, 50.0, 200.0) / 50);
-    const double burst = finding.effect == "external_contact" ? 3 : 0; // real noise has bursts like pushes
+    const Effect* const effect = find_effect(finding.effect);
+    const double burst = effect == nullptr ? 0 : effect->burst_evidence;
     return 1 / (1 + std::exp(2 + burst + 0.8 * time - 0.74 * to_nothing));
 }
 

@@ -8,6 +8,7 @@
 #include "tools/diagnosis/joined_recording.hpp"
 #include "tools/evaluation/contradiction.hpp"
 #include "tools/evaluation/replay.hpp"
+#include "tools/model/effects.hpp"
 #include "tools/physics/model_training.hpp"
 
 #include <algorithm>
@@ -56,7 +57,7 @@ std::vector<std::string> trainable_names(const Extension& extension) {
     std::vector<std::string> names;
     for (const ExtensionColumn& column : extension.columns) {
         const std::string& name = column.effect.name;
-        if (name != "torque_ripple" && std::ranges::find(names, name) == names.end()) {
+        if (!effect_kind(name).needs_diagnosis() && std::ranges::find(names, name) == names.end()) {
             names.push_back(name);
         }
     }

@@ -17,11 +17,6 @@ Eigen::MatrixXd weighed_residual_away_from_reversals(const DiagnosisSignals& sig
                                                      const EffectRegression& regression,
                                                      const Eigen::VectorXd& coefficients);
 
-/// Of each joint the numbers of cycles per turn that go best with the residual; candidates have these and
-/// their neighbours as shapes. Whole numbers from 2 to 200 whose frequency stays within the analysed band.
-std::vector<Candidate> scan_ripples(const DiagnosisSignals& signals, const EffectRegression& regression,
-                                    const Eigen::MatrixXd& weighed);
-
 /// Of each site the stretch of time in which a push there explains most of the residual, which is best taken
 /// away from reversals. `sites` must outlive the candidates.
 std::vector<Candidate> scan_contacts(const DiagnosisSignals& signals, const EffectRegression& regression,
@@ -39,21 +34,5 @@ std::vector<Candidate> scan_taken_payload(const DiagnosisSignals& signals, const
 double demanded_of_payload(const DiagnosisSignals& signals, const EffectRegression& regression,
                            const Eigen::MatrixXd& weighed, const std::vector<EffectColumn>& payload,
                            double taken_s);
-
-/// Looks for the gap at each joint whose course goes best with a residual.
-class PlayScan {
-  public:
-    PlayScan(const DiagnosisSignals& signals, const SpectralRows& rows);
-    std::vector<Candidate> candidates(const DiagnosisSignals& signals, const EffectRegression& regression,
-                                      const Eigen::MatrixXd& weighed) const;
-
-  private:
-    struct Course {
-        double gap = 0;
-        Eigen::MatrixXd series; ///< T x m
-        Eigen::MatrixXd power;  ///< bins x m: sums of squares
-    };
-    std::vector<std::vector<Course>> courses_; ///< per joint
-};
 
 } // namespace dfdyn::tools

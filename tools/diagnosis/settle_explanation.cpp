@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/settle_explanation.hpp"
 
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
+
 #include <algorithm>
 #include <utility>
 
@@ -11,19 +13,13 @@ namespace {
 constexpr Eigen::Index validation_blocks = 6;
 constexpr double price_of_a_name = 5; ///< evidence: one cause of 150
 
-/// A push, or a payload that is taken up.
-bool is_event(const Candidate& candidate) {
-    return candidate.effect == "external_contact" ||
-           (candidate.effect == "payload" && !candidate.detail.empty());
-}
-
 /// Whether exact masses need names that uncertain ones do without, and those are of links.
 bool needs_links_only(const Explanation& at, const std::vector<ChosenShape>& exact) {
     bool links = false;
     for (const ChosenShape& one : exact) {
         const bool is_new =
             std::ranges::find(at.chosen, one.candidate, &ChosenShape::candidate) == at.chosen.end();
-        if (is_new && at.candidates[one.candidate].effect != "link_inertia_error") {
+        if (is_new && !has_trait(at.candidates[one.candidate].effect, &Effect::mass_of_link)) {
             return false;
         }
         links = links || is_new;
@@ -66,7 +62,7 @@ Eigen::VectorXd of_events(const Explanation& at, Eigen::Index columns) {
     Eigen::VectorXd result = Eigen::VectorXd::Zero(columns);
     const Eigen::VectorXd all = at.fit.of_all(columns);
     for (const ChosenShape& one : at.chosen) {
-        if (is_event(at.candidates[one.candidate])) {
+        if (at.candidates[one.candidate].event) {
             const auto& own = at.problem.candidates[one.candidate].shapes[one.shape].columns;
             result(own) = all(own);
         }
@@ -89,9 +85,8 @@ bool keep_what_predicts(Explanation& at, const EffectRegression& regression, Sea
         block.moment -= block.gram * events;
     }
     const auto lasting =
-        std::stable_partition(at.chosen.begin(), at.chosen.end(), [&at](const ChosenShape& one) {
-            return is_event(at.candidates[one.candidate]);
-        });
+        std::stable_partition(at.chosen.begin(), at.chosen.end(),
+                              [&at](const ChosenShape& one) { return at.candidates[one.candidate].event; });
     std::vector<ChosenShape> kept(lasting, at.chosen.end());
     at.chosen.erase(lasting, at.chosen.end());
     double best = held_out_score(problem, blocks, kept);

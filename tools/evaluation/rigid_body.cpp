@@ -3,6 +3,7 @@
 
 #include "tools/common/linear_algebra.hpp"
 #include "tools/common/to_vector.hpp"
+#include "tools/model/effects.hpp"
 #include "tools/physics/chain_model.hpp"
 #include "tools/physics/machine_size.hpp"
 #include "tools/physics/robot_regressor.hpp"
@@ -214,8 +215,10 @@ class JointProblem {
 VectorXd sizes_of(const Robot& robot, const ChainModel& chain, const std::vector<double>& output_gain,
                   double sign_velocity) {
     const std::vector<std::string> names =
-        chain.sensor ? std::vector<std::string>(friction_terms, "ft_bias")
-                     : std::vector<std::string>{"viscous_friction", "coulomb_friction", "torque_offset"};
+        chain.sensor
+            ? std::vector<std::string>(friction_terms, effect_kinds::ft_bias.name)
+            : std::vector<std::string>{effect_kinds::viscous_friction.name,
+                                       effect_kinds::coulomb_friction.name, effect_kinds::torque_offset.name};
     VectorXd sizes = parameter_sizes(robot, chain, {});
     const Index inertial = sizes.size();
     sizes.conservativeResize(inertial + friction_terms * static_cast<Index>(output_gain.size()));

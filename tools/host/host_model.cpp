@@ -52,11 +52,11 @@ typename AnyInput<k>::template Constants<Scalar, dynamic> host_input(const Input
     }
 }
 
-/// The columns of one effect.
-std::vector<EffectModel> columns_of(const PhysicsModel& physics, const char* name) {
+/// The columns of one of the firmware's types of effects.
+std::vector<EffectModel> columns_of(const PhysicsModel& physics, int identity) {
     std::vector<EffectModel> columns;
     for (const EffectModel& effect : physics.effects) {
-        if (effect.name == name) {
+        if (effect_kind(effect.name).identity == identity) {
             columns.push_back(effect);
         }
     }
@@ -94,24 +94,17 @@ void set_effect(Constants& constants, const std::vector<EffectModel>& columns) {
     }
 }
 
+template <class Scalar, class Motion, int p, class... Effects>
+auto effect_constants_of(Physics<Motion, p, Effects...> /*of*/, const PhysicsModel& physics) {
+    typename Physics<Motion, p, Effects...>::template EffectConstants<Scalar> result{};
+    (set_effect<typename Effects::template Constants<Scalar>>(result, columns_of(physics, Effects::identity)),
+     ...);
+    return result;
+}
+
 template <class Scalar>
 typename HostPhysics::template EffectConstants<Scalar> host_effects(const PhysicsModel& physics) {
-    typename HostPhysics::template EffectConstants<Scalar> result{};
-    set_effect<typename ViscousFriction<dynamic>::template Constants<Scalar>>(
-        result, columns_of(physics, "viscous_friction"));
-    set_effect<typename CoulombFriction<dynamic>::template Constants<Scalar>>(
-        result, columns_of(physics, "coulomb_friction"));
-    set_effect<typename StribeckFriction<dynamic>::template Constants<Scalar>>(
-        result, columns_of(physics, "stribeck_friction"));
-    set_effect<typename RotorInertia<dynamic>::template Constants<Scalar>>(
-        result, columns_of(physics, "rotor_inertia"));
-    set_effect<typename JointSpring<dynamic>::template Constants<Scalar>>(
-        result, columns_of(physics, "joint_spring"));
-    set_effect<typename TorqueRipple<dynamic>::template Constants<Scalar>>(
-        result, columns_of(physics, "torque_ripple"));
-    set_effect<typename OutputOffset<dynamic>::template Constants<Scalar>>(
-        result, columns_of(physics, offset_effect(physics.chain)));
-    return result;
+    return effect_constants_of<Scalar>(HostPhysics{}, physics);
 }
 
 template <class Start>

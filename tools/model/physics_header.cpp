@@ -77,17 +77,9 @@ std::vector<EffectColumns> by_kind(const PhysicsModel& physics) {
 }
 
 std::string effect_constants(const EffectColumns& effect) {
-    const std::string name = effect.kind->name;
     std::string fields = ".row = " + integers(effect.rows());
-    if (name == "coulomb_friction" || name == "stribeck_friction") {
-        fields += effect.field("sign_velocity", &EffectModel::sign_velocity);
-    }
-    if (name == "stribeck_friction") {
-        fields += effect.field("stribeck_velocity", &EffectModel::stribeck_velocity);
-    }
-    if (name == "torque_ripple") {
-        fields += effect.field("cycles_per_rev", &EffectModel::cycles_per_rev);
-        fields += effect.field("phase", &EffectModel::phase);
+    for (const EffectConstant& constant : effect.kind->constants) {
+        fields += effect.field(constant.name, constant.value);
     }
     return "{" + fields + "}";
 }

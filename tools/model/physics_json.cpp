@@ -49,9 +49,8 @@ ordered_json effects_to_json(const std::vector<EffectModel>& effects) {
                            {"row", effect.row},
                            {"sign_velocity", single(effect.sign_velocity)},
                            {"stribeck_velocity", single(effect.stribeck_velocity)}};
-        if (effect.name == "torque_ripple") {
-            entry["cycles_per_rev"] = single(effect.cycles_per_rev);
-            entry["phase"] = single(effect.phase);
+        for (const EffectConstant& constant : effect_kind(effect.name).constants) {
+            entry[constant.name] = single(effect.*constant.value);
         }
         json.push_back(std::move(entry));
     }
@@ -110,22 +109,18 @@ EffectModel read_effect(const JsonReader& reader, const ChainModel& chain, int o
     if (kind == nullptr) {
         throw reader.error("effect", "one of " + effect_names(), in_quotes(effect.name));
     }
-    const std::string offset = offset_effect(chain);
-    if ((kind->at_joint && chain.sensor) || (!kind->at_joint && effect.name != offset)) {
-        throw reader.error("effect", chain.sensor ? "ft_bias" : "an effect on joint torques",
+    const EffectKind& offset = offset_kind(chain);
+    if ((kind->at_joint && chain.sensor) || (!kind->at_joint && kind != &offset)) {
+        throw reader.error("effect", chain.sensor ? offset.name : "an effect on joint torques",
                            in_quotes(effect.name));
     }
-    const bool stribeck = effect.name == "stribeck_friction";
-    if ((stribeck || effect.name == "coulomb_friction") && effect.sign_velocity <= 0) {
-        throw reader.error("sign_velocity", "a positive number", std::to_string(effect.sign_velocity));
-    }
-    if (stribeck && effect.stribeck_velocity <= 0) {
-        throw reader.error("stribeck_velocity", "a positive number",
-                           std::to_string(effect.stribeck_velocity));
-    }
-    if (effect.name == "torque_ripple") {
-        effect.cycles_per_rev = reader.positive_number("cycles_per_rev");
-        effect.phase = reader.number("phase");
+    for (const EffectConstant& constant : kind->constants) {
+        if (!constant.always_stored) {
+            effect.*constant.value =
+                constant.positive ? reader.positive_number(constant.name) : reader.number(constant.name);
+        } else if (constant.positive && effect.*constant.value <= 0) {
+            throw reader.error(constant.name, "a positive number", std::to_string(effect.*constant.value));
+        }
     }
     return effect;
 }

@@ -27,10 +27,11 @@ ChainModel::Frame frame_of(const Eigen::Isometry3d& placement) {
 /// The outputs that an effect can act on.
 int rows_of(const EffectKind& kind, const ChainModel& chain) {
     const auto joints = static_cast<int>(chain.joints.size());
-    const bool offset = kind.name == std::string(offset_effect(chain));
-    if (chain.sensor ? !offset : (!kind.at_joint && !offset)) {
+    const EffectKind& offset = offset_kind(chain);
+    if (chain.sensor ? &kind != &offset : (!kind.at_joint && &kind != &offset)) {
         throw InputError("effect " + in_quotes(kind.name) + ": expected one that " +
-                         (chain.sensor ? "a wrench can show (ft_bias)" : "joint torques can show") +
+                         (chain.sensor ? std::string("a wrench can show (") + offset.name + ")"
+                                       : "joint torques can show") +
                          ", found one that they cannot");
     }
     return chain.sensor ? 6 : joints;
@@ -66,8 +67,9 @@ std::vector<EffectModel> effect_models(const std::vector<std::string>& names, co
         if (!seen.insert(name).second) {
             throw InputError("effect " + in_quotes(name) + ": expected once, found twice");
         }
-        const int rows = rows_of(effect_kind(name), chain);
-        if (name == "torque_ripple") {
+        const EffectKind& kind = effect_kind(name);
+        const int rows = rows_of(kind, chain);
+        if (kind.needs_diagnosis()) {
             throw InputError("effect " + in_quotes(name) +
                              ": expected one whose shape needs no search, found "
                              "one whose cycles dfdyn diagnose has to find");
@@ -93,9 +95,8 @@ std::vector<std::string> column_names(const Robot& robot, const ChainModel& chai
         const std::string where = chain.sensor ? axes[static_cast<std::size_t>(effect.row)]
                                                : "joint" + std::to_string(effect.row + 1);
         std::string parameter = kind.parameter;
-        if (effect.name == "torque_ripple") {
-            parameter +=
-                " sin(" + number_text(effect.cycles_per_rev) + " q + " + number_text(effect.phase) + ")";
+        if (kind.needs_diagnosis()) {
+            parameter += " " + kind.found_shape(effect);
         }
         names.push_back(where + " " + parameter + " (" + kind.unit + ")");
     }

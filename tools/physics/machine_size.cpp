@@ -3,6 +3,7 @@
 
 #include "tools/common/error.hpp"
 #include "tools/common/number.hpp"
+#include "tools/model/effects.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
 #include <algorithm>
@@ -83,14 +84,15 @@ struct MachineSize {
     }
 
     double effect(const EffectModel& effect, const Robot& robot) const {
-        if (effect.name == "ft_bias") {
+        const ParameterSize size = effect_kind(effect.name).size;
+        if (size == ParameterSize::weight) {
             return effect.row < 3 ? weight() : weight() * reach;
         }
         const RobotJoint& joint = robot.joints[static_cast<std::size_t>(effect.row)];
-        if (effect.name == "rotor_inertia") {
+        if (size == ParameterSize::inertia) {
             return joint.prismatic ? mass : mass * reach * reach;
         }
-        return effect.name == "viscous_friction" ? torque(joint) / velocity(joint) : torque(joint);
+        return size == ParameterSize::effort_per_velocity ? torque(joint) / velocity(joint) : torque(joint);
     }
 };
 

@@ -34,7 +34,7 @@ TEST_CASE("the rigid body along a motion is the firmware's regressor times the n
 
 TEST_CASE("a tilted base is one whose gravity points elsewhere: tilt_x, then tilt_y, about the root's axes") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    const std::vector<Candidate> candidates = body_candidates(signals);
+    const std::vector<Candidate> candidates = lasting_candidates(signals);
     const Candidate& tilt = find(candidates, "gravity_tilt", "base");
     constexpr double angle = 1e-4;
     for (int axis = 0; axis < 2; ++axis) {
@@ -50,7 +50,7 @@ TEST_CASE("a tilted base is one whose gravity points elsewhere: tilt_x, then til
 
 TEST_CASE("a payload is a point mass at the tip, and a link's error one at its centre of mass") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    const std::vector<Candidate> candidates = body_candidates(signals);
+    const std::vector<Candidate> candidates = lasting_candidates(signals);
     const auto with_mass = [&](std::size_t joint, const Eigen::Vector3d& centre) {
         Robot heavier = signals.robot;
         heavier.joints[joint].inertia += body_parameters(1, centre, Eigen::Matrix3d::Zero());
@@ -65,7 +65,7 @@ TEST_CASE("a payload is a point mass at the tip, and a link's error one at its c
 
 TEST_CASE("an encoder that reads too much puts the arm where it is not") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    const std::vector<Candidate> candidates = position_candidates(signals);
+    const std::vector<Candidate> candidates = lasting_candidates(signals);
     constexpr double amount = 1e-4;
     // what is measured is the swing; the true position is less by the encoder's error
     const auto outputs_at = [&](const VectorXd& error, const VectorXd& error_rate,
@@ -95,7 +95,7 @@ TEST_CASE("friction opposes the motion, keeps its direction at rest, and builds 
         velocity[row] = row < 800 ? 0.5 : row < 1200 ? 0.0 : -0.5;
         position[row] = row == 0 ? 0.0 : position[row - 1] + 0.01 * velocity[row];
     }
-    const std::vector<Candidate> candidates = joint_candidates(signals);
+    const std::vector<Candidate> candidates = lasting_candidates(signals);
     const Candidate& coulomb = find(candidates, "coulomb_friction", "joint1");
     const MatrixXd by_travel = contribution(signals, coulomb, 1);
     CHECK(by_travel(500, 0) == Approx(1).margin(1e-3));
@@ -114,8 +114,7 @@ TEST_CASE("friction opposes the motion, keeps its direction at rest, and builds 
 
 TEST_CASE("parameters follow the catalogue's signs and units") {
     const DiagnosisSignals signals = signals_of(icub_right_arm(), OutputKind::wrench);
-    const std::vector<Candidate> candidates =
-        sensor_candidates(signals, signals.nominal, VectorXd::Zero(6), true);
+    const std::vector<Candidate> candidates = fitted_candidates(signals, rigid_model(signals));
     const Candidate& delay = find(candidates, "delay", "ft_sensor");
     // a reading that lags by 1 ms
     const MatrixXd lagging = contribution(signals, delay, 0) * 1e-3;
@@ -129,13 +128,12 @@ TEST_CASE("parameters follow the catalogue's signs and units") {
     REQUIRE(gain != candidates.end());
     CHECK(gain->parameters(VectorXd::Constant(1, 0.2), gain->shapes[0])[0].value == Approx(1.2));
     const DiagnosisSignals torques = signals_of(ur5(), OutputKind::joint_torque);
-    const std::vector<Candidate> actuators =
-        sensor_candidates(torques, torques.nominal, VectorXd::Zero(6), true);
+    const std::vector<Candidate> actuators = fitted_candidates(torques, rigid_model(torques));
     // true over assumed: the log has the true torque divided by it
     CHECK(find(actuators, "actuator_gain", "actuator2")
               .parameters(VectorXd::Constant(1, 0.25), EffectShape{})[0]
               .value == Approx(0.8));
-    CHECK(std::ranges::none_of(sensor_candidates(torques, torques.nominal, VectorXd::Zero(6), false),
+    CHECK(std::ranges::none_of(fitted_candidates(torques, rigid_model(torques, false)),
                                [](const Candidate& one) { return one.effect == "actuator_gain"; }));
 }
 
@@ -187,7 +185,7 @@ TEST_CASE("friction that goes by the load is that of bristles whose level is a s
     constexpr double mu = 0.15;
     const VectorXd load = signals.nominal.col(joint).cwiseAbs();
     const double usual = std::sqrt(load.squaredNorm() / static_cast<double>(load.size()));
-    const std::vector<Candidate> candidates = joint_candidates(signals);
+    const std::vector<Candidate> candidates = lasting_candidates(signals);
     const Candidate& candidate = find(candidates, "load_dependent_friction", "joint3");
     double last_bend = 0;
     for (const EffectShape& shape : candidate.shapes) {
@@ -217,7 +215,7 @@ TEST_CASE("friction that goes by the load is that of bristles whose level is a s
 
 TEST_CASE("static friction that hardly exceeds Coulomb's is no effect of its own") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    const Candidate stribeck = find(joint_candidates(signals), "stribeck_friction", "joint2");
+    const Candidate stribeck = find(lasting_candidates(signals), "stribeck_friction", "joint2");
     REQUIRE_FALSE(stribeck.shapes.empty());
     for (const EffectShape& shape : stribeck.shapes) {
         CHECK(shape.allowed(VectorXd{{2, 0.3}}));

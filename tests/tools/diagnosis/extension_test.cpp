@@ -3,9 +3,11 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/tools/diagnosis/swinging_arm.hpp"
 #include "tests/tools/robot/arms.hpp"
 #include "tools/common/to_vector.hpp"
 #include "tools/diagnosis/candidates.hpp"
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/physics/chain_model.hpp"
 #include "tools/physics/robot_regressor.hpp"
 
@@ -101,6 +103,14 @@ bool carried_exactly(const Candidate& candidate, std::size_t shape) {
     return candidate.effect != "stribeck_friction" || columns.front() == 0; // by velocity, not by travel
 }
 
+/// Those that do not have to be looked for.
+std::vector<Candidate> all_candidates(const DiagnosisSignals& signals) {
+    std::vector<Candidate> candidates = lasting_candidates(signals);
+    const std::vector<Candidate> more = fitted_candidates(signals, dfdyn::tests::rigid_model(signals));
+    candidates.insert(candidates.end(), more.begin(), more.end());
+    return candidates;
+}
+
 /// Every candidate that the model carries, by a small amount: the model changes as the diagnosis says.
 std::map<std::string, int> check_all(const std::shared_ptr<const DiagnosisSignals>& signals,
                                      const std::vector<Candidate>& candidates, std::mt19937_64& engine) {
@@ -145,13 +155,9 @@ TEST_CASE("what the extended model adds for torques is what the diagnosis' colum
     const Robot robot = dfdyn::tests::ur5();
     const auto signals = std::make_shared<const DiagnosisSignals>(
         diagnosis_signals(robot, OutputKind::joint_torque, swinging(robot, engine)));
-    std::vector<Candidate> candidates = joint_candidates(*signals);
-    for (auto more :
-         {body_candidates(*signals), position_candidates(*signals),
-          sensor_candidates(*signals, signals->nominal, VectorXd::Zero(signals->outputs()), true)}) {
-        candidates.insert(candidates.end(), more.begin(), more.end());
-    }
+    std::vector<Candidate> candidates = all_candidates(*signals);
     candidates.push_back(ripple_candidate(*signals, 2, {3, 40}));
+    candidates.back().effect = "torque_ripple";
     const std::map<std::string, int> carried = check_all(signals, candidates, engine);
     for (const char* effect : {"viscous_friction", "coulomb_friction", "stribeck_friction", "torque_offset",
                                "rotor_inertia", "joint_spring", "torque_ripple", "actuator_gain", "payload",
@@ -166,11 +172,7 @@ TEST_CASE("what it adds for a wrench is what they say, too") {
     const Robot robot = dfdyn::tests::icub_right_arm();
     const auto signals = std::make_shared<const DiagnosisSignals>(
         diagnosis_signals(robot, OutputKind::wrench, swinging(robot, engine)));
-    std::vector<Candidate> candidates =
-        sensor_candidates(*signals, signals->nominal, VectorXd::Zero(signals->outputs()), true);
-    for (auto more : {body_candidates(*signals), position_candidates(*signals)}) {
-        candidates.insert(candidates.end(), more.begin(), more.end());
-    }
+    const std::vector<Candidate> candidates = all_candidates(*signals);
     const std::map<std::string, int> carried = check_all(signals, candidates, engine);
     for (const char* effect : {"ft_bias", "ft_gain", "ft_rotation", "payload", "link_inertia_error",
                                "gravity_tilt", "encoder_offset"}) {
@@ -188,7 +190,7 @@ TEST_CASE("columns of the same effect at the same place become one") {
     DiagnosisWork work;
     work.signals = signals;
     work.torque_gains = VectorXd::Ones(6);
-    for (const Candidate& candidate : joint_candidates(*signals)) {
+    for (const Candidate& candidate : lasting_candidates(*signals)) {
         if (candidate.where == "joint2" &&
             (candidate.effect == "joint_spring" || candidate.effect == "torque_offset")) {
             work.explanation.chosen.push_back({work.explanation.candidates.size(), 0});

@@ -43,7 +43,7 @@ TEST_CASE("about a large angle, a tilt and an encoder's errors are exact") {
     const auto angle = [&engine] { return draw(engine, 0.05, 0.3) * (draw(engine, -1, 1) < 0 ? -1 : 1); };
 
     const VectorXd tilts{{angle(), angle()}};
-    const Candidate tilt = find(body_candidates(signals), "gravity_tilt", "base");
+    const Candidate tilt = find(lasting_candidates(signals), "gravity_tilt", "base");
     Robot tilted = signals.robot;
     tilted.gravity = Eigen::AngleAxisd(-tilts[0], Eigen::Vector3d::UnitX()) *
                      (Eigen::AngleAxisd(-tilts[1], Eigen::Vector3d::UnitY()) * tilted.gravity);
@@ -51,7 +51,7 @@ TEST_CASE("about a large angle, a tilt and an encoder's errors are exact") {
                rigid_outputs(tilted, signals.kind, motion) - signals.nominal, 1e-9);
 
     const VectorXd offset = VectorXd::Constant(1, angle());
-    const Candidate encoder = find(position_candidates(signals), "encoder_offset", "encoder3");
+    const Candidate encoder = find(lasting_candidates(signals), "encoder_offset", "encoder3");
     RobotMotion truth = motion;
     truth.position.col(2).array() -= offset[0];
     check_same(added(signals, encoder.about(encoder.shapes[0], offset), 0, offset),
@@ -59,7 +59,7 @@ TEST_CASE("about a large angle, a tilt and an encoder's errors are exact") {
 
     // measured = true + a sin(true) + b cos(true)
     const VectorXd bent{{angle() / 2, angle() / 2}};
-    const Candidate eccentric = find(position_candidates(signals), "encoder_eccentricity", "encoder3");
+    const Candidate eccentric = find(lasting_candidates(signals), "encoder_eccentricity", "encoder3");
     truth = motion;
     for (Index row = 0; row < truth.rows(); ++row) {
         double& q = truth.position(row, 2);
@@ -118,7 +118,7 @@ TEST_CASE("the play of a gear is told by how long its link falls, however hard i
 TEST_CASE("a payload that would have to be too far off is the best one that is not") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    const EffectShape shape = find(body_candidates(signals), "payload", "tool").shapes[1];
+    const EffectShape shape = find(lasting_candidates(signals), "payload", "tool").shapes[1];
     int bounded = 0;
     for (int trial = 0; trial < 50; ++trial) {
         const MatrixXd columns = MatrixXd::NullaryExpr(40, 4, [&] { return draw(engine, -1, 1); });
@@ -196,7 +196,7 @@ TEST_CASE("a payload that is taken up is not there before, and weighs the same t
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const std::vector<EffectColumn> columns = payload_columns(signals);
     const Candidate taken = taken_payload(signals, columns, {7.005, 9});
-    const Candidate lasting = find(body_candidates(signals), "payload", "tool");
+    const Candidate lasting = find(lasting_candidates(signals), "payload", "tool");
     for (std::size_t column = 0; column < 4; ++column) {
         const MatrixXd late = contribution(signals, taken, column);
         CHECK(late.topRows(701).isZero(0));

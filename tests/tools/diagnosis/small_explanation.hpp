@@ -20,8 +20,10 @@ inline Eigen::VectorXd random_series(const tools::DiagnosisSignals& signals, std
 
 inline tools::Candidate of_one_column(const std::string& effect, const std::string& where,
                                       const Eigen::VectorXd& series) {
-    return tools::single_column(effect, where, tools::on_output(0, series), tools::is_anything, "level",
-                                "N·m");
+    tools::Candidate candidate =
+        tools::single_column(where, tools::on_output(0, series), tools::is_anything, {"level", "N·m"});
+    candidate.effect = effect;
+    return candidate;
 }
 
 /// Candidates on the first output, of which the first `chosen` explain, in their first shapes; noise of 1.

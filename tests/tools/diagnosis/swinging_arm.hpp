@@ -4,6 +4,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tools/diagnosis/candidates.hpp"
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
 
 #include <algorithm>
 #include <string>
@@ -36,6 +37,13 @@ inline tools::MeasuredMotion swing(Eigen::Index joints) {
 
 inline tools::DiagnosisSignals signals_of(const tools::Robot& robot, tools::OutputKind kind) {
     return tools::diagnosis_signals(robot, kind, swing(static_cast<Eigen::Index>(robot.joints.size())));
+}
+
+/// A model of the rigid body alone, without friction and delays.
+inline tools::FittedModel rigid_model(const tools::DiagnosisSignals& signals, bool gains_known = true) {
+    return {signals.nominal,
+            Eigen::MatrixXd::Zero(signals.rows(), static_cast<Eigen::Index>(signals.joints())),
+            Eigen::VectorXd::Zero(signals.outputs()), gains_known};
 }
 
 inline const tools::Candidate& find(const std::vector<tools::Candidate>& candidates,

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/tools/diagnosis/swinging_arm.hpp"
+#include "tests/tools/robot/arms.hpp"
+#include "tools/common/read_file.hpp"
+#include "tools/model/effects.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+using namespace dfdyn::tools;
+using namespace dfdyn::tests;
+
+const std::filesystem::path project = std::filesystem::path(DFDYN_TEST_DATA_DIR) / "../..";
+
+/// `amplitude (N·m), phase (rad)`: names with the same unit in front of it.
+std::string listed(const std::vector<ParameterKind>& parameters) {
+    std::string text;
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+        const std::string unit = parameters[i].unit;
+        const bool last_of_unit = i + 1 == parameters.size() || unit != parameters[i + 1].unit;
+        text.append(text.empty() ? "" : ", ").append(parameters[i].name);
+        text += last_of_unit && !unit.empty() ? " (" + unit + ")" : "";
+    }
+    return text;
+}
+
+std::string documented_row(const Effect& effect) {
+    return std::string("| `") + effect.name + "` | " + effect.where + " | " + listed(effect.parameters) +
+           effect.remark + " | " + effect.in_extended_model + " |\n";
+}
+
+bool is_word_character(char character) {
+    return std::isalnum(static_cast<unsigned char>(character)) != 0 || character == '_';
+}
+
+/// The texts of the string literals in a C++ file; none of those in its comments.
+std::vector<std::string> string_literals(const std::string& code) {
+    std::vector<std::string> literals;
+    for (std::size_t i = 0; i < code.size(); ++i) {
+        if (code.compare(i, 2, "//") == 0) {
+            i = code.find('\n', i);
+        } else if (code[i] == '\'' && !is_word_character(code[i - 1])) { // not in 1'000
+            i = code.find('\'', code[i + 1] == '\\' ? i + 3 : i + 1);
+        } else if (code[i] == '"') {
+            std::string text;
+            for (++i; i < code.size() && code[i] != '"'; ++i) {
+                text += code[i] == '\\' ? code[++i] : code[i];
+            }
+            literals.push_back(text);
+        }
+        if (i == std::string::npos) {
+            break;
+        }
+    }
+    return literals;
+}
+
+/// A name of several words anywhere; one of a single word, which messages need, too, only alone.
+bool has_name(const std::string& literal, const std::string& name) {
+    if (name.find('_') == std::string::npos) {
+        return literal == name;
+    }
+    for (std::size_t at = literal.find(name); at != std::string::npos; at = literal.find(name, at + 1)) {
+        const std::size_t end = at + name.size();
+        if ((at == 0 || !is_word_character(literal[at - 1])) &&
+            (end == literal.size() || !is_word_character(literal[end]))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Files of the product in which a literal has a name of the catalogue.
+std::map<std::string, std::set<std::string>> files_with_names() {
+    std::map<std::string, std::set<std::string>> files;
+    for (const char* const folder : {"tools", "hal", "firmware_lib/include"}) {
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(project / folder)) {
+            const std::string extension = entry.path().extension().string();
+            if (extension != ".cpp" && extension != ".hpp") {
+                continue;
+            }
+            for (const std::string& literal : string_literals(read_file(entry.path()))) {
+                for (const Effect& effect : effect_catalogue()) {
+                    if (has_name(literal, effect.name)) {
+                        files[std::filesystem::relative(entry.path(), project).generic_string()].insert(
+                            effect.name);
+                    }
+                }
+            }
+        }
+    }
+    return files;
+}
+
+} // namespace
+
+TEST_CASE("no name of the catalogue of effects is a literal outside its file and the catalogues") {
+    // the columns of the firmware; the monitor's changes and the simulation's faults have names of their own
+    const std::set<std::string> catalogues{"tools/model/effects.cpp",
+                                           "firmware_lib/include/dfdyn/monitor/cause.hpp",
+                                           "tools/simulation/faults/actuator_gain.cpp"};
+    std::set<std::string> seen;
+    for (const auto& [file, names] : files_with_names()) {
+        for (const std::string& name : names) {
+            CAPTURE(file, name);
+            const bool own = file == "tools/diagnosis/effects/" + name + ".cpp";
+            CHECK((own || catalogues.contains(file)));
+            if (own) {
+                seen.insert(name);
+            }
+        }
+    }
+    CHECK(seen.size() == effect_catalogue().size());
+}
+
+TEST_CASE("the documentation's table of effects is the catalogue") {
+    const std::string text = read_file(project / "docs/diagnosis.md");
+    const std::string rule = "| --- | --- | --- | --- |\n";
+    const std::size_t first = text.find(rule, text.find("| effect | where |")) + rule.size();
+    std::string expected;
+    for (const Effect& effect : effect_catalogue()) {
+        expected += documented_row(effect);
+    }
+    CHECK(text.substr(first, text.find("\n\n", first) + 1 - first) == expected);
+}
+
+TEST_CASE("every column of the physics is an effect of the catalogue") {
+    for (const char* const name : {effect_kinds::viscous_friction.name, effect_kinds::coulomb_friction.name,
+                                   effect_kinds::stribeck_friction.name, effect_kinds::rotor_inertia.name,
+                                   effect_kinds::joint_spring.name, effect_kinds::torque_ripple.name,
+                                   effect_kinds::torque_offset.name, effect_kinds::ft_bias.name}) {
+        CAPTURE(name);
+        CHECK(find_effect(name) != nullptr);
+    }
+}
+
+TEST_CASE("candidates are where their effect can be, and have the parameters that it can have") {
+    const DiagnosisSignals torques = signals_of(ur5(), OutputKind::joint_torque);
+    const DiagnosisSignals wrench = signals_of(icub_right_arm(), OutputKind::wrench);
+    std::set<std::string> seen;
+    for (const DiagnosisSignals* const signals : {&torques, &wrench}) {
+        std::vector<Candidate> candidates = lasting_candidates(*signals);
+        std::vector<Candidate> fitted = fitted_candidates(*signals, rigid_model(*signals));
+        candidates.insert(candidates.end(), fitted.begin(), fitted.end());
+        for (const Candidate& candidate : candidates) {
+            CAPTURE(candidate.key());
+            const Effect& effect = effect_named(candidate.effect);
+            seen.insert(effect.name);
+            const std::string place = candidate.where.substr(0, candidate.where.find_first_of("123456789"));
+            CHECK(std::string_view(effect.where).find(place) != std::string_view::npos);
+            for (const EffectShape& shape : candidate.shapes) {
+                const auto count = static_cast<Eigen::Index>(shape.columns.size());
+                for (const EffectParameter& parameter :
+                     candidate.parameters(Eigen::VectorXd::Ones(count), shape)) {
+                    const auto kind = std::ranges::find_if(effect.parameters, [&](const ParameterKind& one) {
+                        return parameter.name == one.name;
+                    });
+                    CAPTURE(parameter.name);
+                    CHECK(kind != effect.parameters.end());
+                }
+            }
+        }
+    }
+    for (const Effect& effect : effect_catalogue()) {
+        CAPTURE(effect.name); // one drifts only where there is friction; others have to be looked for
+        CHECK((seen.contains(effect.name) || effect.scan != nullptr || effect.each == Each::torque_joint));
+    }
+}

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/candidate_parts.hpp"
+#include "tools/diagnosis/candidates.hpp"
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/effects/event_products.hpp"
+#include "tools/diagnosis/effects/point_mass.hpp"
+#include "tools/diagnosis/extension_parts.hpp"
+#include "tools/diagnosis/scans.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <array>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr ParameterKind payload_mass{"mass", "kg"};
+constexpr std::array payload_centre{ParameterKind{"com_x", "m"}, ParameterKind{"com_y", "m"},
+                                    ParameterKind{"com_z", "m"}};
+constexpr ParameterKind payload_attached{"attached", "s", std::nullopt};
+constexpr const char* one_payload = "payload"; // family: there is one at most, from the beginning or taken up
+constexpr double farthest_payload = 0.5;       // m from the tip
+
+/// The best mass and moments with the centre of mass as far off as it may be, by the multiplier of that
+/// bound.
+Eigen::VectorXd at_farthest(const Eigen::MatrixXd& squares, const Eigen::VectorXd& moments) {
+    constexpr double margin = 0.999;
+    const double bound = margin * farthest_payload;
+    const Eigen::Vector4d cone(-bound * bound, 1, 1, 1); // times the coefficients' squares: 0 at the bound
+    const auto at = [&](double multiplier) {
+        Eigen::MatrixXd system = squares;
+        system.diagonal() += multiplier * cone;
+        const Eigen::LLT<Eigen::MatrixXd> factor(system);
+        return factor.info() == Eigen::Success ? Eigen::VectorXd(factor.solve(moments))
+                                               : Eigen::VectorXd::Zero(4).eval();
+    };
+    double low = 0;
+    double high = 1e-9 * squares.trace();
+    const auto outside = [&](const Eigen::VectorXd& c) { return c.cwiseAbs2().dot(cone) > 0; };
+    for (int doubling = 0; doubling < 60 && outside(at(high)); ++doubling) {
+        low = high;
+        high *= 2;
+    }
+    for (int halving = 0; halving < 50; ++halving) {
+        const double middle = (low + high) / 2;
+        (outside(at(middle)) ? low : high) = middle;
+    }
+    return at(high);
+}
+
+bool within_reach(const Eigen::VectorXd& coefficients) {
+    return coefficients[0] > 0 &&
+           coefficients.tail(coefficients.size() - 1).norm() <= farthest_payload * coefficients[0];
+}
+
+std::vector<EffectParameter> payload_parameters(const Eigen::VectorXd& coefficients, const EffectShape&) {
+    std::vector values{payload_mass.at(coefficients[0])};
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const bool fitted = coefficients.size() == 4;
+        values.push_back(payload_centre[static_cast<std::size_t>(axis)].at(
+            fitted ? coefficients[axis + 1] / coefficients[0] : 0.0));
+    }
+    return values;
+}
+
+/// One that is there all the time: at the tip, or with its centre of mass anywhere.
+std::vector<Candidate> payload_candidates(const DiagnosisSignals& signals, std::size_t /*number*/) {
+    Candidate result;
+    result.where = "tool";
+    result.span = last_body;
+    result.family = one_payload;
+    result.columns = payload_columns(signals);
+    result.shapes = {{{0}, within_reach, 0}, {{0, 1, 2, 3}, within_reach, 0, 3, at_farthest}};
+    result.parameters = payload_parameters;
+    return {std::move(result)};
+}
+
+/// As a payload's columns are weighed while they are `there` (T, 0 or 1): where they begin and end matters.
+EventProducts products_of_payload(const EffectRegression& regression, const Eigen::MatrixXd& weighed,
+                                  const std::vector<EffectColumn>& payload, const Eigen::VectorXd& there) {
+    Eigen::VectorXd share = Eigen::VectorXd::Zero(weighed.cols());
+    for (const EffectColumn::Part& part : payload.front().parts) {
+        const Eigen::VectorXd series = part.series.cwiseProduct(there);
+        share[part.output] = series.isZero(0) ? 0 : weighed_share(regression, series)[part.output];
+    }
+    return {payload, weighed, share};
+}
+
+/// What comes behind the fitted time leaves no residual.
+Eigen::Index fitted_rows(const Eigen::MatrixXd& weighed) {
+    Eigen::Index rows = weighed.rows();
+    while (rows > 0 && weighed.row(rows - 1).isZero(0)) {
+        --rows;
+    }
+    return rows;
+}
+
+/// One that is taken up.
+class PayloadScan : public EffectScan {
+  public:
+    explicit PayloadScan(const DiagnosisSignals& signals) : payload_(payload_columns(signals)) {}
+
+    std::vector<Candidate> candidates(const FittedResidual& residual) const override {
+        return scan_taken_payload(residual.signals, residual.regression, residual.weighed, payload_);
+    }
+    /// Chosen already or not, each must stand out against its kind in what is left now.
+    void set_prices(const std::vector<Candidate*>& own, const FittedResidual& residual) const override {
+        for (Candidate* const candidate : own) {
+            candidate->extra_price =
+                demanded_of_payload(residual.signals, residual.regression, residual.weighed, payload_,
+                                    candidate->shapes.front().value);
+        }
+    }
+
+  private:
+    std::vector<EffectColumn> payload_;
+};
+
+EffectDisposition extend_by_payload(Extension& extension, const ChosenEffect& chosen) {
+    const double mass = chosen.coefficients[0];
+    const Eigen::Vector3d centre = chosen.coefficients.size() == 4
+                                       ? Eigen::Vector3d(chosen.coefficients.tail<3>() / mass)
+                                       : Eigen::Vector3d::Zero();
+    extension.bodies.tail<10>() += moved(point_mass(mass, centre), extension.robot.tip_placement);
+    return EffectDisposition::adapting;
+}
+
+} // namespace
+
+std::vector<EffectColumn> payload_columns(const DiagnosisSignals& signals) {
+    const Eigen::Index last = signals.regressor.cols() / 10 - 1;
+    return mass_columns(signals, last, Eigen::Vector3d::Zero(), signals.robot.tip_placement);
+}
+
+Candidate taken_payload(const DiagnosisSignals& signals, const std::vector<EffectColumn>& lasting,
+                        const std::vector<double>& times_s) {
+    Candidate result;
+    result.where = "tool";
+    result.detail = "taken";
+    result.family = one_payload;
+    result.event = true;
+    for (const double time_s : times_s) {
+        const std::size_t first = result.columns.size();
+        const Eigen::VectorXd there = (signals.measured.time_s.array() >= time_s).cast<double>();
+        for (EffectColumn column : lasting) {
+            for (EffectColumn::Part& part : column.parts) {
+                part.series = part.series.cwiseProduct(there);
+            }
+            result.columns.push_back(std::move(column));
+        }
+        result.shapes.push_back({{first}, within_reach, time_s});
+        result.shapes.push_back({{first, first + 1, first + 2, first + 3}, within_reach, time_s, 3});
+    }
+    result.about = [&signals, &lasting](const EffectShape& shape, const Eigen::VectorXd&) {
+        const double time_s = shape.value;
+        return taken_payload(signals, lasting,
+                             {time_s, time_s - 0.12, time_s - 0.04, time_s + 0.04, time_s + 0.12});
+    };
+    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
+        std::vector<EffectParameter> values = payload_parameters(coefficients, shape);
+        values.push_back(payload_attached.at(shape.value));
+        return values;
+    };
+    return result;
+}
+
+std::vector<Candidate> scan_taken_payload(const DiagnosisSignals& signals, const EffectRegression& regression,
+                                          const Eigen::MatrixXd& weighed,
+                                          const std::vector<EffectColumn>& payload) {
+    constexpr double least_share = 0.05; // of the time, before and after
+    const EventProducts products =
+        products_of_payload(regression, weighed, payload, Eigen::VectorXd::Ones(signals.rows()));
+    const Eigen::Index rows = fitted_rows(weighed);
+    const auto margin = static_cast<Eigen::Index>(least_share * static_cast<double>(rows));
+    Eigen::VectorXd moments = Eigen::VectorXd::Zero(products.moment.cols());
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(products.square.cols());
+    double best = 0;
+    Eigen::Index taken = -1;
+    for (Eigen::Index row = rows - 1; row >= margin; --row) {
+        moments += products.moment.row(row).transpose();
+        squares += products.square.row(row).transpose();
+        const double gain = row + margin < rows ? products.gain(moments, squares) : 0;
+        if (gain > best) {
+            best = gain;
+            taken = row;
+        }
+    }
+    if (taken < 0) {
+        return {};
+    }
+    const double time_s = signals.measured.time_s[taken];
+    Candidate candidate =
+        taken_payload(signals, payload, {time_s, time_s - 0.3, time_s - 0.1, time_s + 0.1, time_s + 0.3});
+    candidate.tried = signals.measured.time_s[signals.rows() - 1] - signals.measured.time_s[0];
+    return {std::move(candidate)};
+}
+
+double demanded_of_payload(const DiagnosisSignals& signals, const EffectRegression& regression,
+                           const Eigen::MatrixXd& weighed, const std::vector<EffectColumn>& payload,
+                           double taken_s) {
+    const Eigen::VectorXd& time = signals.measured.time_s;
+    const Eigen::Index rows = fitted_rows(weighed);
+    const Eigen::Index length = (time.head(rows).array() >= taken_s).count();
+    const auto every_other = Eigen::VectorXd::NullaryExpr(signals.rows(), [length](Eigen::Index row) {
+        return row / std::max<Eigen::Index>(1, length) % 2 == 0 ? 1.0 : 0.0;
+    });
+    const EventProducts products = products_of_payload(regression, weighed, payload, every_other);
+    std::vector<EventWindow> windows;
+    for (Eigen::Index first = 0; length > 0 && first + length <= rows;
+         first += std::max<Eigen::Index>(1, length / 8)) {
+        const double gain = products.gain(products.moment.middleRows(first, length).colwise().sum(),
+                                          products.square.middleRows(first, length).colwise().sum());
+        windows.push_back({gain, time[first], time[first + length - 1]});
+    }
+    return demanded_by(events_of(std::move(windows), events_apart_s)).value_or(0);
+}
+
+Effect effects::payload() {
+    return {.name = "payload",
+            .where = "tool",
+            .parameters = {payload_mass, payload_centre[0], payload_centre[1], payload_centre[2],
+                           payload_attached},
+            .remark = " where it was taken up on the way",
+            .evidence = "is that of a mass fixed to the tool",
+            .experiment = "take everything off the tool and record the same motion again",
+            .in_extended_model = "adapting: the rigid body's parameters start there",
+            .each = Each::arm,
+            .candidates = payload_candidates,
+            .scan = [](const DiagnosisSignals& signals, const SpectralRows&) -> std::unique_ptr<EffectScan> {
+                return std::make_unique<PayloadScan>(signals);
+            },
+            .extend = extend_by_payload};
+}
+
+} // namespace dfdyn::tools

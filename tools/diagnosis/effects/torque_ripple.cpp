@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/candidates.hpp"
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/effects/sliding.hpp"
+#include "tools/diagnosis/explaining_variable.hpp"
+#include "tools/diagnosis/extension_parts.hpp"
+#include "tools/diagnosis/scans.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <set>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr ParameterKind ripple_amplitude{"amplitude", "N·m"};
+constexpr ParameterKind ripple_cycles{cycles_per_turn, "1"};
+constexpr ParameterKind ripple_phase{"phase", "rad"};
+
+constexpr int fewest_cycles = 2;
+constexpr int most_cycles = 330; // harmonic drives up to 1:160 make twice their ratio
+
+struct RippleGain {
+    double gain = 0;
+    int cycles = 0;
+};
+
+/// Sum of squares that a ripple would explain, per number of cycles; its energy is taken at the frequency of
+/// each instant.
+std::vector<RippleGain> ripple_gains(const DiagnosisSignals& signals, const EffectRegression& regression,
+                                     const Eigen::MatrixXd& weighed, Eigen::Index joint) {
+    const Eigen::VectorXd position = signals.measured.motion.position.col(joint);
+    const Eigen::VectorXd velocity = signals.measured.motion.velocity.col(joint);
+    const double bin_hz = 1 / (2 * SpectralRows::hop_s);
+    const std::complex<double> turn(0, 1);
+    const Eigen::ArrayXcd once = (turn * position.array()).exp();
+    Eigen::ArrayXcd phase = (turn * static_cast<double>(fewest_cycles - 1) * position.array()).exp();
+    std::vector<RippleGain> result;
+    for (int cycles = fewest_cycles; cycles <= most_cycles; ++cycles) {
+        phase *= once;
+        const std::complex<double> product = (phase * weighed.col(joint).array()).sum();
+        double energy = 0;
+        for (Eigen::Index row = 0; row < position.size(); ++row) {
+            const double frequency_hz = std::abs(cycles * velocity[row]) / (2 * std::numbers::pi);
+            const auto bin = static_cast<Eigen::Index>(frequency_hz / bin_hz);
+            energy += bin < regression.rows().bins() ? 0.5 / regression.noise()(bin, joint) : 0;
+        }
+        result.push_back({energy > 0 ? std::norm(product) / energy : 0, cycles});
+    }
+    return result;
+}
+
+/// The three best local maxima with their neighbours.
+std::vector<int> best_cycles(const std::vector<RippleGain>& gains) {
+    std::vector<RippleGain> peaks;
+    for (std::size_t i = 0; i < gains.size(); ++i) {
+        const bool above_last = i == 0 || gains[i].gain >= gains[i - 1].gain;
+        const bool above_next = i + 1 == gains.size() || gains[i].gain >= gains[i + 1].gain;
+        if (above_last && above_next && gains[i].gain > 0) {
+            peaks.push_back(gains[i]);
+        }
+    }
+    std::ranges::sort(peaks, std::greater<>{}, &RippleGain::gain);
+    std::set<int> cycles;
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, peaks.size()); ++i) {
+        for (int near = peaks[i].cycles - 1; near <= peaks[i].cycles + 1; ++near) {
+            cycles.insert(std::clamp(near, fewest_cycles, most_cycles));
+        }
+    }
+    return {cycles.begin(), cycles.end()};
+}
+
+class RippleScan : public EffectScan {
+  public:
+    /// Of each joint the numbers of cycles per turn that go best with the residual; candidates have these and
+    /// their neighbours as shapes. Whole numbers whose frequency stays within the analysed band.
+    std::vector<Candidate> candidates(const FittedResidual& residual) const override {
+        const DiagnosisSignals& signals = residual.signals;
+        // a free function of the position can hide a ripple
+        const Eigen::MatrixXd weighed = weighed_residual(residual.regression, residual.named);
+        std::vector<Candidate> result;
+        for (std::size_t joint = 0; !signals.wrench() && joint < signals.joints(); ++joint) {
+            const std::vector<int> cycles = best_cycles(
+                ripple_gains(signals, residual.regression, weighed, static_cast<Eigen::Index>(joint)));
+            if (!cycles.empty()) {
+                result.push_back(ripple_candidate(signals, joint, cycles));
+                result.back().tried = static_cast<double>(most_cycles) / static_cast<double>(cycles.size());
+            }
+        }
+        return result;
+    }
+};
+
+/// A wave of any phase is a sine and a cosine.
+EffectDisposition extend_by_ripple(Extension& extension, const ChosenEffect& chosen) {
+    EffectModel wave = on_joint(chosen, effect_kinds::torque_ripple);
+    wave.cycles_per_rev = chosen.shape.value;
+    const double amplitude = chosen.coefficients.norm();
+    for (Eigen::Index part = 0; part < 2; ++part) {
+        wave.phase = part == 0 ? 0 : std::numbers::pi / 2;
+        add_column(extension, wave, chosen.coefficients[part],
+                   std::max(chosen.deviations[part], 0.1 * amplitude));
+    }
+    return EffectDisposition::adapting;
+}
+
+} // namespace
+
+Candidate ripple_candidate(const DiagnosisSignals& signals, std::size_t number,
+                           const std::vector<int>& cycles) {
+    const JointSignals joint(signals, number);
+    Candidate result = joint.candidate();
+    for (const int count : cycles) {
+        const Eigen::ArrayXd angle = joint.position.array() * count;
+        result.shapes.push_back(
+            {{result.columns.size(), result.columns.size() + 1}, is_anything, static_cast<double>(count)});
+        result.columns.push_back(joint.column(angle.sin()));
+        result.columns.push_back(joint.column(angle.cos()));
+    }
+    result.parameters = [](const Eigen::VectorXd& coefficients, const EffectShape& shape) {
+        return std::vector{ripple_amplitude.at(coefficients.norm()), ripple_cycles.at(shape.value),
+                           ripple_phase.at(std::atan2(coefficients[1], coefficients[0]))};
+    };
+    return result;
+}
+
+Effect effects::torque_ripple() {
+    return {.name = "torque_ripple",
+            .where = "jointK",
+            .parameters = {ripple_amplitude, ripple_cycles, ripple_phase},
+            .evidence = "repeats with the joint's angle",
+            .experiment = "turn this joint slowly through a full turn in both directions and count the waves",
+            .in_extended_model = "adapting; the cycles are constant",
+            .kept_while_chosen = true,
+            .scan = [](const DiagnosisSignals&, const SpectralRows&) -> std::unique_ptr<EffectScan> {
+                return std::make_unique<RippleScan>();
+            },
+            .plotted_over = over_angle,
+            .extend = extend_by_ripple};
+}
+
+} // namespace dfdyn::tools
