@@ -19,7 +19,7 @@ EffectParameters largest_first(EffectParameters parameters) {
     return parameters;
 }
 
-DrawnEffect payload(const EffectDraw& of) {
+DrawnEffect mass_at_tool(const EffectDraw& of) {
     const Eigen::Vector3d centre(of.draw.uniform(-0.1, 0.1), of.draw.uniform(-0.1, 0.1),
                                  of.draw.uniform(-0.1, 0.1));
     const double attached = of.draw.chance(1.0 / 3) ? of.draw.uniform(0.2, 0.7) * of.setup.duration_s : 0;
@@ -103,7 +103,7 @@ DrawnEffect tilt(const EffectDraw& of) {
     return effect;
 }
 
-DrawnEffect encoder_offset(const EffectDraw& of, Eigen::Index joint) {
+DrawnEffect shifted_zero(const EffectDraw& of, Eigen::Index joint) {
     const double sign = of.draw.sign();
     DrawnEffect effect;
     effect.hide = [joint, sign](double size, Scenario& scenario) {
@@ -133,22 +133,23 @@ DrawnEffect eccentricity(const EffectDraw& of, Eigen::Index joint) {
     return effect;
 }
 
-} // namespace
-
-std::optional<DrawnEffect> draw_body_effect(const std::string& name, const EffectDraw& of) {
-    if (name == "payload") {
-        return payload(of);
-    }
-    if (name == "link_inertia_error") {
-        return link_error(of);
-    }
-    if (name == "gravity_tilt") {
-        return tilt(of);
-    }
+DrawnEffect at_encoder(const EffectDraw& of, DrawnEffect (*draw)(const EffectDraw&, Eigen::Index)) {
     const Eigen::Index joint = of.joint();
-    DrawnEffect effect = name == "encoder_offset" ? encoder_offset(of, joint) : eccentricity(of, joint);
+    DrawnEffect effect = draw(of, joint);
     effect.where = "encoder" + std::to_string(joint + 1);
     return effect;
 }
+
+} // namespace
+
+namespace hidden_effects {
+
+DrawnEffect payload(const EffectDraw& of) { return mass_at_tool(of); }
+DrawnEffect link_inertia_error(const EffectDraw& of) { return link_error(of); }
+DrawnEffect gravity_tilt(const EffectDraw& of) { return tilt(of); }
+DrawnEffect encoder_offset(const EffectDraw& of) { return at_encoder(of, shifted_zero); }
+DrawnEffect encoder_eccentricity(const EffectDraw& of) { return at_encoder(of, eccentricity); }
+
+} // namespace hidden_effects
 
 } // namespace dfdyn::tests

@@ -67,8 +67,8 @@ struct PanelMix {
 std::vector<std::string> panel_robot_names();
 std::vector<std::string> panel_noise_names();
 
-/// Of the catalogue; and the kinds outside of it.
-std::vector<std::string> panel_effect_names();
+/// Of the catalogue, those of random cases or all; and the kinds outside of it.
+std::vector<std::string> panel_effect_names(bool all = false);
 std::vector<std::string> outside_effect_names();
 
 /// The case of `seed`: the same seed and mix give the same bytes. Throws InputError for a name that is

@@ -8,9 +8,11 @@
 #include "tests/support/temporary_directory.hpp"
 #include "tools/common/error.hpp"
 #include "tools/common/read_file.hpp"
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -145,6 +147,15 @@ TEST_CASE("nominal masses are off by up to 10 %, all of a link alike, or exact")
         CHECK(exact.mass_errors[link] == 0);
     }
     CHECK(off.recording.output.values == exact.recording.output.values);
+}
+
+TEST_CASE("every effect of the catalogue can be hidden") {
+    const std::vector<std::string> hidden = panel_effect_names(true);
+    for (const Effect& effect : effect_catalogue()) {
+        CAPTURE(effect.name);
+        CHECK(std::ranges::count(hidden, effect.name) == 1);
+    }
+    CHECK(hidden.size() == effect_catalogue().size());
 }
 
 TEST_CASE("names that are unknown, and effects that outputs do not show, are refused") {

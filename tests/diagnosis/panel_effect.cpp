@@ -11,6 +11,37 @@ namespace dfdyn::tests {
 
 using namespace tools;
 
+/// The generators of the catalogue's effects, for setups on whose outputs they show; in panel_*_effects.cpp.
+namespace hidden_effects {
+
+DrawnEffect viscous_friction(const EffectDraw& of);
+DrawnEffect coulomb_friction(const EffectDraw& of);
+DrawnEffect stribeck_friction(const EffectDraw& of);
+DrawnEffect load_dependent_friction(const EffectDraw& of);
+DrawnEffect presliding_hysteresis(const EffectDraw& of);
+DrawnEffect torque_offset(const EffectDraw& of);
+DrawnEffect rotor_inertia(const EffectDraw& of);
+DrawnEffect joint_spring(const EffectDraw& of);
+DrawnEffect torque_ripple(const EffectDraw& of);
+DrawnEffect backlash(const EffectDraw& of);
+DrawnEffect joint_flexibility(const EffectDraw& of);
+DrawnEffect actuator_gain(const EffectDraw& of);
+DrawnEffect payload(const EffectDraw& of);
+DrawnEffect link_inertia_error(const EffectDraw& of);
+DrawnEffect gravity_tilt(const EffectDraw& of);
+DrawnEffect ft_bias(const EffectDraw& of);
+DrawnEffect ft_drift(const EffectDraw& of);
+DrawnEffect ft_gain(const EffectDraw& of);
+DrawnEffect ft_crosstalk(const EffectDraw& of);
+DrawnEffect ft_rotation(const EffectDraw& of);
+DrawnEffect encoder_offset(const EffectDraw& of);
+DrawnEffect encoder_eccentricity(const EffectDraw& of);
+DrawnEffect delay(const EffectDraw& of);
+DrawnEffect friction_drift(const EffectDraw& of);
+DrawnEffect external_contact(const EffectDraw& of);
+
+} // namespace hidden_effects
+
 namespace {
 
 enum class Shows { torque, wrench, both };
@@ -18,35 +49,37 @@ enum class Shows { torque, wrench, both };
 struct CatalogueEntry {
     const char* name;
     Shows shows;
-    std::optional<DrawnEffect> (*draw)(const std::string& name, const EffectDraw& of);
+    DrawnEffect (*draw)(const EffectDraw& of);
+    /// Not in random cases: those of a seed stay what they were before this effect was added.
+    bool on_request = false;
 };
 
 constexpr std::array<CatalogueEntry, 25> catalogue{{
-    {"viscous_friction", Shows::torque, draw_friction_effect},
-    {"coulomb_friction", Shows::torque, draw_friction_effect},
-    {"stribeck_friction", Shows::torque, draw_friction_effect},
-    {"load_dependent_friction", Shows::torque, draw_friction_effect},
-    {"presliding_hysteresis", Shows::torque, draw_friction_effect},
-    {"torque_offset", Shows::torque, draw_sensor_effect},
-    {"rotor_inertia", Shows::torque, draw_joint_effect},
-    {"joint_spring", Shows::torque, draw_joint_effect},
-    {"torque_ripple", Shows::torque, draw_joint_effect},
-    {"backlash", Shows::both, draw_gear_effect},
-    {"joint_flexibility", Shows::both, draw_gear_effect},
-    {"actuator_gain", Shows::torque, draw_sensor_effect},
-    {"payload", Shows::both, draw_body_effect},
-    {"link_inertia_error", Shows::both, draw_body_effect},
-    {"gravity_tilt", Shows::both, draw_body_effect},
-    {"ft_bias", Shows::wrench, draw_sensor_effect},
-    {"ft_drift", Shows::wrench, draw_sensor_effect},
-    {"ft_gain", Shows::wrench, draw_sensor_effect},
-    {"ft_crosstalk", Shows::wrench, draw_sensor_effect},
-    {"ft_rotation", Shows::wrench, draw_sensor_effect},
-    {"encoder_offset", Shows::both, draw_body_effect},
-    {"encoder_eccentricity", Shows::both, draw_body_effect},
-    {"delay", Shows::both, draw_sensor_effect},
-    {"friction_drift", Shows::torque, draw_friction_effect},
-    {"external_contact", Shows::both, draw_joint_effect},
+    {"viscous_friction", Shows::torque, hidden_effects::viscous_friction},
+    {"coulomb_friction", Shows::torque, hidden_effects::coulomb_friction},
+    {"stribeck_friction", Shows::torque, hidden_effects::stribeck_friction},
+    {"load_dependent_friction", Shows::torque, hidden_effects::load_dependent_friction},
+    {"presliding_hysteresis", Shows::torque, hidden_effects::presliding_hysteresis},
+    {"torque_offset", Shows::torque, hidden_effects::torque_offset},
+    {"rotor_inertia", Shows::torque, hidden_effects::rotor_inertia},
+    {"joint_spring", Shows::torque, hidden_effects::joint_spring},
+    {"torque_ripple", Shows::torque, hidden_effects::torque_ripple},
+    {"backlash", Shows::both, hidden_effects::backlash},
+    {"joint_flexibility", Shows::both, hidden_effects::joint_flexibility},
+    {"actuator_gain", Shows::torque, hidden_effects::actuator_gain},
+    {"payload", Shows::both, hidden_effects::payload},
+    {"link_inertia_error", Shows::both, hidden_effects::link_inertia_error},
+    {"gravity_tilt", Shows::both, hidden_effects::gravity_tilt},
+    {"ft_bias", Shows::wrench, hidden_effects::ft_bias},
+    {"ft_drift", Shows::wrench, hidden_effects::ft_drift},
+    {"ft_gain", Shows::wrench, hidden_effects::ft_gain},
+    {"ft_crosstalk", Shows::wrench, hidden_effects::ft_crosstalk},
+    {"ft_rotation", Shows::wrench, hidden_effects::ft_rotation},
+    {"encoder_offset", Shows::both, hidden_effects::encoder_offset},
+    {"encoder_eccentricity", Shows::both, hidden_effects::encoder_eccentricity},
+    {"delay", Shows::both, hidden_effects::delay},
+    {"friction_drift", Shows::torque, hidden_effects::friction_drift},
+    {"external_contact", Shows::both, hidden_effects::external_contact},
 }};
 
 /// The body that payloads add, whenever they are attached.
@@ -75,10 +108,12 @@ MotionRows shown(const MotionRows& motion, const EncoderModel& encoders) {
 
 } // namespace
 
-std::vector<std::string> panel_effect_names() {
+std::vector<std::string> panel_effect_names(bool all) {
     std::vector<std::string> names;
     for (const CatalogueEntry& entry : catalogue) {
-        names.emplace_back(entry.name);
+        if (all || !entry.on_request) {
+            names.emplace_back(entry.name);
+        }
     }
     return names;
 }
@@ -100,7 +135,7 @@ std::optional<DrawnEffect> draw_effect(const std::string& name, const EffectDraw
     }
     const auto* const entry = std::ranges::find(catalogue, name, &CatalogueEntry::name);
     std::optional<DrawnEffect> drawn =
-        entry == catalogue.end() ? draw_outside_effect(name, of) : entry->draw(name, of);
+        entry == catalogue.end() ? draw_outside_effect(name, of) : entry->draw(of);
     if (!drawn) {
         throw InputError("effect: expected one of the catalogue or outside of it, found " + name);
     }

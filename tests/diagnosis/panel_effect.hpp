@@ -41,12 +41,7 @@ struct EffectDraw {
     }
 };
 
-/// Nothing where the effect does not show on the setup's outputs.
-std::optional<DrawnEffect> draw_friction_effect(const std::string& name, const EffectDraw& of);
-std::optional<DrawnEffect> draw_joint_effect(const std::string& name, const EffectDraw& of);
-std::optional<DrawnEffect> draw_body_effect(const std::string& name, const EffectDraw& of);
-std::optional<DrawnEffect> draw_sensor_effect(const std::string& name, const EffectDraw& of);
-std::optional<DrawnEffect> draw_gear_effect(const std::string& name, const EffectDraw& of);
+/// Outside of the catalogue; nothing for a name that is none of those.
 std::optional<DrawnEffect> draw_outside_effect(const std::string& name, const EffectDraw& of);
 
 /// Of any of them. Throws InputError for an unknown name.

@@ -145,14 +145,11 @@ void add_bristles(LuGreParameters& friction, double level, double bend, double i
     friction.stiffness = std::min(level / bend, inertia * fastest * fastest);
 }
 
-std::optional<DrawnEffect> draw_friction_effect(const std::string& name, const EffectDraw& of) {
+namespace {
+
+DrawnEffect rubbing(const EffectDraw& of, DrawnEffect (*draw)(const EffectDraw&, Eigen::Index)) {
     const Eigen::Index joint = of.joint();
-    DrawnEffect effect = name == "viscous_friction"          ? viscous(of, joint)
-                         : name == "coulomb_friction"        ? coulomb(of, joint)
-                         : name == "stribeck_friction"       ? stribeck(of, joint)
-                         : name == "load_dependent_friction" ? load_dependent(of, joint)
-                         : name == "presliding_hysteresis"   ? presliding(of, joint)
-                                                             : drift(of, joint);
+    DrawnEffect effect = draw(of, joint);
     effect.where = joint_place(joint);
     if (effect.largest == 0) {
         // beyond the effort that the joint has for its own motion no controller would move it well
@@ -161,5 +158,18 @@ std::optional<DrawnEffect> draw_friction_effect(const std::string& name, const E
     }
     return effect;
 }
+
+} // namespace
+
+namespace hidden_effects {
+
+DrawnEffect viscous_friction(const EffectDraw& of) { return rubbing(of, viscous); }
+DrawnEffect coulomb_friction(const EffectDraw& of) { return rubbing(of, coulomb); }
+DrawnEffect stribeck_friction(const EffectDraw& of) { return rubbing(of, stribeck); }
+DrawnEffect load_dependent_friction(const EffectDraw& of) { return rubbing(of, load_dependent); }
+DrawnEffect presliding_hysteresis(const EffectDraw& of) { return rubbing(of, presliding); }
+DrawnEffect friction_drift(const EffectDraw& of) { return rubbing(of, drift); }
+
+} // namespace hidden_effects
 
 } // namespace dfdyn::tests

@@ -105,7 +105,7 @@ Eigen::VectorXd second_derivative(const Eigen::VectorXd& values, double period_s
     return result;
 }
 
-DrawnEffect backlash(const EffectDraw& of, const Gear& gear) {
+DrawnEffect play_of_gear(const EffectDraw& of, const Gear& gear) {
     const Eigen::Index joint = gear.joint;
     const double stiffness = gear.rotor * contact_frequency * contact_frequency;
     const double damping = 0.6 * gear.rotor * contact_frequency;
@@ -145,20 +145,27 @@ DrawnEffect flexibility(const EffectDraw& of, const Gear& gear) {
     return effect;
 }
 
-} // namespace
-
-std::optional<DrawnEffect> draw_gear_effect(const std::string& name, const EffectDraw& of) {
+DrawnEffect with_gear(const EffectDraw& of, DrawnEffect (*draw)(const EffectDraw&, const Gear&)) {
     const Eigen::Index joint = of.joint();
     const auto link = static_cast<std::size_t>(joint);
     const JointInertia inertia = joint_inertia(of.setup, joint);
     const double rotor = rotor_share * inertia.least_free;
     const Gear gear{inertia, joint, rotor};
-    DrawnEffect effect = name == "backlash" ? backlash(of, gear) : flexibility(of, gear);
+    DrawnEffect effect = draw(of, gear);
     effect.where = joint_place(joint);
     effect.soft = true;
     effect.integration_rate_hz = gear_integration_rate_hz;
     effect.rebuild = [link, rotor](Robot& robot) { take_rotor_out(robot.joints[link], rotor); };
     return effect;
 }
+
+} // namespace
+
+namespace hidden_effects {
+
+DrawnEffect backlash(const EffectDraw& of) { return with_gear(of, play_of_gear); }
+DrawnEffect joint_flexibility(const EffectDraw& of) { return with_gear(of, flexibility); }
+
+} // namespace hidden_effects
 
 } // namespace dfdyn::tests

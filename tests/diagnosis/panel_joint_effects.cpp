@@ -121,19 +121,24 @@ DrawnEffect push_at_tip(const EffectDraw& of) {
     return effect;
 }
 
-} // namespace
-
-std::optional<DrawnEffect> draw_joint_effect(const std::string& name, const EffectDraw& of) {
-    if (of.setup.wrench()) {
-        return push_at_tip(of);
-    }
+DrawnEffect at_joint(const EffectDraw& of, DrawnEffect (*draw)(const EffectDraw&, Eigen::Index)) {
     const Eigen::Index joint = of.joint();
-    DrawnEffect effect = name == "rotor_inertia"   ? rotor(of, joint)
-                         : name == "joint_spring"  ? spring(of, joint)
-                         : name == "torque_ripple" ? ripple(of, joint)
-                                                   : push_on_joint(of, joint);
+    DrawnEffect effect = draw(of, joint);
     effect.where = joint_place(joint);
     return effect;
 }
+
+} // namespace
+
+namespace hidden_effects {
+
+DrawnEffect rotor_inertia(const EffectDraw& of) { return at_joint(of, rotor); }
+DrawnEffect joint_spring(const EffectDraw& of) { return at_joint(of, spring); }
+DrawnEffect torque_ripple(const EffectDraw& of) { return at_joint(of, ripple); }
+DrawnEffect external_contact(const EffectDraw& of) {
+    return of.setup.wrench() ? push_at_tip(of) : at_joint(of, push_on_joint);
+}
+
+} // namespace hidden_effects
 
 } // namespace dfdyn::tests

@@ -18,7 +18,7 @@ JointVector per_joint(const Scenario& scenario, const std::optional<JointVector>
     return values.value_or(JointVector::Constant(scenario.actuators.rotor_inertia.size(), otherwise));
 }
 
-DrawnEffect torque_offset(const EffectDraw& of, Eigen::Index joint) {
+DrawnEffect constant_torque(const EffectDraw& of, Eigen::Index joint) {
     const double sign = of.draw.sign();
     DrawnEffect effect;
     effect.where = joint_place(joint);
@@ -33,7 +33,7 @@ DrawnEffect torque_offset(const EffectDraw& of, Eigen::Index joint) {
     return effect;
 }
 
-DrawnEffect actuator_gain(const EffectDraw& of, Eigen::Index joint) {
+DrawnEffect wrong_constant(const EffectDraw& of, Eigen::Index joint) {
     const double sign = of.draw.sign();
     DrawnEffect effect;
     effect.where = "actuator" + std::to_string(joint + 1);
@@ -54,7 +54,7 @@ double rate_rms(const PanelSetup& setup, Eigen::Index output) {
     return 50 * rms(column.tail(column.size() - 1) - column.head(column.size() - 1));
 }
 
-DrawnEffect delay(const EffectDraw& of) {
+DrawnEffect late_reading(const EffectDraw& of) {
     DrawnEffect effect;
     effect.parameters = [](double size) { return EffectParameters{{"delay", size}}; };
     effect.largest = 0.15;
@@ -187,25 +187,24 @@ DrawnEffect rotation(const EffectDraw& of) {
     return effect;
 }
 
-} // namespace
-
-std::optional<DrawnEffect> draw_sensor_effect(const std::string& name, const EffectDraw& of) {
-    if (name == "torque_offset") {
-        return torque_offset(of, of.joint());
-    }
-    if (name == "actuator_gain") {
-        return actuator_gain(of, of.joint());
-    }
-    if (name == "delay") {
-        return delay(of);
-    }
-    DrawnEffect effect = name == "ft_bias"        ? bias(of)
-                         : name == "ft_drift"     ? drift(of)
-                         : name == "ft_gain"      ? gain(of)
-                         : name == "ft_crosstalk" ? crosstalk(of)
-                                                  : rotation(of);
+DrawnEffect at_sensor(DrawnEffect effect) {
     effect.where = "ft_sensor";
     return effect;
 }
+
+} // namespace
+
+namespace hidden_effects {
+
+DrawnEffect torque_offset(const EffectDraw& of) { return constant_torque(of, of.joint()); }
+DrawnEffect actuator_gain(const EffectDraw& of) { return wrong_constant(of, of.joint()); }
+DrawnEffect delay(const EffectDraw& of) { return late_reading(of); }
+DrawnEffect ft_bias(const EffectDraw& of) { return at_sensor(bias(of)); }
+DrawnEffect ft_drift(const EffectDraw& of) { return at_sensor(drift(of)); }
+DrawnEffect ft_gain(const EffectDraw& of) { return at_sensor(gain(of)); }
+DrawnEffect ft_crosstalk(const EffectDraw& of) { return at_sensor(crosstalk(of)); }
+DrawnEffect ft_rotation(const EffectDraw& of) { return at_sensor(rotation(of)); }
+
+} // namespace hidden_effects
 
 } // namespace dfdyn::tests
