@@ -13,12 +13,15 @@ Eigen::Vector3d three(const JsonReader& reader, const std::string& name) {
 
 LinkError read_link_error(const JsonReader& entry, int joint_count) {
     const ScenarioReader one(entry, joint_count);
-    one.allow_only({"link", "delta_mass_kg", "delta_centre_m"});
+    one.allow_only({"link", "delta_mass_kg", "delta_centre_m", "delta_inertia_kgm2"});
     LinkError error;
     error.joint = static_cast<std::size_t>(entry.whole_number("link", 1, joint_count) - 1);
     error.delta_mass = one.within("delta_mass_kg", -1e4, 1e4, 0);
     if (entry.has("delta_centre_m")) {
         error.delta_centre = three(entry, "delta_centre_m");
+    }
+    if (entry.has("delta_inertia_kgm2")) {
+        error.delta_inertia = three(entry, "delta_inertia_kgm2");
     }
     return error;
 }

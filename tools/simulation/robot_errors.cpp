@@ -4,6 +4,9 @@
 #include "tools/common/error.hpp"
 #include "tools/common/number.hpp"
 
+#include <optional>
+#include <string>
+
 namespace dfdyn::tools {
 
 namespace {
@@ -26,7 +29,13 @@ void apply(const LinkError& error, InertialParameters& body, double share) {
                          ": expected a mass that stays positive, found " + number_text(mass) + " kg");
     }
     const Eigen::Vector3d centre = body.segment<3>(1) / body[0];
-    body = body_parameters(mass, centre + error.delta_centre, central_inertia(body, centre));
+    const Eigen::Matrix3d spread = share * error.delta_inertia.asDiagonal();
+    body = body_parameters(mass, centre + error.delta_centre, central_inertia(body, centre) + spread);
+    const std::optional<std::string> fault = inertia_fault(body);
+    if (fault && !spread.isZero(0)) {
+        throw InputError("link " + std::to_string(error.joint + 1) +
+                         ": expected an inertia that a body can have, found that " + *fault);
+    }
 }
 
 } // namespace

@@ -136,6 +136,18 @@ TEST_CASE("errors of links move mass and centre, and keep a mass that can be") {
     CHECK_THROWS_WITH(real_robot(pendulum(1, 0.5), errors), Catch::Matchers::ContainsSubstring("link 1"));
 }
 
+TEST_CASE("errors of links change moments of inertia about the centre of mass, as far as a body can") {
+    RobotErrors errors;
+    errors.links = {{0, 0, Eigen::Vector3d::Zero(), Eigen::Vector3d(0, 0.2, 0.2)}};
+    const Robot described = pendulum(1, 0.5);
+    const InertialParameters change =
+        real_robot(described, errors).joints[0].inertia - described.joints[0].inertia;
+    CHECK((change - body_parameters(0, Eigen::Vector3d::Zero(), Eigen::Vector3d(0, 0.2, 0.2).asDiagonal()))
+              .norm() < 1e-12);
+    errors.links[0].delta_inertia = {0, 0.2, 0}; // longer than its mass is wide
+    CHECK_THROWS_WITH(real_robot(described, errors), Catch::Matchers::ContainsSubstring("link 1"));
+}
+
 TEST_CASE("a base that is not the root tilts about the root's axes") {
     Robot robot = pendulum(1, 0.5);
     // the base's x is the root's y, its y the root's -x
