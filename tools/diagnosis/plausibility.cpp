@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/plausibility.hpp"
 
+#include "tools/common/linear_algebra.hpp"
 #include "tools/common/number.hpp"
 #include "tools/recording/stretches.hpp"
-
-#include <Eigen/QR>
 
 #include <utility>
 
@@ -83,7 +82,7 @@ double foreign_share(const DiagnosisSignals& signals, const Eigen::MatrixXd& mea
             columns.col(4) = signals.direction(output);
         }
         const Eigen::VectorXd centred = measured.col(output).array() - measured.col(output).mean();
-        const Eigen::VectorXd fit = columns.colPivHouseholderQr().solve(centred);
+        const Eigen::VectorXd fit = least_squares(columns, centred);
         share += (centred - columns * fit).squaredNorm() / centred.squaredNorm();
     }
     return share / static_cast<double>(measured.cols());
