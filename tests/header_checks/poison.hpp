@@ -3,11 +3,6 @@
 // of what may be included from here.
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <array>
 #include <atomic>

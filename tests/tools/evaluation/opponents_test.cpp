@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/common/linear_algebra.hpp"
 #include "tools/evaluation/opponents.hpp"
 
 #include "tests/support/catch.hpp"
@@ -70,7 +69,7 @@ Eigen::Vector3d batch_coefficients(const std::vector<double>& series, std::size_
         information += x * x.transpose();
         right += x * series[t];
     }
-    return solve_symmetric(information, right);
+    return information.ldlt().solve(right);
 }
 
 TEST_CASE("every forecast of the autoregression is the batch solution of the samples before it") {
