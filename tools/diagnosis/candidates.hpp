@@ -17,8 +17,8 @@ namespace dfdyn::tools {
 std::vector<Candidate> dependence_candidates(const DiagnosisSignals& signals,
                                              const Eigen::MatrixXd& unexplained);
 
-/// A ripple of `joint` with these whole numbers of cycles per turn as shapes.
-Candidate ripple_candidate(const DiagnosisSignals& signals, std::size_t joint,
+/// A ripple of joint `number` (from 0) with these whole numbers of cycles per turn as shapes.
+Candidate ripple_candidate(const DiagnosisSignals& signals, std::size_t number,
                            const std::vector<int>& cycles);
 
 /// What one unit of a payload's mass at the tip adds to the outputs, then of its three first moments.
