@@ -9,13 +9,16 @@
 #include <cstdlib>
 #include <ctime>
 #include <thread>
+#include <vector>
 
 namespace {
 
 using dfdyn::hal::Frame;
 using dfdyn::hal::SocketCanBus;
 using dfdyn::hal::StampSource;
+using dfdyn::tests::empty;
 using dfdyn::tests::on_vcan0;
+using dfdyn::tests::receive;
 
 void set_wall_clock_by(std::int64_t seconds) {
     timespec time{};
@@ -35,8 +38,7 @@ TEST_CASE("a wall clock that is set does not move the stamps") {
     CAPTURE(step_s);
     SocketCanBus bus(on_vcan0());
     SocketCanBus peer(on_vcan0());
-    std::array<Frame, 8> room;
-    bus.drain(room);
+    empty(bus);
     std::array<std::int64_t, 4> sent_ns{}; // before and after each of the frames
     sent_ns[0] = bus.now_ns();
     peer.send(Frame{});
@@ -45,7 +47,7 @@ TEST_CASE("a wall clock that is set does not move the stamps") {
     sent_ns[2] = bus.now_ns();
     peer.send(Frame{});
     sent_ns[3] = bus.now_ns();
-    const auto frames = bus.drain(room);
+    const std::vector<Frame> frames = receive(bus, 2);
     REQUIRE(frames.size() == 2);
     // Both clocks are read one after the other, so a stamp is off by the time between.
     constexpr std::int64_t between_ns = 1'000'000;
@@ -61,8 +63,7 @@ TEST_CASE(
     "F22: frames that wait together have each its own stamp, not the last one's or that of the reading") {
     SocketCanBus bus(on_vcan0());
     SocketCanBus peer(on_vcan0());
-    std::array<Frame, 8> room;
-    bus.drain(room);
+    empty(bus);
     constexpr std::int64_t apart_ns = 20'000'000;
     std::array<std::int64_t, 3> sent_ns{};
     for (std::int64_t& time_ns : sent_ns) {
@@ -70,7 +71,7 @@ TEST_CASE(
         peer.send(Frame{});
         std::this_thread::sleep_for(std::chrono::nanoseconds(apart_ns));
     }
-    const auto frames = bus.drain(room);
+    const std::vector<Frame> frames = receive(bus, 3);
     REQUIRE(frames.size() == 3);
     for (std::size_t index = 0; index < 3; ++index) {
         CHECK(frames[index].stamp_source == StampSource::kernel);

@@ -2,13 +2,11 @@
 #include "tests/vcan/peer.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <stdexcept>
-#include <thread>
 
 #include <linux/can.h>
 #include <linux/can/raw.h>
@@ -19,20 +17,6 @@
 
 namespace dfdyn::tests {
 namespace {
-
-using namespace std::chrono_literals;
-
-/// Calls `done` until it is true, for at most 5 s; whether it became true.
-template <class Condition>
-bool wait_for(Condition done) {
-    for (int round = 0; round < 2500; ++round) {
-        if (done()) {
-            return true;
-        }
-        std::this_thread::sleep_for(2ms);
-    }
-    return done();
-}
 
 bool has_ended(pid_t pid) {
     siginfo_t info{};

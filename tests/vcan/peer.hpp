@@ -5,8 +5,10 @@
 #include "tests/support/temporary_directory.hpp"
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <sys/types.h>
@@ -23,6 +25,18 @@ double number_after(const std::string& text, const std::string& words, const std
 
 /// Whether the clock stands still while programs run: then nothing is ever late, and every run is the same.
 bool virtual_time();
+
+/// Calls `done` until it is true, for at most 5 s; whether it became true.
+template <class Condition>
+bool wait_for(Condition done) {
+    for (int round = 0; round < 2500; ++round) {
+        if (done()) {
+            return true;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return done();
+}
 
 /// How many raw CAN sockets receive from an interface, in the whole network namespace.
 long receivers();
