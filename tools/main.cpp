@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/base/text/error.hpp"
 #include "tools/build_flags.hpp"
 #include "tools/commands/command.hpp"
-#include "tools/common/error.hpp"
 
 #include <exception>
 #include <iostream>

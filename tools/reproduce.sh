@@ -60,7 +60,7 @@ with_fast_derivatives() {
 evaluate() {
     local status=0
     rm -f "$out/$kind/$1"/pictures/*.svg # a plan that has fewer figures by now
-    "$dfdyn" evaluate --plan "tools/reproduction/$1.json" -o "$out/$kind/$1" "${options[@]}" || status=$?
+    "$dfdyn" evaluate --plan "tools/experiment/plans/$1.json" -o "$out/$kind/$1" "${options[@]}" || status=$?
     [[ $status -le 1 ]] || exit "$status"
     failed=$((failed + status))
 }

@@ -62,8 +62,8 @@ analyse() {
     cmake --preset clang
     run-clang-tidy -quiet -p build/clang -j "$jobs" "$PWD/($1)/.*"
 }
-# tools/host has all of the firmware's headers.
-analyse_firmware() { analyse 'firmware_lib|hal|tools/host'; }
+# tools/model/run_time has all of the firmware's headers.
+analyse_firmware() { analyse 'firmware_lib|hal|tools/model/run_time'; }
 analyse_others() { analyse 'tools|tests'; }
 
 steps=(

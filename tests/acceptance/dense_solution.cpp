@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/acceptance/dense_solution.hpp"
 
-#include "tools/physics/robot_regressor.hpp"
-#include "tools/training/input_map.hpp"
-#include "tools/training/motion.hpp"
-#include "tools/training/physics_columns.hpp"
-#include "tools/training/random_features.hpp"
+#include "tools/training/data/input_map.hpp"
+#include "tools/training/data/motion.hpp"
+#include "tools/training/physics/physics_columns.hpp"
+#include "tools/training/physics/robot_regressor.hpp"
+#include "tools/training/start/random_features.hpp"
 
 #include <Eigen/QR>
 

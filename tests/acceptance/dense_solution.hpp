@@ -2,8 +2,8 @@
 #pragma once
 
 #include "tools/model/model.hpp"
-#include "tools/training/row_selection.hpp"
-#include "tools/training/training_data.hpp"
+#include "tools/training/data/row_selection.hpp"
+#include "tools/training/data/training_data.hpp"
 
 #include <Eigen/Core>
 

@@ -2,12 +2,12 @@
 // A loop that learns the arm it moves, over the frames of its devices: tracking against the nominal rigid
 // body's.
 #include "tests/support/catch.hpp"
-#include "tools/commands/robot_options.hpp"
+#include "tools/commands/options/robot_options.hpp"
 #include "tools/control/closed_loop.hpp"
-#include "tools/control/tracking.hpp"
-#include "tools/control/tracking_report.hpp"
-#include "tools/evaluation/contradiction.hpp"
-#include "tools/physics/model_training.hpp"
+#include "tools/control/report/tracking.hpp"
+#include "tools/control/report/tracking_report.hpp"
+#include "tools/replay/contradiction.hpp"
+#include "tools/training/model_training.hpp"
 
 #include <cmath>
 #include <string>

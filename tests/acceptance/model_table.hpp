@@ -2,10 +2,10 @@
 #pragma once
 
 #include "tests/support/temporary_directory.hpp"
-#include "tools/model/model_file.hpp"
-#include "tools/physics/model_training.hpp"
-#include "tools/robot/read_robot.hpp"
+#include "tools/model/file/model_file.hpp"
+#include "tools/robot/urdf/read_robot.hpp"
 #include "tools/simulation/simulation_csv.hpp"
+#include "tools/training/model_training.hpp"
 #include "tools/training/training_options.hpp"
 
 #include <fstream>

@@ -4,9 +4,9 @@
 #include "tests/acceptance/dense_solution.hpp"
 #include "tests/acceptance/model_table.hpp"
 #include "tests/support/catch.hpp"
-#include "tools/host/host_estimator.hpp"
-#include "tools/physics/model_training.hpp"
-#include "tools/training/recorded_data.hpp"
+#include "tools/model/run_time/host_estimator.hpp"
+#include "tools/training/data/recorded_data.hpp"
+#include "tools/training/model_training.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 // What the project promises on the recordings that it carries, measured on what the demo writes.
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_directory.hpp"
-#include "tools/model/model_file.hpp"
-#include "tools/recording/recording.hpp"
+#include "tools/base/recording/recording.hpp"
+#include "tools/model/file/model_file.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 // Time of what a tick is made of, piece by piece. Whole ticks, against other learners and the machine's
 // floor: `dfdyn bench`.
 #include "dfdyn/dfdyn.hpp"
+#include "tools/base/numerics/dynamic_storage.hpp"
 #include "tools/build_flags.hpp"
-#include "tools/host/dynamic_storage.hpp"
 
 #include <benchmark/benchmark.h>
 

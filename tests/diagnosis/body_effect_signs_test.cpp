@@ -4,7 +4,7 @@
 #include "tests/diagnosis/effect_trial.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tools/simulation/arm_dynamics.hpp"
+#include "tools/robot/dynamics/arm_dynamics.hpp"
 
 #include <cmath>
 #include <numbers>

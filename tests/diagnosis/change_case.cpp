@@ -2,10 +2,10 @@
 #include "tests/diagnosis/change_case.hpp"
 
 #include "tests/diagnosis/panel_random.hpp"
-#include "tools/common/number.hpp"
-#include "tools/evaluation/contradiction.hpp"
-#include "tools/physics/model_training.hpp"
+#include "tools/base/text/number.hpp"
+#include "tools/replay/contradiction.hpp"
 #include "tools/simulation/simulation.hpp"
+#include "tools/training/model_training.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/diagnosis/change_panel.hpp"
 
-#include "tools/common/number.hpp"
-#include "tools/common/quantile.hpp"
-#include "tools/evaluation/replay.hpp"
+#include "tools/base/numerics/quantile.hpp"
+#include "tools/base/text/number.hpp"
+#include "tools/replay/replay.hpp"
 
 #include <algorithm>
 #include <array>

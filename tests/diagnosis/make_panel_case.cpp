@@ -2,7 +2,7 @@
 #include "tests/diagnosis/panel_band.hpp"
 #include "tests/diagnosis/panel_run.hpp"
 
-#include "tools/common/error.hpp"
+#include "tools/base/text/error.hpp"
 
 #include <algorithm>
 #include <cmath>

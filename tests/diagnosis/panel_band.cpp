@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/diagnosis/panel_band.hpp"
 
-#include "tools/diagnosis/lapped_transform.hpp"
-#include "tools/simulation/low_pass.hpp"
+#include "tools/diagnosis/signals/lapped_transform.hpp"
+#include "tools/simulation/sensors/low_pass.hpp"
 
 #include <cmath>
 

@@ -6,8 +6,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/temporary_directory.hpp"
-#include "tools/common/error.hpp"
-#include "tools/common/read_file.hpp"
+#include "tools/base/system/read_file.hpp"
+#include "tools/base/text/error.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 
 #include <nlohmann/json.hpp>

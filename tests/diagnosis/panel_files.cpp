@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/diagnosis/panel_files.hpp"
 
-#include "tools/common/atomic_file.hpp"
-#include "tools/recording/csv_writer.hpp"
+#include "tools/base/recording/csv_writer.hpp"
+#include "tools/base/system/atomic_file.hpp"
 
 #include <nlohmann/json.hpp>
 

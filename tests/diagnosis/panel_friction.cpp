@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/diagnosis/panel_effect.hpp"
 
-#include "tools/simulation/arm_dynamics.hpp"
+#include "tools/robot/dynamics/arm_dynamics.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "tests/diagnosis/panel_table.hpp"
 #include "tests/diagnosis/push_panel.hpp"
 #include "tests/diagnosis/run_panel.hpp"
-#include "tools/common/atomic_file.hpp"
+#include "tools/base/system/atomic_file.hpp"
 
 #include <CLI/CLI.hpp>
 

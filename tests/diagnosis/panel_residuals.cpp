@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/diagnosis/panel_setup.hpp"
-#include "tools/common/linear_algebra.hpp"
-#include "tools/recording/zero_phase_derivatives.hpp"
+#include "tools/base/numerics/linear_algebra.hpp"
+#include "tools/base/recording/zero_phase_derivatives.hpp"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/diagnosis/panel_setup.hpp"
-#include "tools/common/error.hpp"
-#include "tools/robot/read_robot.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/robot/urdf/read_robot.hpp"
 
 #include <algorithm>
 

@@ -2,8 +2,8 @@
 #include "tests/diagnosis/panel_setup.hpp"
 
 #include "tests/diagnosis/panel_band.hpp"
-#include "tools/common/error.hpp"
-#include "tools/simulation/arm_dynamics.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/robot/dynamics/arm_dynamics.hpp"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 
 #include "tests/diagnosis/panel_case.hpp"
 #include "tests/diagnosis/panel_random.hpp"
-#include "tools/simulation/scenario.hpp"
+#include "tools/simulation/scenario/scenario.hpp"
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/diagnosis/push_panel.hpp"
 
-#include "tools/common/number.hpp"
+#include "tools/base/text/number.hpp"
 #include "tools/diagnosis/diagnosis.hpp"
 
 #include <algorithm>

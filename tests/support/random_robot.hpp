@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dfdyn/physics/chain.hpp"
-#include "tools/host/dynamic_storage.hpp"
+#include "tools/base/numerics/dynamic_storage.hpp"
 #include "tools/robot/robot.hpp"
 
 #include <random>

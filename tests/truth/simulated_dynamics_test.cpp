@@ -4,7 +4,7 @@
 #include "tests/support/random_robot.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/truth/dart_wrench.hpp"
-#include "tools/simulation/arm_dynamics.hpp"
+#include "tools/robot/dynamics/arm_dynamics.hpp"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Robots as read_robot makes them against what kdl_parser and Orocos' dynamics make of the same files.
 #include "tools/robot/firmware_chain.hpp"
-#include "tools/robot/read_robot.hpp"
+#include "tools/robot/urdf/read_robot.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"

@@ -3,9 +3,9 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/can/bus_support.hpp"
 #include "tests/vcan/peer.hpp"
-#include "tools/common/error.hpp"
-#include "tools/evaluation/replay_csv.hpp"
-#include "tools/evaluation/replay_interface.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/replay/replay_csv.hpp"
+#include "tools/replay/replay_interface.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -3,7 +3,7 @@
 // keeps.
 #include "tests/support/catch.hpp"
 #include "tests/vcan/peer.hpp"
-#include "tools/control/loop_port.hpp"
+#include "tools/control/bus/loop_port.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -2,7 +2,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/can/bus_support.hpp"
 #include "tests/vcan/peer.hpp"
-#include "tools/evaluation/replay_interface.hpp"
+#include "tools/replay/replay_interface.hpp"
 
 #include <algorithm>
 #include <bit>

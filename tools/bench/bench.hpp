@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/bench/endurance_bench.hpp"
-#include "tools/bench/hour_bench.hpp"
-#include "tools/bench/loop_bench.hpp"
-#include "tools/bench/machine.hpp"
-#include "tools/bench/model_bench.hpp"
-#include "tools/bench/tick_bench.hpp"
+#include "tools/bench/suites/endurance_bench.hpp"
+#include "tools/bench/suites/hour_bench.hpp"
+#include "tools/bench/suites/loop_bench.hpp"
+#include "tools/bench/suites/model_bench.hpp"
+#include "tools/bench/suites/tick_bench.hpp"
+#include "tools/bench/timing/machine.hpp"
 
 #include <functional>
 #include <optional>

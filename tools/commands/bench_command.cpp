@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/base/system/progress.hpp"
 #include "tools/bench/bench_report.hpp"
 #include "tools/commands/command.hpp"
-#include "tools/common/progress.hpp"
 
 #include <algorithm>
 #include <iostream>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dfdyn/hal/replay_bus.hpp"
 #include "dfdyn/hal/socketcan_bus.hpp"
-#include "tools/can/bus_check.hpp"
-#include "tools/can/candump_log.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/base/text/text.hpp"
+#include "tools/can/check/bus_check.hpp"
+#include "tools/can/log/candump_log.hpp"
 #include "tools/commands/command.hpp"
-#include "tools/commands/stop_signal.hpp"
-#include "tools/common/error.hpp"
-#include "tools/common/text.hpp"
+#include "tools/commands/options/stop_signal.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/can/bus_traffic.hpp"
+#include "tools/can/log/bus_traffic.hpp"
 #include "tools/commands/command.hpp"
-#include "tools/commands/options.hpp"
+#include "tools/commands/options/options.hpp"
 
 #include <cmath>
 #include <iostream>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/base/system/progress.hpp"
 #include "tools/commands/command.hpp"
-#include "tools/common/progress.hpp"
-#include "tools/evaluation/evaluation_page.hpp"
-#include "tools/evaluation/plan.hpp"
-#include "tools/evaluation/plan_data.hpp"
-#include "tools/evaluation/plan_opponents.hpp"
-#include "tools/evaluation/run_plan.hpp"
+#include "tools/experiment/plan/plan.hpp"
+#include "tools/experiment/plan/plan_data.hpp"
+#include "tools/experiment/result/evaluation_page.hpp"
+#include "tools/experiment/run/plan_opponents.hpp"
+#include "tools/experiment/run/run_plan.hpp"
 
 #include <iostream>
 #include <memory>

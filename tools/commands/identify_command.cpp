@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/base/system/atomic_file.hpp"
+#include "tools/base/text/error.hpp"
 #include "tools/commands/command.hpp"
-#include "tools/commands/options.hpp"
-#include "tools/commands/robot_options.hpp"
-#include "tools/common/atomic_file.hpp"
-#include "tools/common/error.hpp"
+#include "tools/commands/options/options.hpp"
+#include "tools/commands/options/robot_options.hpp"
 #include "tools/robot/firmware_chain.hpp"
-#include "tools/robot/identify.hpp"
+#include "tools/robot/identification/identify.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/commands/command.hpp"
-#include "tools/commands/robot_options.hpp"
-#include "tools/commands/stop_signal.hpp"
+#include "tools/commands/options/robot_options.hpp"
+#include "tools/commands/options/stop_signal.hpp"
 #include "tools/control/loop_setup.hpp"
-#include "tools/control/loop_summary.hpp"
+#include "tools/control/report/loop_summary.hpp"
 
 #include <iostream>
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/can/play.hpp"
+#include "tools/can/log/play.hpp"
 #include "tools/commands/command.hpp"
-#include "tools/commands/stop_signal.hpp"
+#include "tools/commands/options/stop_signal.hpp"
 
 #include <iostream>
 #include <memory>

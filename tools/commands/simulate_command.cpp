@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/can/bus_traffic.hpp"
-#include "tools/can/frame_recorder.hpp"
+#include "tools/base/system/atomic_file.hpp"
+#include "tools/base/system/progress.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/can/log/bus_traffic.hpp"
+#include "tools/can/log/frame_recorder.hpp"
 #include "tools/commands/command.hpp"
-#include "tools/commands/options.hpp"
-#include "tools/commands/robot_options.hpp"
-#include "tools/common/atomic_file.hpp"
-#include "tools/common/error.hpp"
-#include "tools/common/progress.hpp"
+#include "tools/commands/options/options.hpp"
+#include "tools/commands/options/robot_options.hpp"
 #include "tools/simulation/simulation_csv.hpp"
 
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/commands/train_outcome.hpp"
 
-#include "tools/model/model_file.hpp"
-#include "tools/training/hold_out.hpp"
+#include "tools/model/file/model_file.hpp"
+#include "tools/training/search/hold_out.hpp"
 
 #include <iostream>
 #include <map>

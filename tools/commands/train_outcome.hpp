@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/physics/model_training.hpp"
+#include "tools/training/model_training.hpp"
 
 #include <string>
 

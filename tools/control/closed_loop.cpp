@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/control/closed_loop.hpp"
 
-#include "tools/common/error.hpp"
+#include "tools/base/text/error.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/control/loop_port.hpp"
+#include "tools/control/bus/loop_port.hpp"
+#include "tools/control/bus/lossy_bus.hpp"
+#include "tools/control/bus/memory_bus.hpp"
+#include "tools/control/bus/plant_port.hpp"
 #include "tools/control/loop_setup.hpp"
-#include "tools/control/lossy_bus.hpp"
-#include "tools/control/memory_bus.hpp"
-#include "tools/control/plant_port.hpp"
-#include "tools/control/tracking.hpp"
+#include "tools/control/report/tracking.hpp"
 #include "tools/simulation/simulated_plant.hpp"
 
 #include <deque>

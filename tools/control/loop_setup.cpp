@@ -2,11 +2,11 @@
 #include "tools/control/loop_setup.hpp"
 
 #include "dfdyn/control/loop_margin.hpp"
-#include "tools/can/bus_wire.hpp"
-#include "tools/can/device_frames.hpp"
-#include "tools/can/torque_frames.hpp"
-#include "tools/common/error.hpp"
-#include "tools/common/number.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
+#include "tools/can/arm/bus_wire.hpp"
+#include "tools/can/arm/device_frames.hpp"
+#include "tools/can/arm/torque_frames.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/can/bus_description.hpp"
-#include "tools/control/control_loop.hpp"
-#include "tools/simulation/scenario.hpp"
+#include "tools/can/description/bus_description.hpp"
+#include "tools/control/loop/control_loop.hpp"
+#include "tools/simulation/scenario/scenario.hpp"
 
 #include <cstddef>
 #include <memory>

@@ -2,9 +2,9 @@
 #include "tools/control/real_time_run.hpp"
 
 #include "dfdyn/hal/socketcan_bus.hpp"
-#include "tools/common/error.hpp"
-#include "tools/common/real_time.hpp"
-#include "tools/control/lossy_bus.hpp"
+#include "tools/base/system/real_time.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/control/bus/lossy_bus.hpp"
 
 #include <cmath>
 #include <iostream>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/control/loop_peaks.hpp"
-#include "tools/control/loop_port.hpp"
-#include "tools/control/loop_recording.hpp"
-#include "tools/control/pace.hpp"
-#include "tools/control/plant_port.hpp"
-#include "tools/control/tracking.hpp"
+#include "tools/base/system/pace.hpp"
+#include "tools/control/bus/loop_port.hpp"
+#include "tools/control/bus/plant_port.hpp"
+#include "tools/control/report/loop_peaks.hpp"
+#include "tools/control/report/loop_recording.hpp"
+#include "tools/control/report/tracking.hpp"
 
 #include <atomic>
 #include <string>

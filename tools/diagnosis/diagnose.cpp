@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/diagnosis.hpp"
 
-#include "tools/diagnosis/extension_errors.hpp"
-#include "tools/diagnosis/findings.hpp"
-#include "tools/diagnosis/granted.hpp"
-#include "tools/diagnosis/plausibility.hpp"
-#include "tools/diagnosis/unexplained.hpp"
-#include "tools/physics/torque_constants.hpp"
+#include "tools/diagnosis/verdict/extension_errors.hpp"
+#include "tools/diagnosis/verdict/findings.hpp"
+#include "tools/diagnosis/verdict/granted.hpp"
+#include "tools/diagnosis/verdict/plausibility.hpp"
+#include "tools/diagnosis/verdict/unexplained.hpp"
 #include "tools/setup_check/setup_check.hpp"
+#include "tools/training/physics/torque_constants.hpp"
 
 #include <algorithm>
 #include <functional>

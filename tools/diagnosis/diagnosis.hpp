@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/diagnosis/explanation.hpp"
-#include "tools/diagnosis/signals.hpp"
-#include "tools/diagnosis/standing_contacts.hpp"
-#include "tools/recording/recording.hpp"
+#include "tools/base/recording/recording.hpp"
+#include "tools/diagnosis/search/explanation.hpp"
+#include "tools/diagnosis/search/standing_contacts.hpp"
+#include "tools/diagnosis/signals/signals.hpp"
 #include "tools/robot/robot.hpp"
 
 #include <Eigen/Core>

@@ -2,9 +2,9 @@
 #include "tools/model/effects.hpp"
 
 #include "dfdyn/physics/effects.hpp"
-#include "tools/common/error.hpp"
-#include "tools/common/number.hpp"
-#include "tools/common/text.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
+#include "tools/base/text/text.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/monitor/change_words.hpp"
 
-#include "tools/host/dynamic_storage.hpp"
+#include "tools/base/numerics/dynamic_storage.hpp"
 
 #include <algorithm>
 

@@ -4,11 +4,11 @@
 #include "dfdyn/monitor/centred_motion.hpp"
 #include "dfdyn/monitor/held_weights.hpp"
 #include "dfdyn/monitor/monitor.hpp"
-#include "tools/common/error.hpp"
-#include "tools/common/text.hpp"
-#include "tools/host/host_model.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/base/text/text.hpp"
+#include "tools/model/chain_model.hpp"
+#include "tools/model/run_time/host_model.hpp"
 #include "tools/monitor/change_words.hpp"
-#include "tools/physics/chain_model.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/host/host_estimator.hpp"
+#include "tools/model/run_time/host_estimator.hpp"
 #include "tools/monitor/named_change.hpp"
 #include "tools/robot/robot.hpp"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "dfdyn/physics/chain.hpp"
-#include "tools/host/dynamic_storage.hpp"
-#include "tools/recording/recording.hpp"
+#include "tools/base/numerics/dynamic_storage.hpp"
+#include "tools/base/recording/recording.hpp"
 #include "tools/robot/robot.hpp"
 
 #include <stdexcept>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/robot/inertia.hpp"
 
-#include "tools/common/number.hpp"
+#include "tools/base/text/number.hpp"
 
 #include <Eigen/Eigenvalues>
 

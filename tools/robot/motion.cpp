@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/robot/motion.hpp"
 
-#include "tools/common/error.hpp"
-#include "tools/recording/columns_matrix.hpp"
+#include "tools/base/recording/columns_matrix.hpp"
+#include "tools/base/text/error.hpp"
 
 #include <algorithm>
 #include <numbers>

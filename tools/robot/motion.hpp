@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/recording/zero_phase_derivatives.hpp"
+#include "tools/base/recording/zero_phase_derivatives.hpp"
 #include "tools/robot/robot.hpp"
 
 #include <Eigen/Core>

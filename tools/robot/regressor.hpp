@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/recording/recording.hpp"
+#include "tools/base/recording/recording.hpp"
 #include "tools/robot/motion.hpp"
 #include "tools/robot/robot.hpp"
 

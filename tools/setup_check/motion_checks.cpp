@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/setup_check/motion_checks.hpp"
 
-#include "tools/common/number.hpp"
-#include "tools/common/text.hpp"
+#include "tools/base/text/number.hpp"
+#include "tools/base/text/text.hpp"
 #include "tools/setup_check/rigid_comparison.hpp"
 #include "tools/setup_check/signed_fit.hpp"
 

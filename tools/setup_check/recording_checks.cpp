@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/setup_check/recording_checks.hpp"
 
-#include "tools/common/number.hpp"
-#include "tools/common/quantile.hpp"
-#include "tools/common/text.hpp"
-#include "tools/recording/stretches.hpp"
+#include "tools/base/numerics/quantile.hpp"
+#include "tools/base/recording/stretches.hpp"
+#include "tools/base/text/number.hpp"
+#include "tools/base/text/text.hpp"
 
 #include <cmath>
 #include <numbers>

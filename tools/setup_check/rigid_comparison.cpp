@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/setup_check/rigid_comparison.hpp"
 
-#include "tools/common/error.hpp"
-#include "tools/recording/stretches.hpp"
+#include "tools/base/recording/stretches.hpp"
+#include "tools/base/text/error.hpp"
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/robot/regressor.hpp"
 #include "tools/setup_check/signed_fit.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/setup_check/signed_fit.hpp"
 
-#include "tools/common/linear_algebra.hpp"
+#include "tools/base/numerics/linear_algebra.hpp"
 
 #include <Eigen/Core>
 

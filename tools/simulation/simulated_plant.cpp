@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/simulation/simulated_plant.hpp"
 
-#include "tools/common/error.hpp"
-#include "tools/common/number.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
 
 #include <cmath>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/simulation/simulation.hpp"
 
-#include "tools/common/error.hpp"
-#include "tools/common/number.hpp"
-#include "tools/simulation/joint_limits.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
+#include "tools/simulation/arm/joint_limits.hpp"
 #include "tools/simulation/random_streams.hpp"
 
 #include <algorithm>

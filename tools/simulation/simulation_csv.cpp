@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/simulation/simulation_csv.hpp"
 
-#include "tools/recording/recording.hpp"
+#include "tools/base/recording/recording.hpp"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/recording/csv_writer.hpp"
+#include "tools/base/recording/csv_writer.hpp"
 #include "tools/simulation/simulation.hpp"
 
 #include <ostream>

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/train.hpp"
 
-#include "tools/common/error.hpp"
-#include "tools/common/number.hpp"
-#include "tools/common/to_vector.hpp"
-#include "tools/model/model_file.hpp"
-#include "tools/training/extrapolation.hpp"
-#include "tools/training/fit.hpp"
-#include "tools/training/lag_spacing.hpp"
-#include "tools/training/limits.hpp"
-#include "tools/training/normal_equations.hpp"
-#include "tools/training/random_features.hpp"
-#include "tools/training/robot_prior.hpp"
-#include "tools/training/start_state.hpp"
+#include "tools/base/numerics/to_vector.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
+#include "tools/model/file/model_file.hpp"
+#include "tools/training/data/lag_spacing.hpp"
+#include "tools/training/physics/robot_prior.hpp"
+#include "tools/training/search/fit.hpp"
+#include "tools/training/search/training_problem.hpp"
+#include "tools/training/start/extrapolation.hpp"
+#include "tools/training/start/limits.hpp"
+#include "tools/training/start/normal_equations.hpp"
+#include "tools/training/start/random_features.hpp"
+#include "tools/training/start/start_state.hpp"
 #include "tools/training/training_options.hpp"
-#include "tools/training/training_problem.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "tools/model/model.hpp"
-#include "tools/training/hold_out.hpp"
-#include "tools/training/physics_start.hpp"
-#include "tools/training/regressor.hpp"
-#include "tools/training/training_data.hpp"
+#include "tools/training/data/training_data.hpp"
+#include "tools/training/physics/physics_start.hpp"
+#include "tools/training/physics/regressor.hpp"
+#include "tools/training/search/hold_out.hpp"
 
 #include <Eigen/Core>
 

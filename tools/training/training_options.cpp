@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/training_options.hpp"
 
-#include "tools/common/error.hpp"
-#include "tools/common/number.hpp"
-#include "tools/common/text.hpp"
-#include "tools/model/model_file.hpp"
-#include "tools/training/lag_spacing.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
+#include "tools/base/text/text.hpp"
+#include "tools/model/file/model_file.hpp"
+#include "tools/training/data/lag_spacing.hpp"
 
 #include <algorithm>
 #include <array>

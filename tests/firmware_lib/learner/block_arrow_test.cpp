@@ -7,7 +7,7 @@
 #include "tests/firmware_lib/support/regression.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tools/host/dynamic_storage.hpp"
+#include "tools/base/numerics/dynamic_storage.hpp"
 
 #include <Eigen/Cholesky>
 

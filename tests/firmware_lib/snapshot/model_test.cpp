@@ -4,7 +4,7 @@
 #include "tests/firmware_lib/support/test_model.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tools/host/dynamic_storage.hpp"
+#include "tools/base/numerics/dynamic_storage.hpp"
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 #include "dfdyn/storage.hpp"
 
 #include "tests/support/catch.hpp"
-#include "tools/host/dynamic_storage.hpp"
+#include "tools/base/numerics/dynamic_storage.hpp"
 
 #include <cstdint>
 #include <numeric>

@@ -3,7 +3,7 @@
 
 #include "dfdyn/learner/cholesky_information.hpp"
 #include "dfdyn/learner/ud_covariance.hpp"
-#include "tools/host/dynamic_storage.hpp"
+#include "tools/base/numerics/dynamic_storage.hpp"
 
 #include "tests/firmware_lib/support/regression.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every learner that is timed learns what the batch solution says: nothing faster but wrong is shown.
-#include "tools/bench/model_bench.hpp"
-#include "tools/bench/tick_bench.hpp"
+#include "tools/bench/suites/model_bench.hpp"
+#include "tools/bench/suites/tick_bench.hpp"
 
 #include "tests/support/catch.hpp"
 

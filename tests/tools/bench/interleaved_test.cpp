@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is counted, and in which order; no time is looked at.
 #include "dfdyn/vector.hpp"
-#include "tools/bench/floor.hpp"
-#include "tools/bench/interleaved.hpp"
+#include "tools/bench/timing/floor.hpp"
+#include "tools/bench/timing/interleaved.hpp"
 
 #include "tests/support/catch.hpp"
 

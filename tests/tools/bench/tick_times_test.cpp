@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/bench/tick_times.hpp"
+#include "tools/bench/timing/tick_times.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/bench/timed_loop.hpp"
+#include "tools/bench/suites/timed_loop.hpp"
 
 #include "tests/support/catch.hpp"
-#include "tools/bench/loop_bench.hpp"
-#include "tools/common/error.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/bench/suites/loop_bench.hpp"
 
 #include <algorithm>
 

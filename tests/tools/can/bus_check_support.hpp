@@ -5,7 +5,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
-#include "tools/can/bus_check.hpp"
+#include "tools/can/check/bus_check.hpp"
 
 #include <functional>
 #include <set>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each rule on a log that has its fault, and none of them on logs that have none.
-#include "tools/can/bus_check.hpp"
+#include "tools/can/check/bus_check.hpp"
 
 #include "dfdyn/hal/replay_bus.hpp"
 #include "tests/support/catch.hpp"

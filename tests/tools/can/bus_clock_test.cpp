@@ -3,8 +3,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
-#include "tools/evaluation/replay_can.hpp"
-#include "tools/recording/sample_grid.hpp"
+#include "tools/base/recording/sample_grid.hpp"
+#include "tools/replay/replay_can.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.hpp"
 #include "tests/tools/can/bus_support.hpp"
-#include "tools/common/error.hpp"
+#include "tools/base/text/error.hpp"
 
 #include <filesystem>
 

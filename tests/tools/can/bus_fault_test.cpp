@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What replay makes of faults: nothing that it accepts is wrong, and what is good is not refused for ever.
 #include "tests/tools/can/bus_check_support.hpp"
-#include "tools/can/bus_sampler.hpp"
+#include "tools/can/arm/bus_sampler.hpp"
 
 #include <map>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tests/support/temporary_directory.hpp"
-#include "tools/can/bus_traffic.hpp"
+#include "tools/can/log/bus_traffic.hpp"
 #include "tools/model/model.hpp"
 
 #include <algorithm>

@@ -2,9 +2,9 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
-#include "tools/can/bus_sampler.hpp"
-#include "tools/can/bus_traffic.hpp"
-#include "tools/common/error.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/can/arm/bus_sampler.hpp"
+#include "tools/can/log/bus_traffic.hpp"
 
 #include <numbers>
 

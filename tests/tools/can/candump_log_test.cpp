@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/can/candump_log.hpp"
+#include "tools/can/log/candump_log.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_directory.hpp"
-#include "tools/common/error.hpp"
+#include "tools/base/text/error.hpp"
 
 #include <array>
 #include <vector>

@@ -4,11 +4,11 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
-#include "tools/can/bus_sampler.hpp"
-#include "tools/can/candump_log.hpp"
-#include "tools/can/dbc.hpp"
-#include "tools/can/device_frames.hpp"
-#include "tools/common/error.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/can/arm/bus_sampler.hpp"
+#include "tools/can/arm/device_frames.hpp"
+#include "tools/can/description/dbc.hpp"
+#include "tools/can/log/candump_log.hpp"
 
 #include <array>
 #include <numbers>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.hpp"
 #include "tests/tools/can/bus_support.hpp"
-#include "tools/can/dbc.hpp"
-#include "tools/common/error.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/can/description/dbc.hpp"
 
 #include <array>
 #include <filesystem>

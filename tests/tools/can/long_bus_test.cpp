@@ -4,10 +4,10 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/slow_build.hpp"
 #include "tests/tools/can/bus_support.hpp"
-#include "tools/can/bus_sampler.hpp"
-#include "tools/can/bus_traffic.hpp"
-#include "tools/host/host_estimator.hpp"
-#include "tools/host/host_model.hpp"
+#include "tools/can/arm/bus_sampler.hpp"
+#include "tools/can/log/bus_traffic.hpp"
+#include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/run_time/host_model.hpp"
 
 #include <chrono>
 #include <deque>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dfdyn/hal/candump.hpp"
-#include "tools/can/candump_log.hpp"
+#include "tools/can/log/candump_log.hpp"
 
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/catch.hpp"

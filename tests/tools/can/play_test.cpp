@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/can/play.hpp"
+#include "tools/can/log/play.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_directory.hpp"
-#include "tools/common/error.hpp"
+#include "tools/base/text/error.hpp"
 
 using dfdyn::tools::InputError;
 using dfdyn::tools::Lateness;

@@ -2,10 +2,10 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
-#include "tools/can/bus_traffic.hpp"
-#include "tools/common/error.hpp"
-#include "tools/evaluation/replay_can.hpp"
-#include "tools/evaluation/replay_csv.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/can/log/bus_traffic.hpp"
+#include "tools/replay/replay_can.hpp"
+#include "tools/replay/replay_csv.hpp"
 
 #include <algorithm>
 #include <numbers>

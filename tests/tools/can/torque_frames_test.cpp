@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/can/torque_frames.hpp"
+#include "tools/can/arm/torque_frames.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/random_frame.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/commands/clock_options.hpp"
+#include "tools/commands/options/clock_options.hpp"
 
 #include "tests/support/catch.hpp"
-#include "tools/common/error.hpp"
+#include "tools/base/text/error.hpp"
 
 #include <cmath>
 

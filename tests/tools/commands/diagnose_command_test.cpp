@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/extended_model.hpp"
-#include "tools/diagnosis/joined_recording.hpp"
-#include "tools/evaluation/replay.hpp"
-#include "tools/model/model_file.hpp"
-#include "tools/robot/read_robot.hpp"
+#include "tools/diagnosis/extension/extended_model.hpp"
+#include "tools/diagnosis/extension/joined_recording.hpp"
+#include "tools/model/file/model_file.hpp"
+#include "tools/replay/replay.hpp"
+#include "tools/robot/urdf/read_robot.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/commands/run_program.hpp"

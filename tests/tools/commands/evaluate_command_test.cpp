@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.hpp"
 #include "tests/tools/commands/run_program.hpp"
-#include "tests/tools/evaluation/small_experiment.hpp"
+#include "tests/tools/experiment/small_experiment.hpp"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/recording/csv_writer.hpp"
+#include "tools/base/recording/csv_writer.hpp"
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/robot/regressor.hpp"
 

@@ -3,7 +3,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/commands/run_program.hpp"
 #include "tests/tools/setup_check/mistakes.hpp"
-#include "tools/common/number.hpp"
+#include "tools/base/text/number.hpp"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>

@@ -7,8 +7,8 @@
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
 #include "tests/tools/control/pendulum.hpp"
-#include "tools/common/error.hpp"
-#include "tools/control/tracking.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/control/report/tracking.hpp"
 
 #include <cmath>
 #include <vector>

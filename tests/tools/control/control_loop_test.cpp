@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/control/control_loop.hpp"
+#include "tools/control/loop/control_loop.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/control/pendulum.hpp"
-#include "tools/common/error.hpp"
+#include "tools/base/text/error.hpp"
 #include "tools/control/loop_setup.hpp"
 
 #include <algorithm>

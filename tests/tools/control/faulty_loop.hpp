@@ -2,11 +2,11 @@
 #pragma once
 
 #include "tests/tools/control/pendulum.hpp"
-#include "tools/can/device_frames.hpp"
-#include "tools/can/torque_frames.hpp"
-#include "tools/control/loop_port.hpp"
+#include "tools/can/arm/device_frames.hpp"
+#include "tools/can/arm/torque_frames.hpp"
+#include "tools/control/bus/loop_port.hpp"
+#include "tools/control/bus/memory_bus.hpp"
 #include "tools/control/loop_setup.hpp"
-#include "tools/control/memory_bus.hpp"
 #include "tools/simulation/simulated_plant.hpp"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
-#include "tools/commands/robot_options.hpp"
+#include "tools/commands/options/robot_options.hpp"
 
 #include <memory>
 #include <string>

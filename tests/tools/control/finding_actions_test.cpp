@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a loop does about changes that the learner's monitor has named.
-#include "tools/control/finding_actions.hpp"
+#include "tools/control/loop/finding_actions.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
 #include "tests/tools/control/pendulum.hpp"
 #include "tests/tools/simulation/read_faults.hpp"
-#include "tools/common/error.hpp"
+#include "tools/base/text/error.hpp"
 #include "tools/control/closed_loop.hpp"
 
 #include <algorithm>

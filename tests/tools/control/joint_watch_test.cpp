@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/control/joint_watch.hpp"
+#include "tools/control/loop/joint_watch.hpp"
 
 #include "tests/support/catch.hpp"
 

@@ -4,8 +4,8 @@
 #include "tests/tools/control/pendulum.hpp"
 #include "tests/tools/control/scripted_bus.hpp"
 #include "tests/tools/simulation/read_faults.hpp"
+#include "tools/base/system/pace.hpp"
 #include "tools/control/closed_loop.hpp"
-#include "tools/control/pace.hpp"
 
 #include <algorithm>
 #include <cmath>

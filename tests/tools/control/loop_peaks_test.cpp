@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/control/loop_peaks.hpp"
+#include "tools/control/report/loop_peaks.hpp"
 
 #include "tests/support/catch.hpp"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/control/loop_port.hpp"
+#include "tools/control/bus/loop_port.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/control/pendulum.hpp"
 #include "tests/tools/control/scripted_bus.hpp"
-#include "tools/can/device_frames.hpp"
+#include "tools/can/arm/device_frames.hpp"
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/control/loop_recording.hpp"
+#include "tools/control/report/loop_recording.hpp"
 
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/catch.hpp"

@@ -3,7 +3,7 @@
 
 #include "tests/support/temporary_directory.hpp"
 #include "tests/tools/simulation/small_arms.hpp"
-#include "tools/can/bus_description.hpp"
+#include "tools/can/description/bus_description.hpp"
 
 #include <cmath>
 #include <string>

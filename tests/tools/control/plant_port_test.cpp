@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/control/plant_port.hpp"
+#include "tools/control/bus/plant_port.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/control/pendulum.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/control/position_feedback.hpp"
+#include "tools/control/loop/position_feedback.hpp"
 
 #include "tests/support/catch.hpp"
 

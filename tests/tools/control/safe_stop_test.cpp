@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/control/safe_stop.hpp"
+#include "tools/control/loop/safe_stop.hpp"
 
 #include "tests/support/catch.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/control/sample_clock.hpp"
+#include "tools/control/loop/sample_clock.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"

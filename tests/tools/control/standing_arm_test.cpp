@@ -3,9 +3,9 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
-#include "tools/commands/robot_options.hpp"
+#include "tools/commands/options/robot_options.hpp"
 #include "tools/control/closed_loop.hpp"
-#include "tools/physics/model_training.hpp"
+#include "tools/training/model_training.hpp"
 #include "tools/training/training_options.hpp"
 
 #include <algorithm>

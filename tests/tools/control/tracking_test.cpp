@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/control/tracking.hpp"
+#include "tools/control/report/tracking.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_directory.hpp"
-#include "tools/control/tracking_report.hpp"
+#include "tools/control/report/tracking_report.hpp"
 
 #include <algorithm>
 #include <cmath>

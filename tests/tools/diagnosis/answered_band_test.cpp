@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/answered_band.hpp"
+#include "tools/diagnosis/signals/answered_band.hpp"
 
 #include "tests/support/seed.hpp"
 #include "tests/tools/diagnosis/swinging_arm.hpp"
 #include "tests/tools/robot/arms.hpp"
-#include "tools/diagnosis/spectral_rows.hpp"
+#include "tools/diagnosis/signals/spectral_rows.hpp"
 
 #include <numbers>
 #include <random>

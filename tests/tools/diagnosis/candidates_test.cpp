@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Columns of effects against what the effect does to the rigid body, by other means.
-#include "tools/diagnosis/candidates.hpp"
+#include "tools/diagnosis/candidates/candidates.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/diagnosis/swinging_arm.hpp"
 #include "tests/tools/robot/arms.hpp"
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/robot/regressor.hpp"
-#include "tools/simulation/lugre_friction.hpp"
+#include "tools/simulation/arm/lugre_friction.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/diagnosis/swinging_arm.hpp"
 #include "tests/tools/robot/arms.hpp"
-#include "tools/common/read_file.hpp"
+#include "tools/base/system/read_file.hpp"
 #include "tools/model/effects.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/common/linear_algebra.hpp"
-#include "tools/diagnosis/effect_regression.hpp"
+#include "tools/base/numerics/linear_algebra.hpp"
+#include "tools/diagnosis/candidates/effect_regression.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"

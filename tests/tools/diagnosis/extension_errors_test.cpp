@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/extension_errors.hpp"
+#include "tools/diagnosis/verdict/extension_errors.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/diagnosis/small_explanation.hpp"
 #include "tests/tools/robot/arms.hpp"
-#include "tools/common/root_mean_square.hpp"
+#include "tools/base/numerics/root_mean_square.hpp"
 
 #include <cmath>
 #include <memory>

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/extension.hpp"
+#include "tools/diagnosis/extension/extension.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/diagnosis/swinging_arm.hpp"
 #include "tests/tools/robot/arms.hpp"
-#include "tools/common/to_vector.hpp"
-#include "tools/diagnosis/candidates.hpp"
+#include "tools/base/numerics/to_vector.hpp"
+#include "tools/diagnosis/candidates/candidates.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
-#include "tools/physics/chain_model.hpp"
-#include "tools/physics/robot_regressor.hpp"
+#include "tools/model/chain_model.hpp"
+#include "tools/training/physics/robot_regressor.hpp"
 
 #include <cmath>
 #include <map>

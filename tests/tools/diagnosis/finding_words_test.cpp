@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/finding_words.hpp"
+#include "tools/diagnosis/output/finding_words.hpp"
 
 #include "tests/support/catch.hpp"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/findings.hpp"
+#include "tools/diagnosis/verdict/findings.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/diagnosis/small_explanation.hpp"
 #include "tests/tools/robot/arms.hpp"
-#include "tools/common/root_mean_square.hpp"
-#include "tools/diagnosis/candidate_parts.hpp"
+#include "tools/base/numerics/root_mean_square.hpp"
+#include "tools/diagnosis/candidates/candidate_parts.hpp"
 
 #include <algorithm>
 #include <cmath>

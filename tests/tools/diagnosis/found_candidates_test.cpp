@@ -4,7 +4,7 @@
 #include "tests/support/seed.hpp"
 #include "tests/tools/diagnosis/swinging_arm.hpp"
 #include "tests/tools/robot/arms.hpp"
-#include "tools/simulation/arm_dynamics.hpp"
+#include "tools/robot/dynamics/arm_dynamics.hpp"
 
 #include <Eigen/Geometry>
 

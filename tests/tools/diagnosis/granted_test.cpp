@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/granted.hpp"
+#include "tools/diagnosis/verdict/granted.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/diagnosis/swinging_arm.hpp"

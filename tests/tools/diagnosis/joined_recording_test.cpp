@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/joined_recording.hpp"
+#include "tools/diagnosis/extension/joined_recording.hpp"
 
 #include "tests/support/catch.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/lapped_transform.hpp"
-#include "tools/diagnosis/spectral_rows.hpp"
+#include "tools/diagnosis/signals/lapped_transform.hpp"
+#include "tools/diagnosis/signals/spectral_rows.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/measured_motion.hpp"
+#include "tools/diagnosis/signals/measured_motion.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tools/common/error.hpp"
-#include "tools/diagnosis/low_pass_kernel.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/diagnosis/signals/low_pass_kernel.hpp"
 
 #include <cmath>
 #include <complex>

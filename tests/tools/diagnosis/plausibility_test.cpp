@@ -4,7 +4,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/robot/arms.hpp"
-#include "tools/diagnosis/rigid_model.hpp"
+#include "tools/diagnosis/signals/rigid_model.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -5,7 +5,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/robot/arms.hpp"
 #include "tools/diagnosis/diagnosis.hpp"
-#include "tools/diagnosis/joined_recording.hpp"
+#include "tools/diagnosis/extension/joined_recording.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,11 +2,11 @@
 // A real servo that swings a pendulum, against the friction that others published for it: what they publish,
 // and why the comparison cannot be closer, is told in tests/data/xl330_bam/PROVENANCE.md.
 #include "tests/support/catch.hpp"
-#include "tools/common/read_file.hpp"
+#include "tools/base/system/read_file.hpp"
+#include "tools/base/text/json_reader.hpp"
 #include "tools/diagnosis/diagnosis.hpp"
-#include "tools/diagnosis/joined_recording.hpp"
-#include "tools/model/json_reader.hpp"
-#include "tools/robot/read_robot.hpp"
+#include "tools/diagnosis/extension/joined_recording.hpp"
+#include "tools/robot/urdf/read_robot.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/row_weight.hpp"
+#include "tools/diagnosis/signals/row_weight.hpp"
 
 #include "tests/tools/diagnosis/swinging_arm.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is looked for in a residual, against what was put there.
-#include "tools/diagnosis/scans.hpp"
+#include "tools/diagnosis/candidates/scans.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "tests/tools/diagnosis/swinging_arm.hpp"
-#include "tools/diagnosis/candidate_parts.hpp"
-#include "tools/diagnosis/explanation.hpp"
+#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/search/explanation.hpp"
 
 #include <random>
 #include <string>

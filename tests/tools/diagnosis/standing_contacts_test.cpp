@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pushes at a joint that stands, among what its friction does there.
-#include "tools/diagnosis/standing_contacts.hpp"
+#include "tools/diagnosis/search/standing_contacts.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"

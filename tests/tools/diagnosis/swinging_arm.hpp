@@ -3,7 +3,7 @@
 #pragma once
 
 #include "tests/support/catch.hpp"
-#include "tools/diagnosis/candidates.hpp"
+#include "tools/diagnosis/candidates/candidates.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 
 #include <algorithm>

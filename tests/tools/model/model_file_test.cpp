@@ -3,8 +3,8 @@
 #include "tests/support/seed.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/tools/support/small_model.hpp"
-#include "tools/common/error.hpp"
-#include "tools/model/model_file.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/model/file/model_file.hpp"
 
 #include <nlohmann/json.hpp>
 

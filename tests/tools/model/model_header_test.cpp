@@ -3,9 +3,9 @@
 #include "tests/support/seed.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/tools/support/small_model.hpp"
-#include "tools/host/host_estimator.hpp"
-#include "tools/model/model_file.hpp"
-#include "tools/model/model_header.hpp"
+#include "tools/model/file/model_file.hpp"
+#include "tools/model/header/model_header.hpp"
+#include "tools/model/run_time/host_estimator.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/robot/read_robot.hpp"
+#include "tools/robot/urdf/read_robot.hpp"
 
 #include <Eigen/Geometry>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/robot/base_parameters.hpp"
 #include "tools/robot/firmware_chain.hpp"
+#include "tools/robot/identification/base_parameters.hpp"
 #include "tools/robot/regressor.hpp"
 
 #include "tests/support/catch.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/robot/firmware_chain.hpp"
-#include "tools/robot/read_robot.hpp"
+#include "tools/robot/urdf/read_robot.hpp"
 
 #include "dfdyn/physics/rigid_body.hpp"
 #include "tests/support/catch.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/robot/firmware_chain.hpp"
-#include "tools/robot/fit_parameters.hpp"
-#include "tools/robot/log_cholesky.hpp"
+#include "tools/robot/identification/fit_parameters.hpp"
+#include "tools/robot/identification/log_cholesky.hpp"
 #include "tools/robot/regressor.hpp"
 
 #include "tests/support/catch.hpp"

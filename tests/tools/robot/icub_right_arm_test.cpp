@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/robot/read_robot.hpp"
+#include "tools/robot/urdf/read_robot.hpp"
 
 #include "tests/support/catch.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/robot/log_cholesky.hpp"
+#include "tools/robot/identification/log_cholesky.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/random_robot.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/common/error.hpp"
-#include "tools/robot/read_robot.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/robot/urdf/read_robot.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_directory.hpp"

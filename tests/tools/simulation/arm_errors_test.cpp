@@ -2,8 +2,8 @@
 // What a simulated arm has beyond its description, against closed forms.
 #include "tests/support/catch.hpp"
 #include "tests/tools/simulation/small_arms.hpp"
-#include "tools/common/error.hpp"
-#include "tools/simulation/simulated_arm.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/simulation/arm/simulated_arm.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/simulation/encoders.hpp"
+#include "tools/simulation/sensors/encoders.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/random_robot.hpp"
 #include "tests/support/seed.hpp"
-#include "tools/simulation/derivative_estimator.hpp"
+#include "tools/simulation/sensors/derivative_estimator.hpp"
 
 #include <cmath>
 #include <numbers>

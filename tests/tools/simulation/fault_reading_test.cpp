@@ -2,9 +2,9 @@
 // The faults of a scenario's file, and when they act.
 #include "tests/support/catch.hpp"
 #include "tests/tools/simulation/read_faults.hpp"
-#include "tools/commands/robot_options.hpp"
-#include "tools/common/error.hpp"
-#include "tools/common/read_file.hpp"
+#include "tools/base/system/read_file.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/commands/options/robot_options.hpp"
 #include "tools/simulation/faults/fault_kind.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/simulation/lugre_friction.hpp"
+#include "tools/simulation/arm/lugre_friction.hpp"
 
 #include "tests/support/catch.hpp"
 

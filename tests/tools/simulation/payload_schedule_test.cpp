@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/simulation/payload_schedule.hpp"
+#include "tools/simulation/scenario/payload_schedule.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/simulation/small_arms.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/simulation/scenario_reader.hpp"
+#include "tools/simulation/scenario/scenario_reader.hpp"
 
 #include <string>
 #include <vector>

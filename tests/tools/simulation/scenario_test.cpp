@@ -2,7 +2,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/tools/simulation/small_arms.hpp"
-#include "tools/common/error.hpp"
+#include "tools/base/text/error.hpp"
 
 #include <nlohmann/json.hpp>
 

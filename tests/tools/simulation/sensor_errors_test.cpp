@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.hpp"
-#include "tools/common/error.hpp"
-#include "tools/simulation/lugre_friction.hpp"
-#include "tools/simulation/output_noise.hpp"
-#include "tools/simulation/robot_errors.hpp"
-#include "tools/simulation/torque_sensor.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/simulation/arm/lugre_friction.hpp"
+#include "tools/simulation/scenario/robot_errors.hpp"
+#include "tools/simulation/sensors/output_noise.hpp"
+#include "tools/simulation/sensors/torque_sensor.hpp"
 
 #include "tests/tools/simulation/small_arms.hpp"
 

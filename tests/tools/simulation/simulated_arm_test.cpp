@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/simulation/simulated_arm.hpp"
+#include "tools/simulation/arm/simulated_arm.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/random_robot.hpp"

@@ -3,8 +3,8 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/simulation/small_arms.hpp"
-#include "tools/common/error.hpp"
-#include "tools/robot/read_robot.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/robot/urdf/read_robot.hpp"
 #include "tools/simulation/simulation_csv.hpp"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/simulation/scenario.hpp"
+#include "tools/simulation/scenario/scenario.hpp"
 
 namespace dfdyn::tests {
 

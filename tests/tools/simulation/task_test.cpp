@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/simulation/task.hpp"
+#include "tools/simulation/task/task.hpp"
 
 #include "tests/support/catch.hpp"
-#include "tools/common/error.hpp"
-#include "tools/robot/read_robot.hpp"
-#include "tools/simulation/inverse_kinematics.hpp"
-#include "tools/simulation/scenario.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/robot/urdf/read_robot.hpp"
+#include "tools/simulation/scenario/scenario.hpp"
+#include "tools/simulation/task/inverse_kinematics.hpp"
 
 #include <cmath>
 

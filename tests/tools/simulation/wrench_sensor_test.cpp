@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/simulation/wrench_sensor.hpp"
+#include "tools/simulation/sensors/wrench_sensor.hpp"
 
 #include "tests/support/catch.hpp"
 

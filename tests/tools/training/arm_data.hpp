@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/training/random_source.hpp"
-#include "tools/training/row_selection.hpp"
-#include "tools/training/training_data.hpp"
+#include "tools/base/numerics/random_source.hpp"
+#include "tools/training/data/row_selection.hpp"
+#include "tools/training/data/training_data.hpp"
 
 #include <cmath>
 #include <string>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/column_selection.hpp"
+#include "tools/training/physics/column_selection.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tools/training/random_source.hpp"
+#include "tools/base/numerics/random_source.hpp"
 
 #include <cmath>
 #include <vector>

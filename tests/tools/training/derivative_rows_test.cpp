@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/derivative_rows.hpp"
+#include "tools/training/data/derivative_rows.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/training/numerics.hpp"
-#include "tools/training/random_source.hpp"
+#include "tools/base/numerics/random_source.hpp"
 
 #include <algorithm>
 #include <cmath>

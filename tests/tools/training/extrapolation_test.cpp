@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What training measures of the outputs away from its data, by what the estimator makes of it.
-#include "tools/training/extrapolation.hpp"
+#include "tools/training/start/extrapolation.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/training/arm_data.hpp"
-#include "tools/host/host_estimator.hpp"
+#include "tools/model/run_time/host_estimator.hpp"
 #include "tools/training/train.hpp"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/feature_likelihood.hpp"
+#include "tools/training/likelihood/feature_likelihood.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"

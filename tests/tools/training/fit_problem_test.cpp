@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/fit_problem.hpp"
+#include "tools/training/search/fit_problem.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/common/linear_algebra.hpp"
-#include "tools/training/hold_out.hpp"
+#include "tools/base/numerics/linear_algebra.hpp"
+#include "tools/training/search/hold_out.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tools/training/random_source.hpp"
+#include "tools/base/numerics/random_source.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/input_map.hpp"
+#include "tools/training/data/input_map.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/lag_spacing.hpp"
+#include "tools/training/data/lag_spacing.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/training/arm_data.hpp"
-#include "tools/training/input_map.hpp"
-#include "tools/training/row_selection.hpp"
+#include "tools/training/data/input_map.hpp"
+#include "tools/training/data/row_selection.hpp"
 #include "tools/training/train.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/lag_window.hpp"
+#include "tools/training/data/lag_window.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bounds that training sets from what it saw and from what the motors can give.
-#include "tools/training/limits.hpp"
+#include "tools/training/start/limits.hpp"
 
 #include "tests/support/catch.hpp"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "tests/tools/training/numerics.hpp"
-#include "tools/training/physics_likelihood.hpp"
-#include "tools/training/random_source.hpp"
+#include "tools/base/numerics/random_source.hpp"
+#include "tools/training/likelihood/physics_likelihood.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

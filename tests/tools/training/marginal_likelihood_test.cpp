@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/marginal_likelihood.hpp"
+#include "tools/training/likelihood/marginal_likelihood.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tests/tools/training/numerics.hpp"
-#include "tools/training/input_map.hpp"
+#include "tools/training/data/input_map.hpp"
 
 #include <cmath>
 #include <limits>

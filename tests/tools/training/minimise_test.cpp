@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/minimise.hpp"
+#include "tools/training/search/minimise.hpp"
 
 #include "tests/support/catch.hpp"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/motion.hpp"
+#include "tools/training/data/motion.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tests/tools/training/numerics.hpp"
-#include "tools/training/derivative_rows.hpp"
+#include "tools/training/data/derivative_rows.hpp"
 
 #include <cmath>
 

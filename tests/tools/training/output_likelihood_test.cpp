@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/output_likelihood.hpp"
+#include "tools/training/likelihood/output_likelihood.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/training/numerics.hpp"
-#include "tools/training/covariance_factor.hpp"
-#include "tools/training/random_source.hpp"
+#include "tools/base/numerics/random_source.hpp"
+#include "tools/training/likelihood/covariance_factor.hpp"
 
 namespace output_likelihood_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/physics_regressor.hpp"
+#include "tools/training/physics/physics_regressor.hpp"
 
 #include "dfdyn/dfdyn.hpp"
 #include "tests/support/catch.hpp"

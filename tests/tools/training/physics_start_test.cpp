@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/common/linear_algebra.hpp"
-#include "tools/training/physics_start.hpp"
+#include "tools/base/numerics/linear_algebra.hpp"
+#include "tools/training/physics/physics_start.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/training/arm_data.hpp"
-#include "tools/common/error.hpp"
-#include "tools/training/input_map.hpp"
-#include "tools/training/random_features.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/training/data/input_map.hpp"
+#include "tools/training/start/random_features.hpp"
 
 #include <Eigen/LU>
 

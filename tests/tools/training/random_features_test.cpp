@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/random_features.hpp"
+#include "tools/training/start/random_features.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
-#include "tools/training/gaussian_kernel.hpp"
-#include "tools/training/random_source.hpp"
+#include "tools/base/numerics/random_source.hpp"
+#include "tools/training/likelihood/gaussian_kernel.hpp"
 
 #include <cmath>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Data drawn from the model itself, with known hyperparameters: the search must come back to them, as far as
 // the data can tell.
-#include "tools/common/linear_algebra.hpp"
-#include "tools/training/marginal_likelihood.hpp"
-#include "tools/training/minimise.hpp"
+#include "tools/base/numerics/linear_algebra.hpp"
+#include "tools/training/likelihood/marginal_likelihood.hpp"
+#include "tools/training/search/minimise.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tests/tools/training/numerics.hpp"
-#include "tools/training/gaussian_kernel.hpp"
+#include "tools/training/likelihood/gaussian_kernel.hpp"
 
 #include <Eigen/Cholesky>
 

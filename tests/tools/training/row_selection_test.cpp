@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/row_selection.hpp"
+#include "tools/training/data/row_selection.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/training/arm_data.hpp"

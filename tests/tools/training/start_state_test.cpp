@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/common/linear_algebra.hpp"
-#include "tools/training/start_state.hpp"
+#include "tools/base/numerics/linear_algebra.hpp"
+#include "tools/training/start/start_state.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/training/arm_data.hpp"
-#include "tools/training/input_map.hpp"
-#include "tools/training/random_features.hpp"
+#include "tools/training/data/input_map.hpp"
+#include "tools/training/start/random_features.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/training/random_source.hpp"
-#include "tools/training/regressor.hpp"
+#include "tools/base/numerics/random_source.hpp"
+#include "tools/training/physics/regressor.hpp"
 
 #include <cmath>
 

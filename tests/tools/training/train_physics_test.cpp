@@ -5,12 +5,12 @@
 #include "tests/support/seed.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tests/tools/training/synthetic_physics.hpp"
-#include "tools/common/error.hpp"
-#include "tools/training/input_map.hpp"
-#include "tools/training/lag_window.hpp"
-#include "tools/training/physics_columns.hpp"
-#include "tools/training/random_features.hpp"
-#include "tools/training/training_problem.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/training/data/input_map.hpp"
+#include "tools/training/data/lag_window.hpp"
+#include "tools/training/physics/physics_columns.hpp"
+#include "tools/training/search/training_problem.hpp"
+#include "tools/training/start/random_features.hpp"
 
 #include <Eigen/LU>
 

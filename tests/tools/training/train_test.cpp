@@ -4,10 +4,10 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/training/arm_data.hpp"
-#include "tools/common/error.hpp"
-#include "tools/common/number.hpp"
-#include "tools/training/input_map.hpp"
-#include "tools/training/random_features.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
+#include "tools/training/data/input_map.hpp"
+#include "tools/training/start/random_features.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/training_data.hpp"
+#include "tools/training/data/training_data.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/tools/training/arm_data.hpp"
-#include "tools/common/error.hpp"
+#include "tools/base/text/error.hpp"
 
 #include <limits>
 #include <string>

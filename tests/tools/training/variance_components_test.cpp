@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/variance_components.hpp"
+#include "tools/training/search/variance_components.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/candidate_parts.hpp"
-#include "tools/diagnosis/candidates.hpp"
-#include "tools/diagnosis/effect_regression.hpp"
+#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/candidates/candidates.hpp"
+#include "tools/diagnosis/candidates/effect_regression.hpp"
+#include "tools/diagnosis/candidates/true_position.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
-#include "tools/diagnosis/effects/true_position.hpp"
-#include "tools/diagnosis/explaining_variable.hpp"
+#include "tools/diagnosis/output/explaining_variable.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/diagnosis/candidate.hpp"
-#include "tools/diagnosis/signals.hpp"
+#include "tools/diagnosis/candidates/candidate.hpp"
+#include "tools/diagnosis/signals/signals.hpp"
 
 #include <cstdint>
 #include <memory>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/common/number.hpp"
-#include "tools/diagnosis/candidate_parts.hpp"
-#include "tools/diagnosis/candidates.hpp"
+#include "tools/base/text/number.hpp"
+#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/candidates/candidates.hpp"
+#include "tools/diagnosis/candidates/event_products.hpp"
+#include "tools/diagnosis/candidates/scans.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
-#include "tools/diagnosis/effects/event_products.hpp"
-#include "tools/diagnosis/explaining_variable.hpp"
-#include "tools/diagnosis/scans.hpp"
+#include "tools/diagnosis/output/explaining_variable.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/candidate_parts.hpp"
+#include "tools/diagnosis/candidates/candidate_parts.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 
 namespace dfdyn::tools {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/candidates/wrench_axes.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
-#include "tools/diagnosis/effects/wrench_axes.hpp"
 
 namespace dfdyn::tools {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/candidates/wrench_axes.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
-#include "tools/diagnosis/effects/wrench_axes.hpp"
-#include "tools/diagnosis/explaining_variable.hpp"
-#include "tools/diagnosis/extension_parts.hpp"
+#include "tools/diagnosis/extension/extension_parts.hpp"
+#include "tools/diagnosis/output/explaining_variable.hpp"
 
 namespace dfdyn::tools {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/candidate_parts.hpp"
+#include "tools/diagnosis/candidates/candidate_parts.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
-#include "tools/diagnosis/extension_parts.hpp"
+#include "tools/diagnosis/extension/extension_parts.hpp"
 
 #include <Eigen/Geometry>
 

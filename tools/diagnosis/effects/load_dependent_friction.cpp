@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/common/root_mean_square.hpp"
+#include "tools/base/numerics/root_mean_square.hpp"
+#include "tools/diagnosis/candidates/sliding.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
-#include "tools/diagnosis/effects/sliding.hpp"
-#include "tools/diagnosis/explaining_variable.hpp"
+#include "tools/diagnosis/output/explaining_variable.hpp"
 
 #include <algorithm>
 

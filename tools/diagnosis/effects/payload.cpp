@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/candidate_parts.hpp"
-#include "tools/diagnosis/candidates.hpp"
+#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/candidates/candidates.hpp"
+#include "tools/diagnosis/candidates/event_products.hpp"
+#include "tools/diagnosis/candidates/point_mass.hpp"
+#include "tools/diagnosis/candidates/scans.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
-#include "tools/diagnosis/effects/event_products.hpp"
-#include "tools/diagnosis/effects/point_mass.hpp"
-#include "tools/diagnosis/extension_parts.hpp"
-#include "tools/diagnosis/scans.hpp"
+#include "tools/diagnosis/extension/extension_parts.hpp"
 
 #include <Eigen/Cholesky>
 

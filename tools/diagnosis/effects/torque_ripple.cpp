@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/diagnosis/candidates.hpp"
+#include "tools/diagnosis/candidates/candidates.hpp"
+#include "tools/diagnosis/candidates/scans.hpp"
+#include "tools/diagnosis/candidates/sliding.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
-#include "tools/diagnosis/effects/sliding.hpp"
-#include "tools/diagnosis/explaining_variable.hpp"
-#include "tools/diagnosis/extension_parts.hpp"
-#include "tools/diagnosis/scans.hpp"
+#include "tools/diagnosis/extension/extension_parts.hpp"
+#include "tools/diagnosis/output/explaining_variable.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/simulation/joint_vector.hpp"
+#include "tools/robot/dynamics/joint_vector.hpp"
 
 #include <array>
 #include <cstdint>

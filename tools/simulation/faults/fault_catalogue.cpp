@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/common/text.hpp"
+#include "tools/base/text/text.hpp"
 #include "tools/simulation/faults/fault_kind.hpp"
 
 #include <algorithm>

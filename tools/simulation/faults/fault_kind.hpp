@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tools/simulation/faults/fault.hpp"
-#include "tools/simulation/scenario_reader.hpp"
+#include "tools/simulation/scenario/scenario_reader.hpp"
 
 #include <string>
 #include <string_view>

@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/base/system/atomic_file.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_directory.hpp"
+#include "tools/base/text/error.hpp"
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <locale>
+#include <memory>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <utility>
+
+namespace {
+
+using dfdyn::tests::file_content;
+using dfdyn::tests::TemporaryDirectory;
+using dfdyn::tools::AtomicFile;
+using dfdyn::tools::GrowingFile;
+using dfdyn::tools::InputError;
+using dfdyn::tools::write_file;
+
+/// Runs `work` in a child process and returns how it ended, as waitpid says it. Exit status 99: an exception.
+template <typename Work>
+int status_of_child(Work work) {
+    const pid_t child = ::fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+        try {
+            ::_exit(work());
+        } catch (...) {
+            ::_exit(99);
+        }
+    }
+    int status = 0;
+    REQUIRE(::waitpid(child, &status, 0) == child);
+    return status;
+}
+
+class Pipe {
+  public:
+    Pipe() { REQUIRE(::pipe(ends_.data()) == 0); }
+    ~Pipe() {
+        close_reading_end();
+        close_writing_end();
+    }
+    Pipe(const Pipe&) = delete;
+    Pipe& operator=(const Pipe&) = delete;
+
+    std::string writing_end() const { return "/dev/fd/" + std::to_string(ends_[1]); }
+    void close_reading_end() { close_once(ends_[0]); }
+    void close_writing_end() { close_once(ends_[1]); }
+
+    /// Up to 10 kB; waits for some; empty at the end.
+    std::string read_some() const {
+        std::array<char, 10'000> part{};
+        const ssize_t count = ::read(ends_[0], part.data(), part.size());
+        return {part.data(), count > 0 ? static_cast<std::size_t>(count) : 0};
+    }
+
+  private:
+    static void close_once(int& end) {
+        if (end >= 0) {
+            ::close(std::exchange(end, -1));
+        }
+    }
+
+    std::array<int, 2> ends_{};
+};
+
+void write_half(AtomicFile& file) { file.stream() << "half of " << std::flush; }
+
+} // namespace
+
+TEST_CASE("write_file writes all bytes and leaves nothing beside them") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path target = directory.path() / "out";
+    const std::string content = std::string("a\0\r\n", 4) + std::string(1'000'000, 'x');
+    write_file(target, "before");
+    write_file(target, content);
+    CHECK(file_content(target) == content);
+    write_file(target, "");
+    CHECK(file_content(target).empty());
+    CHECK(directory.file_count() == 1);
+}
+
+TEST_CASE("AtomicFile shows its target only after commit") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path target = directory.write("out", "before");
+    AtomicFile file(target);
+    file.stream() << "after " << 1.5 << '\n' << std::flush;
+    CHECK(file_content(target) == "before");
+    CHECK(directory.file_count() == 2);
+    file.commit();
+    CHECK(file_content(target) == "after 1.5\n");
+    CHECK(directory.file_count() == 1);
+}
+
+TEST_CASE("AtomicFile without commit leaves no trace") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path target = directory.write("out", "before");
+    const auto interrupted = [&] {
+        AtomicFile file(target);
+        write_half(file);
+        throw std::runtime_error("the work failed");
+    };
+    CHECK_THROWS_AS(interrupted(), std::runtime_error);
+    CHECK(file_content(target) == "before");
+    CHECK(directory.file_count() == 1);
+}
+
+TEST_CASE("AtomicFile lets two writers of one target finish, the last one wins") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path target = directory.path() / "out";
+    AtomicFile first(target);
+    AtomicFile second(target);
+    first.stream() << "first";
+    second.stream() << "second";
+    second.commit();
+    CHECK(file_content(target) == "second");
+    first.commit();
+    CHECK(file_content(target) == "first");
+    CHECK(directory.file_count() == 1);
+}
+
+TEST_CASE("AtomicFile that is done leaves alone a temporary file that now has its name") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path target = directory.path() / "out";
+    auto first = std::make_unique<AtomicFile>(target);
+    first->commit();
+    AtomicFile second(target);
+    first.reset();
+    second.stream() << "second";
+    second.commit();
+    CHECK(file_content(target) == "second");
+}
+
+TEST_CASE("AtomicFile writes numbers alike in every locale") {
+    struct Comma : std::numpunct<char> {
+        char do_decimal_point() const override { return ','; }
+    };
+    const TemporaryDirectory directory;
+    const std::locale previous = std::locale::global(std::locale(std::locale::classic(), new Comma));
+    AtomicFile file(directory.path() / "out");
+    std::locale::global(previous);
+    file.stream() << 1.5;
+    file.commit();
+    CHECK(file_content(directory.path() / "out") == "1.5");
+}
+
+TEST_CASE("AtomicFile removes its temporary file when a signal ends the program") {
+    const int signal_number = GENERATE(SIGINT, SIGTERM, SIGHUP, SIGPIPE);
+    CAPTURE(signal_number);
+    const TemporaryDirectory directory;
+    const std::filesystem::path target = directory.write("out", "before");
+    const int status = status_of_child([&] {
+        std::signal(signal_number, SIG_DFL); // Catch2 has its own handler
+        AtomicFile file(target);
+        AtomicFile other(directory.path() / "other");
+        write_half(file);
+        write_half(other);
+        std::raise(signal_number);
+        return 0;
+    });
+    CHECK(WIFSIGNALED(status));
+    CHECK(WTERMSIG(status) == signal_number);
+    CHECK(file_content(target) == "before");
+    CHECK(directory.file_count() == 1);
+}
+
+TEST_CASE("AtomicFile leaves alone a signal that the program ignores or handles") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path target = directory.path() / "out";
+    const int status = status_of_child([&] {
+        std::signal(SIGHUP, SIG_IGN);
+        static volatile std::sig_atomic_t caught = 0;
+        std::signal(SIGINT, [](int) { caught = 1; });
+        AtomicFile file(target);
+        file.stream() << "whole";
+        std::raise(SIGHUP);
+        std::raise(SIGINT);
+        file.commit();
+        return caught == 1 ? 0 : 1;
+    });
+    CHECK(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 0);
+    CHECK(file_content(target) == "whole");
+}
+
+TEST_CASE("a signal after the file is done removes nothing") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path target = directory.path() / "out";
+    const int status = status_of_child([&] {
+        std::signal(SIGTERM, SIG_DFL);
+        AtomicFile file(target);
+        file.stream() << "whole";
+        file.commit();
+        std::raise(SIGTERM);
+        return 0;
+    });
+    CHECK(WIFSIGNALED(status));
+    CHECK(file_content(target) == "whole");
+    CHECK(directory.file_count() == 1);
+}
+
+TEST_CASE("AtomicFile reports a disk that refuses, out of the write, and leaves the target") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path target = directory.write("out", "before");
+    const int status = status_of_child([&] {
+        const rlimit limit{100'000, 100'000};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        AtomicFile file(target);
+        std::size_t written = 0;
+        try {
+            for (; written < 1'000'000; written += 10) {
+                file.stream() << "ten bytes\n";
+            }
+        } catch (const InputError& error) {
+            const bool named = error.what() == target.string() + ": cannot write: File too large";
+            return named && written < 200'000 ? 0 : 1;
+        }
+        return 2;
+    });
+    CHECK(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 0);
+    CHECK(file_content(target) == "before");
+    CHECK(directory.file_count() == 1);
+}
+
+TEST_CASE("AtomicFile does not commit what it could not write") {
+    // A pipe that nobody reads, and no device such as /dev/full: a broken build run as root would replace the
+    // device.
+    Pipe pipe;
+    const std::string target = pipe.writing_end();
+    AtomicFile flushed(target);
+    AtomicFile committed(target);
+    pipe.close_reading_end();
+    const auto previous = std::signal(SIGPIPE, SIG_IGN);
+    flushed.stream() << 1.5; // stays in the buffer
+    committed.stream() << 1.5;
+    CHECK_THROWS_MATCHES(flushed.stream().flush(), InputError,
+                         Catch::Matchers::Message(target + ": cannot write: Broken pipe"));
+    CHECK_THROWS_MATCHES(flushed.commit(), InputError,
+                         Catch::Matchers::Message(target + ": cannot write: an earlier write failed"));
+    CHECK_THROWS_MATCHES(committed.commit(), InputError,
+                         Catch::Matchers::Message(target + ": cannot write: Broken pipe"));
+    std::signal(SIGPIPE, previous);
+}
+
+TEST_CASE("AtomicFile names the path and the reason when it cannot begin") {
+    const TemporaryDirectory directory;
+    const std::string base = directory.path().string();
+    CHECK_THROWS_MATCHES(write_file(base + "/none/out", "x"), InputError,
+                         Catch::Matchers::Message(
+                             base + "/none/out: cannot create a file beside it: No such file or directory"));
+    CHECK_THROWS_MATCHES(write_file(base, "x"), InputError,
+                         Catch::Matchers::Message(base + ": cannot write: Is a directory"));
+    const std::string long_name = base + "/" + std::string(300, 'x');
+    CHECK_THROWS_MATCHES(
+        write_file(long_name, "x"), InputError,
+        Catch::Matchers::Message(long_name + ": cannot create a file beside it: File name too long"));
+    std::string deep = base;
+    while (deep.size() < 5000) {
+        deep += "/" + std::string(200, 'x');
+    }
+    CHECK_THROWS_MATCHES(
+        write_file(deep, "x"), InputError,
+        Catch::Matchers::Message(deep + ": cannot create a file beside it: File name too long"));
+    CHECK(directory.file_count() == 0);
+}
+
+TEST_CASE("AtomicFile reports a target that became a directory meanwhile") {
+    const TemporaryDirectory directory;
+    const std::string target = directory.path() / "out";
+    {
+        AtomicFile file(target);
+        file.stream() << "whole";
+        std::filesystem::create_directory(target);
+        CHECK_THROWS_MATCHES(file.commit(), InputError,
+                             Catch::Matchers::Message(target + ": cannot replace: Is a directory"));
+    }
+    CHECK(directory.file_count() == 1);
+}
+
+TEST_CASE("AtomicFile refuses to replace a file that its user may not write") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path target = directory.write("out", "before");
+    REQUIRE(::chmod(target.c_str(), 0444) == 0);
+    REQUIRE(::chmod(directory.path().c_str(), 0777) == 0);
+    const int status = status_of_child([&] {
+        constexpr uid_t nobody = 65534; // root may write everything
+        if (::geteuid() == 0 && ::seteuid(nobody) != 0) {
+            return 2;
+        }
+        try {
+            write_file(target, "after");
+        } catch (const InputError& error) {
+            return error.what() == target.string() + ": cannot write: Permission denied" ? 0 : 1;
+        }
+        return 3;
+    });
+    CHECK(WEXITSTATUS(status) == 0);
+    CHECK(file_content(target) == "before");
+    CHECK(directory.file_count() == 1);
+}
+
+TEST_CASE("AtomicFile keeps the permissions of an existing file and obeys the umask for a new one") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path target = directory.write("out", "before");
+    REQUIRE(::chmod(target.c_str(), 0640) == 0);
+    write_file(target, "after");
+    struct stat status {};
+    REQUIRE(::stat(target.c_str(), &status) == 0);
+    CHECK((status.st_mode & 07777U) == 0640U);
+
+    const mode_t previous = ::umask(027);
+    write_file(directory.path() / "new", "x");
+    ::umask(previous);
+    REQUIRE(::stat((directory.path() / "new").c_str(), &status) == 0);
+    CHECK((status.st_mode & 07777U) == 0640U);
+}
+
+TEST_CASE("AtomicFile writes through symbolic links, also to a file that is not there yet") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path target = directory.path() / "target";
+    const std::filesystem::path link = directory.path() / "link";
+    std::filesystem::create_symlink("target", link);
+    for (const std::string content : {"new", "replaced"}) {
+        write_file(link, content);
+        CHECK(std::filesystem::is_symlink(link));
+        CHECK(file_content(target) == content);
+    }
+    CHECK(directory.file_count() == 2);
+}
+
+TEST_CASE("AtomicFile writes a pipe directly") {
+    Pipe pipe;
+    write_file(pipe.writing_end(), "through");
+    pipe.close_writing_end();
+    CHECK(pipe.read_some() == "through");
+}
+
+TEST_CASE("AtomicFile writes all bytes however often a signal interrupts it") {
+    struct sigaction interrupting {};
+    struct sigaction previous {};
+    interrupting.sa_handler = [](int) {}; // no SA_RESTART: a write returns early, with a part or nothing done
+    REQUIRE(::sigaction(SIGUSR1, &interrupting, &previous) == 0);
+    Pipe pipe;
+    std::string received;
+    std::thread slow_reader([&pipe, &received, writer = ::pthread_self()] {
+        for (std::string part = "begin"; !part.empty();) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            ::pthread_kill(writer, SIGUSR1);
+            part = pipe.read_some();
+            received += part;
+        }
+    });
+    std::string content;
+    while (content.size() < 500'000) {
+        content += std::to_string(content.size()) + '\n';
+    }
+    write_file(pipe.writing_end(), content);
+    pipe.close_writing_end();
+    slow_reader.join();
+    REQUIRE(::sigaction(SIGUSR1, &previous, nullptr) == 0);
+    CHECK(received == content);
+}
+
+TEST_CASE("AtomicFile refuses a seventeenth file at once, and has room again afterwards") {
+    const TemporaryDirectory directory;
+    const std::string base = directory.path() / "out";
+    {
+        std::array<std::unique_ptr<AtomicFile>, 16> files;
+        for (std::size_t index = 0; index < files.size(); ++index) {
+            files.at(index) = std::make_unique<AtomicFile>(base + std::to_string(index));
+        }
+        CHECK_THROWS_AS(AtomicFile(base), InputError);
+    }
+    write_file(base, "x");
+    CHECK(directory.file_count() == 1);
+}
+
+TEST_CASE("GrowingFile shows what was flushed at once, in place of what was there") {
+    const TemporaryDirectory directory;
+    const auto target = directory.write("out.csv", "what was there before, and is longer");
+    {
+        GrowingFile file(target);
+        file.stream() << "t,q\n" << 0.5;
+        CHECK(file_content(target).empty());
+        file.stream().flush();
+        CHECK(file_content(target) == "t,q\n0.5");
+        file.stream() << ",1\n";
+    }
+    CHECK(file_content(target) == "t,q\n0.5,1\n");
+    CHECK_THROWS_AS(GrowingFile(directory.path()), InputError);
+}
+
+TEST_CASE("make_folder makes what is missing and leaves what is there") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path folder = directory.path() / "a/b/c";
+    dfdyn::tools::make_folder(folder);
+    CHECK(std::filesystem::is_directory(folder));
+    CHECK_NOTHROW(dfdyn::tools::make_folder(folder));
+    directory.write("file", "");
+    CHECK_THROWS_AS(dfdyn::tools::make_folder(directory.path() / "file/a"), InputError);
+}

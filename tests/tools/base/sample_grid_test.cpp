@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/base/recording/sample_grid.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tools/base/text/error.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace sample_grid_test {
+
+using namespace dfdyn::tools;
+
+/// A recording of which only the stamps matter.
+Recording with_stamps(std::vector<std::int64_t> stamps_ns) {
+    Recording recording;
+    recording.source = "run.csv";
+    recording.time_ns = std::move(stamps_ns);
+    recording.gap_before.assign(recording.time_ns.size(), 0);
+    recording.gap_before.front() = 1;
+    return recording;
+}
+
+std::vector<std::int64_t> repeated_steps(const std::vector<std::int64_t>& steps_ns, int rows) {
+    std::vector<std::int64_t> stamps{0};
+    for (int row = 1; row < rows; ++row) {
+        stamps.push_back(stamps.back() + steps_ns[static_cast<std::size_t>(row - 1) % steps_ns.size()]);
+    }
+    return stamps;
+}
+
+long restarts(const Recording& recording) {
+    const auto flags = window_restarts(recording, sample_period_s({&recording, 1}));
+    return std::count(flags.begin(), flags.end(), 1);
+}
+
+TEST_CASE("the period of a steady clock is exact, with lost samples too") {
+    for (const std::int64_t period_ns : {20'000'000, 8'000'000, 1'000'000, 200'000}) {
+        auto stamps = repeated_steps({period_ns}, 1000);
+        for (const int lost : {900, 500, 499, 200}) {
+            stamps.erase(stamps.begin() + lost);
+        }
+        const Recording recording = with_stamps(stamps);
+        CHECK(sample_period_s({&recording, 1}) ==
+              Approx(1e-9 * static_cast<double>(period_ns)).epsilon(1e-12));
+        CHECK(restarts(recording) == 1 + 3);
+    }
+}
+
+TEST_CASE("the period of uneven steps is their mean, and none of them is a gap") {
+    constexpr std::int64_t ms = 1'000'000;
+    const Recording in_turn = with_stamps(repeated_steps({10 * ms, 12 * ms}, 1001));
+    CHECK(sample_period_s({&in_turn, 1}) == Approx(0.011));
+    CHECK(restarts(in_turn) == 1);
+    const Recording thirds = with_stamps(repeated_steps({10 * ms, 10 * ms, 12 * ms}, 1000));
+    CHECK(sample_period_s({&thirds, 1}) == Approx(0.032 / 3));
+    CHECK(restarts(thirds) == 1);
+}
+
+TEST_CASE("jitter of nearly half a period changes neither the period nor the windows") {
+    DFDYN_SEEDED_ENGINE(engine);
+    std::uniform_real_distribution<double> jitter(-0.4, 0.4);
+    std::vector<std::int64_t> stamps;
+    for (int row = 0; row < 4000; ++row) {
+        stamps.push_back(static_cast<std::int64_t>(1e6 * (row + jitter(engine))));
+    }
+    const Recording recording = with_stamps(stamps);
+    CHECK(sample_period_s({&recording, 1}) == Approx(0.001).epsilon(0.01));
+    CHECK(restarts(recording) == 1);
+}
+
+TEST_CASE("a window restarts where the recording marks a break") {
+    Recording recording = with_stamps(repeated_steps({1'000'000}, 100));
+    recording.gap_before[40] = 1;
+    const auto flags = window_restarts(recording, 0.001);
+    CHECK(std::count(flags.begin(), flags.end(), 1) == 2);
+    CHECK(flags[40] == 1);
+}
+
+TEST_CASE("one row has no period") {
+    const Recording recording = with_stamps({5});
+    CHECK_THROWS_MATCHES(
+        sample_period_s({&recording, 1}), InputError,
+        Catch::Matchers::Message("run.csv: expected at least two rows to train on, found one"));
+}
+
+} // namespace sample_grid_test

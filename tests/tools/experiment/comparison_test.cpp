@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/experiment/result/comparison.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/experiment/synthetic_units.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace comparison_test {
+
+using namespace dfdyn::tools;
+using dfdyn::tests::two_case_plan;
+using dfdyn::tests::unit_at;
+
+/// A errs `ratio` times as much as B in each of the draws.
+std::vector<UnitResult> units_with(double ratio, std::size_t draws, std::mt19937_64& engine) {
+    std::vector<UnitResult> units;
+    for (std::size_t seed = 1; seed <= draws; ++seed) {
+        units.push_back(unit_at("A", seed, ratio * static_cast<double>(seed), engine));
+        units.push_back(unit_at("B", seed, static_cast<double>(seed), engine));
+    }
+    return units;
+}
+
+const double infinite = std::numeric_limits<double>::infinity();
+
+/// Makes one tick of `name`'s first group in every subset infinite, in the draws up to `last`.
+void lose(std::vector<UnitResult>& units, const std::string& name, std::size_t tick,
+          std::uint64_t last = 100) {
+    for (UnitResult& unit : units) {
+        for (std::vector<double>& subset : unit.error[0]) {
+            subset[tick] = unit.case_name == name && unit.seed <= last ? infinite : subset[tick];
+        }
+    }
+}
+
+const Comparison a_is_less{"A", "B", "force", Phase::steady, 0};
+
+TEST_CASE("a clear difference in every draw holds, and its opposite is contradicted") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Plan plan = two_case_plan(10);
+    const std::vector<UnitResult> units = units_with(0.6, 10, engine);
+    const ComparisonOutcome outcome = compare(a_is_less, plan, units);
+    CHECK(outcome.verdict == Verdict::holds);
+    CHECK(outcome.draws == 10);
+    CHECK(outcome.draws_agree == 10);
+    CHECK(outcome.subsets == 3);
+    CHECK(outcome.subsets_agree == 3);
+    CHECK(outcome.median_ratio == Approx(0.6).epsilon(0.05));
+    CHECK(outcome.p_holds == Approx(1.0 / 1024));
+    CHECK(compare({"B", "A", "force", Phase::steady, 0}, plan, units).verdict == Verdict::contradicted);
+}
+
+TEST_CASE("the gain is part of the claim") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Plan plan = two_case_plan(10);
+    const std::vector<UnitResult> units = units_with(0.8, 10, engine);
+    const auto with_gain = [&](const std::string& better, const std::string& worse, double gain) {
+        return compare({better, worse, "torque", Phase::transient, gain}, plan, units).verdict;
+    };
+    CHECK(with_gain("A", "B", 0.1) == Verdict::holds);
+    CHECK(with_gain("A", "B", 0.3) == Verdict::contradicted);
+    CHECK(with_gain("B", "A", -0.1) == Verdict::contradicted);
+    CHECK(with_gain("B", "A", -0.4) == Verdict::holds); // 25 % more is at most 40 % more
+}
+
+TEST_CASE("too few draws, draws that disagree and draws that are missing decide nothing") {
+    DFDYN_SEEDED_ENGINE(engine);
+    CHECK(compare(a_is_less, two_case_plan(4), units_with(0.1, 4, engine)).verdict == Verdict::undecided);
+    CHECK(compare(a_is_less, two_case_plan(5), units_with(0.1, 5, engine)).verdict == Verdict::holds);
+    std::vector<UnitResult> mixed = units_with(0.5, 4, engine);
+    for (const UnitResult& unit : units_with(2, 8, engine)) {
+        if (unit.seed > 4) {
+            mixed.push_back(unit);
+        }
+    }
+    const ComparisonOutcome outcome = compare(a_is_less, two_case_plan(8), mixed);
+    CHECK(outcome.verdict == Verdict::undecided);
+    CHECK(outcome.draws_agree == 4);
+    const ComparisonOutcome missing = compare(a_is_less, two_case_plan(8), {});
+    CHECK(missing.verdict == Verdict::undecided);
+    CHECK(missing.draws == 0);
+    CHECK(std::isnan(missing.median_ratio));
+}
+
+TEST_CASE("a difference that only one subset shows does not hold") {
+    DFDYN_SEEDED_ENGINE(engine);
+    std::vector<UnitResult> units = units_with(1.05, 10, engine);
+    for (UnitResult& unit : units) {
+        for (double& error : unit.error[0][1]) {
+            error *= unit.case_name == "A" ? 0.1 : 1;
+        }
+    }
+    const ComparisonOutcome outcome = compare(a_is_less, two_case_plan(10), units);
+    CHECK(outcome.p_holds < 0.05);
+    CHECK(outcome.subsets_agree == 1);
+    CHECK(outcome.verdict == Verdict::undecided);
+}
+
+TEST_CASE("a case that loses ticks loses the draw") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Plan plan = two_case_plan(10);
+    const Comparison transient{"A", "B", "force", Phase::transient, 0};
+    std::vector<UnitResult> units = units_with(0.5, 10, engine);
+    SECTION("the better one") {
+        lose(units, "A", 4);
+        const ComparisonOutcome outcome = compare(transient, plan, units);
+        CHECK(outcome.draws == 10);
+        CHECK(outcome.draws_agree == 0);
+        CHECK(outcome.subsets_agree == 0);
+        CHECK(outcome.median_ratio == infinite);
+        CHECK(outcome.verdict == Verdict::contradicted);
+        CHECK(compare(a_is_less, plan, units).verdict == Verdict::holds); // no tick of this phase
+    }
+    SECTION("the better one in some draws") {
+        lose(units, "A", 4, 4);
+        const ComparisonOutcome outcome = compare(transient, plan, units);
+        CHECK(outcome.draws_agree == 6);
+        CHECK(outcome.subsets_agree == 3);
+        CHECK(outcome.upper_ratio == infinite);
+        CHECK(outcome.verdict == Verdict::undecided);
+    }
+    SECTION("the worse one") {
+        lose(units, "B", 4);
+        const ComparisonOutcome outcome = compare({"A", "B", "force", Phase::transient, 0.9}, plan, units);
+        CHECK(outcome.median_ratio == 0);
+        CHECK(outcome.verdict == Verdict::holds);
+    }
+    SECTION("both: a tie, whatever the gain") {
+        lose(units, "A", 4);
+        lose(units, "B", 5);
+        for (const double gain : {-0.5, 0.0, 0.5}) {
+            const ComparisonOutcome outcome =
+                compare({"A", "B", "force", Phase::transient, gain}, plan, units);
+            CHECK(outcome.draws == 10);
+            CHECK(outcome.draws_agree == 0);
+            CHECK(outcome.median_ratio == 1);
+            CHECK(outcome.verdict == Verdict::undecided);
+        }
+    }
+}
+
+TEST_CASE("the spread of a comparison's ratio is its quartiles over the draws") {
+    DFDYN_SEEDED_ENGINE(engine);
+    std::vector<UnitResult> units;
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        units.push_back(unit_at("A", seed, 0.1 * static_cast<double>(seed), engine));
+        units.push_back(unit_at("B", seed, 1, engine));
+    }
+    const ComparisonOutcome outcome = compare(a_is_less, two_case_plan(5), units);
+    CHECK(outcome.lower_ratio == Approx(0.2).epsilon(0.1));
+    CHECK(outcome.median_ratio == Approx(0.3).epsilon(0.1));
+    CHECK(outcome.upper_ratio == Approx(0.4).epsilon(0.1));
+}
+
+TEST_CASE("the draws are paired by their seed, not by their order") {
+    DFDYN_SEEDED_ENGINE(engine);
+    std::vector<UnitResult> units = units_with(0.9, 10, engine);
+    std::ranges::reverse(units);
+    std::swap(units[0], units[7]);
+    // unpaired, the draws' levels 1 … 10 would drown the difference
+    CHECK(compare(a_is_less, two_case_plan(10), units).draws_agree == 10);
+}
+
+TEST_CASE("the verdict on a finding follows from its comparisons") {
+    const auto verdict = [](std::initializer_list<Verdict> verdicts) {
+        std::vector<ComparisonOutcome> outcomes;
+        for (const Verdict one : verdicts) {
+            outcomes.emplace_back().verdict = one;
+        }
+        return verdict_of(outcomes);
+    };
+    const Verdict holds = Verdict::holds;
+    const Verdict contradicted = Verdict::contradicted;
+    const Verdict undecided = Verdict::undecided;
+    CHECK(verdict({holds, holds}) == FindingVerdict::reproduced);
+    CHECK(verdict({holds, holds, contradicted}) == FindingVerdict::partly);
+    CHECK(verdict({holds, contradicted}) == FindingVerdict::not_reproduced);
+    CHECK(verdict({holds, undecided}) == FindingVerdict::partly);
+    CHECK(verdict({contradicted, undecided}) == FindingVerdict::not_reproduced);
+    CHECK(verdict({contradicted}) == FindingVerdict::not_reproduced);
+    CHECK(verdict({undecided}) == FindingVerdict::undecided);
+}
+
+TEST_CASE("ratios are said in words") {
+    CHECK(ratio_text(0.83) == "17 % less");
+    CHECK(ratio_text(1.12) == "12 % more");
+    CHECK(ratio_text(4.2) == "4.2 times as much");
+    CHECK(ratio_text(std::nan("")) == "not comparable");
+    CHECK(ratio_text(infinite) == "∞ times as much");
+}
+
+} // namespace comparison_test

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/experiment/result/evaluation_page.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/support/temporary_directory.hpp"
+#include "tests/tools/experiment/synthetic_units.hpp"
+#include "tests/tools/support/balanced_markup.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace evaluation_page_test {
+
+using namespace dfdyn::tools;
+using Catch::Matchers::ContainsSubstring;
+using dfdyn::tests::file_content;
+using dfdyn::tests::markup_fault;
+using dfdyn::tests::TemporaryDirectory;
+using dfdyn::tests::two_case_plan;
+using dfdyn::tests::unit_at;
+
+struct Evaluation {
+    Plan plan = two_case_plan(6);
+    PlanData data;
+    EvaluationResults results;
+};
+
+/// A errs half as much as B in six draws.
+Evaluation evaluation() {
+    std::mt19937_64 engine(1);
+    Evaluation one;
+    one.data.start.output.names = {"fx", "mx"};
+    one.data.subsets.resize(3);
+    for (const std::uint64_t seed : one.plan.seeds) {
+        one.results.units.push_back(unit_at("A", seed, 0.5, engine));
+        one.results.units.push_back(unit_at("B", seed, 1, engine));
+    }
+    one.plan.findings = {
+        {"A wins", "A errs less.", "Because of that.", {{"A", "B", "force", Phase::steady, 0}}},
+        {"B wins", "B errs less.", "Because of this.", {{"B", "A", "force", Phase::steady, 0}}}};
+    one.plan.comparisons = {{"A", "B", "torque", Phase::transient, 0.3}};
+    return one;
+}
+
+void write(const TemporaryDirectory& directory, const Evaluation& one) {
+    write_evaluation(directory.path(), one.plan, one.data, one.results);
+}
+
+TEST_CASE("an evaluation writes page, tables, findings, figures and pictures") {
+    const TemporaryDirectory directory;
+    write(directory, evaluation());
+    const std::string html = file_content(directory.path() / "report.html");
+    const std::string markdown = file_content(directory.path() / "findings.md");
+    CHECK(markup_fault(html).empty());
+    for (const std::string& text : {html, markdown}) {
+        CHECK_THAT(text, ContainsSubstring("A wins: reproduced"));
+        CHECK_THAT(text, ContainsSubstring("B wins: not reproduced"));
+        CHECK_THAT(text, ContainsSubstring("Why it is not reproduced: Because of this."));
+        CHECK_THAT(text, !ContainsSubstring("Because of that."));
+        CHECK_THAT(text, ContainsSubstring("at least 30 % less, transient"));
+    }
+    CHECK_THAT(file_content(directory.path() / "tables.md"), ContainsSubstring("| A | 0.05"));
+    for (const std::string name : {"plan_1_force_curves", "plan_1_torque_boxes"}) {
+        CHECK_THAT(markdown, ContainsSubstring("(pictures/" + name + ".svg)"));
+        const std::string svg = file_content(directory.path() / "pictures" / (name + ".svg"));
+        CHECK(markup_fault(svg).empty());
+        CHECK_THAT(svg, ContainsSubstring("<title>A</title>"));
+        CHECK_THAT(svg, ContainsSubstring("<title>B</title>"));
+    }
+}
+
+TEST_CASE("the page needs no network and no script") {
+    const TemporaryDirectory directory;
+    write(directory, evaluation());
+    const std::string html = file_content(directory.path() / "report.html");
+    for (const std::string load :
+         {"src=", "href=", "@import", "url(", "<link", "<img", "<iframe", "<script", "https://"}) {
+        CAPTURE(load);
+        CHECK(html.find(load) == std::string::npos);
+    }
+}
+
+TEST_CASE("the results have one row per case, draw and group") {
+    const TemporaryDirectory directory;
+    write(directory, evaluation());
+    const std::string csv = file_content(directory.path() / "results.csv");
+    CHECK(std::ranges::count(csv, '\n') == 1 + 2 * 6 * 2);
+    const auto commas = std::ranges::count(csv.substr(0, csv.find('\n')), ',');
+    CHECK(std::ranges::count(csv, ',') == commas * 25);
+    CHECK_THAT(csv, ContainsSubstring("case,seed,group,transient_mean,"));
+    CHECK_THAT(csv, ContainsSubstring(",nrmse_fx,nrmse_mx,lost,median_us,operations,state_bytes,columns\n"));
+    CHECK_THAT(csv, ContainsSubstring("\nB,6,torque,"));
+}
+
+TEST_CASE("opponents stand below the cases in the table and in the results") {
+    Evaluation one = evaluation();
+    const TemporaryDirectory directory;
+    write(directory, one);
+    CHECK_THAT(file_content(directory.path() / "tables.md"), !ContainsSubstring("Persistence"));
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    one.results.opponents = {{{"persistence", {0.25, 0.5}}, {"identified rigid body", {none, none}}},
+                             "the plan has no robot"};
+    write(directory, one);
+    const std::string tables = file_content(directory.path() / "tables.md");
+    CHECK_THAT(tables, ContainsSubstring("| persistence | 0.25"));
+    CHECK_THAT(tables, ContainsSubstring("| identified rigid body | – | – |"));
+    CHECK(tables.find("No rigid body: the plan has no robot.") == tables.rfind("No rigid body"));
+    const std::string csv = file_content(directory.path() / "results.csv");
+    CHECK(std::ranges::count(csv, '\n') == 1 + 2 * 6 * 2 + 2);
+    const auto commas = std::ranges::count(csv.substr(0, csv.find('\n')), ',');
+    CHECK(std::ranges::count(csv, ',') == commas * 27);
+    CHECK_THAT(csv, ContainsSubstring("\npersistence,0,,nan,"));
+    CHECK_THAT(csv, ContainsSubstring(",nan,0.25,0.5,nan,"));
+}
+
+TEST_CASE("lost ticks and cases without draws are said beside the table") {
+    Evaluation one = evaluation();
+    const TemporaryDirectory directory;
+    write(directory, one);
+    CHECK_THAT(file_content(directory.path() / "tables.md"), !ContainsSubstring("Lost"));
+    for (UnitResult& unit : one.results.units) {
+        if (unit.case_name == "B") {
+            unit.error[1][2][50] = std::numeric_limits<double>::infinity();
+        }
+    }
+    one.plan.cases[0].model = std::string("P");
+    write(directory, one);
+    const std::string tables = file_content(directory.path() / "tables.md");
+    CHECK_THAT(tables, ContainsSubstring("counted as infinite: B 0.556 %")); // 1 of 180
+    CHECK_THAT(tables, ContainsSubstring("all draws are the same: A."));
+    CHECK_THAT(tables, ContainsSubstring("∞"));
+    CHECK_THAT(tables, !ContainsSubstring("A 0"));
+}
+
+TEST_CASE("the tables show the spread over the draws") {
+    Evaluation one;
+    std::mt19937_64 engine(1);
+    one.plan.seeds = {1, 2, 3};
+    one.data.start.output.names = {"fx", "mx"};
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+        one.results.units.push_back(unit_at("A", seed, 1, engine));
+        for (auto& group : one.results.units.back().error) {
+            for (std::vector<double>& subset : group) {
+                std::ranges::fill(subset, static_cast<double>(seed));
+            }
+        }
+    }
+    const TemporaryDirectory directory;
+    write(directory, one);
+    // mean and median over everything are 2, of the draws 1, 2 and 3
+    CHECK_THAT(file_content(directory.path() / "tables.md"),
+               ContainsSubstring("| A | 2 | 1.5–2.5 | 2 | 2 | 2 | 1.5–2.5 | 1 | 3 | 1 | 3 |"));
+}
+
+TEST_CASE("what could not be done is said, and the rest shown") {
+    Evaluation one = evaluation();
+    std::erase_if(one.results.units, [](const UnitResult& unit) { return unit.case_name == "B"; });
+    one.results.failed = {{"B", 1, "training: <no> likelihood"}};
+    const TemporaryDirectory directory;
+    write(directory, one);
+    const std::string html = file_content(directory.path() / "report.html");
+    CHECK(markup_fault(html).empty());
+    CHECK_THAT(html, ContainsSubstring("B, draw 1: training: &lt;no&gt; likelihood"));
+    CHECK_THAT(html, ContainsSubstring("A wins: undecided"));
+}
+
+TEST_CASE("no text of a plan can leave its place in the page") {
+    const std::string hostile = "</title><script>alert(\"'&{{facts}}\")</script>";
+    Evaluation one = evaluation();
+    one.plan.title = one.plan.figures[0].title = one.plan.findings[0].statement = hostile;
+    const TemporaryDirectory directory;
+    write(directory, one);
+    const std::string html = file_content(directory.path() / "report.html");
+    CHECK(html.find("<script") == std::string::npos);
+    CHECK(markup_fault(html).empty());
+}
+
+} // namespace evaluation_page_test

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// A model of one run on other runs of the same real arm, which nobody touched: it refuses no good sample.
+#include "tools/replay/contradiction.hpp"
+#include "tools/replay/replay.hpp"
+#include "tools/training/model_training.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace good_samples_test {
+
+using namespace dfdyn::tools;
+
+Recording recording(const std::string& file) {
+    ReadOptions options;
+    options.outputs = OutputKind::motor_current;
+    return read_recording(std::filesystem::path(DFDYN_TEST_DATA_DIR) / file, options);
+}
+
+TrainedModel trained_on(const std::string& file) {
+    const std::vector<Recording> recordings{recording(file)};
+    ModelTraining training;
+    training.options.feature_count = 50;
+    training.options.likelihood_rows = 300;
+    training.options.starts = 1;
+    TrainedModel model =
+        train_model(prepare_training(recordings, training), OutputKind::motor_current, training, {}).model;
+    calibrate_innovation_limit(model, recordings);
+    return model;
+}
+
+struct Outcome {
+    double refused_share = 0;
+    std::size_t contradictions = 0;
+};
+
+Outcome replayed(const TrainedModel& model, const std::string& file) {
+    const auto estimator = make_estimator(model, false);
+    const ReplayedRecording result =
+        replay(*estimator, std::span(&model, 1), recording(file), 0, [](std::size_t) {});
+    const auto refused = std::ranges::count_if(result.status, [](const dfdyn::Status& status) {
+        return status.learning == dfdyn::Reason::innovation_too_large;
+    });
+    return {static_cast<double>(refused) / static_cast<double>(result.status.size()),
+            find_contradictions(result, model.limits.innovation).size()};
+}
+
+TEST_CASE("a UR5 refuses no good sample of another motion, and a person's pushes still contradict") {
+    const TrainedModel model = trained_on("ur5_kufieta/Movement_No6_Acc_slow_Verify_Model.csv");
+    for (const char* motion : {"No7_Acc_slow_Verify_Model_short", "No9_Singularity_Free_NoDist"}) {
+        CAPTURE(motion);
+        CHECK(replayed(model, std::string("ur5_kufieta/Movement_") + motion + ".csv").refused_share < 0.001);
+    }
+    const Outcome pushed =
+        replayed(model, "ur5_kufieta/Movement_No7_Acc_slow_Verify_Model_short_with_disturbance.csv");
+    CHECK(pushed.contradictions >= 3); // of five pushes
+}
+
+TEST_CASE("a servo refuses no good sample at other gains and along other motions") {
+    const TrainedModel model = trained_on("xl330_bam/00_sin_sin_kp100.csv");
+    for (const char* run : {"04_sin_sin_kp200", "08_sin_sin_kp400", "12_sin_sin_kp800",
+                            "14_up_and_down_kp800", "15_sin_time_square_kp800"}) {
+        CAPTURE(run);
+        CHECK(replayed(model, std::string("xl330_bam/") + run + ".csv").refused_share < 0.001);
+    }
+}
+
+} // namespace good_samples_test

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// A real UR5, undisturbed for two minutes, then pushed three times by a person.
+#include "tools/monitor/monitored_estimator.hpp"
+#include "tools/replay/contradiction.hpp"
+#include "tools/replay/replay.hpp"
+#include "tools/robot/urdf/read_robot.hpp"
+#include "tools/training/model_training.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+
+namespace {
+
+using namespace dfdyn::tools;
+
+Robot ur5() {
+    ReadRobotOptions options;
+    options.tip = "ee_link";
+    return read_robot(std::string(DFDYN_TEST_DATA_DIR) + "/robots/ur5/ur5_robot.urdf", options);
+}
+
+Recording recording(const std::string& name) {
+    ReadOptions options;
+    options.joint_count = 6;
+    options.outputs = OutputKind::motor_current;
+    return read_recording(std::string(DFDYN_TEST_DATA_DIR) + "/ur5_kufieta/Movement_" + name + ".csv",
+                          options);
+}
+
+/// Rigid body and friction, as `dfdyn train` makes it of docs/monitor.md's options.
+TrainedModel trained(const Recording& data, const Robot& robot) {
+    ModelTraining training;
+    training.options.model = ModelClass::P;
+    training.options.input = InputKind::DFSR;
+    training.options.lags = 12;
+    training.options.likelihood_rows = 600;
+    training.options.starts = 3;
+    training.options.forgetting_factor = 0.9999;
+    training.physics = RobotPhysics{
+        robot, {"viscous_friction", "coulomb_friction", "rotor_inertia", "torque_offset"}, 0.05, {}};
+    const std::vector<Recording> recordings{data};
+    TrainedModel model =
+        train_model(prepare_training(recordings, training), OutputKind::motor_current, training, {}).model;
+    calibrate_innovation_limit(model, recordings);
+    return model;
+}
+
+} // namespace
+
+TEST_CASE("a real arm's monitor is silent for two minutes and finds the pushes of a person", "[monitor]") {
+    const Robot robot = ur5();
+    const Recording first = recording("No6_Acc_slow_Verify_Model");
+    const TrainedModel model = trained(first, robot);
+    const auto estimator = monitored(make_estimator(model, false), monitor_setup(model, &robot, "test"));
+    const auto changes_in = [&](const Recording& one) {
+        const auto replayed = replay(*estimator, std::span(&model, 1), one, 0, [](std::size_t) {});
+        std::vector<double> onsets;
+        for (const NamedChange& change : estimator->take_changes()) {
+            onsets.push_back(replayed.clock_origin_s + 1e-9 * static_cast<double>(change.onset_ns));
+        }
+        return onsets;
+    };
+    CHECK(changes_in(first).empty());
+    CHECK(changes_in(recording("No7_Acc_slow_Verify_Model_short")).empty());
+    const std::vector<double> onsets =
+        changes_in(recording("No7_Acc_slow_Verify_Model_short_with_disturbance"));
+    CAPTURE(onsets);
+    REQUIRE(onsets.size() == 3);
+    CHECK(onsets[0] == Approx(8.4).margin(0.4)); // of the pushes: 8.5, 11.6, 14.0, 15.8, 18.8 s
+    CHECK(onsets[1] == Approx(11.7).margin(0.4));
+    CHECK(onsets[2] == Approx(15.7).margin(0.4));
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/base/system/read_file.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+
+namespace {
+
+const std::filesystem::path project = std::filesystem::path(DFDYN_TEST_DATA_DIR) / "../..";
+
+/// The level of each room of `tools/`, from the table of docs/architecture.md.
+std::map<std::string, int> documented_levels() {
+    const std::string text = dfdyn::tools::read_file(project / "docs/architecture.md");
+    std::map<std::string, int> levels;
+    const std::string rule = "| level | rooms |\n| --- | --- |\n";
+    const std::size_t first = text.find(rule) + rule.size();
+    const std::string table = text.substr(first, text.find("\n\n", first) - first);
+    const std::regex row(R"(\| (\d) \| (.*) \|)");
+    const std::regex room(R"(`(\w+)` \()");
+    for (std::sregex_iterator at(table.begin(), table.end(), row), end; at != end; ++at) {
+        const std::string rooms = (*at)[2];
+        for (std::sregex_iterator name(rooms.begin(), rooms.end(), room); name != end; ++name) {
+            levels[(*name)[1]] = std::stoi((*at)[1]);
+        }
+    }
+    return levels;
+}
+
+std::set<std::string> folders_of(const std::filesystem::path& parent) {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(parent)) {
+        if (entry.is_directory()) {
+            names.insert(entry.path().filename().string());
+        }
+    }
+    return names;
+}
+
+/// The rooms that the sources of `folder` include.
+std::set<std::string> included_rooms(const std::filesystem::path& folder) {
+    const std::regex include(R"(#include "tools/(\w+)/)");
+    std::set<std::string> rooms;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        if (entry.path().extension() == ".cpp" || entry.path().extension() == ".hpp") {
+            const std::string text = dfdyn::tools::read_file(entry.path());
+            for (std::sregex_iterator at(text.begin(), text.end(), include), end; at != end; ++at) {
+                rooms.insert((*at)[1]);
+            }
+        }
+    }
+    return rooms;
+}
+
+} // namespace
+
+TEST_CASE("a room of the program includes only rooms of lower levels, as documented") {
+    const std::map<std::string, int> levels = documented_levels();
+    for (const std::string& room : folders_of(project / "tools")) {
+        CAPTURE(room);
+        REQUIRE(levels.contains(room));
+        for (const std::string& included : included_rooms(project / "tools" / room)) {
+            CAPTURE(included);
+            REQUIRE(levels.contains(included));
+            CHECK((included == room || levels.at(included) < levels.at(room)));
+        }
+    }
+    CHECK(levels.size() == folders_of(project / "tools").size());
+}
+
+TEST_CASE("the libraries include nothing of the program, and the firmware nothing of the bus layer") {
+    for (const char* const folder : {"firmware_lib", "hal"}) {
+        CAPTURE(folder);
+        CHECK(included_rooms(project / folder).empty());
+    }
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(project / "firmware_lib/include")) {
+        if (entry.is_regular_file()) {
+            CAPTURE(entry.path());
+            CHECK(dfdyn::tools::read_file(entry.path()).find("dfdyn/hal/") == std::string::npos);
+        }
+    }
+}
+
+TEST_CASE("a folder of the program has at most a dozen chapters, catalogues apart") {
+    const std::set<std::filesystem::path> catalogues{"diagnosis/effects", "simulation/faults", "commands"};
+    std::map<std::filesystem::path, std::set<std::string>> chapters; // a header and its source are one
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(project / "tools")) {
+        if (entry.path().extension() == ".cpp" || entry.path().extension() == ".hpp") {
+            chapters[std::filesystem::relative(entry.path().parent_path(), project / "tools")].insert(
+                entry.path().stem().string());
+        }
+    }
+    for (const auto& [folder, names] : chapters) {
+        CAPTURE(folder);
+        CHECK((names.size() <= 12 || catalogues.contains(folder)));
+    }
+}

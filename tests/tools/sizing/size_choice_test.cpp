@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/sizing/size_choice.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tools/base/text/error.hpp"
+
+#include <cmath>
+#include <random>
+#include <sstream>
+
+namespace size_choice_test {
+
+using namespace dfdyn::tools;
+
+/// One joint that swings, and a torque with inertia, gravity and friction.
+Recording swinging(int rows, double period_s) {
+    std::mt19937_64 engine(1);
+    std::normal_distribution<double> noise(0, 0.01);
+    Recording recording;
+    recording.source = "made up";
+    recording.position.names = joint_names("q", 1);
+    recording.output.names = output_names(OutputKind::joint_torque, 1);
+    for (int row = 0; row < rows; ++row) {
+        const double t = period_s * row;
+        const double q = std::sin(2 * t) + 0.5 * std::sin(3.3 * t + 1);
+        const double velocity = 2 * std::cos(2 * t) + 1.65 * std::cos(3.3 * t + 1);
+        const double acceleration = -4 * std::sin(2 * t) - 5.445 * std::sin(3.3 * t + 1);
+        recording.time_s.push_back(t);
+        recording.time_ns.push_back(std::llround(1e9 * t));
+        recording.gap_before.push_back(row == 0 ? 1 : 0);
+        recording.position.values.push_back(q);
+        recording.output.values.push_back(0.1 * acceleration + 2 * std::sin(q) + std::tanh(5 * velocity) +
+                                          noise(engine));
+    }
+    return recording;
+}
+
+SizeChoice choose(const TargetBudget& budget, const FreeSizes& free = {}, double period_s = 0.01) {
+    const Recording recording = swinging(static_cast<int>(15 / period_s), period_s);
+    ModelTraining training;
+    training.options.likelihood_rows = 80;
+    training.options.evaluations_per_start = 30;
+    training.options.feature_count = 16;
+    return choose_sizes({&recording, 1}, OutputKind::joint_torque, training, free, budget);
+}
+
+TEST_CASE("a choice stays within the budget, and more room does not make it worse") {
+    double error = 1e9;
+    for (const std::int64_t operations : {2'000, 8'000, 40'000}) {
+        TargetBudget budget;
+        budget.tick_operations = operations;
+        const SizeChoice choice = choose(budget);
+        CHECK(fits(choice.chosen.needs, budget));
+        CHECK(choice.chosen.error <= 1.02 * error);
+        error = choice.chosen.error;
+        if (choice.smaller) {
+            CHECK(choice.smaller->needs.tick_operations < choice.chosen.needs.tick_operations);
+        }
+        if (choice.larger) {
+            CHECK(choice.larger->needs.tick_operations > choice.chosen.needs.tick_operations);
+        }
+    }
+}
+
+TEST_CASE("the same data give the same choice") {
+    TargetBudget budget;
+    budget.ram_bytes = 16 * 1024;
+    std::ostringstream first, second;
+    print_choice(first, choose(budget), budget);
+    print_choice(second, choose(budget), budget);
+    CHECK(first.str() == second.str());
+}
+
+TEST_CASE("sizes that the caller gives stay as they are") {
+    TargetBudget budget;
+    budget.tick_operations = 40'000;
+    const TrainingOptions chosen = choose(budget, {false, false, false, false}).chosen.options;
+    CHECK(chosen.lags == TrainingOptions().lags);
+    CHECK(chosen.rows_per_joint == TrainingOptions().rows_per_joint);
+    CHECK(chosen.feature_count == 16);
+    CHECK(chosen.forgetting_factor == 1);
+}
+
+TEST_CASE("a budget that holds no model is refused with what the smallest takes") {
+    TargetBudget budget;
+    budget.ram_bytes = 1000;
+    CHECK_THROWS_WITH(choose(budget),
+                      Catch::Matchers::StartsWith("the budget (--flash, --ram, --tick-operations): expected "
+                                                  "room for the smallest model, flash "));
+}
+
+} // namespace size_choice_test

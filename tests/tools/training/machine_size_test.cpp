@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/training/physics/machine_size.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/tools/robot/arms.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/model/chain_model.hpp"
+#include "tools/robot/firmware_chain.hpp"
+
+#include <limits>
+
+namespace machine_size_test {
+
+using namespace dfdyn::tools;
+using Eigen::VectorXd;
+
+VectorXd sizes_of(const Robot& robot, const std::vector<std::string>& effects = {}) {
+    const ChainModel chain = chain_model(robot, OutputKind::joint_torque);
+    return parameter_sizes(robot, chain, effect_models(effects, chain, 0.05));
+}
+
+TEST_CASE("the size of each parameter follows from mass, reach and limits") {
+    Robot robot = dfdyn::tests::planar_arm(9.81); // two links of 1 kg, 1 m from joint to joint
+    robot.tip_placement.translation() = Eigen::Vector3d(0.6, 0, 0);
+    robot.joints[0].effort = 200;
+    robot.joints[0].velocity = 4;
+    robot.joints[1].effort = 1e6; // a placeholder
+    robot.joints[1].velocity = 1e6;
+    const VectorXd sizes =
+        sizes_of(robot, {"viscous_friction", "coulomb_friction", "rotor_inertia", "torque_offset"});
+    REQUIRE(sizes.size() == 28);
+    const double weight = 2 * 9.81 * 1.6;
+    CHECK(sizes[0] == Approx(2));
+    CHECK(sizes[13] == Approx(2 * 1.6));
+    CHECK(sizes[19] == Approx(2 * 1.6 * 1.6));
+    const VectorXd expected{
+        {200 / 4.0, weight, 200, weight, 2 * 1.6 * 1.6, 2 * 1.6 * 1.6, 200, weight}}; // by effect, by joint
+    CHECK((sizes.tail(8) - expected).norm() < 1e-9);
+}
+
+TEST_CASE("a link reaches as far as its centre of mass, whatever the tip") {
+    Robot robot = dfdyn::tests::planar_arm(9.81);
+    robot.joints.resize(1);
+    robot.tip_placement.setIdentity();
+    robot.joints[0].inertia << 0.5, 0, 0, -0.5 * 0.1, 0.005, 0, 0, 0.005, 0, 0; // 0.5 kg, hanging at 0.1 m
+    CHECK(sizes_of(robot)[3] == Approx(0.5 * 0.1));
+}
+
+TEST_CASE("what a parameter may be off by follows from the links beyond its joint") {
+    Robot robot = dfdyn::tests::planar_arm(9.81); // two links of 1 kg, 1 m from joint to joint
+    robot.tip_placement.translation() = Eigen::Vector3d(0.6, 0, 0);
+    const ChainModel chain = chain_model(robot, OutputKind::joint_torque);
+    const auto effects = effect_models({"coulomb_friction"}, chain, 0.05);
+    const VectorXd deviations = parameter_deviations(robot, chain, effects);
+    CHECK(deviations[0] == Approx(2));
+    CHECK(deviations[9] == Approx(2 * 1.6 * 1.6));
+    CHECK(deviations[10] == Approx(1));
+    CHECK(deviations[13] == Approx(1 * 0.6));
+    CHECK(deviations[19] == Approx(1 * 0.6 * 0.6));
+    CHECK(deviations.tail(2) == parameter_sizes(robot, chain, effects).tail(2));
+    const VectorXd expected = expected_parameters(robot, chain, effects);
+    CHECK(expected.head(20) == nominal_parameters(robot, OutputKind::joint_torque));
+    CHECK(expected.tail(2).norm() == 0);
+}
+
+TEST_CASE("a robot's file without masses gives sizes by its efforts, one without either by a tonne") {
+    Robot robot = dfdyn::tests::planar_arm(9.81);
+    for (RobotJoint& joint : robot.joints) {
+        joint.inertia.setZero();
+    }
+    CHECK(sizes_of(robot)[0] == 1000);
+    robot.joints[1].effort = 9.81;
+    CHECK(sizes_of(robot)[0] == Approx(1)); // at 1 m
+}
+
+TEST_CASE("real robots' own parameters are within their sizes") {
+    for (const Robot& robot : {dfdyn::tests::ur5(), dfdyn::tests::icub_right_arm()}) {
+        CAPTURE(robot.name);
+        const VectorXd own = nominal_parameters(robot, OutputKind::joint_torque);
+        CHECK((own.cwiseAbs().array() <= sizes_of(robot).array()).all());
+    }
+}
+
+TEST_CASE("a parameter beyond its bound is refused with name, value and bound") {
+    PhysicsModel physics;
+    physics.selected = {1, 3};
+    physics.parameter_names = {"link1 mcx (kg·m)", "link1 mcz (kg·m)"};
+    physics.column_scale = {0.5, 1e15};
+    physics.start.weights = {2, 0.02};
+    const VectorXd sizes{{1, 3, 3, 4}};
+    CHECK_THROWS_AS(check_parameters(physics, sizes), InputError);
+    CHECK_THROWS_WITH(
+        check_parameters(physics, sizes),
+        Catch::Matchers::StartsWith("trained physics: parameter link1 mcz (kg·m): expected at most 400 in "
+                                    "magnitude") &&
+            Catch::Matchers::ContainsSubstring("found 2e+13"));
+    physics.start.weights = {-600, 4e-13}; // |-300|, 400: at the bounds
+    CHECK_NOTHROW(check_parameters(physics, sizes));
+    physics.start.weights[0] = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_AS(check_parameters(physics, sizes), InputError);
+}
+
+} // namespace machine_size_test

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a model with physics predicts of a real arm's motion that it has not seen and does not learn.
+#include "tools/training/model_training.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/tools/robot/arms.hpp"
+#include "tools/base/recording/recording.hpp"
+#include "tools/model/run_time/host_estimator.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <vector>
+
+namespace unseen_motion_test {
+
+using namespace dfdyn::tools;
+using Eigen::VectorXd;
+
+Recording recording(const std::string& name, RowRange rows = {}) {
+    ReadOptions options;
+    options.outputs = OutputKind::motor_current;
+    options.rows = rows;
+    return read_recording(std::filesystem::path(DFDYN_TEST_DATA_DIR) / "ur5_kufieta" / name, options);
+}
+
+/// Per output.
+struct Outcome {
+    VectorXd error;    ///< rms over the deviation from the mean of the recording learned
+    VectorXd coverage; ///< share within two standard deviations
+};
+
+Outcome frozen(std::span<const TrainedModel> models, const Recording& learned, const Recording& unseen) {
+    const auto estimator = make_estimator(models, false);
+    const std::size_t outputs = unseen.output.names.size();
+    VectorXd mean = VectorXd::Zero(static_cast<Eigen::Index>(outputs));
+    for (std::size_t row = 0; row < learned.row_count(); ++row) {
+        for (std::size_t k = 0; k < outputs; ++k) {
+            mean[static_cast<Eigen::Index>(k)] +=
+                learned.output.row(row)[k] / static_cast<double>(learned.row_count());
+        }
+    }
+    Outcome outcome{VectorXd::Zero(mean.size()), VectorXd::Zero(mean.size())};
+    VectorXd constant = VectorXd::Zero(mean.size());
+    double predicted = 0;
+    for (std::size_t row = 0; row < unseen.row_count(); ++row) {
+        const Tick tick = estimator->tick({unseen.time_ns[row], unseen.position.row(row), {}, {}, {}},
+                                          dfdyn::Budget::predict_only());
+        if (!tick.status.predicted()) {
+            continue;
+        }
+        ++predicted;
+        for (std::size_t k = 0; k < outputs; ++k) {
+            const auto output = static_cast<Eigen::Index>(k);
+            const double measured = unseen.output.row(row)[k];
+            const double error = measured - static_cast<double>(tick.prediction[k]);
+            outcome.error[output] += error * error;
+            outcome.coverage[output] +=
+                std::abs(error) <= 2 * static_cast<double>(tick.standard_deviation[k]) ? 1 : 0;
+            constant[output] += (measured - mean[output]) * (measured - mean[output]);
+        }
+    }
+    REQUIRE(predicted > 1000);
+    outcome.error = outcome.error.cwiseQuotient(constant).cwiseSqrt();
+    outcome.coverage /= predicted;
+    return outcome;
+}
+
+RobotPhysics physics() {
+    return {dfdyn::tests::ur5(), {"viscous_friction", "coulomb_friction", "torque_offset"}, 0.05, {}};
+}
+
+TrainedModel trained(const Recording& learned, const ModelTraining& training) {
+    return train_model(prepare_training(std::span(&learned, 1), training), OutputKind::motor_current,
+                       training, {})
+        .model;
+}
+
+// This pair had been seen when the range in Extrapolation::parameter_doubt was chosen.
+TEST_CASE("P predicts a motion that a real arm has not shown it, and its deviation holds", "[.long]") {
+    const Recording learned = recording("Movement_No5_Acc_slow_no_disturbance.csv");
+    const Recording unseen = recording("Movement_No9_Singularity_Free_NoDist.csv");
+    ModelTraining training;
+    training.options.model = ModelClass::P;
+    training.options.likelihood_rows = 500;
+    training.options.starts = 2;
+    training.physics = physics();
+    const Outcome calibrated = frozen(std::vector{trained(learned, training)}, learned, unseen);
+    for (Eigen::Index k = 0; k < calibrated.error.size(); ++k) {
+        CAPTURE(k, calibrated.error[k], calibrated.coverage[k]);
+        CHECK(calibrated.error[k] < 1.2);
+        CHECK(calibrated.coverage[k] > 0.9);
+    }
+    training.options.shrinkage = false;
+    const Outcome paper = frozen(std::vector{trained(learned, training)}, learned, unseen);
+    CHECK(paper.error.minCoeff() > 1.5);
+    CHECK(paper.coverage.maxCoeff() < 0.9);
+}
+
+// These rows are among those that chose how much variances weigh.
+TEST_CASE("frozen, a combination is at most 5 % worse than its best member on more of the motion learned",
+          "[.long]") {
+    const std::string name = "Movement_No5_Acc_slow_no_disturbance.csv";
+    const Recording learned = recording(name, {0, 2200});
+    const Recording later = recording(name, {2200});
+    std::vector<TrainedModel> models;
+    for (const ModelClass structure : {ModelClass::NP, ModelClass::P, ModelClass::SPK}) {
+        ModelTraining training;
+        training.options.model = structure;
+        training.options.likelihood_rows = 300;
+        training.options.starts = 2;
+        training.options.refinement_evaluations = 20;
+        if (structure != ModelClass::NP) {
+            training.physics = physics();
+        }
+        models.push_back(trained(learned, training));
+    }
+    const VectorXd combined = frozen(models, learned, later).error;
+    VectorXd best = VectorXd::Constant(combined.size(), std::numeric_limits<double>::infinity());
+    for (const TrainedModel& model : models) {
+        best = best.cwiseMin(frozen({&model, 1}, learned, later).error);
+    }
+    for (Eigen::Index k = 0; k < best.size(); ++k) {
+        CAPTURE(k, combined[k], best[k]);
+        CHECK(combined[k] <= 1.05 * best[k]);
+    }
+}
+
+} // namespace unseen_motion_test

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/base/recording/recording.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// Which field of a row is what.
+struct Header {
+    std::vector<std::string> columns; ///< every column of the file, in its order
+    std::vector<std::optional<std::size_t>>
+        slot; ///< per column: its place among the values read, none when ignored
+    /// Names of the values read, in the order of their places after the time, which is at place 0.
+    std::vector<std::string> position, velocity, acceleration, output;
+
+    std::size_t value_count() const noexcept {
+        return 1 + position.size() + velocity.size() + acceleration.size() + output.size();
+    }
+    /// Columns without a place, for a message.
+    std::vector<std::string> ignored_columns() const;
+};
+
+/// Reads the first line of a recording. Throws InputError, starting with `where` (file and line), when the
+/// line is no header, a name is twice in it, or a column that `options` needs is not.
+Header parse_header(std::string_view line, const std::string& where, const ReadOptions& options);
+
+} // namespace dfdyn::tools

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/base/recording/sample_grid.hpp"
+
+#include "dfdyn/sample_clock.hpp"
+#include "tools/base/numerics/quantile.hpp"
+#include "tools/base/text/error.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr double same_period = 0.01; // relative
+constexpr int refinements = 4;
+
+std::int64_t step_ns(const Recording& recording, std::size_t row) {
+    return recording.time_ns[row] - recording.time_ns[row - 1];
+}
+
+/// Of the steps without a loss in between, with that nominal period; `period_s` where there is none.
+double mean_step_s(std::span<const Recording> recordings, double period_s) {
+    double total_s = 0;
+    double count = 0;
+    for (const Recording& recording : recordings) {
+        const std::vector<std::uint8_t> restarts = window_restarts(recording, period_s);
+        for (std::size_t row = 1; row < recording.row_count(); ++row) {
+            if (restarts[row] == 0) {
+                total_s += 1e-9 * static_cast<double>(step_ns(recording, row));
+                ++count;
+            }
+        }
+    }
+    return count > 0 ? total_s / count : period_s;
+}
+
+} // namespace
+
+double sample_period_s(std::span<const Recording> recordings) {
+    std::vector<double> steps_s;
+    for (const Recording& recording : recordings) {
+        for (std::size_t row = 1; row < recording.row_count(); ++row) {
+            steps_s.push_back(1e-9 * static_cast<double>(step_ns(recording, row)));
+        }
+    }
+    if (steps_s.empty()) {
+        throw InputError(recordings.front().source + ": expected at least two rows to train on, found one");
+    }
+    const double middle_s = median(std::move(steps_s));
+    double period_s = middle_s;
+    for (int refinement = 0; refinement < refinements; ++refinement) {
+        period_s = mean_step_s(recordings, period_s);
+    }
+    return std::abs(period_s / middle_s - 1) <= same_period ? middle_s : period_s;
+}
+
+std::vector<std::uint8_t> window_restarts(const Recording& recording, double period_s) {
+    const std::int64_t period_ns = std::llround(1e9 * period_s);
+    SampleClock clock;
+    std::vector<std::uint8_t> result = recording.gap_before;
+    result.resize(recording.row_count(), 0);
+    for (std::size_t row = 1; row < recording.row_count(); ++row) {
+        const bool lost = clock.lost_before(static_cast<std::uint64_t>(step_ns(recording, row)), period_ns);
+        result[row] = lost || result[row] != 0 ? 1 : 0;
+    }
+    return result;
+}
+
+} // namespace dfdyn::tools

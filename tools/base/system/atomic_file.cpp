@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/base/system/atomic_file.hpp"
+
+#include "tools/base/system/remove_on_signal.hpp"
+#include "tools/base/text/text.hpp"
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <fcntl.h>
+#include <locale>
+#include <optional>
+#include <ostream>
+#include <streambuf>
+#include <string>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace fs = std::filesystem;
+
+/// Buffers into a file descriptor; throws InputError about `path` when the system refuses.
+class DescriptorBuffer : public std::streambuf {
+  public:
+    explicit DescriptorBuffer(fs::path path) : path_(std::move(path)) { reset(); }
+
+    void attach(int descriptor) noexcept { descriptor_ = descriptor; }
+
+  protected:
+    int_type overflow(int_type character) override {
+        drain();
+        if (!traits_type::eq_int_type(character, traits_type::eof())) {
+            sputc(traits_type::to_char_type(character));
+        }
+        return traits_type::not_eof(character);
+    }
+
+    int sync() override {
+        drain();
+        return 0;
+    }
+
+  private:
+    void reset() { setp(buffer_.data(), buffer_.data() + buffer_.size()); }
+
+    void drain() {
+        const char* from = pbase();
+        const char* const to = pptr();
+        reset();
+        while (from != to) {
+            const ssize_t count = ::write(descriptor_, from, static_cast<std::size_t>(to - from));
+            if (count < 0 && errno != EINTR) {
+                throw system_error(path_, "cannot write", errno);
+            }
+            from += count < 0 ? 0 : count;
+        }
+    }
+
+    fs::path path_;
+    int descriptor_ = -1;
+    std::array<char, 1U << 16U> buffer_{};
+};
+
+namespace {
+
+/// Without this the kernel ends the program when a file reaches `ulimit -f`; with it, the write fails with a
+/// reason.
+void ignore_file_size_signal() {
+    struct sigaction action {};
+    if (::sigaction(SIGXFSZ, nullptr, &action) == 0 && action.sa_handler == SIG_DFL) {
+        action.sa_handler = SIG_IGN;
+        ::sigaction(SIGXFSZ, &action, nullptr);
+    }
+}
+
+/// The file that `path` names in the end, when symbolic links lead to it.
+fs::path link_target(fs::path path) {
+    constexpr int most_links = 40; // the kernel's own limit
+    std::error_code ignored;
+    for (int link = 0; link < most_links && fs::is_symlink(path, ignored); ++link) {
+        path = path.parent_path() / fs::read_symlink(path, ignored);
+    }
+    return path;
+}
+
+} // namespace
+
+class AtomicFile::Implementation {
+  public:
+    explicit Implementation(const fs::path& target)
+        : shown_target_(target), buffer_(target), stream_(&buffer_) {
+        ignore_file_size_signal();
+        struct stat status {};
+        const bool exists = ::stat(target.c_str(), &status) == 0;
+        if (exists && !S_ISREG(status.st_mode)) {
+            open_directly();
+        } else {
+            open_beside(exists ? std::optional(status.st_mode & 07777U) : std::nullopt);
+        }
+        buffer_.attach(descriptor_);
+        stream_.imbue(std::locale::classic());
+        stream_.exceptions(std::ios::badbit);
+    }
+
+    ~Implementation() {
+        if (descriptor_ >= 0) {
+            ::close(descriptor_);
+        }
+        remove_temporary();
+    }
+
+    Implementation(const Implementation&) = delete;
+    Implementation& operator=(const Implementation&) = delete;
+
+    std::ostream& stream() noexcept { return stream_; }
+
+    void commit() {
+        if (!stream_) {
+            throw InputError(shown(shown_target_) + ": cannot write: an earlier write failed");
+        }
+        stream_.flush();
+        check(temporary_.empty() ? 0 : ::fsync(descriptor_), "cannot write");
+        check(::close(std::exchange(descriptor_, -1)), "cannot write");
+        if (!temporary_.empty()) {
+            check(::rename(temporary_.c_str(), target_.c_str()), "cannot replace");
+            temporary_.clear();
+        }
+    }
+
+  private:
+    void check(int result, std::string_view cannot) const {
+        if (result < 0) {
+            throw system_error(shown_target_, cannot, errno);
+        }
+    }
+
+    void open_directly() {
+        descriptor_ = ::open(shown_target_.c_str(), O_WRONLY | O_CLOEXEC);
+        check(descriptor_, "cannot write");
+    }
+
+    void open_beside(std::optional<mode_t> mode) {
+        target_ = link_target(fs::absolute(shown_target_));
+        check(mode ? ::faccessat(AT_FDCWD, target_.c_str(), W_OK, AT_EACCESS) : 0, "cannot write");
+        create_temporary();
+        if (mode && ::fchmod(descriptor_, *mode) != 0) {
+            const int reason = errno;
+            ::close(descriptor_);
+            remove_temporary();
+            throw system_error(shown_target_, "cannot create a file beside it", reason);
+        }
+    }
+
+    /// Skips names that a killed run has left behind.
+    void create_temporary() {
+        const std::string prefix = target_.string() + ".tmp." + std::to_string(::getpid()) + ".";
+        for (int attempt = 0; descriptor_ < 0; ++attempt) {
+            temporary_ = prefix + std::to_string(attempt);
+            guard_.emplace(temporary_); // before the file exists, so that no signal finds it unguarded
+            descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+            check(errno == EEXIST ? 0 : descriptor_, "cannot create a file beside it");
+        }
+    }
+
+    void remove_temporary() {
+        if (!temporary_.empty()) {
+            ::unlink(temporary_.c_str());
+        }
+    }
+
+    fs::path shown_target_; ///< as the user named it
+    fs::path target_;       ///< what is replaced: absolute, links followed; empty when written directly
+    std::string temporary_; ///< empty when there is no temporary file
+    std::optional<RemoveOnSignal> guard_;
+    int descriptor_ = -1;
+    DescriptorBuffer buffer_;
+    std::ostream stream_;
+};
+
+AtomicFile::AtomicFile(const fs::path& target) : implementation_(std::make_unique<Implementation>(target)) {}
+
+AtomicFile::~AtomicFile() = default;
+
+std::ostream& AtomicFile::stream() noexcept { return implementation_->stream(); }
+
+void AtomicFile::commit() { implementation_->commit(); }
+
+class GrowingFile::Implementation {
+  public:
+    explicit Implementation(const fs::path& target) : buffer_(target), stream_(&buffer_) {
+        ignore_file_size_signal();
+        descriptor_ = ::open(target.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+        if (descriptor_ < 0) {
+            throw system_error(target, "cannot write", errno);
+        }
+        buffer_.attach(descriptor_);
+        stream_.imbue(std::locale::classic());
+        stream_.exceptions(std::ios::badbit);
+    }
+
+    ~Implementation() {
+        try {
+            stream_.flush();
+        } catch (const std::exception& error) { // whoever has to know flushes before
+            static_cast<void>(error);
+        }
+        ::close(descriptor_);
+    }
+
+    Implementation(const Implementation&) = delete;
+    Implementation& operator=(const Implementation&) = delete;
+
+    std::ostream& stream() noexcept { return stream_; }
+
+  private:
+    int descriptor_ = -1;
+    DescriptorBuffer buffer_;
+    std::ostream stream_;
+};
+
+GrowingFile::GrowingFile(const fs::path& target)
+    : implementation_(std::make_unique<Implementation>(target)) {}
+
+GrowingFile::~GrowingFile() = default;
+
+std::ostream& GrowingFile::stream() noexcept { return implementation_->stream(); }
+
+void check_writable(const fs::path& target) {
+    struct stat status {};
+    if (::stat(target.c_str(), &status) != 0 || S_ISREG(status.st_mode)) {
+        const AtomicFile file(target); // not committed: its temporary file is removed
+        return;
+    }
+    const int reason = S_ISDIR(status.st_mode) ? EISDIR : ::access(target.c_str(), W_OK) == 0 ? 0 : errno;
+    if (reason != 0) {
+        throw system_error(target, "cannot write", reason);
+    }
+}
+
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) {
+        throw InputError(shown(folder) + ": cannot make the folder: " + error.message());
+    }
+}
+
+void write_file(const fs::path& target, std::string_view content) {
+    AtomicFile file(target);
+    file.stream().write(content.data(), static_cast<std::streamsize>(content.size()));
+    file.commit();
+}
+
+} // namespace dfdyn::tools

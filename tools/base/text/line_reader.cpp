@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/base/text/line_reader.hpp"
+
+#include "tools/base/text/text.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <string>
+#include <unistd.h>
+
+namespace dfdyn::tools {
+namespace {
+
+constexpr std::size_t chunk_size = std::size_t{1} << 16U;
+constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+
+} // namespace
+
+LineReader::LineReader(const std::filesystem::path& path)
+    : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)),
+      buffer_(longest_line + 2 + chunk_size) {
+    if (descriptor_ < 0) {
+        throw system_error(path_, "cannot open", errno);
+    }
+}
+
+LineReader::~LineReader() { ::close(descriptor_); }
+
+std::optional<std::string_view> LineReader::next() {
+    std::size_t searched = 0;
+    while (true) {
+        const char* const unread = buffer_.data() + begin_;
+        const void* const found = std::memchr(unread + searched, '\n', end_ - begin_ - searched);
+        if (found != nullptr) {
+            return take(static_cast<std::size_t>(static_cast<const char*>(found) - unread), 1);
+        }
+        searched = end_ - begin_;
+        if (searched > longest_line + 1) {
+            throw too_long(line_number_ + 1);
+        }
+        if (!fill()) {
+            break;
+        }
+    }
+    if (searched == 0) {
+        return std::nullopt;
+    }
+    return take(searched, 0);
+}
+
+InputError LineReader::too_long(std::size_t line_number) const {
+    return InputError(shown(path_) + ":" + std::to_string(line_number) + ": expected a line of at most " +
+                      std::to_string(longest_line) + " bytes, found a longer one");
+}
+
+/// Reads one chunk behind the unread bytes; false at the end of the file.
+bool LineReader::fill() {
+    std::copy(buffer_.data() + begin_, buffer_.data() + end_, buffer_.data());
+    end_ -= begin_;
+    begin_ = 0;
+    ssize_t count = 0;
+    do {
+        count = ::read(descriptor_, buffer_.data() + end_, chunk_size);
+    } while (count < 0 && errno == EINTR);
+    if (count < 0) {
+        throw system_error(path_, "cannot read", errno);
+    }
+    end_ += static_cast<std::size_t>(count);
+    return count > 0;
+}
+
+/// The first `length` unread bytes as a line; they and the `terminator` bytes behind them are then read.
+std::string_view LineReader::take(std::size_t length, std::size_t terminator) {
+    std::string_view line(buffer_.data() + begin_, length);
+    begin_ += length + terminator;
+    terminated_ = terminator > 0;
+    ++line_number_;
+    if (line.ends_with('\r')) {
+        line.remove_suffix(1);
+    }
+    if (line.size() > longest_line) {
+        throw too_long(line_number_);
+    }
+    if (line_number_ == 1 && line.starts_with(byte_order_mark)) {
+        line.remove_prefix(byte_order_mark.size());
+    }
+    return line;
+}
+
+} // namespace dfdyn::tools

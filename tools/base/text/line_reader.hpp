@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/base/text/error.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// Reads a text file, pipe or device line by line in bounded memory. Lines end with LF or CRLF; the last one
+/// may lack its end. A UTF-8 byte order mark at the start is dropped. The bytes of a line may be anything but
+/// LF.
+class LineReader {
+  public:
+    static constexpr std::size_t longest_line = std::size_t{1} << 20U; ///< bytes
+
+    /// Opens `path`. Throws InputError with the system's reason when it cannot be opened.
+    explicit LineReader(const std::filesystem::path& path);
+    ~LineReader();
+    LineReader(const LineReader&) = delete;
+    LineReader& operator=(const LineReader&) = delete;
+
+    /// The next line without its end, or nothing at the end of the file. Valid until the next call. Throws
+    /// InputError when the system refuses to read (a directory, say) or a line is longer than `longest_line`.
+    std::optional<std::string_view> next();
+
+    /// Number of the line that `next` returned last, from 1; 0 before the first.
+    std::size_t line_number() const noexcept { return line_number_; }
+
+    /// Whether the line that `next` returned last has an end: only the last one of a file may lack it.
+    bool terminated() const noexcept { return terminated_; }
+
+  private:
+    bool fill();
+    InputError too_long(std::size_t line_number) const;
+    std::string_view take(std::size_t length, std::size_t terminator);
+
+    std::filesystem::path path_;
+    int descriptor_;
+    std::vector<char> buffer_;
+    std::size_t begin_ = 0; ///< unread bytes are buffer_[begin_, end_)
+    std::size_t end_ = 0;
+    std::size_t line_number_ = 0;
+    bool terminated_ = true;
+};
+
+} // namespace dfdyn::tools

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/bench/timing/interleaved.hpp"
+#include "tools/bench/timing/regression_task.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// A learner of six outputs over the same columns. One tick: predict all outputs for the next row, fold the
+/// row in, and have the weights with which the one after it will be predicted.
+class Contender : public Ticking {
+  public:
+    enum class Kind { ours, covariance, cholesky, gurls, other };
+
+    Contender(std::string name, std::string scalar, Kind kind)
+        : name_(std::move(name)), scalar_(std::move(scalar)), kind_(kind) {}
+
+    const std::string& name() const noexcept { return name_; }
+    const std::string& scalar() const noexcept { return scalar_; } ///< float or double
+    Kind kind() const noexcept { return kind_; }
+
+    /// Predictions for all distinct rows with the present weights.
+    virtual RegressionTask::Matrix predictions() = 0;
+
+  private:
+    std::string name_, scalar_;
+    Kind kind_;
+};
+
+using Contenders = std::vector<std::unique_ptr<Contender>>;
+
+/// The firmware's learner of a size known at compile time: 100, 200, 500, 1000 in float and double, 2000 in
+/// float.
+Contenders our_contenders(const RegressionTask& task);
+
+/// What a user could take instead; those that were there when this program was built.
+Contenders peers(const RegressionTask& task);
+
+/// One line about each peer that is missing, and why.
+std::vector<std::string> missing_peers();
+
+/// The sizes of `our_contenders`.
+const std::vector<int>& contender_columns();
+
+// The parts of `peers`.
+Contenders eigen_peers(const RegressionTask& task);
+Contenders gurls_peers(const RegressionTask& task);
+Contenders qrupdate_peers(const RegressionTask& task);
+Contenders dlib_peers(const RegressionTask& task);
+bool has_blas();
+std::string blas_name();      ///< as far as it tells
+void keep_blas_on_one_core(); ///< as all contenders, where it can be told
+bool has_qrupdate();
+bool has_dlib();
+
+} // namespace dfdyn::tools

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// dlib's recursive least squares, compiled in if dlib's headers were there at build time.
+#include "tools/bench/peers/typed_contender.hpp"
+
+#ifdef DFDYN_HAS_DLIB
+
+#include <dlib/svm/rls.h>
+
+namespace dfdyn::tools {
+
+namespace {
+
+/// It has one output: six of them, as a user would have to.
+class DlibRls final : public TypedContender<double> {
+  public:
+    explicit DlibRls(const RegressionTask& task)
+        : TypedContender("dlib::rls x 6", Contender::Kind::other, task),
+          learners_(RegressionTask::outputs, dlib::rls(1, RegressionTask::prior_variance)) {}
+
+  private:
+    void learn(const double* row, const double* targets) override {
+        const auto h = dlib::mat(row, columns());
+        for (dlib::rls& learner : learners_) {
+            if (learner.get_w().size() > 0) {
+                keep(learner(h));
+            }
+            learner.train(h, *targets++);
+        }
+    }
+    void predict(const double* row, double* means) override {
+        for (const dlib::rls& learner : learners_) {
+            *means++ = learner(dlib::mat(row, columns()));
+        }
+    }
+
+    std::vector<dlib::rls> learners_;
+};
+
+} // namespace
+
+bool has_dlib() { return true; }
+
+Contenders dlib_peers(const RegressionTask& task) {
+    Contenders one;
+    if (task.columns() <= 500) { // beyond, its one tick takes many milliseconds
+        one.push_back(std::make_unique<DlibRls>(task));
+    }
+    return one;
+}
+
+} // namespace dfdyn::tools
+
+#else
+
+namespace dfdyn::tools {
+
+bool has_dlib() { return false; }
+
+Contenders dlib_peers(const RegressionTask& /*task*/) { return {}; }
+
+} // namespace dfdyn::tools
+
+#endif

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/bench/peers/typed_contender.hpp"
+
+#include <Eigen/Cholesky>
+
+namespace dfdyn::tools {
+
+namespace {
+
+/// The textbook's recursion over the covariance, one triangle of it.
+template <class Scalar>
+class EigenCovariance final : public EigenContender<Scalar> {
+    using Base = EigenContender<Scalar>;
+
+  public:
+    explicit EigenCovariance(const RegressionTask& task)
+        : Base("Eigen covariance, symmetric", Contender::Kind::covariance, task),
+          covariance_(Base::Matrix::Identity(this->columns(), this->columns()) *
+                      Scalar(RegressionTask::prior_variance)),
+          gain_(this->columns()) {}
+
+  private:
+    void fold(const typename Base::Row& row, const typename Base::Outputs& targets,
+              const typename Base::Outputs& means) override {
+        gain_.noalias() = covariance_.template selfadjointView<Eigen::Lower>() * row;
+        const Scalar ratio = 1 + row.dot(gain_);
+        keep(ratio);
+        covariance_.template selfadjointView<Eigen::Lower>().rankUpdate(gain_, -1 / ratio);
+        this->weights_.noalias() += gain_ * ((targets - means) / ratio).transpose();
+    }
+
+    typename Base::Matrix covariance_;
+    typename Base::Vector gain_;
+};
+
+/// The paper's route with Eigen: rank-one update of the Cholesky factor of the information matrix, then two
+/// triangular solves for the weights. It gives no variance: that would be one more solve.
+template <class Scalar>
+class EigenCholesky final : public EigenContender<Scalar> {
+    using Base = EigenContender<Scalar>;
+
+  public:
+    explicit EigenCholesky(const RegressionTask& task)
+        : Base("Eigen LLT::rankUpdate and solves", Contender::Kind::cholesky, task),
+          factor_(typename Base::Matrix(Base::Matrix::Identity(this->columns(), this->columns()) /
+                                        Scalar(RegressionTask::prior_variance))),
+          right_(this->weights_) {}
+
+  private:
+    void fold(const typename Base::Row& row, const typename Base::Outputs& targets,
+              const typename Base::Outputs& /*means*/) override {
+        factor_.rankUpdate(row, 1);
+        right_.noalias() += row * targets.transpose();
+        this->weights_ = right_;
+        factor_.solveInPlace(this->weights_);
+    }
+
+    Eigen::LLT<typename Base::Matrix> factor_;
+    typename Base::Matrix right_;
+};
+
+} // namespace
+
+Contenders eigen_peers(const RegressionTask& task) {
+    Contenders all;
+    all.push_back(std::make_unique<EigenCovariance<float>>(task));
+    all.push_back(std::make_unique<EigenCovariance<double>>(task));
+    all.push_back(std::make_unique<EigenCholesky<float>>(task));
+    all.push_back(std::make_unique<EigenCholesky<double>>(task));
+    return all;
+}
+
+} // namespace dfdyn::tools

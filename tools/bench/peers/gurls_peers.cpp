@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// What GURLS (https://github.com/LCSL/GURLS, the paper's tool) does for each sample of its recursive Cholesky
+// update (rlsprimalrecupdatecholesky.h, cholupdateutils.h, gmat2d.hpp), written anew. Compiled in if BLAS was
+// there at build time. GURLS itself is not in Debian.
+#include "tools/bench/peers/typed_contender.hpp"
+
+#ifdef DFDYN_HAS_BLAS
+
+#include "tools/bench/peers/blas.hpp"
+
+#include <cmath>
+
+namespace dfdyn::tools {
+
+namespace {
+
+/// One Givens rotation per row of the upper factor of the information, then two triangular solves: the same
+/// calls of BLAS in the same order in memory, and the same copies of the factor, which is updated in a new
+/// one that goes through another. What else GURLS does for a sample (its list of options, copies of weights
+/// and right sides) is left out, so that GURLS cannot be faster.
+class RecursiveCholesky final : public EigenContender<double> {
+  public:
+    explicit RecursiveCholesky(const RegressionTask& task)
+        : EigenContender("GURLS' Cholesky update, stand-in", Kind::gurls, task),
+          factor_(Matrix::Identity(columns(), columns()) / std::sqrt(RegressionTask::prior_variance)),
+          right_(weights_), row_(columns()) {}
+
+  private:
+    void fold(const Row& row, const Outputs& targets, const Outputs& /*means*/) override {
+        Matrix updated(factor_);
+        rotate(updated, row);
+        const Matrix passed(updated);
+        keep(passed.data());
+        updated = passed;
+        factor_.swap(updated);
+        right_.noalias() += row * targets.transpose();
+        weights_ = right_;
+        solve("T");
+        solve("N");
+    }
+
+    /// Folds the row in.
+    void rotate(Matrix& factor, const Row& row) {
+        row_ = row;
+        const int one = 1;
+        const int stride = columns();
+        for (int i = 0; i < columns(); ++i) {
+            double c = 0;
+            double s = 0;
+            drotg_(&factor(i, i), &row_(i), &c, &s);
+            if (const int rest = columns() - i - 1; rest > 0) {
+                drot_(&rest, &factor(i, i + 1), &stride, &row_(i + 1), &one, &c, &s);
+            }
+        }
+    }
+
+    void solve(const char* transposed) {
+        const int size = columns();
+        const int count = RegressionTask::outputs;
+        const double unscaled = 1;
+        dtrsm_("L", "U", transposed, "N", &size, &count, &unscaled, factor_.data(), &size, weights_.data(),
+               &size);
+    }
+
+    Matrix factor_, right_;
+    Vector row_;
+};
+
+} // namespace
+
+bool has_blas() { return true; }
+
+std::string blas_name() { return openblas_get_config == nullptr ? "not OpenBLAS" : openblas_get_config(); }
+
+void keep_blas_on_one_core() {
+    if (openblas_set_num_threads != nullptr) {
+        openblas_set_num_threads(1);
+    }
+}
+
+Contenders gurls_peers(const RegressionTask& task) {
+    Contenders one;
+    one.push_back(std::make_unique<RecursiveCholesky>(task));
+    return one;
+}
+
+} // namespace dfdyn::tools
+
+#else
+
+namespace dfdyn::tools {
+
+bool has_blas() { return false; }
+
+std::string blas_name() { return "none"; }
+
+void keep_blas_on_one_core() {}
+
+Contenders gurls_peers(const RegressionTask& /*task*/) { return {}; }
+
+} // namespace dfdyn::tools
+
+#endif

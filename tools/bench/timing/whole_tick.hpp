@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/budget.hpp"
+#include "tools/bench/timing/keep.hpp"
+#include "tools/bench/timing/regression_task.hpp"
+
+namespace dfdyn::tools {
+
+/// One tick of a learner of the firmware: predict from the `rows`, take them in with their targets, learn.
+/// The variance comes with learning, as in the estimator.
+template <class Learner, class Scalar, class... Rows>
+void whole_tick(Learner& learner, const Scalar* targets, const Rows*... rows) {
+    Scalar means[RegressionTask::outputs];
+    learner.predict(rows..., means);
+    keep(means);
+    Budget budget = Budget::unlimited();
+    learner.begin(rows..., targets);
+    learner.advance(budget);
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/can/check/bus_check.hpp"
+
+#include "tools/can/arm/bus_wire.hpp"
+#include "tools/can/arm/device_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace dfdyn::tools {
+
+namespace {
+
+std::span<const hal::Frame> span_of(const hal::FrameList& list) {
+    return std::span(list.frame).first(static_cast<std::size_t>(list.count));
+}
+
+/// How far apart the positions (rad) lie at which a board's encoder begins anew: a turn of it; 0 where it
+/// does not.
+double encoder_turn_rad(const AnyBoard& board) {
+    constexpr double turn_rad = 2 * std::numbers::pi;
+    if (const auto* foc = std::get_if<hal::icub::FocBoard>(&board.device())) {
+        return turn_rad / std::abs(foc->config().motor_per_joint);
+    }
+    if (const auto* odrive = std::get_if<hal::OdriveAxis>(&board.device())) {
+        return turn_rad / std::abs(odrive->config().motor_per_joint);
+    }
+    return turn_rad;
+}
+
+} // namespace
+
+BusCheck::BusCheck(std::optional<BusDescription> description) : description_(std::move(description)) {
+    if (description_) {
+        describe();
+    }
+}
+
+/// What the description says of each identifier and joint.
+void BusCheck::describe() {
+    arm_ = make_bus_arm(*description_);
+    boards_ = description_->boards;
+    BusDescription joints = *description_;
+    joints.sensor.reset(); // which need not be able to send
+    const DeviceFrames devices(joints);
+    const std::vector<double> zeros(static_cast<std::size_t>(joints.joint_count));
+    expect(devices.joints(zeros, zeros), description_->joints.rate_hz);
+    if (const std::optional<hal::Frame> sync = devices.sync()) {
+        expect({&*sync, 1}, description_->joints.rate_hz);
+    }
+    if (description_->sensor) {
+        const hal::FrameList frames = description_->sensor->encode({});
+        expect(span_of(frames), description_->output.rate_hz);
+        name_sender(span_of(frames), "sensor");
+    }
+    joints_.resize(zeros.size());
+    restarts_.resize(zeros.size());
+    position_keys_.resize(zeros.size());
+    for (const BusBoard& board : description_->boards) {
+        for (const int joint : board.joint) {
+            if (joint != hal::unused_joint) {
+                const hal::FrameList frames = board.board.encode({});
+                const hal::Frame& position = frames.frame.front();
+                name_sender(span_of(frames), "joint " + std::to_string(joint + 1));
+                position_keys_.at(static_cast<std::size_t>(joint)) = {position.extended, position.id};
+                joints_.at(static_cast<std::size_t>(joint)) = ValueWatch(encoder_turn_rad(board.board));
+            }
+        }
+    }
+}
+
+/// One after the other where there are several.
+void BusCheck::name_sender(std::span<const hal::Frame> frames, const std::string& name) {
+    for (const hal::Frame& frame : frames) {
+        std::string& sender = streams_[{frame.extended, frame.id}].sender;
+        sender += (sender.empty() ? "" : ", ") + name;
+    }
+}
+
+void BusCheck::expect(std::span<const hal::Frame> frames, double rate_hz) {
+    for (const hal::Frame& frame : frames) {
+        BusStream& stream = streams_[{frame.extended, frame.id}];
+        stream.several = stream.known; // variants of one message
+        stream.known = true;
+        stream.length = frame.length;
+        stream.expected_hz += rate_hz;
+        stream.expected_bits += rate_hz * frame_bits(frame);
+    }
+}
+
+bool BusCheck::claimed(const hal::Frame& frame) const {
+    const auto claims = [&](const BusBoard& board) { return board.board.claims(frame.id); };
+    return description_ && !frame.extended &&
+           (std::ranges::any_of(boards_, claims) ||
+            (description_->sensor && description_->sensor->claims(frame.id)));
+}
+
+/// Of the host, on the identifier on which the sensor answers.
+bool BusCheck::is_request(const hal::Frame& frame) const {
+    const auto* ati = description_ && description_->sensor
+                          ? std::get_if<hal::AtiNetcan>(&description_->sensor->device())
+                          : nullptr;
+    return ati != nullptr && hal::has_id(frame, ati->poll().id) && frame.length == 0;
+}
+
+void BusCheck::update(hal::BusState state, const hal::BusCounters& counters) {
+    state_ = state;
+    worst_ = std::max(worst_, state);
+    counters_ = counters;
+    if (arm_) {
+        arm_->update(state, counters);
+    }
+}
+
+/// The bus has been watched until then.
+void BusCheck::pass(std::int64_t time_ns) {
+    first_ns_ = started_ ? first_ns_ : time_ns;
+    last_ns_ = started_ ? std::max(last_ns_, time_ns) : time_ns;
+    started_ = true;
+}
+
+void BusCheck::take(const hal::Frame& frame) {
+    if (frame.error) {
+        return;
+    }
+    for (const StreamClock::Timed& timed : clock_.take(frame)) {
+        take(timed);
+    }
+}
+
+void BusCheck::finish() {
+    for (const StreamClock::Timed& timed : clock_.finish()) {
+        take(timed);
+    }
+}
+
+void BusCheck::take(const StreamClock::Timed& timed) {
+    const hal::Frame& frame = timed.frame;
+    bits_ += frame_bits(frame);
+    from_host_ += frame.origin == hal::Origin::this_host ? 1 : 0;
+    BusStream* const stream = is_request(frame) ? nullptr : stream_of(frame);
+    if (timed.stray) {
+        return;
+    }
+    pass(frame.stamp_ns);
+    if (stream != nullptr) {
+        stream->take(frame, frame_bits(frame));
+    }
+    if (!arm_) {
+        return;
+    }
+    const std::uint64_t rejected = arm_->bus().rejected.count();
+    arm_->take(frame, last_ns_);
+    if (stream != nullptr && arm_->bus().rejected.count() != rejected) {
+        ++stream->rejected;
+    }
+    watch_joints(frame);
+    assemble(last_ns_);
+}
+
+void BusCheck::watch_joints(const hal::Frame& frame) {
+    for (BusBoard& board : boards_) {
+        const hal::Decoded decoded = board.board.decode(frame);
+        if (decoded.kind == hal::Decoded::Kind::status && decoded.reason == hal::Reason::device_restarted) {
+            ++restarts_.at(static_cast<std::size_t>(std::max(board.joint[0], 0)));
+        }
+        for (int i = 0; i < decoded.joints; ++i) {
+            const hal::JointValue& value = decoded.joint.at(static_cast<std::size_t>(i));
+            if (value.joint >= 0 && value.joint < static_cast<int>(joints_.size())) {
+                joints_[static_cast<std::size_t>(value.joint)].take(value);
+            }
+        }
+    }
+}
+
+/// Null where there is no room for another one.
+BusStream* BusCheck::stream_of(const hal::Frame& frame) {
+    const BusStreamKey key{frame.extended, frame.id};
+    const auto found = streams_.find(key);
+    if (found != streams_.end() && found->second.count > 0) {
+        return &found->second;
+    }
+    if (found == streams_.end() && streams_.size() >= most_streams) {
+        return nullptr;
+    }
+    BusStream& stream = streams_[key];
+    stream.known = stream.known || claimed(frame);
+    stream.infers = !description_;
+    return &stream;
+}
+
+/// What the devices say of themselves, at the sample rate.
+void BusCheck::assemble(std::int64_t now_ns) {
+    if (now_ns < next_sample_ns_) {
+        return;
+    }
+    next_sample_ns_ = now_ns + description_->sample_period_ns();
+    const BusSample& sample = arm_->assemble(now_ns, now_ns);
+    ++samples_;
+    last_position_ = sample.position_reason;
+    last_output_ = sample.output_reason;
+    ++refused_.at(static_cast<std::size_t>(sample.position_reason));
+    if (sample.output_reason != sample.position_reason) {
+        ++refused_.at(static_cast<std::size_t>(sample.output_reason));
+    }
+}
+
+const BusStream* BusCheck::position_stream(std::size_t joint) const {
+    const auto found = streams_.find(position_keys_.at(joint));
+    return found == streams_.end() ? nullptr : &found->second;
+}
+
+std::uint64_t BusCheck::device_losses() const noexcept {
+    const std::uint64_t own = counters_.dropped + counters_.controller_overruns;
+    const std::uint64_t all = arm_ ? arm_->bus().health.losses() : 0;
+    return all > own ? all - own : 0;
+}
+
+std::uint64_t BusCheck::refused(hal::Reason reason) const {
+    return refused_.at(static_cast<std::size_t>(reason));
+}
+
+bool BusCheck::still(hal::Reason reason) const {
+    return samples_ > 0 && (last_position_ == reason || last_output_ == reason);
+}
+
+double BusCheck::age_s(const BusStream& stream) const { return seconds_of(last_ns_ - stream.last_ns); }
+
+bool BusCheck::dropped_all_missing() const {
+    std::uint64_t missing = 0;
+    for (const auto& [key, stream] : streams_) {
+        missing += stream.missing();
+    }
+    const std::uint64_t dropped = counters_.dropped + counters_.controller_overruns;
+    return dropped > 0 && 2 * missing <= 3 * dropped; // with what would be missing by chance
+}
+
+double BusCheck::duration_s() const { return seconds_of(last_ns_ - first_ns_); }
+
+double BusCheck::load() const {
+    return duration_s() > 0 && bit_rate() > 0 ? bits_ / duration_s() / bit_rate() : 0;
+}
+
+double BusCheck::expected_load() const {
+    double bits_per_s = 0;
+    for (const auto& [key, stream] : streams_) {
+        bits_per_s += stream.expected_bits;
+    }
+    return bit_rate() > 0 ? bits_per_s / bit_rate() : 0;
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/can/check/bus_check.hpp"
+
+#include <array>
+#include <cstdio>
+
+namespace dfdyn::tools {
+
+namespace {
+
+const char* state_name(hal::BusState state) {
+    switch (state) {
+    case hal::BusState::active:
+        return "error-active";
+    case hal::BusState::warning:
+        return "error warning";
+    case hal::BusState::passive:
+        return "error-passive";
+    case hal::BusState::off:
+        return "bus-off";
+    case hal::BusState::interface_down:
+        return "interface down";
+    }
+    return "unknown";
+}
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+    std::array<char, 160> line{};
+    std::snprintf(line.data(), line.size(), format, values...);
+    return line.data();
+}
+
+double share(const BusCheck& check, double bits) {
+    const double possible_bits = check.duration_s() * check.bit_rate();
+    return possible_bits > 0 ? 100 * bits / possible_bits : 0;
+}
+
+std::string sender_of(const BusCheck& check, const BusStream& stream) {
+    return stream.known ? stream.sender : check.description() != nullptr ? "not described" : "";
+}
+
+void print_source(std::ostream& out, const BusCheck& check, const BusStreamKey& key,
+                  const BusStream& stream) {
+    out << text("%-10s %9llu %9.1f %9.1f %9.3f %9.3f %9.1f %6.2f %6.1f  %s\n", id_text(key).c_str(),
+                static_cast<unsigned long long>(stream.count), stream.rate_hz(), stream.expected_hz,
+                1e3 * stream.jitter_s(), 1e-6 * static_cast<double>(stream.longest_gap_ns),
+                stream.count > 0 ? 1e3 * check.age_s(stream) : 0.0, 100 * stream.missing_share(),
+                share(check, stream.bits), sender_of(check, stream).c_str());
+}
+
+std::string load_text(const BusCheck& check) {
+    return check.bit_rate() > 0 ? text("load at most %.1f %% of %.0f bit/s, as described %.1f %%",
+                                       100 * check.load(), check.bit_rate(), 100 * check.expected_load())
+                                : "the load is not known without --bus";
+}
+
+void print_bus(std::ostream& out, const BusCheck& check) {
+    const hal::BusCounters& counters = check.counters();
+    out << "bus: " << state_name(check.state()) << "; " << counters.received << " frames in "
+        << text("%.3f s; ", check.duration_s()) << load_text(check) << '\n';
+    out << "     " << counters.dropped << " dropped, " << counters.controller_overruns << " overruns, "
+        << counters.error_frames << " error frames, " << counters.lost_arbitrations << " arbitrations lost, "
+        << counters.bus_off << " times bus-off, " << counters.restarted << " restarted\n";
+    if (check.from_host() > 0) {
+        out << "     " << check.from_host() << " frames were sent by programs of this computer\n";
+    }
+}
+
+} // namespace
+
+void print_bus_check(std::ostream& out, const BusCheck& check, std::span<const BusFinding> findings) {
+    out << text("%-10s %9s %9s %9s %9s %9s %9s %6s %6s  %s\n", "identifier", "frames", "rate/Hz",
+                check.description() != nullptr ? "described" : "steady", "jitter/ms", "pause/ms", "age/ms",
+                "lost/%", "load/%", "sender");
+    for (const auto& [key, stream] : check.streams()) {
+        print_source(out, check, key, stream);
+    }
+    print_bus(out, check);
+    for (const BusFinding& finding : findings) {
+        out << "\n"
+            << finding.rule << ": " << finding.what << "\n  inferred from: " << finding.evidence
+            << "\n  to confirm:    " << finding.confirm << "\n  to fix:        " << finding.fix << '\n';
+    }
+    if (findings.empty()) {
+        out << "nothing is wrong\n";
+    }
+}
+
+} // namespace dfdyn::tools

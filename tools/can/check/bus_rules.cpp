@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+// What can be wrong with a bus, and what devices say of themselves, one rule each.
+#include "tools/can/check/bus_check.hpp"
+
+#include "tools/base/text/number.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr double largest_load = 0.8;
+constexpr double largest_unknown_load = 0.1;
+constexpr double least_refused = 0.01; ///< of the samples or frames; for what may happen now and then
+
+std::string counted(std::uint64_t count, const char* of) {
+    return count > 0 ? std::to_string(count) + of : std::string();
+}
+
+bool is_silent(const BusCheck& check) {
+    return std::ranges::all_of(check.streams(), [](const auto& entry) { return entry.second.count == 0; });
+}
+
+std::string silence(const BusCheck& check) {
+    return is_silent(check) ? "no frame of anybody in " + number_text(check.duration_s()) + " s" : "";
+}
+
+std::string overload(const BusCheck& check) {
+    const double load = std::max(check.load(), check.expected_load());
+    const char* const how = check.load() >= check.expected_load() ? " measured" : " as described";
+    return load > largest_load ? percent(load) + " of the bit rate" + how + ", stuffed bits at worst" : "";
+}
+
+std::string strangers(const BusCheck& check) {
+    double bits = 0;
+    int identifiers = 0;
+    std::string first;
+    for (const auto& [key, stream] : check.streams()) {
+        if (!stream.known) {
+            first = identifiers == 0 ? id_text(key) : first;
+            bits += stream.bits;
+            ++identifiers;
+        }
+    }
+    const double possible_bits = check.duration_s() * check.bit_rate();
+    const double share = possible_bits > 0 ? bits / possible_bits : 0;
+    return share > largest_unknown_load
+               ? percent(share) + " of the bit rate on " + std::to_string(identifiers) +
+                     " identifiers that nobody described, first " + first
+               : "";
+}
+
+std::string errors(const BusCheck& check) {
+    const hal::BusState worst = check.worst_state();
+    if (worst == hal::BusState::warning || worst == hal::BusState::passive) {
+        return std::string("an error counter beyond ") + (worst == hal::BusState::passive ? "127" : "95");
+    }
+    return "";
+}
+
+std::string jumps(const BusCheck& check) {
+    const StreamClock& clock = check.clock();
+    std::string text;
+    if (clock.steps() > 0) {
+        const double step_s = 1e-9 * static_cast<double>(clock.largest_step_ns());
+        text = "all stamps go " + number_text(std::abs(step_s)) + " s " + (step_s < 0 ? "back" : "ahead") +
+               " at once" +
+               (clock.steps() > 1 ? ", or less, " + std::to_string(clock.steps()) + " times" : "") +
+               (step_s < 0 ? "" : " (or the whole bus was silent for so long)");
+    }
+    if (clock.strays() > 0) {
+        text +=
+            (text.empty() ? "" : "; ") + counted(clock.strays(), " stamps far from those before and after");
+    }
+    return text;
+}
+
+std::string repeated_times(const BusCheck& check) {
+    std::uint64_t frames = 0, not_increasing = 0;
+    for (const auto& [key, stream] : check.streams()) {
+        frames += stream.count;
+        not_increasing += stream.not_increasing;
+    }
+    return static_cast<double>(not_increasing) > least_refused * static_cast<double>(frames)
+               ? std::to_string(not_increasing) + " of " + std::to_string(frames) +
+                     " frames not after the one before of their identifier"
+               : "";
+}
+
+struct BusRule {
+    const char* name;
+    const char* what;
+    std::string (*evidence)(const BusCheck&); ///< empty: all is well
+    const char* confirm;
+    const char* fix;
+};
+
+constexpr std::array<BusRule, 12> bus_rules{{
+    {"silent_bus", "nothing is sent at all", silence, "candump IFACE; ip -details link show IFACE",
+     "the interface up, with the bit rate of the devices; power, cable; the right interface"},
+    {"overload", "the bus carries more than it can with a margin", overload,
+     "ip -details link show IFACE says the bit rate; canbusload IFACE@BITRATE measures the load",
+     "a second bus, lower rates, or CAN FD"},
+    {"unknown_traffic", "others take much of the bus", strangers, "unplug devices until it is gone",
+     "take them off this bus, or make them send less"},
+    {"bus_off", "the controller went off the bus",
+     [](const BusCheck& check) { return counted(check.counters().bus_off, " times bus-off"); },
+     "ip -details -statistics link show IFACE: the state, the error counters, restart-ms",
+     "find the short, the wrong bit rate or the missing termination; set restart-ms so that it comes back"},
+    {"error_passive", "the controller sees many errors", errors,
+     "with the power off 60 Ohm between CAN-H and CAN-L",
+     "check termination, cable, and the bit rate of every node"},
+    {"wire_errors", "bits, forms or checksums were wrong on the wire",
+     [](const BusCheck& check) { return counted(check.counters().bus_errors, " error frames of the wire"); },
+     "an oscilloscope on CAN-H and CAN-L; unplug devices until they end",
+     "check termination, cable, stubs, grounding; two devices on one identifier do it too"},
+    {"no_acknowledgement", "nobody listens",
+     [](const BusCheck& check) {
+         return counted(check.counters().no_acknowledgements, " frames that nobody acknowledged");
+     },
+     "any other powered node on the bus ends it",
+     "connect and power the other nodes; the same bit rate everywhere"},
+    {"frames_dropped", "this computer lost frames",
+     [](const BusCheck& check) {
+         return counted(check.counters().dropped + check.counters().controller_overruns,
+                        " frames dropped or overrun");
+     },
+     "ip -details -statistics link show IFACE: dropped, overrun",
+     "read more often and at a real-time priority; filters; a larger receive buffer (net.core.rmem_max)"},
+    {"device_lost_frames", "a device lost messages",
+     [](const BusCheck& check) { return counted(check.device_losses(), " times a device said so"); },
+     "read the device's status", "send less to it; lower the load"},
+    {"interface_down", "the interface went down",
+     [](const BusCheck& check) { return counted(check.counters().interface_down, " times down"); },
+     "ip link show IFACE", "ip link set IFACE up; check the adapter and its cable"},
+    {"clock_jumped", "time stamps jump", jumps, "timedatectl; journalctl -u systemd-timesyncd",
+     "do not set the clock while recording; stamps of the adapter's hardware"},
+    {"time_not_increasing", "time stamps repeat or run backward", repeated_times, "candump -t d IFACE",
+     "stamps of the kernel, not of the program that reads"},
+}};
+
+struct DeviceRule {
+    hal::Reason reason;
+    enum { ever, often, at_end } when;
+    const char* name;
+    const char* what;
+    const char* confirm;
+    const char* fix;
+};
+
+constexpr std::array<DeviceRule, 13> device_rules{{
+    {hal::Reason::encoder_fault, DeviceRule::ever, "encoder_fault",
+     "a board says that its encoder is in error", "read the board's status",
+     "check the encoder and its cable"},
+    {hal::Reason::device_fault, DeviceRule::ever, "device_fault", "a device reports a fault",
+     "read the device's error code", "clear the fault's cause, then the fault"},
+    {hal::Reason::device_not_operational, DeviceRule::ever, "not_operational",
+     "a device is not in its operational state", "read its heartbeat: candump IFACE,700:780",
+     "start the node (NMT start)"},
+    {hal::Reason::heartbeat_missing, DeviceRule::often, "heartbeat_missing",
+     "a heartbeat is missing that has to vouch for the values", "candump IFACE shows whether it is sent",
+     "enable the device's heartbeat; correct heartbeat_timeout_s"},
+    {hal::Reason::qualifying, DeviceRule::at_end, "zeros",
+     "a source shows nothing but zeros, or too little to be believed", "move the joint, or load the sensor",
+     "wait until the encoder knows its position; calibrate it"},
+    {hal::Reason::position_out_of_range, DeviceRule::ever, "position_out_of_range",
+     "a position is beyond what the joint can have", "read the angle with the maker's own program",
+     "correct scale and zero, or limit_rad, in the description"},
+    {hal::Reason::output_out_of_range, DeviceRule::ever, "output_out_of_range",
+     "an output is beyond what the sensor can show", "unload the sensor and look again",
+     "correct full scale, calibration or limit in the description"},
+    {hal::Reason::output_saturated, DeviceRule::ever, "sensor_saturated",
+     "the sensor is overloaded, or its converter at its end", "unload the sensor and look again",
+     "a lower load, or a sensor of larger range"},
+    {hal::Reason::output_frozen, DeviceRule::ever, "sensor_frozen", "the sensor repeats the same raw values",
+     "touch the sensor: the bytes do not change (candump -c IFACE)", "restart the sensor"},
+    {hal::Reason::output_incomplete, DeviceRule::often, "incomplete_wrench",
+     "one of the two frames of a wrench is missing, or comes late", "candump -t d IFACE,300:700",
+     "check the second identifier; lower the load; pair_window_s in the description"},
+    {hal::Reason::waiting_for_full_scale, DeviceRule::at_end, "full_scale_unknown",
+     "the sensor has not told its full scale, without which its values mean nothing",
+     "ask it: cansend IFACE ID#1800, and 01 to 05",
+     "dfdyn replay --can asks by itself; or full_scale in the description"},
+    {hal::Reason::full_scale_contradicted, DeviceRule::ever, "full_scale_contradicted",
+     "the sensor reports another full scale than described, or than before",
+     "ask the sensor for the full scale of each channel: cansend IFACE ID#1800, and 01 to 05",
+     "the full scales of the set in use in the description; let nobody change the set while the arm runs"},
+    {hal::Reason::full_scale_implausible, DeviceRule::ever, "full_scale", "the sensor's full scale cannot be",
+     "ask the sensor for the full scale of each channel", "correct it in the sensor or the description"},
+}};
+
+/// A source also qualifies after each gap.
+bool may_be_zero(const BusCheck& check) {
+    return check.sensor() != nullptr || std::ranges::any_of(check.joints(), &ValueWatch::at_zero);
+}
+
+bool holds(const DeviceRule& rule, const BusCheck& check) {
+    const std::uint64_t refused = check.refused(rule.reason);
+    switch (rule.when) {
+    case DeviceRule::often:
+        return static_cast<double>(refused) > least_refused * static_cast<double>(check.samples());
+    case DeviceRule::at_end:
+        return check.still(rule.reason) && (rule.reason != hal::Reason::qualifying || may_be_zero(check));
+    case DeviceRule::ever:
+        break;
+    }
+    return refused > 0;
+}
+
+} // namespace
+
+std::vector<BusFinding> bus_findings(const BusCheck& check) {
+    std::vector<BusFinding> findings;
+    for (const BusRule& rule : bus_rules) {
+        if (std::string evidence = rule.evidence(check); !evidence.empty()) {
+            findings.push_back({rule.name, rule.what, std::move(evidence), rule.confirm, rule.fix});
+        }
+    }
+    if (is_silent(check)) {
+        return findings; // which of the sources is silent says nothing
+    }
+    std::ranges::move(source_findings(check), std::back_inserter(findings));
+    std::ranges::move(value_findings(check), std::back_inserter(findings));
+    const bool sensor = check.sensor() != nullptr;
+    for (const DeviceRule& rule : device_rules) {
+        // Efforts have their own rules, of each joint.
+        const bool of_sensor =
+            rule.reason == hal::Reason::output_saturated || rule.reason == hal::Reason::output_frozen;
+        if (holds(rule, check) && (sensor || !of_sensor)) {
+            findings.push_back({rule.name, rule.what,
+                                std::to_string(check.refused(rule.reason)) + " of " +
+                                    std::to_string(check.samples()) + " samples: " + hal::name(rule.reason),
+                                rule.confirm, rule.fix});
+        }
+    }
+    return findings;
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/can/check/bus_stream.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr std::size_t intervals_to_infer = 32;
+constexpr double same_period = 0.3;   ///< of the period: intervals that differ by less are alike
+constexpr double phase_gain = 0.125;  ///< of the phase-locked loop
+constexpr double steady_share = 0.75; ///< of the first intervals
+
+} // namespace
+
+void BusStream::take(const hal::Frame& frame, double frame_bits) {
+    const bool first = count == 0;
+    ++count;
+    bits += frame_bits;
+    length = frame.length;
+    if (first) {
+        first_ns = last_ns = frame.stamp_ns;
+        return;
+    }
+    take_interval(frame.stamp_ns - last_ns);
+    last_ns = std::max(last_ns, frame.stamp_ns);
+}
+
+void BusStream::take_interval(std::int64_t interval_ns) {
+    not_increasing += interval_ns <= 0 ? 1 : 0;
+    longest_gap_ns = std::max(longest_gap_ns, interval_ns);
+    interval_square_sum_s2_ += seconds_of(interval_ns) * seconds_of(interval_ns);
+    if (expected_hz > 0) {
+        follow_phase(last_ns + interval_ns, interval_ns);
+    } else if (infers && first_intervals_.size() < intervals_to_infer) {
+        first_intervals_.push_back(interval_ns);
+        if (first_intervals_.size() == intervals_to_infer) {
+            infer_period();
+        }
+    }
+}
+
+/// The mean of the intervals that are close to the median, if most are.
+void BusStream::infer_period() {
+    std::vector<std::int64_t> sorted = first_intervals_;
+    std::ranges::sort(sorted);
+    const auto median_ns = static_cast<double>(sorted[sorted.size() / 2]);
+    double sum_ns = 0;
+    double close = 0;
+    for (const std::int64_t interval_ns : sorted) {
+        if (std::abs(static_cast<double>(interval_ns) - median_ns) < same_period * median_ns) {
+            sum_ns += static_cast<double>(interval_ns);
+            ++close;
+        }
+    }
+    const bool steady = median_ns > 0 && close >= steady_share * static_cast<double>(sorted.size());
+    expected_hz = steady ? 1e9 * close / sum_ns : 0;
+}
+
+void BusStream::follow_phase(std::int64_t stamp_ns, std::int64_t interval_ns) {
+    const double period_ns = 1e9 / expected_hz;
+    const auto now_ns = static_cast<double>(stamp_ns);
+    const double periods = static_cast<double>(interval_ns) / period_ns;
+    ++followed_;
+    if (std::abs(periods - 1) < same_period) {
+        ++regular_;
+        regular_periods_ += periods;
+    }
+    if (followed_ == 1 || periods > gap_periods) {
+        next_ns_ = now_ns + period_ns;
+        return;
+    }
+    const double skipped = std::round((now_ns - next_ns_) / period_ns);
+    missing_ += static_cast<std::int64_t>(skipped);
+    const double due_ns = next_ns_ + skipped * period_ns;
+    next_ns_ = due_ns + phase_gain * (now_ns - due_ns) + period_ns;
+}
+
+double BusStream::rate_hz() const {
+    return count > 1 && last_ns > first_ns ? static_cast<double>(count - 1) / seconds_of(last_ns - first_ns)
+                                           : 0;
+}
+
+double BusStream::jitter_s() const {
+    if (count < 3 || last_ns == first_ns) {
+        return 0;
+    }
+    const double mean_s = 1 / rate_hz();
+    return std::sqrt(
+        std::max(0.0, interval_square_sum_s2_ / static_cast<double>(count - 1) - mean_s * mean_s));
+}
+
+std::uint64_t BusStream::missing() const {
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(missing_, 0));
+}
+
+double BusStream::missing_share() const {
+    const auto lost = static_cast<double>(missing());
+    return count > 0 ? lost / (lost + static_cast<double>(count)) : 0;
+}
+
+bool BusStream::is_regular() const {
+    constexpr double same_mean = 0.05;
+    const double mean = regular_ > 0 ? regular_periods_ / static_cast<double>(regular_) : 0;
+    return 2 * regular_ >= followed_ && std::abs(mean - 1) < same_mean;
+}
+
+std::string id_text(const BusStreamKey& key) {
+    std::array<char, 16> text{};
+    std::snprintf(text.data(), text.size(), key.first ? "0x%08X" : "0x%03X", key.second);
+    return text.data();
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// What can be wrong with one source on a bus, one rule each, and what a person does about it.
+#include "tools/base/text/number.hpp"
+#include "tools/can/check/bus_check.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr double least_rate = 0.9;     ///< of the expected one
+constexpr double largest_rate = 1.02;  ///< of the expected one; a device's clock is better
+constexpr double rate_of_two = 1.5;    ///< of the expected one
+constexpr double largest_gap = 3;      ///< periods
+constexpr double largest_jitter = 0.4; ///< of the period
+constexpr double silent_periods = 10;  ///< before the end
+constexpr double enough_frames = 20;
+constexpr double jitter_of_two = 0.25;   ///< of the period: what two senders of an identifier make of it
+constexpr double least_missing = 0.0005; ///< of the frames; below it a loss is not worth a word
+constexpr std::uint64_t least_missing_frames = 3;
+
+struct Source {
+    const BusStreamKey& key;
+    const BusStream& stream;
+    const BusCheck& check;
+
+    double ratio() const { return stream.rate_hz() / stream.expected_hz; }
+    double periods(double time_s) const { return time_s * stream.expected_hz; }
+    double gap_periods() const { return periods(1e-9 * static_cast<double>(stream.longest_gap_ns)); }
+    double jitter_periods() const { return periods(stream.jitter_s()); }
+    bool silent() const { return stream.expected_hz > 0 && stream.count == 0; }
+    bool stopped() const {
+        return stream.expected_hz > 0 && stream.count > 0 && periods(check.age_s(stream)) > silent_periods;
+    }
+    /// It sends, and long enough to be judged.
+    bool runs() const {
+        return stream.expected_hz > 0 && static_cast<double>(stream.count) > enough_frames && !stopped();
+    }
+    bool is_described() const { return runs() && !stream.infers; }
+    bool collides() const {
+        return is_described() &&
+               (ratio() > rate_of_two || (ratio() > largest_rate && jitter_periods() > jitter_of_two));
+    }
+    /// Some frames of a sender that keeps its period are missing. What this computer dropped itself is known
+    /// from elsewhere.
+    bool loses() const {
+        return runs() && !collides() && !check.dropped_all_missing() &&
+               stream.missing() >= least_missing_frames && stream.missing_share() >= least_missing &&
+               (stream.several || stream.is_regular());
+    }
+    bool slow() const { return is_described() && ratio() < least_rate && !loses() && !has_gaps(); }
+    /// A pause that scattered losses do not explain.
+    bool has_gaps() const {
+        return runs() && !collides() && gap_periods() > (loses() ? BusStream::gap_periods : largest_gap) &&
+               stream.is_regular();
+    }
+    bool keeps_rate() const { return runs() && ratio() >= least_rate && ratio() <= largest_rate; }
+};
+
+std::string rates(const Source& source) {
+    return formatted("%.4g frames/s", source.stream.rate_hz()) +
+           formatted(" where %.4g are described", source.stream.expected_hz);
+}
+
+/// An identifier that nobody described and that looks like a silent one's; null for none.
+const BusStreams::value_type* impostor(const Source& source) {
+    for (const auto& other : source.check.streams()) {
+        const BusStream& stream = other.second;
+        const bool alike = !stream.known && stream.length == source.stream.length &&
+                           std::abs(stream.rate_hz() / source.stream.expected_hz - 1) < 1 - least_rate;
+        if (alike && other.first.first == source.key.first) {
+            return &other;
+        }
+    }
+    return nullptr;
+}
+
+struct Rule {
+    const char* name;
+    const char* what;
+    bool (*broken)(const Source&);
+    std::string (*evidence)(const Source&);
+    const char* confirm; ///< ID stands for the identifier
+    const char* fix;
+};
+
+constexpr std::array<Rule, 10> rules{{
+    {"wrong_identifier", "is not sent; another identifier is, just so",
+     [](const Source& s) { return s.silent() && impostor(s) != nullptr; },
+     [](const Source& s) {
+         const auto& [key, stream] = *impostor(s);
+         return id_text(key) + formatted(", which nobody described, sends %.4g frames/s", stream.rate_hz()) +
+                " of " + std::to_string(stream.length) + " bytes, as this one should";
+     },
+     "move the joint, or load the sensor, by hand: the bytes of those frames change (candump -c IFACE)",
+     "correct the address in the description, or in the device"},
+    {"silent_source", "is never sent", [](const Source& s) { return s.silent() && impostor(s) == nullptr; },
+     [](const Source& s) { return formatted("no frame in %.3g s", s.check.duration_s()); },
+     "candump -n 1 IFACE,ID:MASK waits for one frame of it",
+     "check the device's power and cable; start its transmission; check its address in the description"},
+    {"source_stopped", "is not sent any more", [](const Source& s) { return s.stopped(); },
+     [](const Source& s) {
+         return formatted("last frame %.3g s before the end", s.check.age_s(s.stream)) +
+                formatted(", %.4g frames/s before", s.stream.rate_hz());
+     },
+     "candump -n 1 IFACE,ID:MASK waits for one frame of it",
+     "check the device's power and cable: no bus error tells of a node that is gone"},
+    {"id_collision", "is sent too often: two devices may share the identifier",
+     [](const Source& s) { return s.collides(); }, rates,
+     "unplug the device: frames that still come are another's",
+     "give one of the two another identifier; or correct rate_hz in the description"},
+    {"fast_source", "is sent more often than described",
+     [](const Source& s) { return s.is_described() && s.ratio() > largest_rate && !s.collides(); }, rates,
+     "ask the device for its period", "correct rate_hz in the description, or the device's period"},
+    {"slow_source", "is sent too seldom", [](const Source& s) { return s.slow(); },
+     [](const Source& s) {
+         return rates(s) +
+                formatted("; longest pause %.3g ms", 1e-6 * static_cast<double>(s.stream.longest_gap_ns));
+     },
+     "even intervals (candump -t d IFACE,ID:MASK) mean a slow device",
+     "set the device's period, or rate_hz in the description"},
+    {"lost_frames", "loses frames", [](const Source& s) { return s.loses(); },
+     [](const Source& s) {
+         return percent(s.stream.missing_share()) + ": " + std::to_string(s.stream.missing()) + " of " +
+                std::to_string(s.stream.missing() + s.stream.count) +
+                " frames are missing in a sequence of " + formatted("%.4g frames/s", s.stream.expected_hz);
+     },
+     "a second computer on the bus: if it has the frames, this one loses them",
+     "lower the load, read at a real-time priority; check cable and connectors, and the device's own errors"},
+    {"gaps", "has gaps", [](const Source& s) { return s.has_gaps(); },
+     [](const Source& s) {
+         return formatted("%.3g ms without a frame", 1e-6 * static_cast<double>(s.stream.longest_gap_ns)) +
+                formatted(", where they come every %.3g ms", 1e3 / s.stream.expected_hz);
+     },
+     "ip -details -statistics link show IFACE: dropped and overrun frames are this computer's losses",
+     "read at a real-time priority, lower the load; else look for a loose cable or a device that restarts"},
+    {"jitter", "comes unsteadily",
+     [](const Source& s) {
+         return s.keeps_rate() && !s.stream.several && !s.collides() && !s.loses() && !s.has_gaps() &&
+                s.jitter_periods() > largest_jitter;
+     },
+     [](const Source& s) {
+         return formatted("intervals of standard deviation %.3g ms", 1e3 * s.stream.jitter_s()) +
+                formatted(" about %.3g ms", 1e3 / s.stream.expected_hz);
+     },
+     "record on another computer: if it is steady there, this one's stamps are late",
+     "give it a lower identifier, lower the load, let drives measure at SYNC; or trigger on timer"},
+    {"rejected_frames", "has frames that its device does not send",
+     [](const Source& s) { return s.stream.rejected > 0; },
+     [](const Source& s) {
+         return std::to_string(s.stream.rejected) + " of " + std::to_string(s.stream.count) +
+                " have another length or kind";
+     },
+     "candump IFACE,ID:MASK shows their length", "correct the device's mapping, or the description's"},
+}};
+
+std::string with_id(std::string text, const BusStreamKey& key) {
+    const std::string place = "ID:MASK";
+    if (const std::size_t at = text.find(place); at != std::string::npos) {
+        text.replace(at, place.size(), id_text(key).substr(2) + (key.first ? ":1FFFFFFF" : ":7FF"));
+    }
+    return text;
+}
+
+} // namespace
+
+std::vector<BusFinding> source_findings(const BusCheck& check) {
+    std::vector<BusFinding> findings;
+    for (const auto& [key, stream] : check.streams()) {
+        const Source source{key, stream, check};
+        for (const Rule& rule : rules) {
+            if (rule.broken(source)) {
+                const std::string sender = stream.sender.empty() ? "" : " (" + stream.sender + ")";
+                findings.push_back({rule.name, id_text(key) + sender + " " + rule.what, rule.evidence(source),
+                                    with_id(rule.confirm, key), rule.fix});
+            }
+        }
+    }
+    return findings;
+}
+
+} // namespace dfdyn::tools

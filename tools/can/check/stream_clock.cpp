@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/can/check/stream_clock.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace dfdyn::tools {
+
+namespace {
+
+/// Stamps wrap instead of overflowing, whatever they are.
+std::int64_t sum(std::int64_t a, std::int64_t b) {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+}
+
+std::int64_t difference(std::int64_t a, std::int64_t b) {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
+}
+
+} // namespace
+
+std::span<const StreamClock::Timed> StreamClock::take(const hal::Frame& frame) {
+    ready_.clear();
+    const std::int64_t step_ns = difference(sum(frame.stamp_ns, offset_ns_), latest_ns_);
+    const std::int64_t mean_ns =
+        frames_ > 1 ? (latest_ns_ - first_ns_) / static_cast<std::int64_t>(frames_ - 1) : 0;
+    if (frames_ == 0 || (step_ns >= -overtaken_ns && step_ns <= std::max(least_step_ns, 20 * mean_ns))) {
+        drop_waiting();
+        follow(frame);
+        return ready_;
+    }
+    if (!waiting_.empty() && !goes_on(frame.stamp_ns)) {
+        drop_waiting();
+    }
+    waiting_.push_back(frame);
+    if (waiting_.size() == adopt_after) {
+        adopt();
+    }
+    return ready_;
+}
+
+std::span<const StreamClock::Timed> StreamClock::finish() {
+    constexpr std::size_t convincing = 3;
+    ready_.clear();
+    waiting_.size() >= convincing ? adopt() : drop_waiting();
+    return ready_;
+}
+
+std::int64_t StreamClock::time_of(std::int64_t stamp_ns) const noexcept {
+    const std::int64_t time_ns = sum(stamp_ns, offset_ns_);
+    return frames_ == 0 ? time_ns : std::max(time_ns, latest_ns_);
+}
+
+bool StreamClock::goes_on(std::int64_t stamp_ns) const noexcept {
+    const std::int64_t step_ns = difference(stamp_ns, waiting_.back().stamp_ns);
+    return step_ns >= -overtaken_ns && step_ns <= least_step_ns;
+}
+
+void StreamClock::follow(hal::Frame frame) {
+    frame.stamp_ns = sum(frame.stamp_ns, offset_ns_);
+    first_ns_ = frames_ == 0 ? frame.stamp_ns : first_ns_;
+    latest_ns_ = frames_ == 0 ? frame.stamp_ns : std::max(latest_ns_, frame.stamp_ns);
+    ++frames_;
+    ready_.push_back({frame, false});
+}
+
+/// The first frame of the new clock comes a mean interval after the last of the old one.
+void StreamClock::adopt() {
+    const std::int64_t old_ns = sum(waiting_.front().stamp_ns, offset_ns_);
+    const std::int64_t mean_ns = difference(waiting_.back().stamp_ns, waiting_.front().stamp_ns) /
+                                 static_cast<std::int64_t>(waiting_.size() - 1);
+    const std::int64_t step_ns = difference(old_ns, latest_ns_);
+    offset_ns_ = difference(latest_ns_ + std::max<std::int64_t>(mean_ns, 0), waiting_.front().stamp_ns);
+    ++steps_;
+    largest_step_ns_ = std::abs(step_ns) > std::abs(largest_step_ns_) ? step_ns : largest_step_ns_;
+    for (const hal::Frame& frame : waiting_) {
+        follow(frame);
+    }
+    waiting_.clear();
+}
+
+void StreamClock::drop_waiting() {
+    for (const hal::Frame& frame : waiting_) {
+        ready_.push_back({frame, true});
+    }
+    strays_ += waiting_.size();
+    waiting_.clear();
+}
+
+} // namespace dfdyn::tools

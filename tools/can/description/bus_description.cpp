@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/can/description/bus_description.hpp"
+
+#include "tools/base/system/read_file.hpp"
+#include "tools/base/text/number.hpp"
+#include "tools/base/text/text.hpp"
+#include "tools/can/arm/bus_arm.hpp"
+#include "tools/can/arm/bus_wire.hpp"
+#include "tools/can/arm/device_frames.hpp"
+#include "tools/can/description/bus_fields.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr const char* schema = "dfdyn.bus/1";
+
+BusTrigger read_trigger(const JsonReader& reader) {
+    const std::string kind = reader.text("on");
+    if (kind == "sync") {
+        return BusTrigger::sync;
+    }
+    if (kind == "timer") {
+        return BusTrigger::timer;
+    }
+    if (kind == "set") {
+        return BusTrigger::set;
+    }
+    throw reader.error("on", "sync, timer or set", in_quotes(kind));
+}
+
+/// Three periods without a value are too many, unless the file says otherwise.
+BusSource read_source(const JsonReader& reader, double default_rate_hz) {
+    BusSource source;
+    source.rate_hz = reader.number_or("rate_hz", default_rate_hz, 0.1, 100'000);
+    source.max_age_ns = nanoseconds_or(reader, "max_age_s", 3 / source.rate_hz);
+    source.latency_ns = nanoseconds_or(reader, "latency_s", 0);
+    return source;
+}
+
+/// Which joints the boards have; each of 0 … joint_count - 1 has to be there once.
+int count_joints(const JsonReader& reader, const std::vector<BusBoard>& boards) {
+    std::vector<int> joints;
+    for (const BusBoard& board : boards) {
+        std::ranges::copy_if(board.joint, std::back_inserter(joints),
+                             [](int joint) { return joint != hal::unused_joint; });
+    }
+    std::ranges::sort(joints);
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        if (joints[i] != static_cast<int>(i)) {
+            throw reader.error(
+                "boards", "joints 1 to N, each once",
+                "joint " + std::to_string(i + 1) +
+                    (joints[i] < static_cast<int>(i) ? " after another one of that number" : " missing"));
+        }
+    }
+    return static_cast<int>(joints.size());
+}
+
+void read_joints(const JsonReader& reader, const std::filesystem::path& folder, BusDescription& description) {
+    description.joints = read_source(reader, description.sample_rate_hz);
+    description.position_limit_rad = reader.number_or("limit_rad", 7, 1e-3, 1e6);
+    read_boards(reader, folder, description);
+    description.joint_count = count_joints(reader, description.boards);
+}
+
+/// Efforts of the joints' own boards.
+void read_efforts(const JsonReader& reader, bool measured, BusDescription& description) {
+    reader.allow_only(
+        std::array<std::string_view, 5>{"family", "quantity", "limit", "max_age_s", "latency_s"});
+    if (!measured) {
+        throw reader.error("family", "a sensor, because the joints' boards send no efforts", "\"efforts\"");
+    }
+    const std::string quantity = reader.text("quantity");
+    description.outputs = parse_output_kind(quantity);
+    if (description.outputs == OutputKind::wrench) {
+        throw reader.error("quantity", "tau or i", in_quotes(quantity));
+    }
+    const double limit =
+        reader.number_or("limit", std::numeric_limits<float>::max(), 0, std::numeric_limits<float>::max());
+    description.output_range.assign(static_cast<std::size_t>(description.joint_count), {-limit, limit});
+}
+
+/// How long a wrench takes on its bus at worst: it waits for whatever else of the arm is sent meanwhile.
+double waiting_s(const BusDescription& description) {
+    const auto seconds = [&](std::span<const hal::Frame> frames) {
+        int bits = 0;
+        for (const hal::Frame& frame : frames) {
+            bits += frame_bits(frame);
+        }
+        return bits / description.bit_rate;
+    };
+    BusDescription joints = description;
+    joints.sensor.reset(); // which need not be able to send
+    const std::vector<double> zeros(static_cast<std::size_t>(description.joint_count));
+    const double joints_s = seconds(DeviceFrames(joints).joints(zeros, {}));
+    const hal::FrameList wrench = description.sensor->encode(hal::Wrench{});
+    const double wrench_s = seconds(std::span(wrench.frame).first(static_cast<std::size_t>(wrench.count)));
+    const double period_s = 1 / description.output.rate_hz;
+    double wait_s = wrench_s;
+    for (double before_s = 0; wait_s > before_s && wait_s < period_s;) {
+        before_s = wait_s;
+        wait_s = wrench_s + joints_s * std::ceil(before_s * description.joints.rate_hz);
+    }
+    return wait_s;
+}
+
+/// Half a period, for what else is on the bus; more where the arm's own frames take longer.
+void read_pairing(const JsonReader& reader, BusDescription& description) {
+    const double period_s = 1 / description.output.rate_hz;
+    const double absent_s = std::clamp(waiting_s(description), 0.5 * period_s, 0.9 * period_s);
+    description.pairing = {.period_ns = std::llround(1e9 * period_s),
+                           .delay_ns = nanoseconds_or(reader, "pair_window_s", absent_s)};
+    if (description.pairing.delay_ns >= description.pairing.period_ns) {
+        throw reader.error("pair_window_s", "less than a period of the sensor, " + number_text(period_s),
+                           number_text(reader.number("pair_window_s")));
+    }
+}
+
+void read_sensor(const JsonReader& reader, const std::filesystem::path& folder, BusDescription& description) {
+    description.outputs = OutputKind::wrench;
+    const DescribedWrenchSensor sensor = read_wrench_sensor(reader, folder);
+    description.sensor = sensor.device;
+    for (const double limit : sensor.limit) {
+        description.output_range.push_back({-limit, limit});
+    }
+    read_pairing(reader, description);
+    description.frozen_after = reader.whole_or("frozen_after", 100, 2, 1'000'000);
+}
+
+void read_output(const JsonReader& reader, const std::filesystem::path& folder, BusDescription& description) {
+    const bool efforts = reader.text("family") == "efforts";
+    const bool measured = measures_efforts(description.boards);
+    description.output =
+        read_source(reader, efforts ? description.joints.rate_hz : description.sample_rate_hz);
+    efforts ? read_efforts(reader, measured, description) : read_sensor(reader, folder, description);
+}
+
+/// Long enough that every source has sent a value after the instant.
+double default_delay_s(const BusDescription& description) {
+    const auto latency_ns = std::max(description.joints.latency_ns, description.output.latency_ns);
+    const double slowest_hz = std::min(description.joints.rate_hz, description.output.rate_hz);
+    return 1e-9 * static_cast<double>(latency_ns) + 1.5 / slowest_hz;
+}
+
+void check_identifiers(const JsonReader& reader, const BusDescription& description) {
+    if (const auto id = make_bus_arm(description)->colliding_id()) {
+        throw reader.error("boards", "devices that do not share identifiers",
+                           "two that send " + identifier_text(*id));
+    }
+}
+
+BusDescription parse(const JsonReader& reader, const std::filesystem::path& path) {
+    const std::filesystem::path folder = path.parent_path();
+    reader.allow_only(std::array<std::string_view, 6>{"schema", "bit_rate", "sample_rate_hz", "trigger",
+                                                      "joints", "output"});
+    if (reader.text("schema") != schema) {
+        throw reader.error("schema", in_quotes(schema), in_quotes(reader.text("schema")));
+    }
+    BusDescription description;
+    description.source = shown(path);
+    description.bit_rate = reader.number_within("bit_rate", 1e4, 1e7);
+    description.sample_rate_hz = reader.number_within("sample_rate_hz", 0.1, 100'000);
+    const JsonReader trigger = reader.object("trigger");
+    trigger.allow_only(std::array<std::string_view, 2>{"on", "delay_s"});
+    description.trigger = read_trigger(trigger);
+    const JsonReader joints = reader.object("joints");
+    description.synchronous = description.trigger == BusTrigger::sync && joints.text("family") == "cia402";
+    read_joints(joints, folder, description);
+    if (description.trigger == BusTrigger::sync && !description.synchronous) {
+        throw trigger.error("on", "timer or set, because no joint measures at a SYNC", "\"sync\"");
+    }
+    read_output(reader.object("output"), folder, description);
+    description.delay_ns = nanoseconds_or(trigger, "delay_s", default_delay_s(description));
+    check_identifiers(joints, description);
+    return description;
+}
+
+} // namespace
+
+BusDescription read_bus_description(const std::filesystem::path& path) {
+    const nlohmann::json json =
+        parse_json(read_file(path, "cannot be read as a bus description"), shown(path));
+    return parse(JsonReader(json, shown(path)), path);
+}
+
+} // namespace dfdyn::tools

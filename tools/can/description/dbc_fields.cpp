@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/can/description/dbc_fields.hpp"
+
+#include "tools/base/text/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+using Names = std::vector<std::string_view>;
+
+double radians_per(const JsonReader& field) {
+    static constexpr std::array<std::pair<std::string_view, double>, 3> units{
+        {{"rad", 1}, {"deg", std::numbers::pi / 180}, {"turn", 2 * std::numbers::pi}}};
+    const std::string unit = field.has("unit") ? field.text("unit") : "rad";
+    for (const auto& [name, radians] : units) {
+        if (name == unit) {
+            return radians;
+        }
+    }
+    throw field.error("unit", "rad, deg or turn", in_quotes(unit));
+}
+
+std::optional<hal::Range> limits_of(const DbcSignal& signal, double scale, double offset) {
+    if (signal.lowest == 0 && signal.highest == 0) {
+        return std::nullopt;
+    }
+    const double one = scale * signal.lowest + offset;
+    const double other = scale * signal.highest + offset;
+    const double slack = 1e-9 * std::abs(one - other); // an end that the factor does not hit exactly
+    return hal::Range{std::min(one, other) - slack, std::max(one, other) + slack};
+}
+
+const DbcMessage& message_of(const JsonReader& field, const Dbc& dbc) {
+    const std::string name = field.text("message");
+    const DbcMessage* const message = dbc.find(name);
+    if (message == nullptr) {
+        throw field.error("message", "a message of the DBC file", in_quotes(name));
+    }
+    if (!hal::is_frame_length(static_cast<std::uint32_t>(message->length), message->length > 8)) {
+        throw field.error("message", "one of a length that a frame can have",
+                          std::to_string(message->length) + " bytes");
+    }
+    return *message;
+}
+
+const DbcSignal& signal_of(const JsonReader& field, const DbcMessage& message) {
+    const std::string name = field.text("signal");
+    const DbcSignal* const signal = message.find(name);
+    if (signal == nullptr) {
+        throw field.error("signal", "a signal of " + message.name, in_quotes(name));
+    }
+    return *signal;
+}
+
+/// What makes a signal be in a frame of its message, from its own multiplexor to the outermost one.
+std::vector<DbcCondition> conditions_of(const JsonReader& field, const DbcMessage& message,
+                                        const DbcSignal& signal) {
+    std::vector<DbcCondition> conditions;
+    const DbcSignal* current = &signal;
+    while (current->multiplex || !current->multiplexed_by.empty()) {
+        const DbcSignal* const multiplexor = message.multiplexor_of(*current);
+        if (multiplexor == nullptr || conditions.size() == message.signals.size()) {
+            throw field.error("signal",
+                              "a signal whose multiplexor is known: the only one of its message, or the one "
+                              "that SG_MUL_VAL_ names",
+                              in_quotes(current->name) + " of " + message.name);
+        }
+        conditions.push_back({multiplexor->signal, current->multiplex_ranges});
+        if (conditions.back().ranges.empty()) {
+            conditions.back().ranges.push_back({*current->multiplex, *current->multiplex});
+        }
+        current = multiplexor;
+    }
+    return conditions;
+}
+
+/// `{"message": "Drive1", "signal": "Position", "scale": 1, "offset": 0}`: in the arm's unit the value is
+/// unit · (scale · what the DBC file says + offset).
+DbcField read_field(const JsonReader& field, const Dbc& dbc, double unit) {
+    const DbcMessage& message = message_of(field, dbc);
+    const DbcSignal& signal = signal_of(field, message);
+    const double scale = unit * field.number_or("scale", 1, -1e12, 1e12);
+    const double offset = unit * field.number_or("offset", 0, -1e12, 1e12);
+    if (scale == 0) {
+        throw field.error("scale", "a number that is not 0", "0");
+    }
+    DbcField result{message.id,
+                    message.extended,
+                    message.length,
+                    signal.signal,
+                    limits_of(signal, scale, offset),
+                    conditions_of(field, message, signal)};
+    result.signal.factor *= scale;
+    result.signal.offset = result.signal.offset * scale + offset;
+    return result;
+}
+
+bool same_bits(const DbcField& one, const DbcField& other) {
+    return one.shares_frames_with(other) && one.signal.start_bit == other.signal.start_bit;
+}
+
+/// Whether `test` holds for a field of one of the joints.
+template <class Test>
+bool any_field(const std::vector<BusBoard>& boards, Test test) {
+    return std::ranges::any_of(boards, [&](const BusBoard& board) {
+        const auto* joint = std::get_if<DbcJoint>(&board.board.device());
+        return joint != nullptr &&
+               (test(joint->config().position) || (joint->config().effort && test(*joint->config().effort)));
+    });
+}
+
+/// A field of a joint, which no other joint has.
+DbcField read_own_field(const JsonReader& board, const std::string& name, const Dbc& dbc, bool angle,
+                        const std::vector<BusBoard>& before) {
+    const JsonReader reader = board.object(name);
+    Names names{"message", "signal", "scale", "offset"};
+    if (angle) {
+        names.emplace_back("unit");
+    }
+    reader.allow_only(names);
+    DbcField field = read_field(reader, dbc, angle ? radians_per(reader) : 1);
+    if (any_field(before, [&](const DbcField& other) { return same_bits(field, other); })) {
+        throw reader.error("signal", "one that no other joint has", in_quotes(reader.text("signal")));
+    }
+    return field;
+}
+
+} // namespace
+
+BusBoard read_dbc_joint(const JsonReader& board, const Dbc& dbc, const std::vector<BusBoard>& before) {
+    board.allow_only(Names{"joint", "position", "effort"});
+    DbcJoint::Config config;
+    config.joint = board.whole_number("joint", 1, largest_bus_joint_count) - 1;
+    config.position = read_own_field(board, "position", dbc, true, before);
+    if (board.has("effort")) {
+        config.effort = read_own_field(board, "effort", dbc, false, before);
+    }
+    const auto claimed = [&](const DbcField& field) {
+        return any_field(before, [&](const DbcField& other) {
+            return other.id == field.id && other.extended == field.extended;
+        });
+    };
+    config.claims_position = !claimed(config.position);
+    config.claims_effort = config.effort && !claimed(*config.effort);
+    return {AnyBoard(DbcJoint(config)), {config.joint, hal::unused_joint}};
+}
+
+DbcSensor read_dbc_sensor(const JsonReader& output, const Dbc& dbc) {
+    std::array<DbcField, 6> fields;
+    const std::vector<JsonReader> entries = output.objects("wrench", 6, 6);
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+        entries[i].allow_only(Names{"message", "signal", "scale", "offset"});
+        fields[i] = read_field(entries[i], dbc, 1);
+        for (std::size_t other = 0; other < i; ++other) {
+            if (same_bits(fields[i], fields[other])) {
+                throw entries[i].error("signal", "another one than for the other axes",
+                                       in_quotes(entries[i].text("signal")));
+            }
+        }
+    }
+    if (!DbcSensor::can_be(fields)) {
+        throw output.error("wrench", "signals in two frames: two messages, or two variants of one",
+                           "another number of frames");
+    }
+    return DbcSensor(fields);
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/control/bus/loop_port.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dfdyn::tools {
+
+namespace {
+
+int delay_of(const BusDescription& description, double loop_period_s) {
+    switch (description.trigger) {
+    case BusTrigger::sync: // a sample is complete at the SYNC after its own
+        return static_cast<int>(std::lround(1 / (description.joints.rate_hz * loop_period_s)));
+    case BusTrigger::timer:
+        return static_cast<int>(
+            std::lround(static_cast<double>(description.delay_ns) * 1e-9 / loop_period_s));
+    case BusTrigger::set:
+        break;
+    }
+    return 0;
+}
+
+} // namespace
+
+LoopPort::LoopPort(const BusDescription& description, double loop_period_s)
+    : timer_(description.trigger == BusTrigger::timer),
+      measures_torque_(description.outputs == OutputKind::joint_torque),
+      delay_ticks_(delay_of(description, loop_period_s)), period_ns_(std::llround(loop_period_s * 1e9)),
+      latency_ns_(description.joints.latency_ns), clock_(period_ns_), arm_(make_bus_arm(description)),
+      commands_(description), position_(description.joint_count), torque_(description.joint_count),
+      missing_(static_cast<std::size_t>(description.joint_count)),
+      newest_ns_(missing_.size(), std::numeric_limits<std::int64_t>::min()),
+      next_request_ns_(std::numeric_limits<std::int64_t>::min()) {}
+
+void LoopPort::count(std::size_t frames) noexcept {
+    arrived_ = frames > 0;
+    counters_.received += frames;
+    counters_.most_in_tick = std::max(counters_.most_in_tick, frames);
+    counters_.overfull_ticks += frames == frames_per_tick ? 1 : 0;
+}
+
+void ArrivalClock::drained(std::int64_t newest_ns, std::int64_t now_ns, std::int64_t latency_ns) noexcept {
+    const std::int64_t age_ns = now_ns - newest_ns;
+    const std::int64_t before_drain_ns = drained_ns_ - newest_ns - latency_ns;
+    const bool arrived = !started_ || newest_ns != newest_ns_;
+    const bool contradicts = started_ && (2 * before_drain_ns > period_ns_ || -2 * age_ns > period_ns_);
+    if (arrived && !contradicts) {
+        constexpr int memory = 16; // readings
+        usual_age_ns_ = started_ ? usual_age_ns_ + (age_ns - usual_age_ns_) / memory : age_ns;
+        correction_ns_ = 0;
+        started_ = true;
+    } else if (arrived) {
+        const double periods = static_cast<double>(age_ns - usual_age_ns_) / static_cast<double>(period_ns_);
+        correction_ns_ = std::llround(periods) * period_ns_;
+    }
+    newest_ns_ = newest_ns;
+    drained_ns_ = now_ns;
+}
+
+void LoopPort::follow_ticks(std::int64_t tick_ns) noexcept {
+    constexpr std::int64_t longest_wait = 1000; // ticks
+    const std::int64_t jump_ns = tick_ns - next_tick_ns_.value_or(tick_ns);
+    ticks_across_ = std::max(ticks_across_ - 1, 0);
+    if (2 * std::abs(jump_ns) > period_ns_) {
+        set_ns_ += jump_ns;
+        // readings have to overtake those from before
+        const std::int64_t back = std::clamp<std::int64_t>(-jump_ns / period_ns_, 0, longest_wait);
+        ticks_across_ = delay_ticks_ + static_cast<int>(back);
+        ++counters_.clock_jumps;
+    }
+    next_tick_ns_ = tick_ns + period_ns_;
+}
+
+void LoopPort::follow_clock(const BusSample& sample, std::int64_t now_ns) noexcept {
+    const std::int64_t age_ns = std::ranges::min(sample.position_age_ns);
+    if (age_ns < std::numeric_limits<std::int64_t>::max()) {
+        const std::int64_t before_ns = clock_.correction_ns();
+        clock_.drained(now_ns - age_ns, now_ns, latency_ns_);
+        const bool changed = clock_.correction_ns() != before_ns && clock_.correction_ns() != 0;
+        counters_.clock_jumps += changed ? 1 : 0;
+    }
+}
+
+bool LoopPort::find_missing(const BusSample& sample, std::int64_t now_ns) {
+    bool any = false;
+    for (std::size_t joint = 0; joint < missing_.size(); ++joint) {
+        const std::int64_t newest_ns = now_ns - sample.position_age_ns[joint];
+        missing_[joint] = newest_ns == newest_ns_[joint] && newest_ns < sample.time_ns;
+        newest_ns_[joint] = newest_ns;
+        any = any || missing_[joint];
+    }
+    counters_.held += any ? 1 : 0;
+    return any;
+}
+
+LoopInput LoopPort::sense(std::int64_t tick_ns, std::int64_t now_ns) {
+    follow_ticks(tick_ns);
+    LoopInput input;
+    const std::int64_t due_ns = tick_ns - delay_ticks_ * period_ns_;
+    input.time_ns = due_ns - set_ns_;
+    input.bus_lost = bus_lost_;
+    const std::optional<std::int64_t> instant =
+        timer_ ? std::optional(due_ns - clock_.correction_ns()) : moment_;
+    if (!instant) {
+        ++counters_.incomplete;
+        clock_.drained(now_ns);
+        input.returning = arrived_ && arm_->bus().clock.doubtful();
+        return input;
+    }
+    const BusSample& sample = arm_->assemble(*instant, now_ns);
+    const std::int64_t correction_ns = clock_.correction_ns();
+    follow_clock(sample, now_ns);
+    // or the instant was a wrong one
+    const bool corrected = ticks_across_ > 0 || (timer_ && clock_.correction_ns() != correction_ns);
+    if (!sample.valid()) {
+        ++counters_.invalid;
+        counters_.last_reason = sample.position_reason;
+        counters_.last_joint = sample.joint;
+    }
+    if (!sample.valid() || corrected) {
+        input.returning = corrected || sample.position_reason == hal::Reason::qualifying ||
+                          sample.position_reason == hal::Reason::clock_jumped ||
+                          sample.position_reason == hal::Reason::time_not_increasing;
+        return input;
+    }
+    position_ = Eigen::Map<const Eigen::VectorXd>(sample.position.data(), position_.size());
+    input.time_ns = *instant + clock_.correction_ns() - set_ns_;
+    input.position = &position_;
+    input.missing = find_missing(sample, now_ns) ? &missing_ : nullptr;
+    if (measures_torque_ && sample.output_valid()) {
+        torque_ = Eigen::Map<const Eigen::VectorXd>(sample.output.data(), torque_.size());
+        input.torque = &torque_;
+    } else if (!measures_torque_ && command_.size() > 0) {
+        input.torque = &command_;
+    }
+    return input;
+}
+
+} // namespace dfdyn::tools

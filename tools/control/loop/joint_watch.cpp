@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/control/loop/joint_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace dfdyn::tools {
+
+JointWatch::JointWatch(SafeStopConfig config, double period_s, double noise_bound)
+    : config_(std::move(config)), period_s_(period_s), noise_bound_(noise_bound) {
+    const Eigen::Index joints = config_.following_error.size();
+    const auto count = static_cast<std::size_t>(joints);
+    reading_ = speed_ = lowest_ = highest_ = quantum_ = pressing_position_ = JointVector::Zero(joints);
+    same_.resize(count);
+    stuck_.resize(count);
+    fast_.resize(count);
+    pressing_.resize(count);
+    repeated_.resize(count);
+}
+
+void JointWatch::found(StopCause cause, Eigen::Index joint) noexcept {
+    if (cause_ == StopCause::none) {
+        cause_ = cause;
+        joint_ = joint;
+    }
+}
+
+bool JointWatch::must_have_moved(Eigen::Index joint) const noexcept {
+    if (config_.acceleration.size() == 0) {
+        return false;
+    }
+    constexpr double braking_share = 0.125; // of that acceleration: a quarter of the torque limit
+    const double acceleration = braking_share * config_.acceleration[joint];
+    const double time_s = std::min(period_s_ * same_[static_cast<std::size_t>(joint)],
+                                   speed_[joint] / acceleration); // by then it may have stopped
+    return time_s * (speed_[joint] - acceleration * time_s / 2) > 2 * quantum_[joint] + 4 * noise_bound_;
+}
+
+void JointWatch::repeat(Eigen::Index joint, double reference, double speed) noexcept {
+    const auto j = static_cast<std::size_t>(joint);
+    if (same_[j]++ == 0) {
+        speed_[joint] = speed;
+    }
+    lowest_[joint] = std::min(lowest_[joint], reference);
+    highest_[joint] = std::max(highest_[joint], reference);
+    const double tolerance = std::max(config_.following_error[joint] / 16, 8 * quantum_[joint]);
+    repeated_[j] = repeated_[j] || must_have_moved(joint);
+    stuck_[j] = repeated_[j] || highest_[joint] - lowest_[joint] > tolerance ? stuck_[j] + 1 : 0;
+    if (stuck_[j] > config_.frozen_patience) {
+        found(StopCause::frozen_encoder, joint);
+    }
+}
+
+void JointWatch::read(const JointVector& position, const JointVector& reference,
+                      const PositionFeedback& feedback, const std::vector<bool>& missing) {
+    for (Eigen::Index joint = 0; joint < position.size(); ++joint) {
+        const auto j = static_cast<std::size_t>(joint);
+        if (missing[j]) {
+            continue;
+        }
+        const double step = std::abs(position[joint] - reading_[joint]);
+        if (started_ && step == 0) {
+            repeat(joint, reference[joint], std::abs(feedback.velocity()[joint]));
+            continue;
+        }
+        if (started_) {
+            quantum_[joint] = quantum_[joint] > 0 ? std::min(step, quantum_[joint]) : step;
+        }
+        reading_[joint] = position[joint];
+        lowest_[joint] = highest_[joint] = reference[joint];
+        same_[j] = stuck_[j] = 0;
+        repeated_[j] = false;
+    }
+    started_ = true;
+}
+
+void JointWatch::move(const PositionFeedback& feedback, const JointVector& command) {
+    for (Eigen::Index joint = 0; joint < command.size(); ++joint) {
+        const auto j = static_cast<std::size_t>(joint);
+        const double position = feedback.position()[joint];
+        if (feedback.age(joint) == 0 && config_.speed_limit.size() > 0) {
+            const bool fast = std::abs(feedback.velocity()[joint]) > config_.speed_limit[joint];
+            fast_[j] = fast ? fast_[j] + 1 : 0;
+        }
+        const bool presses = config_.torque_limit.size() > 0 &&
+                             std::abs(command[joint]) >= 0.999 * config_.torque_limit[joint];
+        const bool moved =
+            std::abs(position - pressing_position_[joint]) > config_.following_error[joint] / 10;
+        pressing_[j] = presses && !moved ? pressing_[j] + 1 : 0;
+        if (pressing_[j] == 0) {
+            pressing_position_[joint] = position;
+        }
+        if (fast_[j] > config_.speed_patience) {
+            found(StopCause::overspeed, joint);
+        }
+        if (pressing_[j] > config_.pressing_ticks) {
+            found(StopCause::torque_limit, joint);
+        }
+    }
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/control/loop/position_feedback.hpp"
+
+#include "dfdyn/input/adaptive_window.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace dfdyn::tools {
+
+PositionFeedback::PositionFeedback(FeedbackGains gains, const DerivativeModel& filter, double period_s,
+                                   MotionBounds bounds)
+    : gains_(std::move(gains)), filter_(filter), period_s_(period_s), bounds_(std::move(bounds)),
+      window_(std::max(2, filter.velocity_window)) {
+    const Eigen::Index joints = gains_.position.size();
+    const auto count = static_cast<std::size_t>(joints);
+    reading_tick_.resize(count * static_cast<std::size_t>(window_));
+    reading_.resize(reading_tick_.size());
+    reference_.resize(reading_tick_.size());
+    time_.resize(static_cast<std::size_t>(window_));
+    held_.resize(count);
+    newest_tick_.assign(count, std::numeric_limits<std::int32_t>::min());
+    observed_tick_ = newest_tick_;
+    regular_.resize(count);
+    newest_ = velocity_ = reading_error_ = reading_rate_ = JointVector::Zero(joints);
+}
+
+void PositionFeedback::push(Eigen::Index joint, std::int64_t tick, double position, double reference) {
+    const auto j = static_cast<std::size_t>(joint);
+    const auto first = static_cast<std::ptrdiff_t>(j) * window_;
+    const auto age = [&](auto& values) {
+        std::copy_backward(values.begin() + first, values.begin() + first + window_ - 1,
+                           values.begin() + first + window_);
+    };
+    age(reading_);
+    age(reference_);
+    age(reading_tick_);
+    reading_[static_cast<std::size_t>(first)] = position;
+    reference_[static_cast<std::size_t>(first)] = reference;
+    reading_tick_[static_cast<std::size_t>(first)] = tick;
+    held_[j] = std::min(held_[j] + 1, window_);
+    newest_tick_[j] = tick;
+    newest_[joint] = position;
+    const int count = std::min(held_[j], filter_.velocity_window);
+    for (int i = 0; i < count; ++i) {
+        const std::int64_t ago = tick - reading_tick_[static_cast<std::size_t>(first + i)];
+        time_[static_cast<std::size_t>(i)] = -period_s_ * static_cast<double>(ago);
+    }
+    if (count > 1) {
+        const AdaptiveWindow<double> window(time_.data(), reading_.data() + first, 1, count,
+                                            filter_.noise_bound);
+        velocity_[joint] = window.velocity();
+        reading_rate_[joint] = window.slope_of(reference_.data() + first) - velocity_[joint];
+    }
+}
+
+bool PositionFeedback::plausible(Eigen::Index joint, std::int64_t tick, double position,
+                                 const Reference& reference) const noexcept {
+    const auto j = static_cast<std::size_t>(joint);
+    if (held_[j] < 3 || bounds_.acceleration.size() == 0) {
+        return true;
+    }
+    const double time_s = period_s_ * static_cast<double>(tick - newest_tick_[j]);
+    const double surprise = reference.position[joint] - position - error_at(joint, tick);
+    return std::abs(surprise) <= bounds_.acceleration[joint] * time_s * time_s + 4 * filter_.noise_bound;
+}
+
+void PositionFeedback::observe(int ticks_ago, const JointVector& position, const Reference& reference,
+                               const std::vector<bool>* missing) {
+    const std::int64_t tick = tick_ - ticks_ago;
+    for (Eigen::Index joint = 0; joint < position.size(); ++joint) {
+        const auto j = static_cast<std::size_t>(joint);
+        if ((missing != nullptr && (*missing)[j]) || tick <= newest_tick_[j]) {
+            continue;
+        }
+        const bool next = held_[j] == 0 || tick == newest_tick_[j] + 1;
+        const bool believed = plausible(joint, tick, position[joint], reference);
+        regular_[j] = next && believed;
+        held_[j] = believed ? held_[j] : 0; // the velocity goes on until there are two readings
+        push(joint, tick, position[joint], reference.position[joint]);
+        observed_tick_[j] = tick_;
+        reading_error_[joint] = reference.position[joint] - position[joint];
+    }
+    if (position_.size() > 0 || std::ranges::all_of(held_, [](int held) { return held > 0; })) {
+        position_ = newest_;
+    }
+}
+
+double PositionFeedback::error_at(Eigen::Index joint, std::int64_t tick) const noexcept {
+    const auto ticks = static_cast<double>(
+        std::clamp<std::int64_t>(tick - newest_tick_[static_cast<std::size_t>(joint)], 0, fade_ticks));
+    return reading_error_[joint] +
+           bounded_rate(joint) * period_s_ * (ticks - ticks * ticks / (2 * fade_ticks));
+}
+
+double PositionFeedback::rate_at(Eigen::Index joint, std::int64_t tick) const noexcept {
+    const auto ticks = static_cast<double>(
+        std::clamp<std::int64_t>(tick - newest_tick_[static_cast<std::size_t>(joint)], 0, fade_ticks));
+    return bounded_rate(joint) * (1 - ticks / fade_ticks);
+}
+
+double PositionFeedback::bounded_rate(Eigen::Index joint) const noexcept {
+    const double rate = reading_rate_[joint];
+    return bounds_.speed.size() > 0 ? std::clamp(rate, -bounds_.speed[joint], bounds_.speed[joint]) : rate;
+}
+
+JointVector PositionFeedback::error() const {
+    JointVector result(newest_.size());
+    for (Eigen::Index joint = 0; joint < result.size(); ++joint) {
+        result[joint] = error_at(joint, tick_);
+    }
+    return result;
+}
+
+JointVector PositionFeedback::error_rate() const {
+    JointVector result(newest_.size());
+    for (Eigen::Index joint = 0; joint < result.size(); ++joint) {
+        result[joint] = rate_at(joint, tick_);
+    }
+    return result;
+}
+
+JointVector PositionFeedback::torque() const {
+    JointVector result(newest_.size());
+    for (Eigen::Index joint = 0; joint < result.size(); ++joint) {
+        result[joint] =
+            gains_.position[joint] * error_at(joint, tick_) + gains_.velocity[joint] * rate_at(joint, tick_);
+    }
+    return result;
+}
+
+bool PositionFeedback::complete() const noexcept {
+    return std::ranges::all_of(observed_tick_, [this](std::int64_t tick) { return tick == tick_; });
+}
+
+bool PositionFeedback::regular() const noexcept {
+    return complete() && std::ranges::all_of(regular_, [](bool regular) { return regular; });
+}
+
+} // namespace dfdyn::tools

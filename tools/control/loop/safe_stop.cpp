@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/control/loop/safe_stop.hpp"
+
+#include <utility>
+
+namespace dfdyn::tools {
+
+const char* name(LoopState state) noexcept {
+    switch (state) {
+    case LoopState::waiting:
+        return "waiting";
+    case LoopState::running:
+        return "running";
+    case LoopState::stopping:
+        return "stopping";
+    case LoopState::stopped:
+        return "stopped";
+    }
+    return "unknown";
+}
+
+const char* name(StopCause cause) noexcept {
+    switch (cause) {
+    case StopCause::none:
+        return "none";
+    case StopCause::requested:
+        return "requested";
+    case StopCause::no_position:
+        return "no_position";
+    case StopCause::missed_deadlines:
+        return "missed_deadlines";
+    case StopCause::following_error:
+        return "following_error";
+    case StopCause::bus_lost:
+        return "bus_lost";
+    case StopCause::overspeed:
+        return "overspeed";
+    case StopCause::torque_limit:
+        return "torque_limit";
+    case StopCause::frozen_encoder:
+        return "frozen_encoder";
+    case StopCause::finding:
+        return "finding";
+    }
+    return "unknown";
+}
+
+SafeStop::SafeStop(SafeStopConfig config) : config_(std::move(config)) {}
+
+void SafeStop::count(const TickHealth& health) {
+    returning_ += !health.position_valid && health.returning ? 1 : 0;
+    lost_ += health.position_valid || health.returning ? 0 : 1;
+    if (health.position_valid) {
+        lost_ = returning_ = 0;
+    }
+    missed_ = health.deadline_missed ? missed_ + 1 : 0;
+}
+
+StopCause SafeStop::judge(const TickHealth& health, const JointVector& error) const {
+    if (health.stop_requested) {
+        return StopCause::requested;
+    }
+    if (health.bus_lost) {
+        return StopCause::bus_lost;
+    }
+    if (lost_ > config_.position_patience || returning_ > config_.return_patience) {
+        return StopCause::no_position;
+    }
+    if (missed_ > config_.deadline_patience) {
+        return StopCause::missed_deadlines;
+    }
+    if (health.joint != StopCause::none) {
+        return health.joint;
+    }
+    const bool follows = (error.array().abs() <= config_.following_error.array()).all();
+    return follows ? StopCause::none : StopCause::following_error;
+}
+
+LoopState SafeStop::tick(const TickHealth& health, const JointVector& error) {
+    count(health);
+    if (state_ == LoopState::waiting && !health.position_valid && !health.stop_requested) {
+        return state_; // a bus that is not up yet is waited for
+    }
+    if (state_ == LoopState::stopping) {
+        state_ = ++ramped_ < config_.ramp_ticks ? state_ : LoopState::stopped;
+    }
+    if (state_ < LoopState::stopping) {
+        cause_ = judge(health, error);
+        if (cause_ == StopCause::none) {
+            state_ = LoopState::running;
+        } else {
+            // who has not moved anything yet has nothing to ramp down
+            state_ = state_ == LoopState::waiting ? LoopState::stopped : LoopState::stopping;
+        }
+    }
+    return state_;
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/robot/dynamics/joint_vector.hpp"
+
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// Root mean square of the tracking error over one stretch of time.
+struct TrackingWindow {
+    double start_s = 0, end_s = 0;
+    JointVector rms;     ///< per joint, rad
+    double all = 0;      ///< over all joints
+    JointVector learned; ///< mean share of the learned model in the feed-forward
+};
+
+/// Collects tracking errors, window by window; the last, unfinished one is left out.
+class Tracking {
+  public:
+    explicit Tracking(double window_s = 5) : window_s_(window_s) {}
+
+    /// `error`: reference minus true position, rad; of times that rise, from 0 on.
+    void add(double time_s, const JointVector& error, const JointVector& learned_share);
+
+    const std::vector<TrackingWindow>& windows() const noexcept { return windows_; }
+
+  private:
+    void close();
+
+    double window_s_;
+    std::vector<TrackingWindow> windows_;
+    JointVector squares_, shares_;
+    long count_ = 0;
+};
+
+} // namespace dfdyn::tools

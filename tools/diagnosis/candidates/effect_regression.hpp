@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/diagnosis/candidates/candidate.hpp"
+#include "tools/diagnosis/signals/spectral_rows.hpp"
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// Sums of squares and products of weighed rows: all that selection among columns needs.
+struct WeighedSums {
+    Eigen::MatrixXd gram;   ///< p x p
+    Eigen::VectorXd moment; ///< p
+    double energy = 0;      ///< of what is to be explained
+};
+
+/// A column as spectral rows, for each output that it acts on.
+struct SpectralColumn {
+    struct Part {
+        Eigen::Index output = 0;
+        Eigen::MatrixXd rows; ///< bins x frames
+    };
+    std::vector<Part> parts;
+
+    SpectralColumn(const SpectralRows& rows, const EffectColumn& column);
+    const Eigen::MatrixXd* on(Eigen::Index output) const; ///< null where it does not act
+};
+
+using SpectralColumnPointer = std::shared_ptr<const SpectralColumn>;
+
+/// Columns and what they are to explain, weighed by the noise of each output and frequency.
+class EffectRegression {
+  public:
+    /// `unexplained`: T x m, what the rigid body leaves of the measurement. Only the first `fitted_frames`
+    /// count.
+    EffectRegression(const SpectralRows& rows, const Eigen::MatrixXd& unexplained,
+                     Eigen::Index fitted_frames);
+
+    Eigen::Index outputs() const noexcept { return static_cast<Eigen::Index>(target_.size()); }
+    Eigen::Index columns() const noexcept { return static_cast<Eigen::Index>(columns_.size()); }
+    Eigen::Index fitted_frames() const noexcept { return fitted_frames_; }
+    const SpectralRows& rows() const noexcept { return rows_; }
+
+    void set_columns(std::vector<SpectralColumnPointer> columns) { columns_ = std::move(columns); }
+
+    /// The noise's spectra (bins x m), and per output how much larger than that it is where (bins x fitted
+    /// frames): the inverses of both are the weights.
+    void set_noise(Eigen::MatrixXd spectra, const std::vector<Eigen::MatrixXd>& unrest);
+    const Eigen::MatrixXd& noise() const noexcept { return noise_; }
+
+    WeighedSums weighed_sums() const { return weighed_sums(0, fitted_frames_); }
+    /// Of `count` frames from `first` on.
+    WeighedSums weighed_sums(Eigen::Index first, Eigen::Index count) const;
+
+    /// Per output, the weights of squares (bins x fitted frames).
+    Eigen::MatrixXd weight(Eigen::Index output) const {
+        return weight_[static_cast<std::size_t>(output)].array().square();
+    }
+
+    /// What `coefficients` of all columns leave of an output: bins x fitted frames, not weighed.
+    Eigen::MatrixXd residual(Eigen::Index output, const Eigen::VectorXd& coefficients) const;
+
+    /// Per bin, how many of an output's fitted rows a fit of the columns `fitted` spends: the trace of its
+    /// hat matrix there. `covariance`: of their coefficients, were the noise just as weighed. Cost: rows
+    /// times columns squared.
+    Eigen::VectorXd spent(Eigen::Index output, const std::vector<Eigen::Index>& fitted,
+                          const Eigen::MatrixXd& covariance) const;
+
+  private:
+    Eigen::VectorXd weighed(const Eigen::MatrixXd& rows, Eigen::Index output, Eigen::Index first,
+                            Eigen::Index count) const;
+
+    const SpectralRows& rows_;
+    Eigen::Index fitted_frames_;
+    std::vector<Eigen::MatrixXd> target_; ///< per output, bins x frames
+    std::vector<SpectralColumnPointer> columns_;
+    Eigen::MatrixXd noise_;
+    std::vector<Eigen::MatrixXd> weight_; ///< per output, bins x fitted frames: square roots
+};
+
+} // namespace dfdyn::tools

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/extension/joined_recording.hpp"
+
+#include <algorithm>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr std::int64_t pause_ns = 2'000'000'000;
+
+void append(Columns& columns, const Columns& more) {
+    columns.values.insert(columns.values.end(), more.values.begin(), more.values.end());
+}
+
+} // namespace
+
+Recording joined_recording(std::span<const Recording> recordings) {
+    Recording joined = recordings.front();
+    for (const Recording& next : recordings.subspan(1)) {
+        if (next.row_count() == 0) {
+            continue;
+        }
+        const std::int64_t shift_ns =
+            joined.row_count() == 0 ? 0 : joined.time_ns.back() + pause_ns - next.time_ns.front();
+        for (std::size_t row = 0; row < next.row_count(); ++row) {
+            joined.time_ns.push_back(next.time_ns[row] + shift_ns);
+            joined.time_s.push_back(1e-9 * static_cast<double>(joined.time_ns.back()));
+        }
+        append(joined.position, next.position);
+        append(joined.velocity, next.velocity);
+        append(joined.acceleration, next.acceleration);
+        append(joined.output, next.output);
+        joined.gap_before.insert(joined.gap_before.end(), next.gap_before.begin(), next.gap_before.end());
+        joined.source.append(", ").append(next.source);
+    }
+    return joined;
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/output/diagnosis_json.hpp"
+
+#include "tools/base/numerics/to_vector.hpp"
+#include "tools/diagnosis/output/finding_words.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <vector>
+
+namespace dfdyn::tools {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json to_json(const ErrorMeasure& error) {
+    return {{"rms", to_vector(error.rms)},
+            {"nrmse", to_vector(error.nrmse)},
+            {"nrmse_moving", to_vector(error.moving_nrmse)}};
+}
+
+ordered_json causes(const std::vector<OtherCause>& list, bool reasons) {
+    ordered_json result = ordered_json::array();
+    for (const OtherCause& cause : list) {
+        ordered_json entry{{"effect", cause.effect}, {"where", cause.where}};
+        if (reasons) {
+            entry["why_not"] = cause.why_not;
+        }
+        result.push_back(std::move(entry));
+    }
+    return result;
+}
+
+/// Axes are named, not numbered.
+ordered_json value_of(const FoundParameter& parameter) {
+    const std::optional<std::string> axis = axis_of(parameter);
+    return axis ? ordered_json(*axis) : ordered_json(parameter.value);
+}
+
+ordered_json to_json(const FoundParameter& parameter) {
+    ordered_json entry{{"name", parameter.name}, {"value", value_of(parameter)}};
+    if (!entry["value"].is_string()) {
+        entry["unit"] = parameter.unit;
+        entry["ci95"] = {parameter.low, parameter.high};
+    }
+    return entry;
+}
+
+ordered_json to_json(const GrantedQuantity& granted) {
+    ordered_json entry = to_json(granted.parameter);
+    entry["where"] = granted.where;
+    if (granted.given) {
+        entry["given"] = *granted.given;
+    }
+    return entry;
+}
+
+ordered_json to_json(const Finding& finding, const std::string& output) {
+    ordered_json parameters = ordered_json::array();
+    for (const FoundParameter& parameter : finding.parameters) {
+        parameters.push_back(to_json(parameter));
+    }
+    return {
+        {"effect", finding.effect},
+        {"where", finding.where},
+        {"parameters", std::move(parameters)},
+        {"confidence", finding.confidence},
+        {"gain", {{"output", output}, {"rms_before", finding.rms_before}, {"rms_after", finding.rms_after}}},
+        {"evidence", finding.evidence},
+        {"indistinguishable", causes(finding.indistinguishable, false)},
+        {"alternatives", causes(finding.alternatives, true)},
+        {"confirm", finding.confirm}};
+}
+
+} // namespace
+
+std::string diagnosis_to_json(const Diagnosis& diagnosis) {
+    ordered_json json{{"schema", "dfdyn.diagnosis/1"},
+                      {"outputs", diagnosis.output_names},
+                      {"suspicions", diagnosis.suspicions},
+                      {"nominal", to_json(diagnosis.nominal)},
+                      {"extended", to_json(diagnosis.extended)},
+                      {"heldout",
+                       {{"from", diagnosis.heldout_from_s},
+                        {"to", diagnosis.heldout_to_s},
+                        {"note", "these figures are on data that fitted nothing"}}}};
+    ordered_json findings = ordered_json::array();
+    for (const Finding& finding : diagnosis.findings) {
+        findings.push_back(
+            to_json(finding, diagnosis.output_names[static_cast<std::size_t>(finding.output)]));
+    }
+    json["findings"] = std::move(findings);
+    ordered_json granted = ordered_json::array();
+    for (const GrantedQuantity& one : diagnosis.granted) {
+        granted.push_back(to_json(one));
+    }
+    json["granted"] = std::move(granted);
+    ordered_json unexplained = ordered_json::array();
+    for (const Unexplained& entry : diagnosis.unexplained) {
+        unexplained.push_back({{"output", diagnosis.output_names[static_cast<std::size_t>(entry.output)]},
+                               {"nrmse", entry.nrmse},
+                               {"depends_on", entry.depends_on},
+                               {"note", entry.note}});
+    }
+    json["unexplained"] = std::move(unexplained);
+    return json.dump(2) + "\n";
+}
+
+} // namespace dfdyn::tools

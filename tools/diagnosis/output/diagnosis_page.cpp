@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/output/diagnosis_page.hpp"
+
+#include "tools/base/text/number.hpp"
+#include "tools/build_flags.hpp"
+#include "tools/diagnosis/output/error_sections.hpp"
+#include "tools/diagnosis/output/finding_section.hpp"
+#include "tools/diagnosis/output/finding_words.hpp"
+#include "tools/report/figure_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+namespace dfdyn::tools {
+
+namespace {
+
+std::string recording_names(const std::vector<Recording>& recordings) {
+    std::string names;
+    for (const Recording& recording : recordings) {
+        names.append(names.empty() ? "" : ", ")
+            .append(std::filesystem::path(recording.source).filename().string());
+    }
+    return names;
+}
+
+/// The output whose error is the largest share of its deviation.
+Eigen::Index worst_output(const ErrorMeasure& error) {
+    Eigen::Index worst = 0;
+    error.nrmse.maxCoeff(&worst);
+    return worst;
+}
+
+std::string errors_sentence(const DiagnosisCase& one) {
+    const Diagnosis& diagnosis = one.work.diagnosis;
+    const Eigen::Index worst = worst_output(diagnosis.nominal);
+    const std::string& name = diagnosis.output_names[static_cast<std::size_t>(worst)];
+    return std::string("The rigid body of ")
+        .append(one.robot.name)
+        .append(" misses what was measured in ")
+        .append(recording_names(one.recordings))
+        .append(" by ")
+        .append(percent(diagnosis.nominal.nrmse.minCoeff()))
+        .append(" to ")
+        .append(percent(diagnosis.nominal.nrmse.maxCoeff()))
+        .append(" of the outputs' deviation, most on ")
+        .append(name)
+        .append(" (")
+        .append(rounded_text(diagnosis.nominal.rms[worst]))
+        .append(" ")
+        .append(output_unit(name))
+        .append(" rms).");
+}
+
+std::string causes_sentence(const Diagnosis& diagnosis) {
+    if (diagnosis.findings.empty()) {
+        return "No cause of the catalogue is needed to explain that: what is left looks like noise, or has "
+               "no "
+               "name.";
+    }
+    const auto is_likely = [](const Finding& finding) { return finding.confidence >= likely_confidence; };
+    const auto likely = std::ranges::count_if(diagnosis.findings, is_likely);
+    const auto perhaps = std::ssize(diagnosis.findings) - likely;
+    const auto found = std::ranges::find_if(diagnosis.findings, is_likely);
+    const Finding& first = found == diagnosis.findings.end() ? diagnosis.findings.front() : *found;
+    const std::string parameter = main_parameter_words(first);
+    std::string text = std::to_string(likely);
+    return text.append(likely == 1 ? " cause is likely" : " causes are likely")
+        .append(perhaps == 0 ? "" : ", " + std::to_string(perhaps) + " more possible")
+        .append(", first of all ")
+        .append(cause_words(first))
+        .append(parameter.empty() ? "" : " (" + parameter + ")")
+        .append(", with confidence ")
+        .append(confidence_text(first.confidence))
+        .append(".");
+}
+
+std::string gain_sentence(const Diagnosis& diagnosis) {
+    const bool held_out = diagnosis.heldout_to_s > diagnosis.heldout_from_s;
+    const Eigen::Index worst = worst_output(diagnosis.nominal);
+    if (!held_out) {
+        return "The error on held-out time was not measured.";
+    }
+    return std::string("On time that fitted nothing, the error with them is ")
+        .append(percent(diagnosis.extended.nrmse.minCoeff()))
+        .append(" to ")
+        .append(percent(diagnosis.extended.nrmse.maxCoeff()))
+        .append(" of the outputs' deviation; on ")
+        .append(diagnosis.output_names[static_cast<std::size_t>(worst)])
+        .append(" it falls from ")
+        .append(rounded_text(diagnosis.nominal.rms[worst]))
+        .append(" to ")
+        .append(rounded_text(diagnosis.extended.rms[worst]))
+        .append(".");
+}
+
+/// Three sentences.
+std::string summary(const DiagnosisCase& one) {
+    const Diagnosis& diagnosis = one.work.diagnosis;
+    if (diagnosis.nominal.rms.size() == 0 || one.work.explanation.candidates.empty()) {
+        return "The recording " + recording_names(one.recordings) +
+               " cannot answer what the simulation gets wrong. The reasons are below. No cause is named, and "
+               "no model was written.";
+    }
+    return errors_sentence(one) + " " + causes_sentence(diagnosis) + " " + gain_sentence(diagnosis);
+}
+
+PageSection suspicion_section(const Diagnosis& diagnosis) {
+    PageSection section{"First of all: is the recording what it should be?", {}, {}, {}};
+    for (const std::string& suspicion : diagnosis.suspicions) {
+        section.paragraphs.push_back("Suspicion: " + suspicion + ".");
+    }
+    return section;
+}
+
+/// The errors without the rows where joints stand, as one more column.
+void add_moving_errors(ReportTable& table, const Diagnosis& diagnosis) {
+    table.columns.push_back("while it moves");
+    table.note += " While it moves: without the rows where the output's joint stands and friction holds "
+                  "whatever it was left with, which no function of the motion tells.";
+    for (std::size_t k = 0; k < table.rows.size(); ++k) {
+        const auto output = static_cast<Eigen::Index>(k);
+        const double nominal = diagnosis.nominal.moving_nrmse[output];
+        table.rows[k].push_back(std::isnan(nominal) ? std::string("not in this time")
+                                                    : percent(nominal) + " → " +
+                                                          percent(diagnosis.extended.moving_nrmse[output]));
+    }
+}
+
+ReportTable error_table(const Diagnosis& diagnosis) {
+    ReportTable table{"Error per output",
+                      {"output", "unit", "simulated, rms", "of deviation", "extended, rms", "of deviation "},
+                      {},
+                      {}};
+    const bool held_out = diagnosis.heldout_to_s > diagnosis.heldout_from_s;
+    table.note = held_out
+                     ? "On " + rounded_text(diagnosis.heldout_from_s) + " to " +
+                           rounded_text(diagnosis.heldout_to_s) +
+                           " s, which neither chose nor fitted anything: the effects behind these figures "
+                           "were found in the time before."
+                     : std::string("Over the whole recording, which the extended model was fitted to.");
+    for (std::size_t k = 0; k < diagnosis.output_names.size(); ++k) {
+        const auto row = static_cast<Eigen::Index>(k);
+        table.rows.push_back({diagnosis.output_names[k], output_unit(diagnosis.output_names[k]),
+                              diagnosis.nominal.rms[row], percent(diagnosis.nominal.nrmse[row]),
+                              diagnosis.extended.rms[row], percent(diagnosis.extended.nrmse[row])});
+    }
+    if (diagnosis.standing_share.maxCoeff() > noticeable_standing) {
+        add_moving_errors(table, diagnosis);
+    }
+    return table;
+}
+
+std::string carried_words(const DiagnosisCase& one, const Finding& finding) {
+    const auto found = std::ranges::find_if(one.extension.carried, [&](const CarriedFinding& carried) {
+        return carried.effect == finding.effect && carried.where == finding.where;
+    });
+    if (found == one.extension.carried.end()) {
+        return "–";
+    }
+    static const std::map<CarriedFinding::How, const char*> words{
+        {CarriedFinding::How::adapting, "adapting"},
+        {CarriedFinding::How::fixed, "constant"},
+        {CarriedFinding::How::approximated, "as Coulomb"},
+        {CarriedFinding::How::left_out, "left out"}};
+    return words.at(found->how);
+}
+
+ReportTable findings_table(const DiagnosisCase& one) {
+    const Diagnosis& diagnosis = one.work.diagnosis;
+    ReportTable table{"Causes, by gain",
+                      {"cause", "main parameter (95 % interval)", "confidence", "output", "error before",
+                       "after", "in the extended model"},
+                      {},
+                      {}};
+    table.note =
+        "Confidence: of all causes that are given 0.9, about nine in ten are right. Errors: rms over "
+        "the whole recording, below " +
+        rounded_text(gains_below_hz) +
+        " Hz (all of it, for what shows above only), without and with this one effect, in N·m or N. Extended "
+        "model: adapting, as coefficients that start here and go on being learned; constant, in its "
+        "geometry, gravity or gains; as Coulomb friction of the same level, for the model's columns have no "
+        "memory; left out, where the effect is no function of the motion of one instant that the firmware "
+        "has a column for.";
+    for (const Finding& finding : diagnosis.findings) {
+        table.rows.push_back({cause_words(finding), main_parameter_words(finding),
+                              confidence_text(finding.confidence),
+                              diagnosis.output_names[static_cast<std::size_t>(finding.output)],
+                              finding.rms_before, finding.rms_after, carried_words(one, finding)});
+    }
+    return table;
+}
+
+ReportTable granted_table(const Diagnosis& diagnosis) {
+    ReportTable table{"Taken as it fits best, without being a finding",
+                      {"where", "quantity", "value", "95 % interval", "in the robot's file", "unit"},
+                      {},
+                      {}};
+    table.note =
+        "Torque constants: nobody gave them. Masses: the recording fits better when each may be a few "
+        "percent off, but no single link stands out. The extended model starts at these.";
+    for (const GrantedQuantity& one : diagnosis.granted) {
+        const FoundParameter& parameter = one.parameter;
+        table.rows.push_back({one.where, parameter.name == "mass" ? "mass" : "torque constant",
+                              parameter.value, interval_words(parameter),
+                              one.given ? ReportCell(*one.given) : ReportCell("–"), parameter.unit});
+    }
+    return table;
+}
+
+PageSection overview_section(const DiagnosisCase& one) {
+    PageSection section{"What is wrong, and what it brings to know it", {}, {}, {}};
+    section.tables.push_back(error_table(one.work.diagnosis));
+    if (!one.work.diagnosis.findings.empty()) {
+        section.tables.push_back(findings_table(one));
+    }
+    if (!one.work.diagnosis.granted.empty()) {
+        section.tables.push_back(granted_table(one.work.diagnosis));
+    }
+    return section;
+}
+
+PageSection online_section(const OnlineView& online, const Diagnosis& diagnosis) {
+    PageSection section{"As an online learner sees it", {}, {}, {}};
+    section.paragraphs.emplace_back(
+        "Learners that see positions only, as the firmware does, run over the recording tick by tick: each "
+        "predicts a sample, then learns it. P starts at the robot's own parameters, NP and SPK (100 random "
+        "features) from nothing; the extended model starts where this recording put it.");
+    if (!online.left_out.empty()) {
+        section.paragraphs.push_back("Some learners with random features were not run: " + online.left_out +
+                                     ".");
+    }
+    ReportTable table{"One-step error, of the measured output's deviation", {"learner"}, {}, {}};
+    table.note = "First third of the recording: the transient; the rest: steady.";
+    for (const std::string& name : diagnosis.output_names) {
+        table.columns.push_back(name + " first third");
+        table.columns.push_back(name + " rest");
+    }
+    for (const OnlineError& learner : online.learners) {
+        std::vector<ReportCell> row{learner.learner};
+        for (Eigen::Index output = 0; output < learner.steady.size(); ++output) {
+            row.emplace_back(learner.transient[output]);
+            row.emplace_back(learner.steady[output]);
+        }
+        table.rows.push_back(std::move(row));
+    }
+    section.tables.push_back(std::move(table));
+    return section;
+}
+
+std::vector<ReportFact> facts(const DiagnosisCase& one) {
+    std::vector<ReportFact> result{{"Robot", one.robot.name + ", " + one.robot.base + " to " + one.robot.tip +
+                                                 ", " + std::to_string(one.robot.joints.size()) + " joints"},
+                                   {"Recordings", recording_names(one.recordings)}};
+    if (one.work.signals != nullptr) {
+        const MeasuredMotion& measured = one.work.signals->measured;
+        result.push_back({"Looked at", std::to_string(measured.time_s.size()) + " rows at " +
+                                           rounded_text(measured.rate_hz) + " Hz; positions low-passed at " +
+                                           rounded_text(measured.smoothing_hz.minCoeff()) + " to " +
+                                           rounded_text(measured.smoothing_hz.maxCoeff()) +
+                                           " Hz, before they sink into their noise"});
+    }
+    result.push_back({"Build", build_flags()});
+    return result;
+}
+
+} // namespace
+
+std::string diagnosis_page(const DiagnosisCase& one) {
+    const Diagnosis& diagnosis = one.work.diagnosis;
+    FigurePage page{"What the simulation of " + one.robot.name + " gets wrong", summary(one), {}, facts(one)};
+    if (!diagnosis.suspicions.empty()) {
+        page.sections.push_back(suspicion_section(diagnosis));
+    }
+    if (!one.work.explanation.candidates.empty()) {
+        page.sections.push_back(overview_section(one));
+        page.sections.push_back(comparison_section(one.work));
+        for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
+            page.sections.push_back(finding_section(one.work, diagnosis.findings[i], i + 1));
+        }
+        page.sections.push_back(rest_section(one.work));
+        page.sections.push_back(online_section(one.online, diagnosis));
+    }
+    return render_figure_page(page);
+}
+
+} // namespace dfdyn::tools

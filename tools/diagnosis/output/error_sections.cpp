@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/output/error_sections.hpp"
+
+#include "tools/base/numerics/quantile.hpp"
+#include "tools/base/numerics/root_mean_square.hpp"
+#include "tools/base/numerics/to_vector.hpp"
+#include "tools/diagnosis/output/finding_words.hpp"
+#include "tools/diagnosis/signals/spectral_rows.hpp"
+#include "tools/report/chart.hpp"
+#include "tools/report/xy_chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr double shown_s = 20; ///< of the recording: more would be a blur
+constexpr Eigen::Index most_points = 700;
+
+/// In the outputs' own units.
+Eigen::MatrixXd in_output_units(const DiagnosisWork& work, const Eigen::MatrixXd& torques) {
+    return torques * work.torque_gains.asDiagonal();
+}
+
+/// Rows that are drawn: from the start of the held-out time, or of the recording.
+std::vector<Eigen::Index> shown_rows(const DiagnosisWork& work) {
+    const Eigen::VectorXd& time = work.signals->measured.time_s;
+    const double from = std::max(work.diagnosis.heldout_from_s, time[0]);
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index row = 0; row < time.size(); ++row) {
+        if (time[row] >= from && time[row] <= from + shown_s) {
+            rows.push_back(row);
+        }
+    }
+    const Eigen::Index step = static_cast<Eigen::Index>(rows.size()) / most_points + 1;
+    std::vector<Eigen::Index> thin;
+    for (std::size_t i = 0; i < rows.size(); i += static_cast<std::size_t>(step)) {
+        thin.push_back(rows[i]);
+    }
+    return thin;
+}
+
+/// Interrupted where the recording is.
+XyLine over_time(const DiagnosisWork& work, std::string name, const Eigen::VectorXd& series,
+                 const std::vector<Eigen::Index>& rows) {
+    const Eigen::VectorXd& time = work.signals->measured.time_s;
+    XyLine line{std::move(name), {}, {}};
+    const double usual = rows.size() > 1 ? time[rows[1]] - time[rows[0]] : 1;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (i > 0 && time[rows[i]] - time[rows[i - 1]] > 3 * usual) {
+            line.x.push_back(time[rows[i]]);
+            line.y.push_back(std::numeric_limits<double>::quiet_NaN());
+        }
+        line.x.push_back(time[rows[i]]);
+        line.y.push_back(series[rows[i]]);
+    }
+    return line;
+}
+
+/// Lag one: 0 of white noise, near 1 of what changes slowly.
+double autocorrelation(const DiagnosisSignals& signals, const Eigen::VectorXd& series) {
+    double product = 0;
+    double square = 0;
+    for (const Stretch& stretch : signals.measured.stretches) {
+        const auto part = series.segment(stretch.first, stretch.count);
+        product += part.head(stretch.count - 1).dot(part.tail(stretch.count - 1));
+        square += part.squaredNorm();
+    }
+    return square > 0 ? product / square : 0;
+}
+
+ChartCurve spectrum(const SpectralRows& rows, std::string name, const Eigen::MatrixXd& error,
+                    Eigen::Index output) {
+    const Eigen::VectorXd variance = noise_spectrum(rows.analyse(error.col(output), output),
+                                                    rows.filled(output), Eigen::VectorXd::Zero(rows.bins()));
+    ChartCurve curve{std::move(name), {}, {}, {}, {}};
+    for (Eigen::Index bin = 0; bin < variance.size(); ++bin) {
+        curve.x.push_back(rows.frequency_hz(bin));
+        curve.y.push_back(std::sqrt(variance[bin]));
+    }
+    curve.low = curve.high = curve.y;
+    return curve;
+}
+
+/// The level of the upper half of the band, where a motion has nothing: what a white noise would have.
+ChartCurve white_level(const ChartCurve& rest) {
+    const auto half = static_cast<std::ptrdiff_t>(rest.y.size() / 2);
+    const double level = median({rest.y.begin() + half, rest.y.end()});
+    ChartCurve curve{"white noise of the upper band", rest.x, {}, {}, {}};
+    curve.y.assign(rest.x.size(), level);
+    curve.low = curve.high = curve.y;
+    return curve;
+}
+
+ReportTable rest_table(const DiagnosisWork& work, const Eigen::MatrixXd& rest) {
+    ReportTable table{"What is left",
+                      {"output", "unit", "rms left", "of the output's deviation", "autocorrelation, lag 1"},
+                      {},
+                      {}};
+    table.note = "Over the whole recording, low-passed against aliasing, of the model fitted to all of it. "
+                 "Autocorrelation 0: white; near 1: slow, so that something is still to be named.";
+    const Eigen::MatrixXd measured = in_output_units(work, work.measured);
+    for (Eigen::Index output = 0; output < rest.cols(); ++output) {
+        const std::string& name = work.diagnosis.output_names[static_cast<std::size_t>(output)];
+        const Eigen::VectorXd centred = measured.col(output).array() - measured.col(output).mean();
+        table.rows.push_back({name, output_unit(name), root_mean_square(rest.col(output)),
+                              root_mean_square(rest.col(output)) / std::max(root_mean_square(centred), 1e-12),
+                              autocorrelation(*work.signals, rest.col(output))});
+    }
+    return table;
+}
+
+ReportTable unexplained_table(const Diagnosis& diagnosis) {
+    ReportTable table{"Predictable, but by no name of the catalogue",
+                      {"output", "share of its deviation", "depends on", "note"},
+                      {},
+                      {}};
+    for (const Unexplained& entry : diagnosis.unexplained) {
+        std::string inputs;
+        for (const std::string& input : entry.depends_on) {
+            inputs.append(inputs.empty() ? "" : ", ").append(input);
+        }
+        table.rows.push_back({diagnosis.output_names[static_cast<std::size_t>(entry.output)], entry.nrmse,
+                              inputs, entry.note});
+    }
+    return table;
+}
+
+} // namespace
+
+PageSection comparison_section(const DiagnosisWork& work) {
+    PageSection section{"Measured, simulated, extended", {}, {}, {}};
+    section.paragraphs.emplace_back(
+        "Simulated: the rigid body of the robot's file along the measured motion. Extended: with all named "
+        "effects, fitted to the whole recording. The first 20 s of the held-out time are shown.");
+    const std::vector<Eigen::Index> rows = shown_rows(work);
+    const Eigen::MatrixXd measured = in_output_units(work, work.measured);
+    const Eigen::MatrixXd nominal = in_output_units(work, work.signals->nominal);
+    const Eigen::MatrixXd extended = nominal + in_output_units(work, work.explanation.model(*work.signals));
+    for (Eigen::Index output = 0; output < measured.cols(); ++output) {
+        const std::string& name = work.diagnosis.output_names[static_cast<std::size_t>(output)];
+        XyChart chart{name, "time (s)", std::string(name).append(" (").append(output_unit(name)).append(")")};
+        chart.height = 220;
+        chart.reference = over_time(work, "measured", measured.col(output), rows);
+        chart.lines = {over_time(work, "simulated", nominal.col(output), rows),
+                       over_time(work, "extended", extended.col(output), rows)};
+        section.charts.push_back({"outputs_" + name, name, xy_chart(chart)});
+        XyChart error{std::string("error of ").append(name), "time (s)",
+                      std::string("error (").append(output_unit(name)).append(")")};
+        error.height = 220;
+        error.lines = {over_time(work, "of the simulated", measured.col(output) - nominal.col(output), rows),
+                       over_time(work, "of the extended", measured.col(output) - extended.col(output), rows)};
+        section.charts.push_back({"errors_" + name, error.title, xy_chart(error)});
+    }
+    return section;
+}
+
+PageSection rest_section(const DiagnosisWork& work) {
+    PageSection section{"What is left", {}, {}, {}};
+    const Eigen::MatrixXd nominal = in_output_units(work, work.measured - work.signals->nominal);
+    const Eigen::MatrixXd rest = nominal - in_output_units(work, work.explanation.model(*work.signals));
+    section.tables.push_back(rest_table(work, rest));
+    section.paragraphs.emplace_back(
+        work.diagnosis.unexplained.empty()
+            ? "Nothing that smooth functions of position, velocity and acceleration could predict is left."
+            : "Part of what is left can be predicted, but has no name: see the table.");
+    if (!work.diagnosis.unexplained.empty()) {
+        section.tables.push_back(unexplained_table(work.diagnosis));
+    }
+    const SpectralRows rows(work.signals->measured);
+    for (Eigen::Index output = 0; output < rest.cols(); ++output) {
+        const std::string& name = work.diagnosis.output_names[static_cast<std::size_t>(output)];
+        const ChartCurve left = spectrum(rows, "left by the extended", rest, output);
+        section.charts.push_back(
+            {"spectrum_" + name, name,
+             curve_chart(std::string("spectrum of the error of ").append(name), "frequency (Hz)",
+                         std::string("per bin (").append(output_unit(name)).append(")"),
+                         {white_level(left), spectrum(rows, "of the simulated", nominal, output), left})});
+    }
+    return section;
+}
+
+} // namespace dfdyn::tools

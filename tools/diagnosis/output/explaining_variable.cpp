@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/output/explaining_variable.hpp"
+
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace dfdyn::tools {
+
+Eigen::Index PlottedFinding::joint() const {
+    const std::size_t digits = finding.where.find_first_of("0123456789");
+    return digits == std::string::npos ? 0 : std::stol(finding.where.substr(digits)) - 1;
+}
+
+std::string PlottedFinding::named(const char* what) const {
+    return std::string(what).append(" of joint ").append(std::to_string(joint() + 1));
+}
+
+double PlottedFinding::parameter(const char* name) const {
+    const auto found = std::ranges::find(finding.parameters, name, &FoundParameter::name);
+    return found == finding.parameters.end() ? 0 : found->value;
+}
+
+ExplainingVariable PlottedFinding::whole(std::string label, Eigen::VectorXd value) const {
+    return {std::move(label), std::move(value), 0, signals.rows(), false};
+}
+
+ExplainingVariable over_velocity(const PlottedFinding& at) {
+    return at.whole(at.named("velocity") + " (rad/s)", at.signals.measured.motion.velocity.col(at.joint()));
+}
+
+ExplainingVariable over_position(const PlottedFinding& at) {
+    return at.whole(at.named("position") + " (rad)", at.signals.measured.motion.position.col(at.joint()));
+}
+
+ExplainingVariable over_time(const PlottedFinding& at) {
+    ExplainingVariable variable = at.whole("time (s)", at.signals.measured.time_s);
+    variable.time = true;
+    return variable;
+}
+
+ExplainingVariable over_load(const PlottedFinding& at) {
+    return at.whole(at.named("rigid-body torque") + " (N·m)", at.signals.joint_torque.col(at.joint()));
+}
+
+ExplainingVariable over_angle(const PlottedFinding& at) {
+    constexpr double full_turn = 2 * std::numbers::pi;
+    constexpr double most_waves = 12;
+    const double cycles = std::max(1.0, at.parameter(cycles_per_turn));
+    const double period = cycles > most_waves ? full_turn / cycles : full_turn;
+    const Eigen::ArrayXd position = at.signals.measured.motion.position.col(at.joint());
+    if (position.maxCoeff() - position.minCoeff() < period) {
+        return at.whole(at.named("angle") + " (rad)", position.matrix());
+    }
+    const char* const within = cycles > most_waves ? "angle within one wave" : "angle within one turn";
+    return at.whole(at.named(within) + " (rad)", (position - period * (position / period).floor()).matrix());
+}
+
+ExplainingVariable over_output(const PlottedFinding& at) {
+    return at.whole("simulated output", at.signals.nominal.col(at.finding.output));
+}
+
+ExplainingVariable explaining_variable(const DiagnosisSignals& signals, const Finding& finding,
+                                       const Eigen::VectorXd& share) {
+    const PlottedFinding plotted{signals, finding, share};
+    const Effect& effect = effect_named(finding.effect);
+    return effect.plotted_over != nullptr ? effect.plotted_over(plotted)
+                                          : plotted.whole("what the named cause should give", share);
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/output/finding_words.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dfdyn::tools {
+
+namespace {
+
+std::string words(std::string effect, const std::string& where) {
+    std::ranges::replace(effect, '_', ' ');
+    return effect.append(" at ").append(where);
+}
+
+/// Whether they are parts of one quantity: `com_x`, `com_z`; `coulomb_pos`, `coulomb_neg`.
+bool are_parts_of_one(const std::string& one, const std::string& other) {
+    const std::size_t stem = one.rfind('_');
+    return stem != std::string::npos && stem == other.rfind('_') && one.compare(0, stem, other, 0, stem) == 0;
+}
+
+} // namespace
+
+std::string confidence_text(double confidence) {
+    return confidence > 0.99 ? "> 0.99" : formatted("%.2f", confidence);
+}
+
+std::optional<std::string> axis_of(const FoundParameter& parameter) {
+    if (parameter.name != "axis" && parameter.name != "from_axis" && parameter.name != "to_axis") {
+        return std::nullopt;
+    }
+    return output_names(OutputKind::wrench, 0).at(static_cast<std::size_t>(parameter.value));
+}
+
+std::string parameter_words(const FoundParameter& parameter) {
+    std::string text = parameter.name;
+    if (const std::optional<std::string> axis = axis_of(parameter)) {
+        return text.append(" ").append(*axis);
+    }
+    text.append(" ").append(rounded_text(parameter.value));
+    if (parameter.unit != "1") {
+        text.append(" ").append(parameter.unit);
+    }
+    if (parameter.low == parameter.high) {
+        return text; // a shape that is picked, not measured
+    }
+    return text.append(" (").append(interval_words(parameter)).append(")");
+}
+
+std::string main_parameter_words(const Finding& finding) {
+    const auto measured = std::ranges::find_if(finding.parameters, [](const FoundParameter& parameter) {
+        const bool when = parameter.name == "start" || parameter.name == "end";
+        return parameter.low < parameter.high && !when;
+    });
+    if (measured == finding.parameters.end()) {
+        return "";
+    }
+    // of a vector's coordinates, and of both directions, the one that is known best
+    const auto known = [&](const FoundParameter& parameter) {
+        const double reach = parameter.high - parameter.low;
+        return are_parts_of_one(parameter.name, measured->name) && reach > 0
+                   ? std::abs(parameter.value) / reach
+                   : 0;
+    };
+    const auto best = std::ranges::max_element(measured, finding.parameters.end(), {}, known);
+    return parameter_words(*best);
+}
+
+std::string cause_words(const Finding& finding) {
+    std::string text = words(finding.effect, finding.where);
+    return finding.detail.empty() ? text : text.append(", ").append(finding.detail);
+}
+
+std::string interval_words(const FoundParameter& parameter) {
+    const std::string high = std::isinf(parameter.high) ? "∞" : rounded_text(parameter.high);
+    return rounded_text(parameter.low) + " … " + high;
+}
+
+std::string granted_words(const GrantedQuantity& granted) {
+    std::string text = granted.where + " " + rounded_text(granted.parameter.value);
+    text.append(" (").append(interval_words(granted.parameter)).append(")");
+    return granted.given ? text.append(" instead of ").append(rounded_text(*granted.given)) : text;
+}
+
+std::string cause_words(const OtherCause& cause) { return words(cause.effect, cause.where); }
+
+std::string output_unit(const std::string& output_name) {
+    return output_name.front() == 'f' ? "N" : output_name.front() == 'i' ? "A" : "N·m";
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/search/effect_search.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr double least_gain = 1e-6;           ///< of the evidence: below it nothing changes
+constexpr double least_independent = 1e-3;    ///< share of a column that the others must leave
+constexpr double least_beyond_nuisance = 0.1; ///< of it: to count as if the nuisance left no less
+constexpr std::size_t most_effects = 48;
+
+const SearchCandidate::Shape& shape_of(const SearchProblem& problem, const ChosenShape& chosen) {
+    return problem.candidates[chosen.candidate].shapes[chosen.shape];
+}
+
+/// What coefficients cost that explain a sum of squares of `explained`: before anything was measured, every
+/// order of magnitude of their joint size was as likely as any other within `orders` (of e), and every
+/// direction.
+double price_of_coefficients(double count, double explained) {
+    constexpr double orders = 7; // from a twentieth of what can be noticed to fifty times as much
+    const double size = std::sqrt(std::max(explained, 1.0));
+    const double sphere = std::log(2.0) + count / 2 * std::log(std::numbers::pi) - std::lgamma(count / 2);
+    return std::log(orders) + sphere + count * std::log(size) - count / 2 * std::log(2 * std::numbers::pi);
+}
+
+/// What a candidate costs for being one of many, of many shapes, with coefficients that explain so much.
+double price(const SearchProblem& problem, const ChosenShape& chosen, double explained) {
+    const SearchCandidate& candidate = problem.candidates[chosen.candidate];
+    const SearchCandidate::Shape& shape = candidate.shapes[chosen.shape];
+    const double parameters = static_cast<double>(shape.columns.size()) - 0.5 * shape.bounded;
+    return candidate.extra_price +
+           std::log(candidate.rivals * static_cast<double>(candidate.shapes.size()) * candidate.tried) +
+           price_of_coefficients(parameters, explained);
+}
+
+std::vector<Eigen::Index> columns_of(const SearchProblem& problem, const std::vector<ChosenShape>& chosen) {
+    std::vector<Eigen::Index> columns;
+    for (const NuisanceColumn& nuisance : problem.nuisance) {
+        columns.push_back(nuisance.column);
+    }
+    for (const ChosenShape& one : chosen) {
+        const std::vector<Eigen::Index>& own = shape_of(problem, one).columns;
+        columns.insert(columns.end(), own.begin(), own.end());
+    }
+    return columns;
+}
+
+/// The normal equations' matrix of a model, with the nuisance's priors.
+Eigen::MatrixXd system_of(const SearchProblem& problem, const std::vector<Eigen::Index>& columns) {
+    Eigen::MatrixXd system = problem.sums.gram(columns, columns);
+    for (std::size_t i = 0; i < problem.nuisance.size(); ++i) {
+        const double deviation = problem.nuisance[i].deviation;
+        system(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) += 1 / (deviation * deviation);
+    }
+    system.diagonal() *= 1 + 1e-12;
+    return system;
+}
+
+double nuisance_price(const SearchProblem& problem, const Eigen::MatrixXd& system) {
+    const auto count = static_cast<Eigen::Index>(problem.nuisance.size());
+    if (count == 0) {
+        return 0;
+    }
+    const Eigen::LLT<Eigen::MatrixXd> factor(system.topLeftCorner(count, count));
+    double result = factor.matrixLLT().diagonal().array().log().sum();
+    for (const NuisanceColumn& nuisance : problem.nuisance) {
+        result += std::log(nuisance.deviation);
+    }
+    return result;
+}
+
+/// What the nuisance's coefficients cost: half the sum of their squares, in deviations.
+double price_of_nuisance(const SearchProblem& problem, const Eigen::VectorXd& coefficients) {
+    double result = 0;
+    for (std::size_t i = 0; i < problem.nuisance.size(); ++i) {
+        const double deviations = coefficients[static_cast<Eigen::Index>(i)] / problem.nuisance[i].deviation;
+        result += 0.5 * deviations * deviations;
+    }
+    return result;
+}
+
+/// What a shape explains beyond a model, from what the model leaves of its columns (`left`) and of their
+/// products with what is to be explained; negative infinity when it may not, or next to nothing is left of
+/// it.
+double gain_of(const SearchCandidate::Shape& shape, const Eigen::VectorXd& own, const Eigen::MatrixXd& left,
+               const Eigen::VectorXd& moment) {
+    constexpr double never = -std::numeric_limits<double>::infinity();
+    if ((left.diagonal().array() <= least_independent * own.array()).any()) {
+        return never;
+    }
+    const Eigen::LDLT<Eigen::MatrixXd> factor(left);
+    if (!(factor.vectorD().array() > 1e-4 * left.diagonal().minCoeff()).all()) {
+        return never;
+    }
+    const Eigen::VectorXd coefficients = factor.solve(moment);
+    if (shape.allowed(coefficients)) {
+        return coefficients.dot(moment);
+    }
+    if (!shape.nearest) {
+        return never;
+    }
+    const Eigen::VectorXd nearest = shape.nearest(left, moment);
+    return shape.allowed(nearest) ? 2 * nearest.dot(moment) - nearest.dot(left * nearest) : never;
+}
+
+bool excludes(const std::vector<SearchCandidate>& candidates, std::size_t one, std::size_t other) {
+    return one == other ||
+           (candidates[one].family != 0 && candidates[one].family == candidates[other].family);
+}
+
+struct Step {
+    std::vector<ChosenShape> chosen;
+    double score;
+};
+
+void keep_best(Step& best, const SearchProblem& problem, const std::vector<ChosenShape>& chosen) {
+    const EffectFit fit = fit_effects(problem, chosen);
+    if (fit.allowed && fit.score > best.score + least_gain) {
+        best = {chosen, fit.score};
+    }
+}
+
+/// The best of `chosen` with one more, of those `ranked` by their scores.
+void keep_best_addition(Step& best, const SearchProblem& problem, const std::vector<ChosenShape>& chosen,
+                        const std::vector<Replacement>& ranked) {
+    constexpr std::size_t tried = 3; // the first may give another effect a sign that it may not have
+    for (std::size_t i = 0; i < std::min(tried, ranked.size()) && ranked[i].score > best.score; ++i) {
+        std::vector<ChosenShape> more = chosen;
+        more.push_back(ranked[i].with);
+        keep_best(best, problem, more);
+    }
+}
+
+} // namespace
+
+std::vector<ChosenShape> without(std::vector<ChosenShape> chosen, std::size_t index) {
+    chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(index));
+    return chosen;
+}
+
+Eigen::VectorXd EffectFit::of_all(Eigen::Index all) const {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(all);
+    result(columns) = coefficients;
+    return result;
+}
+
+EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShape>& chosen) {
+    EffectFit fit;
+    fit.columns = columns_of(problem, chosen);
+    const Eigen::MatrixXd system = system_of(problem, fit.columns);
+    const Eigen::LDLT<Eigen::MatrixXd> factor(system);
+    const Eigen::VectorXd moment = problem.sums.moment(fit.columns);
+    fit.coefficients = factor.solve(moment);
+    fit.covariance = factor.solve(Eigen::MatrixXd::Identity(system.rows(), system.cols()));
+    fit.explained = fit.coefficients.dot(moment);
+    fit.score = 0.5 * fit.explained - nuisance_price(problem, system);
+    auto at = static_cast<Eigen::Index>(problem.nuisance.size());
+    for (const ChosenShape& one : chosen) {
+        const SearchCandidate::Shape& shape = shape_of(problem, one);
+        const auto count = static_cast<Eigen::Index>(shape.columns.size());
+        fit.allowed = fit.allowed && shape.allowed(fit.coefficients.segment(at, count));
+        const Eigen::VectorXd own = fit.coefficients.segment(at, count);
+        fit.score -=
+            price(problem, one, own.dot(fit.covariance.block(at, at, count, count).llt().solve(own)));
+        at += count;
+    }
+    return fit;
+}
+
+double held_out_score(const SearchProblem& problem, const std::vector<WeighedSums>& blocks,
+                      const std::vector<ChosenShape>& chosen) {
+    const std::vector<Eigen::Index> columns = columns_of(problem, chosen);
+    const Eigen::MatrixXd system = system_of(problem, columns);
+    const Eigen::VectorXd moment = problem.sums.moment(columns);
+    double score = -price_of_nuisance(problem, system.ldlt().solve(moment));
+    for (const WeighedSums& block : blocks) {
+        const Eigen::MatrixXd own = block.gram(columns, columns);
+        const Eigen::VectorXd own_moment = block.moment(columns);
+        const Eigen::VectorXd others = (system - own).ldlt().solve(moment - own_moment);
+        score += others.dot(own_moment) - 0.5 * others.dot(own * others);
+    }
+    return score;
+}
+
+Neighbours::Neighbours(const SearchProblem& problem, const std::vector<ChosenShape>& chosen)
+    : problem_(problem), chosen_(chosen), columns_(columns_of(problem, chosen)) {
+    const Eigen::MatrixXd system = system_of(problem, columns_);
+    const Eigen::LLT<Eigen::MatrixXd> factor(system);
+    const Eigen::VectorXd moment = problem.sums.moment(columns_);
+    coefficients_ = factor.solve(moment);
+    covariance_ = factor.solve(Eigen::MatrixXd::Identity(system.rows(), system.cols()));
+    products_ = problem.sums.gram(columns_, Eigen::all);
+    const Eigen::MatrixXd seen = factor.matrixL().solve(products_);
+    const Eigen::VectorXd known = factor.matrixL().solve(moment);
+    score_ = 0.5 * coefficients_.dot(moment) - nuisance_price(problem, system);
+    auto first = static_cast<Eigen::Index>(problem.nuisance.size());
+    for (const ChosenShape& one : chosen) {
+        first_.push_back(first);
+        first += std::ssize(shape_of(problem, one).columns);
+    }
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        score_ -= price(problem, chosen[i], returned(i).moment.squaredNorm());
+    }
+    for (const SearchCandidate& candidate : problem.candidates) {
+        for (const SearchCandidate::Shape& shape : candidate.shapes) {
+            const Eigen::MatrixXd own = problem.sums.gram(shape.columns, shape.columns);
+            const Eigen::MatrixXd part = seen(Eigen::all, shape.columns);
+            const Eigen::VectorXd by_nuisance =
+                part.topRows(std::ssize(problem.nuisance)).colwise().squaredNorm();
+            beyond_.push_back(
+                {(own.diagonal() - by_nuisance).cwiseMax(least_beyond_nuisance * own.diagonal()),
+                 own - part.transpose() * part,
+                 problem.sums.moment(shape.columns) - part.transpose() * known});
+        }
+    }
+}
+
+Neighbours::Returned Neighbours::returned(std::size_t index) const {
+    const Eigen::Index first = first_[index];
+    const auto count = std::ssize(shape_of(problem_, chosen_[index]).columns);
+    const Eigen::LLT<Eigen::MatrixXd> factor(covariance_.block(first, first, count, count));
+    return {factor.matrixL().solve(covariance_.middleRows(first, count) * products_),
+            factor.matrixL().solve(coefficients_.segment(first, count))};
+}
+
+double Neighbours::score_without(std::size_t index) const {
+    const double explained = returned(index).moment.squaredNorm();
+    return score_ + price(problem_, chosen_[index], explained) - 0.5 * explained;
+}
+
+std::vector<Replacement> Neighbours::additions() const {
+    const Returned nothing{Eigen::MatrixXd(0, products_.cols()), Eigen::VectorXd(0)};
+    return ranked(chosen_, score_, nothing);
+}
+
+std::vector<Replacement> Neighbours::exchanges(std::size_t index) const {
+    const Returned what = returned(index);
+    return ranked(without(chosen_, index), score_without(index), what);
+}
+
+std::vector<Replacement> Neighbours::ranked(const std::vector<ChosenShape>& chosen, double base,
+                                            const Returned& returned) const {
+    std::vector<Replacement> result;
+    auto beyond = beyond_.begin();
+    for (std::size_t index = 0; index < problem_.candidates.size(); ++index) {
+        const std::vector<SearchCandidate::Shape>& shapes = problem_.candidates[index].shapes;
+        const auto first = beyond;
+        beyond += std::ssize(shapes);
+        if (std::any_of(chosen.begin(), chosen.end(), [&](const ChosenShape& one) {
+                return excludes(problem_.candidates, one.candidate, index);
+            })) {
+            continue;
+        }
+        Replacement best{{}, -std::numeric_limits<double>::infinity()};
+        for (std::size_t shape = 0; shape < shapes.size(); ++shape) {
+            const Beyond& left = first[static_cast<std::ptrdiff_t>(shape)];
+            const Eigen::MatrixXd back = returned.columns(Eigen::all, shapes[shape].columns);
+            const double gain = gain_of(shapes[shape], left.own, left.left + back.transpose() * back,
+                                        left.moment + back.transpose() * returned.moment);
+            const ChosenShape one{index, shape};
+            const double score = base + 0.5 * gain - price(problem_, one, gain);
+            if (gain > 0 && score > best.score) {
+                best = {one, score};
+            }
+        }
+        if (std::isfinite(best.score)) {
+            result.push_back(best);
+        }
+    }
+    std::ranges::sort(result, std::greater<>{}, &Replacement::score);
+    return result;
+}
+
+std::vector<ChosenShape> search_effects(const SearchProblem& problem, std::vector<ChosenShape> start) {
+    Step at{{}, fit_effects(problem, {}).score};
+    keep_best(at, problem, start);
+    for (int round = 0; round < 100; ++round) {
+        const Neighbours near(problem, at.chosen);
+        Step best = at;
+        if (at.chosen.size() < most_effects) {
+            keep_best_addition(best, problem, at.chosen, near.additions());
+        }
+        if (best.chosen.size() <=
+            at.chosen.size()) { // nothing to add: is what there is the best of its kind?
+            for (std::size_t i = 0; i < at.chosen.size(); ++i) {
+                const std::vector<ChosenShape> fewer = without(at.chosen, i);
+                if (near.score_without(i) > best.score) {
+                    keep_best(best, problem, fewer);
+                }
+                keep_best_addition(best, problem, fewer, near.exchanges(i));
+            }
+        }
+        if (!(best.score > at.score + least_gain)) {
+            break;
+        }
+        at = best;
+    }
+    return at.chosen;
+}
+
+} // namespace dfdyn::tools

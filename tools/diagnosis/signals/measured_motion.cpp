@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/signals/measured_motion.hpp"
+
+#include "tools/base/numerics/quantile.hpp"
+#include "tools/base/recording/columns_matrix.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
+#include "tools/diagnosis/signals/lapped_transform.hpp"
+#include "tools/diagnosis/signals/low_pass_kernel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr double highest_rate_hz = 130;
+
+/// Weights of the four samples from `first` on, of the cubic (Lagrange) through them, at `time_s`.
+Eigen::Vector4d cubic_weights(const Recording& recording, std::size_t first, double time_s) {
+    Eigen::Vector4d weights = Eigen::Vector4d::Ones();
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < 4; ++j) {
+            if (i != j) {
+                weights[static_cast<Eigen::Index>(i)] *=
+                    (time_s - recording.time_s[first + j]) /
+                    (recording.time_s[first + i] - recording.time_s[first + j]);
+            }
+        }
+    }
+    return weights;
+}
+
+/// All signals of a stretch on a uniform clock.
+struct Resampled {
+    Eigen::VectorXd time_s;
+    Eigen::MatrixXd position, output;
+};
+
+Resampled resampled(const Recording& recording, const Stretch& stretch, double step) {
+    const auto begin = static_cast<std::size_t>(stretch.first);
+    const auto end = begin + static_cast<std::size_t>(stretch.count);
+    const double start_s = recording.time_s[begin];
+    const auto rows =
+        static_cast<Eigen::Index>(std::floor((recording.time_s[end - 1] - start_s) / step + 1e-6)) + 1;
+    const auto position = columns_matrix(recording.position);
+    const auto output = columns_matrix(recording.output);
+    Resampled result{Eigen::VectorXd(rows), Eigen::MatrixXd(rows, position.cols()),
+                     Eigen::MatrixXd(rows, output.cols())};
+    std::size_t next = begin;
+    for (Eigen::Index row = 0; row < rows; ++row) {
+        const double time_s = start_s + static_cast<double>(row) * step;
+        while (next + 1 < end && recording.time_s[next] < time_s) {
+            ++next;
+        }
+        const std::size_t first = std::clamp(next < begin + 2 ? begin : next - 2, begin, end - 4);
+        const Eigen::Vector4d weights = cubic_weights(recording, first, time_s);
+        const auto at = static_cast<Eigen::Index>(first);
+        result.time_s[row] = time_s;
+        result.position.row(row) = weights.transpose() * position.middleRows(at, 4);
+        result.output.row(row) = weights.transpose() * output.middleRows(at, 4);
+    }
+    return result;
+}
+
+/// Power of the positions per bin (column: joint), mean over the frames of all stretches. Of their second
+/// differences, because the motion itself would leak into all bins; divided by what differencing does to each
+/// frequency.
+Eigen::MatrixXd position_power(const std::vector<Resampled>& stretches, const LappedTransform& transform) {
+    Eigen::MatrixXd power = Eigen::MatrixXd::Zero(transform.bins(), stretches.front().position.cols());
+    Eigen::Index frames = 0;
+    for (const Resampled& stretch : stretches) {
+        const Eigen::Index rows = stretch.position.rows() - 2;
+        for (Eigen::Index joint = 0; joint < power.cols(); ++joint) {
+            const Eigen::VectorXd position = stretch.position.col(joint);
+            const Eigen::VectorXd second =
+                position.tail(rows) - 2 * position.segment(1, rows) + position.head(rows);
+            power.col(joint) += transform.analyse(second).rowwise().squaredNorm();
+        }
+        frames += transform.frames(rows);
+    }
+    for (Eigen::Index bin = 0; bin < power.rows(); ++bin) {
+        const double phase =
+            std::numbers::pi * (static_cast<double>(bin) + 0.5) / static_cast<double>(transform.hop());
+        power.row(bin) /= std::pow(2 * std::sin(phase / 2), 4);
+    }
+    return power / static_cast<double>(std::max<Eigen::Index>(frames, 1));
+}
+
+struct PositionNoise {
+    Eigen::VectorXd power;      ///< per joint and bin, i.e. the variance of white noise
+    Eigen::VectorXd trusted_hz; ///< per joint
+};
+
+/// The noise is white: what is at the top of the spectrum. A position is trusted while it is well above it:
+/// further up, accelerations would be noise, and look like inertia that is not there.
+PositionNoise position_noise(const std::vector<Resampled>& stretches, double rate_hz) {
+    const auto hop = std::max<Eigen::Index>(16, std::llround(rate_hz));
+    const LappedTransform transform(hop, hop);
+    const Eigen::MatrixXd power = position_power(stretches, transform);
+    const double bin_hz = rate_hz / (2 * static_cast<double>(hop));
+    PositionNoise noise{Eigen::VectorXd(power.cols()), Eigen::VectorXd(power.cols())};
+    for (Eigen::Index joint = 0; joint < power.cols(); ++joint) {
+        const Eigen::VectorXd top = power.col(joint).tail(hop / 3);
+        noise.power[joint] = median(std::vector<double>(top.begin(), top.end()));
+        const auto window = std::min<Eigen::Index>(hop / 4, std::llround(1.5 / bin_hz));
+        Eigen::Index bin = 0;
+        while (bin + window < hop && power.col(joint).segment(bin, window).mean() > 8 * noise.power[joint]) {
+            ++bin;
+        }
+        noise.trusted_hz[joint] = static_cast<double>(bin) * bin_hz;
+    }
+    return noise;
+}
+
+void append(MeasuredMotion& result, const Resampled& stretch, double rate_hz, Eigen::Index step) {
+    const auto kernel_for = [&](double cutoff_hz) { return low_pass_kernel(cutoff_hz / rate_hz); };
+    const Eigen::Index first = result.time_s.size();
+    const Eigen::Index rows = (stretch.time_s.size() + step - 1) / step;
+    const auto grow = [&](Eigen::MatrixXd& matrix, Eigen::Index columns) {
+        matrix.conservativeResize(first + rows, columns);
+    };
+    RobotMotion& motion = result.motion;
+    grow(motion.position, stretch.position.cols());
+    grow(motion.velocity, stretch.position.cols());
+    grow(motion.acceleration, stretch.position.cols());
+    grow(result.outputs, stretch.output.cols());
+    for (Eigen::Index joint = 0; joint < stretch.position.cols(); ++joint) {
+        const Eigen::VectorXd smooth =
+            filtered(stretch.position.col(joint), kernel_for(result.smoothing_hz[joint]));
+        const Eigen::VectorXd velocity = differentiated(smooth) * rate_hz;
+        const Eigen::VectorXd acceleration = differentiated(velocity) * rate_hz;
+        const Eigen::VectorXi kept = Eigen::VectorXi::LinSpaced(rows, 0, static_cast<int>((rows - 1) * step));
+        motion.position.col(joint).tail(rows) = smooth(kept);
+        motion.velocity.col(joint).tail(rows) = velocity(kept);
+        motion.acceleration.col(joint).tail(rows) = acceleration(kept);
+    }
+    for (Eigen::Index output = 0; output < stretch.output.cols(); ++output) {
+        result.outputs.col(output).tail(rows) =
+            step == 1 ? stretch.output.col(output)
+                      : filtered(stretch.output.col(output), kernel_for(0.45 * result.rate_hz), step);
+    }
+    result.time_s.conservativeResize(first + rows);
+    for (Eigen::Index row = 0; row < rows; ++row) {
+        result.time_s[first + row] = stretch.time_s[row * step];
+    }
+    result.stretches.push_back({first, rows});
+}
+
+} // namespace
+
+MeasuredMotion measured_motion(const Recording& recording) {
+    const double step = median_step_s(recording);
+    std::vector<Resampled> stretches;
+    for (const Stretch& stretch : recorded_stretches(recording)) {
+        if (static_cast<double>(stretch.count) * step >= MeasuredMotion::shortest_stretch_s) {
+            stretches.push_back(resampled(recording, stretch, step));
+        }
+    }
+    if (stretches.empty()) {
+        throw InputError(recording.source + ": expected " + number_text(MeasuredMotion::shortest_stretch_s) +
+                         " s without a gap, found less");
+    }
+    const double rate_hz = 1 / step;
+    const PositionNoise noise = position_noise(stretches, rate_hz);
+    const auto decimation = std::max<Eigen::Index>(1, std::llround(std::ceil(rate_hz / highest_rate_hz)));
+    MeasuredMotion result;
+    result.rate_hz = rate_hz / static_cast<double>(decimation);
+    result.smoothing_hz = noise.trusted_hz.cwiseMax(3.0).cwiseMin(0.3 * result.rate_hz);
+    // white noise of variance s² per sample at `rate`, low-passed at f and differentiated: (2π)² s² · 2/rate
+    // · f³/3
+    result.velocity_noise =
+        2 * std::numbers::pi *
+        (2 * step / 3 * result.smoothing_hz.array().cube() * noise.power.array()).sqrt().matrix();
+    for (const Resampled& stretch : stretches) {
+        append(result, stretch, rate_hz, decimation);
+    }
+    return result;
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/signals/row_weight.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr double presliding_travel = 3e-3; ///< rad (m)
+constexpr double standing_s = 0.3;         ///< at least
+constexpr double fade_s = 0.1;             ///< from rows that tell nothing to such that tell all
+constexpr double longest_end_s = 2;        ///< over which rows at a stretch's end come to count in full
+constexpr double end_share = 1.0 / 6;      ///< of a stretch, at the most
+constexpr double least_straying = 0.1;     ///< of the output's deviation
+constexpr double least_moving = 0.1;       ///< of the rows, of a joint that moves
+
+double faded(double share) {
+    const double sine = std::sin(std::numbers::pi / 2 * std::clamp(share, 0.0, 1.0));
+    return sine * sine;
+}
+
+Eigen::Index rows_of(const MeasuredMotion& measured, double time_s) {
+    return std::max<Eigen::Index>(1, std::llround(time_s * measured.rate_hz));
+}
+
+/// Rows where a joint travels less than `presliding_travel` in some `standing_s` around.
+std::vector<bool> standing_rows(const MeasuredMotion& measured, Eigen::Index joint) {
+    const Eigen::Index window = rows_of(measured, standing_s);
+    std::vector<bool> standing(static_cast<std::size_t>(measured.time_s.size()), false);
+    for (const Stretch& stretch : measured.stretches) {
+        const auto position = measured.motion.position.col(joint).segment(stretch.first, stretch.count);
+        for (Eigen::Index first = 0; first + window <= stretch.count; ++first) {
+            const auto part = position.segment(first, window);
+            if (part.maxCoeff() - part.minCoeff() < presliding_travel) {
+                std::fill_n(standing.begin() + stretch.first + first, window, true);
+            }
+        }
+    }
+    return standing;
+}
+
+/// By how much the output of a joint strays, while it stands, from where it is in the mean of each stand and
+/// the rigid body's torque, over its own deviation.
+double straying(const std::vector<bool>& standing, const Eigen::VectorXd& output,
+                const Eigen::VectorXd& torque) {
+    const Eigen::VectorXd error = output - output.dot(torque) / torque.squaredNorm() * torque;
+    double squares = 0;
+    double rows = 0;
+    for (Eigen::Index first = 0; first < error.size();) {
+        Eigen::Index last = first;
+        while (last < error.size() && standing[static_cast<std::size_t>(last)]) {
+            ++last;
+        }
+        if (last > first) {
+            const auto part = error.segment(first, last - first).array();
+            squares += (part - part.mean()).square().sum();
+            rows += static_cast<double>(last - first);
+        }
+        first = last + 1;
+    }
+    const double variance = (output.array() - output.mean()).square().mean();
+    return rows > 0 && variance > 0 ? std::sqrt(squares / rows / variance) : 0;
+}
+
+/// How many rows before each one the last that is `off` was; `most` where it was longer ago.
+Eigen::VectorXd rows_since(const std::vector<bool>& off, Eigen::Index most) {
+    Eigen::VectorXd result(std::ssize(off));
+    Eigen::Index since = most;
+    for (Eigen::Index row = 0; row < result.size(); ++row) {
+        since = off[static_cast<std::size_t>(row)] ? 0 : std::min(since + 1, most);
+        result[row] = static_cast<double>(since);
+    }
+    return result;
+}
+
+/// Rising from 0 where `off`, over `fade` rows.
+Eigen::VectorXd weight_beside(const std::vector<bool>& off, Eigen::Index fade) {
+    const Eigen::VectorXd until = rows_since({off.rbegin(), off.rend()}, fade).reverse();
+    return (rows_since(off, fade).cwiseMin(until) / static_cast<double>(fade)).unaryExpr(&faded);
+}
+
+Eigen::VectorXd moving_weight(const MeasuredMotion& measured, const Eigen::MatrixXd& torques,
+                              Eigen::Index joint) {
+    const std::vector<bool> standing = standing_rows(measured, joint);
+    const double moving = static_cast<double>(std::ranges::count(standing, false));
+    if (moving < least_moving * static_cast<double>(standing.size()) ||
+        straying(standing, measured.outputs.col(joint), torques.col(joint)) < least_straying) {
+        return Eigen::VectorXd::Ones(std::ssize(standing));
+    }
+    return weight_beside(standing, rows_of(measured, fade_s));
+}
+
+} // namespace
+
+Eigen::VectorXd end_row_weight(const MeasuredMotion& measured) {
+    Eigen::VectorXd weight(measured.time_s.size());
+    for (const Stretch& stretch : measured.stretches) {
+        const double reach =
+            std::min(longest_end_s * measured.rate_hz, end_share * static_cast<double>(stretch.count));
+        for (Eigen::Index row = 0; row < stretch.count; ++row) {
+            const auto inside = static_cast<double>(std::min(row, stretch.count - 1 - row)) + 0.5;
+            weight[stretch.first + row] = faded(inside / reach);
+        }
+    }
+    return weight;
+}
+
+Eigen::MatrixXd joint_row_weight(const MeasuredMotion& measured, const Eigen::MatrixXd& torques) {
+    const Eigen::VectorXd ends = end_row_weight(measured);
+    Eigen::MatrixXd weight(ends.size(), measured.motion.position.cols());
+    for (Eigen::Index joint = 0; joint < weight.cols(); ++joint) {
+        weight.col(joint) = ends.cwiseProduct(moving_weight(measured, torques, joint));
+    }
+    return weight;
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/verdict/findings.hpp"
+
+#include "tools/base/text/number.hpp"
+#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/candidates/candidates.hpp"
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/verdict/finding_gain.hpp"
+#include "tools/diagnosis/verdict/found_parameters.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr double tie = 3; ///< odds of 20 to 1: closer than this the data cannot tell two causes apart
+constexpr double price_of_shapes = 6; ///< what the three coefficients of a centre of mass cost
+constexpr double same_body_share =
+    0.02; ///< of the evidence: closer, payload and last link differ by less than models are wrong
+constexpr std::size_t listed = 3; ///< alternatives that a finding tells of
+
+/// What else could stand in the place of a chosen effect, and how much less likely that is.
+void weigh_alternatives(Finding& finding, const Explanation& explanation, const Neighbours& near,
+                        std::size_t index) {
+    const double own = explanation.fit.score;
+    const Candidate& own_candidate = explanation.candidates[explanation.chosen[index].candidate];
+    finding.margin_to_nothing = own - near.score_without(index);
+    finding.margin_to_others = std::numeric_limits<double>::infinity();
+    for (const Replacement& other : near.exchanges(index)) {
+        const Candidate& candidate = explanation.candidates[other.with.candidate];
+        const double margin = own - other.score;
+        if (!candidate.named() || other.with.candidate == explanation.chosen[index].candidate ||
+            (candidate.effect == finding.effect && candidate.where == finding.where)) {
+            continue;
+        }
+        OtherCause cause{candidate.effect, candidate.where, {}};
+        const bool same_span = !candidate.span.empty() && candidate.span == own_candidate.span;
+        const double same_body = std::max(tie + price_of_shapes, same_body_share * finding.margin_to_nothing);
+        if (margin < (same_span ? same_body : tie)) {
+            finding.indistinguishable.push_back(std::move(cause));
+            continue;
+        }
+        finding.margin_to_others = std::min(finding.margin_to_others, margin);
+        if (finding.alternatives.size() < listed && margin < finding.margin_to_nothing) {
+            const double gap = finding.margin_to_nothing - margin;
+            cause.why_not = "explains " + rounded_text(100 * std::max(0.0, gap) / finding.margin_to_nothing) +
+                            " % of what this cause does";
+            finding.alternatives.push_back(std::move(cause));
+        }
+    }
+}
+
+/// The experiment that would settle whether it is there.
+std::string confirmation(const Finding& finding) {
+    return finding.where + ": " + effect_named(finding.effect).experiment;
+}
+
+/// A chosen effect with a name, without its gain.
+Finding of_cause(const Explanation& explanation, const Neighbours& near, const Neighbours& near_named,
+                 std::size_t index, double duration_s) {
+    const Candidate& candidate = explanation.candidates[explanation.chosen[index].candidate];
+    Finding finding;
+    finding.effect = candidate.effect;
+    finding.where = candidate.where;
+    finding.detail = candidate.detail;
+    finding.parameters = found_parameters(explanation, index);
+    weigh_alternatives(finding, explanation, near, index);
+    // what stands only against something unnamed that takes most of it away again is hardly there
+    finding.margin_to_nothing =
+        std::min(finding.margin_to_nothing, explanation.named.score - near_named.score_without(index));
+    finding.confidence = calibrated_confidence(finding, duration_s);
+    finding.confirm = confirmation(finding);
+    return finding;
+}
+
+Finding of_push(const StandingContact& push) {
+    constexpr double surest = 0.95; // on simulated arms all are right; real ones know more ways to surprise
+    Finding finding;
+    finding.effect = effects::external_contact().name;
+    finding.where = numbered("joint", push.joint);
+    finding.detail = start_words(push.pulse);
+    // As a rule friction gives way before the motor has to: it takes up nothing to all that it can change by.
+    // The pulse that is fitted has a flat top: one as round as a sine's is up to 0.3 higher (simulated).
+    constexpr double rounder = 0.15;
+    const double more = push.held / 2 + rounder * std::abs(push.change);
+    const double peak = -(push.change + std::copysign(more, push.change));
+    for (const EffectParameter& one :
+         contact_parameters(push.pulse, "N·m", Eigen::VectorXd::Constant(1, peak))) {
+        const double reach =
+            one.name == "peak" ? more + deviations_of_95 * push.deviation() : push.pulse.rise_s / 2;
+        finding.parameters.push_back({one.name, one.unit, one.value, one.value - reach, one.value + reach});
+    }
+    finding.confidence = surest * push.probability();
+    finding.margin_to_nothing = std::log(finding.confidence / (1 - finding.confidence));
+    finding.margin_to_others = std::numeric_limits<double>::infinity();
+    finding.confirm = confirmation(finding);
+    return finding;
+}
+
+std::string held_words(const StandingContact& push) {
+    const auto interval = [](double value, double deviation) {
+        return rounded_text(value) + " ± " + rounded_text(deviations_of_95 * deviation) + " N·m";
+    };
+    return numbered("joint", push.joint) + " stands, where its friction can change by " +
+           interval(push.held, push.held_deviation) + ", and its torque changes by " +
+           interval(std::abs(push.change), push.change_deviation) + "; ";
+}
+
+/// Those of the chosen effects with a name that bring something.
+std::vector<Finding> of_causes(const DiagnosisSignals& signals, const Explanation& explanation,
+                               const Gains& gains) {
+    const double duration_s = static_cast<double>(signals.rows()) / signals.measured.rate_hz;
+    const Neighbours near(explanation.problem, explanation.chosen);
+    const std::vector<ChosenShape> named = explanation.named_effects(); // the first of those chosen
+    const Neighbours near_named(explanation.problem, named);
+    std::vector<Finding> findings;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+        const std::string key = explanation.candidates[named[i].candidate].key();
+        Finding finding = of_cause(explanation, near, near_named, i, duration_s);
+        if (gains.tell(finding, explanation.effects(
+                                    signals, [&](const Candidate& one) { return one.key() == key; }))) {
+            findings.push_back(std::move(finding));
+        }
+    }
+    return findings;
+}
+
+std::vector<Finding> of_pushes(const DiagnosisSignals& signals, const std::vector<StandingContact>& pushes,
+                               const Gains& gains) {
+    std::vector<Finding> findings;
+    for (const StandingContact& push : pushes) {
+        Finding finding = of_push(push);
+        Eigen::MatrixXd contribution = Eigen::MatrixXd::Zero(signals.rows(), signals.outputs());
+        contribution.col(static_cast<Eigen::Index>(push.joint)) = push.share;
+        gains.tell(finding, contribution);
+        finding.evidence = held_words(push) + finding.evidence;
+        findings.push_back(std::move(finding));
+    }
+    return findings;
+}
+
+bool same_contact(const Finding& one, const Finding& other) {
+    constexpr double apart_s = 0.5;
+    const auto start_s = [](const Finding& finding) { return finding.parameters[0].value; };
+    const auto end_s = [](const Finding& finding) { return finding.parameters[1].value; };
+    return has_trait(one.effect, &Effect::interval) && other.effect == one.effect &&
+           one.where == other.where && start_s(one) < end_s(other) + apart_s &&
+           start_s(other) < end_s(one) + apart_s;
+}
+
+void sort_by_gain(std::vector<Finding>& findings) {
+    std::ranges::sort(findings, std::greater<>{},
+                      [](const Finding& finding) { return finding.rms_before / finding.rms_after; });
+}
+
+/// A contact shows on several axes, and by more than one pulse: the strongest of them tells of it.
+std::vector<Finding> without_repeated_contacts(std::vector<Finding> findings) {
+    sort_by_gain(findings);
+    std::vector<Finding> kept;
+    for (Finding& finding : findings) {
+        if (std::none_of(kept.begin(), kept.end(),
+                         [&](const Finding& one) { return same_contact(one, finding); })) {
+            kept.push_back(std::move(finding));
+        }
+    }
+    return kept;
+}
+
+/// In the place of what the search found of it, unless that is surer.
+void add_push(std::vector<Finding>& findings, Finding push) {
+    const auto same =
+        std::ranges::find_if(findings, [&](const Finding& finding) { return same_contact(finding, push); });
+    if (same == findings.end()) {
+        findings.push_back(std::move(push));
+    } else if (same->confidence < push.confidence) {
+        *same = std::move(push);
+    }
+}
+
+} // namespace
+
+double calibrated_confidence(const Finding& finding, double duration_s) {
+    // Logistic regression on what was right and wrong in simulated recordings of 50 and of 200 s:
+    // docs/diagnosis-panel.md. How far the next cause is behind did not tell more. What the model has wrong
+    // grows with the time as a true cause does.
+    const double to_nothing = std::log(std::max(finding.margin_to_nothing, 0.1));
+    const double time = std::log(std::clamp(duration_s, 50.0, 200.0) / 50);
+    const Effect* const effect = find_effect(finding.effect);
+    const double burst = effect == nullptr ? 0 : effect->burst_evidence;
+    return 1 / (1 + std::exp(2 + burst + 0.8 * time - 0.74 * to_nothing));
+}
+
+std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanation& explanation,
+                                 const std::vector<StandingContact>& pushes, const Eigen::MatrixXd& rest,
+                                 const std::vector<std::string>& output_names) {
+    const Gains gains(signals, rest, output_names);
+    std::vector<Finding> findings = without_repeated_contacts(of_causes(signals, explanation, gains));
+    for (Finding& push : of_pushes(signals, pushes, gains)) {
+        add_push(findings, std::move(push));
+    }
+    sort_by_gain(findings);
+    return findings;
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/verdict/found_parameters.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dfdyn::tools {
+
+namespace {
+
+/// A shape's parameters and their variances, by the gradient of each with respect to the coefficients.
+struct ShapeParameters {
+    std::vector<EffectParameter> values;
+    Eigen::VectorXd variance;
+
+    ShapeParameters(const Candidate& candidate, const EffectShape& shape, const Eigen::VectorXd& coefficients,
+                    const Eigen::MatrixXd& covariance)
+        : values(candidate.parameters(coefficients, shape)) {
+        Eigen::MatrixXd gradient(static_cast<Eigen::Index>(values.size()), coefficients.size());
+        for (Eigen::Index i = 0; i < coefficients.size(); ++i) {
+            const double step = 1e-3 * std::sqrt(covariance(i, i)) + 1e-12;
+            Eigen::VectorXd changed = coefficients;
+            changed[i] += step;
+            const std::vector<EffectParameter> moved = candidate.parameters(changed, shape);
+            for (std::size_t k = 0; k < values.size(); ++k) {
+                gradient(static_cast<Eigen::Index>(k), i) = (moved[k].value - values[k].value) / step;
+            }
+        }
+        variance = (gradient * covariance * gradient.transpose()).diagonal().cwiseMax(0);
+    }
+
+    bool same_names(const ShapeParameters& other) const {
+        return std::ranges::equal(values, other.values, {}, &EffectParameter::name, &EffectParameter::name);
+    }
+};
+
+/// Of a chosen effect's parameters: their variance while the shape is the chosen one, and what it grows by
+/// because other shapes are nearly as likely.
+ShapeParameters parameters_over_shapes(const Explanation& explanation, std::size_t index) {
+    const std::size_t number = explanation.chosen[index].candidate;
+    const Candidate& candidate = explanation.candidates[number];
+    std::vector<ChosenShape> named = explanation.named_effects();
+    const EffectShape& own_shape = candidate.shapes[named[index].shape];
+    const ShapeParameters own(candidate, own_shape, explanation.coefficients(index),
+                              explanation.covariance(index));
+    ShapeParameters result = own;
+    double total = 1;
+    for (std::size_t shape = 0; shape < candidate.shapes.size(); ++shape) {
+        named[index].shape = shape;
+        const EffectShape& other_shape = candidate.shapes[shape];
+        if (shape == explanation.chosen[index].shape ||
+            other_shape.columns.size() != own_shape.columns.size()) {
+            continue;
+        }
+        const EffectFit fit = fit_effects(explanation.problem, named);
+        const auto first = explanation.first_column(index);
+        const auto count = std::ssize(other_shape.columns);
+        const ShapeParameters other(candidate, other_shape, fit.coefficients.segment(first, count),
+                                    fit.covariance.block(first, first, count, count));
+        const double odds = std::exp(std::min(0.0, fit.score - explanation.named.score));
+        if (fit.allowed && own.same_names(other)) {
+            total += odds;
+            for (Eigen::Index k = 0; k < own.variance.size(); ++k) {
+                const auto i = static_cast<std::size_t>(k);
+                const double apart = other.values[i].value - own.values[i].value;
+                result.variance[k] += odds * (other.variance[k] + apart * apart);
+            }
+        }
+    }
+    result.variance /= total;
+    return result;
+}
+
+} // namespace
+
+std::vector<FoundParameter> found_parameters(const Explanation& explanation, std::size_t index) {
+    const ShapeParameters all = parameters_over_shapes(explanation, index);
+    std::vector<FoundParameter> result;
+    for (std::size_t k = 0; k < all.values.size(); ++k) {
+        const auto& [name, unit, value, of_nothing, unsettled] = all.values[k];
+        const double of_data =
+            reach_of_95(std::sqrt(all.variance[static_cast<Eigen::Index>(k)]), value - of_nothing);
+        const double reach = std::hypot(of_data, deviations_of_95 * unsettled * value);
+        result.push_back({name, unit, value, value - reach, value + reach});
+    }
+    return result;
+}
+
+double reach_of_95(double deviation, double effect) {
+    constexpr double coloured =
+        1.7; // how much wider than their formula says: measured, docs/diagnosis-panel.md
+    constexpr double model_error = 0.04; // what no noise explains, where effects are large; measured, too
+    return deviations_of_95 * std::hypot(coloured * deviation, model_error * effect);
+}
+
+double deviation_of(const FoundParameter& parameter) {
+    return (parameter.high - parameter.low) / (2 * deviations_of_95);
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/verdict/granted.hpp"
+
+#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/diagnosis/verdict/found_parameters.hpp"
+#include "tools/robot/firmware_chain.hpp"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace dfdyn::tools {
+
+namespace {
+
+/// Half of a factor's interval.
+double factor_reach(const EffectFit& fit, Eigen::Index number) {
+    return reach_of_95(std::sqrt(fit.covariance(number, number)), fit.coefficients[number]);
+}
+
+FoundParameter mass_parameter(double nominal, double factor, double reach) {
+    return {"mass", "kg", nominal * factor, nominal * (factor - reach), nominal * (factor + reach)};
+}
+
+/// Ampere per N·m are `gain` times the factor; where that may be none, the constant has no upper end.
+FoundParameter constant_parameter(double gain, double factor, double reach) {
+    constexpr double endless = std::numeric_limits<double>::infinity();
+    return {"torque_constant", "N·m/A", 1 / (gain * factor), 1 / (gain * (factor + reach)),
+            factor > reach ? 1 / (gain * (factor - reach)) : endless};
+}
+
+} // namespace
+
+std::vector<GrantedQuantity> granted_quantities(const DiagnosisSignals& signals,
+                                                const Explanation& explanation,
+                                                const Eigen::VectorXd& torque_gains) {
+    const Eigen::VectorXd nominal = nominal_parameters(signals.robot, signals.kind);
+    const Eigen::Index bodies = explanation.uncertain_masses;
+    const auto unseen = signals.joints() - static_cast<std::size_t>(nominal.size() / 10);
+    std::vector<GrantedQuantity> result;
+    for (Eigen::Index i = 0; i < std::ssize(explanation.nuisance); ++i) {
+        const double factor = explanation.nuisance_factor(i);
+        const double reach = factor_reach(explanation.fit, i);
+        if (i < bodies) {
+            const double mass = nominal[10 * i];
+            result.push_back({numbered("link", unseen + static_cast<std::size_t>(i)),
+                              mass_parameter(mass, factor, reach), mass});
+        } else {
+            result.push_back({numbered("actuator", static_cast<std::size_t>(i - bodies)),
+                              constant_parameter(torque_gains[i - bodies], factor, reach), std::nullopt});
+        }
+    }
+    return result;
+}
+
+} // namespace dfdyn::tools

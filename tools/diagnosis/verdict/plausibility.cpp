@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/verdict/plausibility.hpp"
+
+#include "tools/base/numerics/linear_algebra.hpp"
+#include "tools/base/recording/stretches.hpp"
+#include "tools/base/text/number.hpp"
+
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr double least_travel = 0.05; ///< rad (m): a joint that moves less stands
+constexpr double least_duration_s = 10;
+
+std::string joint_list(const std::vector<std::size_t>& joints) {
+    std::string text;
+    for (const std::size_t joint : joints) {
+        text += (text.empty() ? "" : ", ") + std::to_string(joint + 1);
+    }
+    return text;
+}
+
+/// The diagnosis filters at a few Hz, and cannot below that.
+void suspect_rate(const Recording& recording, Suspicions& result) {
+    constexpr double longest_step_s = 0.2;
+    constexpr double shortest_step_s = 2e-5;
+    const double step = recording.row_count() < 2 ? longest_step_s : median_step_s(recording);
+    if (step > longest_step_s || step < shortest_step_s) {
+        result.fatal = true;
+        result.sentences.push_back("rows are " + rounded_text(step) + " s apart: causes need " +
+                                   rounded_text(shortest_step_s) + " to " + rounded_text(longest_step_s) +
+                                   " s");
+    }
+}
+
+void suspect_duration(const Recording& recording, Suspicions& result) {
+    const double duration_s =
+        recording.row_count() == 0 ? 0 : recording.time_s.back() - recording.time_s.front();
+    if (duration_s < least_duration_s) {
+        result.fatal = true;
+        result.sentences.push_back(std::string("the recording is ") + rounded_text(duration_s) +
+                                   " s long: causes need " + rounded_text(least_duration_s) +
+                                   " s at least, better 60");
+    }
+}
+
+void suspect_standstill(const DiagnosisSignals& signals, Suspicions& result) {
+    std::vector<std::size_t> standing;
+    for (std::size_t joint = 0; joint < signals.joints(); ++joint) {
+        const auto column = signals.measured.motion.position.col(static_cast<Eigen::Index>(joint));
+        if (column.maxCoeff() - column.minCoeff() < least_travel) {
+            standing.push_back(joint);
+        }
+    }
+    if (standing.size() == signals.joints()) {
+        result.fatal = true;
+        result.sentences.emplace_back(
+            "the arm stands still: no cause that depends on motion can be told from another");
+    } else if (signals.joints() > 1 && standing.size() + 1 >= signals.joints()) {
+        result.sentences.emplace_back(
+            "only one joint moves: causes at the others cannot be seen, and many look the same");
+    } else if (!standing.empty()) {
+        result.sentences.push_back("joint " + joint_list(standing) +
+                                   " hardly moves: its own causes cannot be seen");
+    }
+}
+
+/// Share of the outputs' variance that is left when each may be a sum of the rigid body's, of a friction and
+/// of a spring.
+double foreign_share(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured) {
+    double share = 0;
+    for (Eigen::Index output = 0; output < measured.cols(); ++output) {
+        Eigen::MatrixXd columns(measured.rows(), signals.wrench() ? 2 : 5);
+        columns.col(0).setOnes();
+        columns.col(1) = signals.nominal.col(output);
+        if (!signals.wrench()) {
+            const RobotMotion& motion = signals.measured.motion;
+            columns.col(2) = motion.position.col(output);
+            columns.col(3) = motion.velocity.col(output);
+            columns.col(4) = signals.direction(output);
+        }
+        const Eigen::VectorXd centred = measured.col(output).array() - measured.col(output).mean();
+        const Eigen::VectorXd fit = least_squares(columns, centred);
+        share += (centred - columns * fit).squaredNorm() / centred.squaredNorm();
+    }
+    return share / static_cast<double>(measured.cols());
+}
+
+void suspect_robot(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured, Suspicions& result) {
+    const double left = foreign_share(signals, measured);
+    if (left > 0.6) {
+        result.fatal = true;
+        result.sentences.push_back(
+            "the robot's model, with friction, has next to nothing in common with the outputs (" +
+            rounded_text(100 * left) +
+            " % of their variance is left): another robot, tip, base, mounting or output");
+    }
+}
+
+} // namespace
+
+Suspicions suspicions_of_file(const Recording& recording) {
+    Suspicions result;
+    suspect_rate(recording, result);
+    suspect_duration(recording, result);
+    return result;
+}
+
+Suspicions suspicions_of_motion(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured) {
+    Suspicions result;
+    suspect_standstill(signals, result);
+    if (!result.fatal) {
+        suspect_robot(signals, measured, result);
+    }
+    return result;
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/verdict/unexplained.hpp"
+
+#include "tools/diagnosis/signals/smooth_functions.hpp"
+#include "tools/diagnosis/signals/spectral_rows.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr Eigen::Index blocks = 8;
+constexpr std::size_t most_inputs = 6;
+
+/// Smooth functions of one input: rows of spectral coefficients per function.
+struct InputFunctions {
+    std::vector<std::string> inputs;
+    std::vector<Eigen::MatrixXd> rows; ///< bins x frames each
+};
+
+using Series = std::vector<Eigen::VectorXd>;
+
+InputFunctions functions(const SpectralRows& rows, std::vector<std::string> names, const Series& series) {
+    InputFunctions result{std::move(names), {}};
+    for (const Eigen::VectorXd& one : series) {
+        result.rows.push_back(rows.analyse(one));
+    }
+    return result;
+}
+
+std::vector<InputFunctions> all_functions(const DiagnosisSignals& signals, const SpectralRows& rows) {
+    std::vector<InputFunctions> result;
+    const RobotMotion& motion = signals.measured.motion;
+    for (Eigen::Index joint = 0; joint < motion.position.cols(); ++joint) {
+        const std::string number = std::to_string(joint + 1);
+        const std::string position = "q" + number;
+        const std::string velocity = "qd" + number;
+        const Series of_position = harmonics(motion.position.col(joint), 3);
+        const Series of_velocity = harmonics(motion.velocity.col(joint), 3);
+        result.push_back(functions(rows, {position}, of_position));
+        result.push_back(functions(rows, {velocity}, of_velocity));
+        result.push_back(functions(rows, {"qdd" + number}, harmonics(motion.acceleration.col(joint), 2)));
+        Series products;
+        for (std::size_t i = 0; i < 4; ++i) {
+            for (std::size_t k = 0; k < 4; ++k) {
+                products.emplace_back(of_position[i].cwiseProduct(of_velocity[k]));
+            }
+        }
+        result.push_back(functions(rows, {position, velocity}, products));
+    }
+    return result;
+}
+
+/// Normal equations of each block of time.
+struct BlockSums {
+    std::vector<Eigen::MatrixXd> gram;
+    std::vector<Eigen::VectorXd> moment;
+    std::vector<double> energy;
+};
+
+BlockSums block_sums(const std::vector<const Eigen::MatrixXd*>& columns, const Eigen::MatrixXd& target,
+                     const Eigen::VectorXd& noise) {
+    BlockSums sums;
+    const Eigen::VectorXd weight = noise.cwiseSqrt().cwiseInverse();
+    const Eigen::Index frames = target.cols();
+    for (Eigen::Index block = 0; block < blocks; ++block) {
+        const Eigen::Index first = block * frames / blocks;
+        const Eigen::Index count = (block + 1) * frames / blocks - first;
+        Eigen::MatrixXd matrix(target.rows() * count, static_cast<Eigen::Index>(columns.size()));
+        for (std::size_t i = 0; i < columns.size(); ++i) {
+            const Eigen::MatrixXd part = weight.asDiagonal() * columns[i]->middleCols(first, count);
+            matrix.col(static_cast<Eigen::Index>(i)) = part.reshaped();
+        }
+        const Eigen::MatrixXd wanted = weight.asDiagonal() * target.middleCols(first, count);
+        sums.gram.emplace_back(matrix.transpose() * matrix);
+        sums.moment.emplace_back(matrix.transpose() * wanted.reshaped());
+        sums.energy.push_back(wanted.squaredNorm());
+    }
+    return sums;
+}
+
+/// Per block, how much of its energy the fit to all other blocks explains.
+Eigen::VectorXd held_out_gains(const BlockSums& sums) {
+    Eigen::MatrixXd gram = sums.gram.front();
+    Eigen::VectorXd moment = sums.moment.front();
+    for (std::size_t block = 1; block < sums.gram.size(); ++block) {
+        gram += sums.gram[block];
+        moment += sums.moment[block];
+    }
+    Eigen::VectorXd gains(blocks);
+    for (std::size_t block = 0; block < sums.gram.size(); ++block) {
+        Eigen::MatrixXd others = gram - sums.gram[block];
+        others.diagonal().array() *= 1.001; // functions of a narrow range are nearly the same
+        others.diagonal().array() += 1;
+        const Eigen::VectorXd fit = others.ldlt().solve(moment - sums.moment[block]);
+        gains[static_cast<Eigen::Index>(block)] =
+            2 * fit.dot(sums.moment[block]) - fit.dot(sums.gram[block] * fit);
+    }
+    return gains;
+}
+
+/// Whether the gains are above zero by more than their scatter explains.
+bool certain(const Eigen::VectorXd& gains) {
+    constexpr double quantile = 4; // of Student's t with 7 degrees of freedom: 0.3 % by chance, one side
+    const double mean = gains.mean();
+    const double scatter =
+        (gains.array() - mean).matrix().norm() / std::sqrt(static_cast<double>(blocks - 1));
+    return mean > quantile * scatter / std::sqrt(static_cast<double>(blocks));
+}
+
+void list_inputs(Unexplained& entry, const std::vector<std::string>& inputs) {
+    for (const std::string& input : inputs) {
+        if (std::ranges::find(entry.depends_on, input) == entry.depends_on.end()) {
+            entry.depends_on.push_back(input);
+        }
+    }
+}
+
+constexpr const char* no_name = "predictable, but by no cause of the catalogue";
+
+double share_of_deviation(const Eigen::VectorXd& series, const Eigen::VectorXd& measured) {
+    const Eigen::ArrayXd centred = measured.array() - measured.mean();
+    return series.norm() / centred.matrix().norm();
+}
+
+} // namespace
+
+std::vector<Unexplained> unnamed_dependences(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
+                                             const Explanation& explanation) {
+    std::vector<Unexplained> result;
+    for (const ChosenShape& one : explanation.chosen) {
+        const Candidate& candidate = explanation.candidates[one.candidate];
+        if (candidate.named()) {
+            continue;
+        }
+        const Eigen::Index output = candidate.columns.front().parts.front().output;
+        const Eigen::MatrixXd contribution = explanation.effects(
+            signals, [&](const Candidate& other) { return other.key() == candidate.key(); });
+        add_rest(result, {{output, share_of_deviation(contribution.col(output), measured.col(output)),
+                           candidate.inputs, no_name}});
+    }
+    return result;
+}
+
+void add_rest(std::vector<Unexplained>& unexplained, const std::vector<Unexplained>& rest) {
+    for (const Unexplained& one : rest) {
+        const auto same = std::ranges::find(unexplained, one.output, &Unexplained::output);
+        if (same == unexplained.end()) {
+            unexplained.push_back(one);
+        } else {
+            list_inputs(*same, one.depends_on);
+            same->nrmse = std::hypot(same->nrmse, one.nrmse);
+        }
+    }
+}
+
+std::vector<Unexplained> unexplained_rest(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
+                                          const Eigen::MatrixXd& rest, const Eigen::MatrixXd& noise) {
+    const SpectralRows rows(signals.measured);
+    std::vector<Unexplained> result;
+    if (rows.frames() < 2 * blocks) {
+        return result;
+    }
+    const std::vector<InputFunctions> candidates = all_functions(signals, rows);
+    for (Eigen::Index output = 0; output < rest.cols(); ++output) {
+        const Eigen::MatrixXd target = rows.analyse(rest.col(output), output);
+        std::vector<const Eigen::MatrixXd*> chosen;
+        Eigen::VectorXd gains = Eigen::VectorXd::Zero(blocks);
+        Unexplained entry{output, 0, {}, {}};
+        for (std::size_t step = 0; step < most_inputs; ++step) {
+            Eigen::VectorXd best = gains;
+            const InputFunctions* added = nullptr;
+            for (const InputFunctions& candidate : candidates) {
+                std::vector<const Eigen::MatrixXd*> columns = chosen;
+                for (const Eigen::MatrixXd& column : candidate.rows) {
+                    columns.push_back(&column);
+                }
+                const Eigen::VectorXd with = held_out_gains(block_sums(columns, target, noise.col(output)));
+                if (with.sum() > best.sum() && certain(with - gains)) {
+                    best = with;
+                    added = &candidate;
+                }
+            }
+            if (added == nullptr) {
+                break;
+            }
+            gains = best;
+            list_inputs(entry, added->inputs);
+            for (const Eigen::MatrixXd& column : added->rows) {
+                chosen.push_back(&column);
+            }
+        }
+        if (entry.depends_on.empty()) {
+            continue;
+        }
+        const double share =
+            gains.sum() / (noise.col(output).cwiseSqrt().cwiseInverse().asDiagonal() * target).squaredNorm();
+        entry.nrmse =
+            std::sqrt(std::max(0.0, share)) * share_of_deviation(rest.col(output), measured.col(output));
+        entry.note = no_name;
+        result.push_back(std::move(entry));
+    }
+    return result;
+}
+
+} // namespace dfdyn::tools

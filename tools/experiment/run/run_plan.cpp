@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/experiment/run/run_plan.hpp"
+
+#include "tools/base/text/error.hpp"
+#include "tools/experiment/run/common_ticks.hpp"
+#include "tools/experiment/run/run_unit.hpp"
+#include "tools/experiment/run/unit_file.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+namespace dfdyn::tools {
+
+namespace {
+
+/// One case with one draw, and what became of it.
+struct Unit {
+    Unit(const Case& its_case, std::uint64_t its_seed, std::filesystem::path its_path)
+        : one(its_case), seed(its_seed), path(std::move(its_path)) {}
+
+    const Case& one;
+    std::uint64_t seed;
+    std::filesystem::path path;
+    std::optional<UnitResult> result;
+    std::string failure;
+    bool reused = false;
+    std::atomic<double> done = 0; ///< share
+};
+
+/// The work of one call of run_plan.
+class PlanRun {
+  public:
+    PlanRun(const Plan& plan, const PlanData& data, const RunOptions& options)
+        : plan_(plan), data_(data), options_(options) {
+        const int cores = static_cast<int>(std::thread::hardware_concurrency());
+        threads_ = std::max(1, cores / options.jobs);
+        for (const Case& one : plan.cases) {
+            memories_.try_emplace(one.name);
+            for (const std::uint64_t seed : plan.seeds) {
+                units_.emplace_back(one, seed,
+                                    options.folder / "cases" / one.name / (std::to_string(seed) + ".json"));
+            }
+        }
+    }
+
+    void run(const std::function<void(double)>& progress) {
+        std::vector<std::jthread> workers;
+        running_ = options_.jobs;
+        for (int job = 0; job < options_.jobs; ++job) {
+            workers.emplace_back([this] { work(); });
+        }
+        std::unique_lock lock(mutex_);
+        while (!finished_.wait_for(lock, std::chrono::milliseconds(100), [this] { return running_ == 0; })) {
+            progress(share_done());
+        }
+        if (fault_) {
+            std::rethrow_exception(fault_);
+        }
+    }
+
+    EvaluationResults results() {
+        EvaluationResults results;
+        for (Unit& unit : units_) {
+            if (unit.result) {
+                results.units.push_back(std::move(*unit.result));
+                results.reused += unit.reused ? 1 : 0;
+            } else {
+                results.failed.push_back({unit.one.name, unit.seed, unit.failure});
+            }
+        }
+        keep_common_ticks(plan_, data_, results.units);
+        return results;
+    }
+
+  private:
+    void work() {
+        try {
+            for (std::size_t next = next_++; next < units_.size(); next = next_++) {
+                do_unit(unit_in_turn(next));
+            }
+        } catch (...) {
+            const std::lock_guard lock(mutex_);
+            fault_ = std::current_exception();
+            next_ = units_.size();
+        }
+        const std::lock_guard lock(mutex_);
+        --running_;
+        finished_.notify_all();
+    }
+
+    /// All cases' first draws before any second: the cases tune at the same time, no draw waits for its own
+    /// case's.
+    Unit& unit_in_turn(std::size_t turn) {
+        const std::size_t cases = plan_.cases.size();
+        return units_[turn % cases * plan_.seeds.size() + turn / cases];
+    }
+
+    void do_unit(Unit& unit) {
+        const nlohmann::ordered_json inputs = unit_inputs(plan_, data_, unit.one, unit.seed);
+        if (!options_.fresh) {
+            unit.result = read_unit(unit.path, inputs);
+            unit.reused = unit.result.has_value();
+        }
+        try {
+            if (!unit.result) {
+                unit.result = write_unit(unit.path, inputs,
+                                         run_unit(plan_, data_, unit.one, unit.seed, memories_, threads_,
+                                                  [&unit](double share) { unit.done = share; }));
+            }
+        } catch (const InputError& error) {
+            unit.result.reset();
+            unit.failure = error.what();
+        }
+        unit.done = 1;
+    }
+
+    double share_done() const {
+        double sum = 0;
+        for (const Unit& unit : units_) {
+            sum += unit.done;
+        }
+        return sum;
+    }
+
+    const Plan& plan_;
+    const PlanData& data_;
+    const RunOptions& options_;
+    CaseMemories memories_;  ///< its entries are there before the work begins
+    std::deque<Unit> units_; ///< case by case, draw by draw
+    int threads_ = 1;        ///< of each training
+    std::atomic<std::size_t> next_ = 0;
+    std::mutex mutex_;
+    std::condition_variable finished_;
+    int running_ = 0;
+    std::exception_ptr fault_;
+};
+
+} // namespace
+
+EvaluationResults run_plan(const Plan& plan, const PlanData& data, const RunOptions& options,
+                           const std::function<void(double)>& progress) {
+    PlanRun run(plan, data, options);
+    run.run(progress);
+    return run.results();
+}
+
+} // namespace dfdyn::tools

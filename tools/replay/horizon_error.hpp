@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/model/run_time/host_estimator.hpp"
+
+#include <cstddef>
+#include <deque>
+#include <span>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// The paper's index ε of one time t: per output, Σ (y(t+s) - ŷ(t+s|t))² / Σ y(t+s)², s = 1 … T.
+struct HorizonIndex {
+    std::size_t tick;                 ///< t, counted by `HorizonError::add` from 0
+    std::vector<double> epsilon;      ///< m values; infinite where the output was 0 all along
+    std::vector<double> error_square; ///< m values: Σ (y(t+s) - ŷ(t+s|t))², ε's numerator
+};
+
+/// Computes ε over a horizon of T samples (eq. pred_error): how the model learned up to t predicts the T
+/// samples that follow, given their positions. Holds the weights of the last T models.
+class HorizonError {
+  public:
+    /// `horizon` T ≥ 1, `outputs` m, `weights` the number of weights of all outputs.
+    HorizonError(std::size_t horizon, std::size_t outputs, std::size_t weights);
+
+    /// Adds the sample that `estimator` has just ticked. Cost T predictions and a copy of the weights.
+    void add(const HostEstimator& estimator, std::span<const double> measured);
+
+    /// Adds a tick without a prediction: no horizon reaches across it.
+    void skip();
+
+    /// Forgets the indices of ticks before `tick`.
+    void forget_before(std::size_t tick);
+
+    const std::vector<HorizonIndex>& indices() const noexcept { return indices_; }
+
+  private:
+    struct Model {
+        std::vector<float> weights;
+        std::size_t tick;
+        std::vector<double> error_square, output_square;
+    };
+
+    void add_to(Model& model, const HostEstimator& estimator, std::span<const double> measured);
+    void finish_oldest();
+
+    std::size_t horizon_, outputs_, weight_count_;
+    std::size_t ticks_ = 0;
+    std::deque<Model> models_; ///< oldest first, at most T
+    std::vector<float> prediction_;
+    std::vector<HorizonIndex> indices_;
+};
+
+} // namespace dfdyn::tools

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/replay/replay_summary.hpp"
+#include "tools/report/report.hpp"
+
+#include <span>
+
+namespace dfdyn::tools {
+
+/// The page of a replay: figures, then curves of every output over all recordings.
+Report make_replay_report(const TrainedModel& model, std::span<const ReplayedRecording> replayed,
+                          const ReplaySummary& summary);
+
+} // namespace dfdyn::tools

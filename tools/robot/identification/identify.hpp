@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/base/recording/recording.hpp"
+#include "tools/robot/identification/fit_parameters.hpp"
+#include "tools/robot/motion.hpp"
+#include "tools/robot/robot.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// What a recording says of a robot's inertial parameters.
+struct Identification {
+    OutputKind outputs = OutputKind::joint_torque;
+    std::vector<std::string> output_names;
+    Eigen::Index samples = 0;
+    BaseParameters base;
+    std::vector<std::string> base_names, base_units; ///< per base parameter
+    BaseFit fit;
+    std::optional<Eigen::VectorXd> consistent; ///< all parameters, of bodies that can be
+    /// Per output: what the nominal, the fitted and, where there are any, the consistent parameters leave.
+    Eigen::VectorXd rms_nominal, rms_fitted, rms_consistent;
+};
+
+/// Identifies the parameters that the outputs of `motion` depend on.
+Identification identify(const Robot& robot, OutputKind outputs, const RecordedMotion& recorded,
+                        std::vector<std::string> output_names, bool consistent);
+
+/// The identification as JSON, schema `dfdyn.parameters/1`.
+std::string identification_to_json(const Robot& robot, const Identification& identification);
+
+} // namespace dfdyn::tools

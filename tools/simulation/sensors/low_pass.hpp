@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/robot/dynamics/joint_vector.hpp"
+
+namespace dfdyn::tools {
+
+/// Six channels through a first-order or a second-order Butterworth low pass: its bilinear transform, whose
+/// -3 dB point is exactly the bandwidth asked for.
+class LowPass {
+  public:
+    /// `order`: 1 or 2. `bandwidth_hz`: below half of 1 / `period_s`.
+    LowPass(int order, double bandwidth_hz, double period_s) noexcept;
+
+    /// One step. The first call starts settled at `input`.
+    Wrench filter(const Wrench& input) noexcept;
+
+  private:
+    double input_[3];  ///< coefficients, newest first
+    double output_[2]; ///< of the past outputs
+    Wrench past_input_[2];
+    Wrench past_output_[2];
+    bool started_ = false;
+};
+
+} // namespace dfdyn::tools

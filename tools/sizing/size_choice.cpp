@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/sizing/size_choice.hpp"
+
+#include "tools/base/recording/sample_grid.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
+#include "tools/model/file/model_file.hpp"
+#include "tools/replay/replay.hpp"
+#include "tools/training/data/lag_spacing.hpp"
+#include "tools/training/training_options.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace dfdyn::tools {
+
+namespace {
+
+constexpr double training_share = 0.7;
+constexpr double same_error = 1.01;
+constexpr std::array<int, 11> feature_counts{10, 16, 25, 40, 63, 100, 160, 250, 400, 630, 1000};
+constexpr int probe_features = 63; ///< while window and rows are chosen
+constexpr std::array<double, 4> windows_s{0.04, 0.08, 0.16, 0.32};
+constexpr std::array<int, 3> row_counts{3, 4, 6};
+constexpr std::array<double, 3> memories_s{5, 30, 180};
+
+void cut(Columns& columns, std::size_t first, std::size_t last) {
+    const auto width = static_cast<std::ptrdiff_t>(columns.names.size());
+    const auto begin = columns.values.begin();
+    columns.values = {begin + width * static_cast<std::ptrdiff_t>(first),
+                      begin + width * static_cast<std::ptrdiff_t>(last)};
+}
+
+Recording rows_between(Recording recording, std::size_t first, std::size_t last) {
+    const auto cut_rows = [&](auto& values) {
+        values = {values.begin() + static_cast<std::ptrdiff_t>(first),
+                  values.begin() + static_cast<std::ptrdiff_t>(last)};
+    };
+    cut_rows(recording.time_s);
+    cut_rows(recording.time_ns);
+    cut_rows(recording.gap_before);
+    for (Columns* const columns :
+         {&recording.position, &recording.velocity, &recording.acceleration, &recording.output}) {
+        cut(*columns, first, last);
+    }
+    recording.gap_before.front() = 1;
+    return recording;
+}
+
+/// The first rows to train on, the last ones to judge by.
+struct Split {
+    std::vector<Recording> training, judging;
+
+    explicit Split(std::span<const Recording> recordings) {
+        std::size_t total = 0;
+        for (const Recording& recording : recordings) {
+            total += recording.row_count();
+        }
+        auto left = static_cast<std::size_t>(training_share * static_cast<double>(total));
+        for (const Recording& recording : recordings) {
+            const std::size_t rows = recording.row_count();
+            const std::size_t first = std::min(left, rows);
+            left -= first;
+            if (first > 0) {
+                training.push_back(rows_between(recording, 0, first));
+            }
+            if (first < rows) {
+                judging.push_back(rows_between(recording, first, rows));
+            }
+        }
+    }
+};
+
+double mean_error(const TrainedModel& model, std::span<const Recording> recordings) {
+    const auto estimator = make_estimator(model, false);
+    const std::size_t outputs = model.outputs.names.size();
+    double total = 0;
+    for (const Recording& recording : recordings) {
+        const ReplayedRecording replayed = replay(*estimator, {&model, 1}, recording, 0, [](std::size_t) {});
+        for (std::size_t k = 0; k < outputs; ++k) {
+            total += normalised_error(replayed, outputs, k, 0, replayed.time_s.size());
+        }
+    }
+    const double error = total / static_cast<double>(outputs * recordings.size());
+    return std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
+}
+
+bool better(const SizeCandidate& a, const SizeCandidate& b) {
+    if (a.needs.tick_operations <= b.needs.tick_operations) {
+        return a.error <= same_error * b.error;
+    }
+    return same_error * a.error < b.error;
+}
+
+class SizeSearch {
+  public:
+    SizeSearch(std::span<const Recording> recordings, OutputKind outputs, const ModelTraining& training,
+               const TargetBudget& budget, const std::function<void()>& on_candidate)
+        : split_(recordings), outputs_(outputs), training_(training), budget_(budget),
+          on_candidate_(on_candidate), period_s_(sample_period_s(recordings)) {
+        TrainingOptions& options = training_.options;
+        options.starts = 1;
+        options.likelihood_rows = std::min(options.likelihood_rows, 300);
+        options.refinement_evaluations = 0;
+    }
+
+    SizeChoice run(const FreeSizes& free) {
+        TrainingOptions options = training_.options;
+        if (free.features) {
+            options.feature_count = probe_features;
+        }
+        best_ = within_budget(options, free.features);
+        if (free.window) {
+            choose_window(free.features);
+        }
+        if (free.rows && options.input == InputKind::DFR) {
+            choose_rows(free.features);
+        }
+        if (free.memory) {
+            choose_memory();
+        }
+        SizeChoice choice{*best_, {}, {}, 0};
+        if (free.features && has_features(to_string(options.model))) {
+            choose_features(choice);
+        }
+        choice.tried = tried_;
+        return choice;
+    }
+
+  private:
+    struct Trained {
+        SizeCandidate candidate;
+        TrainedModel model;
+    };
+
+    Trained trained(const TrainingOptions& options) {
+        if (on_candidate_) {
+            on_candidate_();
+        }
+        ++tried_;
+        ModelTraining training = training_;
+        training.options = options;
+        Trained result;
+        result.model = train_model(prepare_training(split_.training, training), outputs_, training, {}).model;
+        result.model.limits.innovation = std::numeric_limits<float>::max();
+        result.candidate = {options, period_s_ * options.lags * options.every, 0, needs_of(result.model),
+                            mean_error(result.model, split_.judging)};
+        const double lambda = options.forgetting_factor;
+        result.candidate.memory_s = lambda < 1 ? -period_s_ / std::log(lambda) : 0;
+        return result;
+    }
+
+    /// The candidate with these options, or with as many features fewer as the budget demands; nothing if
+    /// none fits.
+    std::optional<SizeCandidate> fitting(TrainingOptions options, bool fewer_features) {
+        for (;;) {
+            Trained found = trained(options);
+            model_ = std::move(found.model);
+            if (fits(found.candidate.needs, budget_)) {
+                return found.candidate;
+            }
+            smallest_ = found.candidate.needs;
+            do {
+                options.feature_count = fewer_features ? next_smaller_features(options.feature_count) : 0;
+            } while (options.feature_count > 0 &&
+                     !fits(needs_of(with_feature_count(model_, options.feature_count)), budget_) &&
+                     next_smaller_features(options.feature_count) > 0);
+            if (options.feature_count == 0) {
+                return {};
+            }
+        }
+    }
+
+    SizeCandidate within_budget(const TrainingOptions& options, bool fewer_features) {
+        const auto found = fitting(options, fewer_features);
+        if (!found) {
+            throw InputError("the budget (--flash, --ram, --tick-operations): expected room for the smallest "
+                             "model, " +
+                             to_text(smallest_) + ", found " + to_text(budget_));
+        }
+        return *found;
+    }
+
+    void consider(const TrainingOptions& options, bool fewer_features) {
+        const auto found = fitting(options, fewer_features);
+        if (found && better(*found, *best_)) {
+            best_ = found;
+        }
+    }
+
+    void choose_window(bool fewer_features) {
+        const TrainingOptions base = best_->options;
+        const bool contiguous = base.input == InputKind::STD || base.hyper == HyperMethod::CV;
+        for (const double window_s : windows_s) {
+            TrainingOptions options = base;
+            const LagSpacing spacing =
+                spacing_of(window_s, period_s_, 2, contiguous ? largest_lag_count : most_spaced_lags);
+            options.lags = spacing.lags;
+            options.every = spacing.every;
+            const bool same = options.lags == base.lags && options.every == base.every;
+            if (!same && options.lags + 1 >= options.rows_per_joint &&
+                dense_lags(spacing) <= largest_lag_count) {
+                consider(options, fewer_features);
+            }
+        }
+    }
+
+    void choose_rows(bool fewer_features) {
+        const TrainingOptions base = best_->options;
+        for (const int rows : row_counts) {
+            TrainingOptions options = base;
+            options.rows_per_joint = rows;
+            if (rows != base.rows_per_joint && rows <= base.lags + 1) {
+                consider(options, fewer_features);
+            }
+        }
+    }
+
+    void choose_memory() {
+        const TrainingOptions base = best_->options;
+        for (const double memory_s : memories_s) {
+            TrainingOptions options = base;
+            options.forgetting_factor = std::exp(-period_s_ / memory_s);
+            if (options.forgetting_factor >= least_forgetting_factor(feature_counts.back())) {
+                consider(options, false);
+            }
+        }
+    }
+
+    /// The largest number of features that fits, unless a smaller one is as good; and its neighbours.
+    void choose_features(SizeChoice& choice) {
+        std::vector<SizeCandidate> ladder;
+        for (const int count : feature_counts) {
+            TrainingOptions options = best_->options;
+            options.feature_count = count;
+            const bool fitting_size = fits(needs_of(with_feature_count(model_, count)), budget_);
+            if (!fitting_size && !ladder.empty() && !fits(ladder.back().needs, budget_)) {
+                break; // one beyond the budget is shown
+            }
+            if (count < probe_features / 4 &&
+                fits(needs_of(with_feature_count(model_, probe_features)), budget_)) {
+                continue;
+            }
+            ladder.push_back(trained(options).candidate);
+            if (ladder.size() >= 3 && ladder.back().error * same_error > ladder[ladder.size() - 2].error &&
+                ladder[ladder.size() - 2].error * same_error > ladder[ladder.size() - 3].error) {
+                break; // twice without a gain
+            }
+        }
+        std::size_t best = 0;
+        for (std::size_t rung = 1; rung < ladder.size(); ++rung) {
+            if (fits(ladder[rung].needs, budget_) &&
+                (!fits(ladder[best].needs, budget_) || better(ladder[rung], ladder[best]))) {
+                best = rung;
+            }
+        }
+        choice.chosen = ladder[best];
+        choice.smaller = best > 0 ? std::optional(ladder[best - 1]) : std::nullopt;
+        choice.larger = best + 1 < ladder.size() ? std::optional(ladder[best + 1]) : std::nullopt;
+    }
+
+    static constexpr int most_spaced_lags = 20;
+
+    Split split_;
+    OutputKind outputs_;
+    ModelTraining training_;
+    TargetBudget budget_;
+    const std::function<void()>& on_candidate_;
+    double period_s_;
+    std::optional<SizeCandidate> best_;
+    TrainedModel model_; ///< the last one trained: the sizes of its physics
+    ModelNeeds smallest_;
+    int tried_ = 0;
+};
+
+void print_row(std::ostream& out, const char* name, const SizeCandidate& one, bool fitting) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "  %-8s window %.3g s (%d lags, %d samples apart), k %d, d %d, memory %s, %s, held-out "
+                  "nRMSE %.3f%s\n",
+                  name, one.window_s, one.options.lags, one.options.every, one.options.rows_per_joint,
+                  one.options.feature_count,
+                  one.memory_s > 0 ? (number_text(std::round(one.memory_s)) + " s").c_str() : "unlimited",
+                  to_text(one.needs).c_str(), one.error, fitting ? "" : " (beyond the budget)");
+    out << text;
+}
+
+} // namespace
+
+int next_smaller_features(int feature_count) {
+    const auto next = std::ranges::lower_bound(feature_counts, feature_count);
+    return next == feature_counts.begin() ? 0 : *(next - 1);
+}
+
+SizeChoice choose_sizes(std::span<const Recording> recordings, OutputKind outputs,
+                        const ModelTraining& training, const FreeSizes& free, const TargetBudget& budget,
+                        const std::function<void()>& on_candidate) {
+    return SizeSearch(recordings, outputs, training, budget, on_candidate).run(free);
+}
+
+void print_choice(std::ostream& out, const SizeChoice& choice, const TargetBudget& budget) {
+    out << "sizes: " << choice.tried
+        << " candidates, trained on the first 70 % of the rows, judged on the rest\n";
+    if (choice.smaller) {
+        print_row(out, "smaller", *choice.smaller, fits(choice.smaller->needs, budget));
+    }
+    print_row(out, "chosen", choice.chosen, true);
+    if (choice.larger) {
+        print_row(out, "larger", *choice.larger, fits(choice.larger->needs, budget));
+    }
+}
+
+} // namespace dfdyn::tools

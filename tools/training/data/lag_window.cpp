@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/training/data/lag_window.hpp"
+
+#include "tools/base/numerics/linear_algebra.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+
+namespace dfdyn::tools {
+namespace {
+
+constexpr double held_fraction = 1e-3;      // of the widest joint's deviation
+constexpr double rounding_fraction = 1e-10; // of |r| times the joint's deviation; rounding leaves about 1e-15
+constexpr double pooled_floor = 1e-6;       // of a typical joint's deviation
+constexpr std::size_t block_rows = 512;
+
+/// Triangular factor of the rows stacked under `factor`.
+Eigen::MatrixXd stacked_factor(const Eigen::MatrixXd& factor, const Eigen::MatrixXd& rows) {
+    Eigen::MatrixXd stacked(factor.rows() + rows.rows(), factor.cols());
+    stacked << factor, rows;
+    return triangular_factor(stacked);
+}
+
+RowList block_of(const RowList& rows, std::size_t first) {
+    const std::size_t last = std::min(first + block_rows, rows.size());
+    return {rows.begin() + static_cast<std::ptrdiff_t>(first),
+            rows.begin() + static_cast<std::ptrdiff_t>(last)};
+}
+
+Eigen::RowVectorXd window_means(const Eigen::MatrixXd& positions, const RowList& rows, int lags) {
+    Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(positions.cols() * (lags + 1));
+    for (std::size_t first = 0; first < rows.size(); first += block_rows) {
+        sum += lag_windows(positions, block_of(rows, first), lags).colwise().sum();
+    }
+    return sum / static_cast<double>(rows.size());
+}
+
+} // namespace
+
+Eigen::MatrixXd lag_windows(const Eigen::MatrixXd& positions, const RowList& rows, int lags) {
+    const Eigen::Index width = lags + 1;
+    Eigen::MatrixXd windows(static_cast<Eigen::Index>(rows.size()), positions.cols() * width);
+    for (Eigen::Index joint = 0; joint < positions.cols(); ++joint) {
+        for (Eigen::Index lag = 0; lag < width; ++lag) {
+            for (Eigen::Index t = 0; t < windows.rows(); ++t) {
+                windows(t, joint * width + lag) = positions(rows[static_cast<std::size_t>(t)] - lag, joint);
+            }
+        }
+    }
+    return windows;
+}
+
+LagSpread::LagSpread(const Eigen::MatrixXd& positions, const RowList& rows, int lags) : lags_(lags) {
+    const Eigen::Index width = lags + 1;
+    const Eigen::RowVectorXd means = window_means(positions, rows, lags);
+    factors_.assign(static_cast<std::size_t>(positions.cols()), Eigen::MatrixXd::Zero(width, width));
+    for (std::size_t first = 0; first < rows.size(); first += block_rows) {
+        Eigen::MatrixXd windows = lag_windows(positions, block_of(rows, first), lags);
+        windows.rowwise() -= means;
+        for (std::size_t joint = 0; joint < factors_.size(); ++joint) {
+            factors_[joint] = stacked_factor(
+                factors_[joint], windows.middleCols(static_cast<Eigen::Index>(joint) * width, width));
+        }
+    }
+    for (Eigen::MatrixXd& factor : factors_) {
+        factor /= std::sqrt(static_cast<double>(rows.size()));
+        position_deviation_.push_back(factor.col(0).norm());
+    }
+    widest_ = *std::max_element(position_deviation_.begin(), position_deviation_.end());
+}
+
+bool LagSpread::held(Eigen::Index joint) const {
+    return position_deviation_[static_cast<std::size_t>(joint)] <= held_fraction * widest_;
+}
+
+double LagSpread::deviation(Eigen::Index joint, const Eigen::VectorXd& row) const {
+    if (held(joint)) {
+        return 0;
+    }
+    const auto index = static_cast<std::size_t>(joint);
+    const double deviation = (factors_[index].triangularView<Eigen::Upper>() * row).norm();
+    return deviation > rounding_fraction * row.norm() * position_deviation_[index] ? deviation : 0;
+}
+
+Eigen::VectorXd LagSpread::deviation_gradient(Eigen::Index joint, const Eigen::VectorXd& row) const {
+    const auto factor = factors_[static_cast<std::size_t>(joint)].triangularView<Eigen::Upper>();
+    const Eigen::VectorXd product = factor * row;
+    return factor.transpose() * product / product.norm();
+}
+
+Eigen::MatrixXd LagSpread::pooled_factor() const {
+    const Eigen::Index width = lags_ + 1;
+    Eigen::MatrixXd pooled = Eigen::MatrixXd::Zero(width, width);
+    int moving = 0;
+    for (Eigen::Index joint = 0; joint < joints(); ++joint) {
+        if (held(joint)) {
+            continue;
+        }
+        const auto index = static_cast<std::size_t>(joint);
+        pooled = stacked_factor(pooled, factors_[index] / position_deviation_[index]);
+        ++moving;
+    }
+    pooled /= std::sqrt(std::max(moving, 1));
+    return stacked_factor(pooled, pooled_floor * Eigen::MatrixXd::Identity(width, width));
+}
+
+} // namespace dfdyn::tools

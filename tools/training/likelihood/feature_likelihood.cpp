@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/training/likelihood/feature_likelihood.hpp"
+
+#include "tools/training/likelihood/marginal_likelihood.hpp"
+#include "tools/training/likelihood/ridge_covariance.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// The features of every sample, and what the chain rule needs of them.
+struct Features {
+    MatrixXd phase; ///< N x d: omega xi / l
+    MatrixXd phi;   ///< N x 2d
+};
+
+Features features_of(const MatrixXd& inputs, const MatrixXd& omega, double length_scale) {
+    Features features;
+    features.phase = inputs * omega.transpose() / length_scale;
+    const double amplitude = 1 / std::sqrt(static_cast<double>(omega.rows()));
+    features.phi.resize(inputs.rows(), 2 * omega.rows());
+    features.phi << amplitude * features.phase.array().cos().matrix(),
+        amplitude * features.phase.array().sin().matrix();
+    return features;
+}
+
+/// From the gradient with respect to phi to the one with respect to the phases.
+MatrixXd pull_back_to_phase(const Features& features, const MatrixXd& phi_gradient) {
+    const Eigen::Index d = features.phase.cols();
+    return features.phi.leftCols(d).cwiseProduct(phi_gradient.rightCols(d)) -
+           features.phi.rightCols(d).cwiseProduct(phi_gradient.leftCols(d));
+}
+
+/// dL/dC contracted with what C = phi phi' + r I is made of.
+struct RidgeGradient {
+    double log_noise_ratio = 0;
+    MatrixXd phi;
+};
+
+RidgeGradient contract(const Evidence& evidence, const RidgeCovariance& covariance, const MatrixXd& phi,
+                       double noise_ratio) {
+    const MatrixXd inverse = covariance.inverse_information();
+    RidgeGradient gradient;
+    gradient.log_noise_ratio =
+        evidence.count * covariance.scaled_trace(inverse) -
+        noise_ratio * evidence.directions.colwise().squaredNorm().dot(evidence.weights.transpose());
+    gradient.phi.noalias() = 2 * evidence.count * phi * inverse;
+    gradient.phi.noalias() -=
+        2 * evidence.directions * (evidence.weights.asDiagonal() * (evidence.directions.transpose() * phi));
+    return gradient;
+}
+
+} // namespace
+
+std::optional<LikelihoodValue> FeatureLikelihood::evaluate(const VectorXd& theta) const {
+    const double noise_ratio = std::exp(theta[0]);
+    const double length_scale = std::exp(theta[1]);
+    const VectorXd input = theta.segment(kernel_parameters, input_.bounds().lower.size());
+    const Features features = features_of(input_.inputs(input), omega_, length_scale);
+    const auto covariance = RidgeCovariance::of(features.phi, noise_ratio);
+    if (!covariance) {
+        return std::nullopt;
+    }
+    const auto evidence = outputs_.evaluate(*covariance, theta.tail(theta.size() - kernel_parameters));
+    if (!evidence) {
+        return std::nullopt;
+    }
+    const RidgeGradient gradient = contract(*evidence, *covariance, features.phi, noise_ratio);
+    const MatrixXd phase_gradient = pull_back_to_phase(features, gradient.phi);
+    LikelihoodValue value{
+        evidence->minus_two_log_likelihood, {}, evidence->output_variance, evidence->physics};
+    value.gradient = joined(gradient.log_noise_ratio, -phase_gradient.cwiseProduct(features.phase).sum(),
+                            evidence->parameter_gradient);
+    value.gradient.segment(kernel_parameters, input.size()) +=
+        input_.pull_back(input, phase_gradient * omega_ / length_scale);
+    return finite_or_nothing(std::move(value));
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/training/data/input_map.hpp"
+#include "tools/training/likelihood/likelihood.hpp"
+
+#include <Eigen/Core>
+
+#include <optional>
+
+namespace dfdyn::tools {
+
+/// -2 log marginal likelihood of the model that will run: the random features of one draw of omega in place
+/// of the exact kernel, C = Phi Phi' + r I. Its cost is linear in the samples, so that it can take all of
+/// them, and it knows how far so few features can follow the kernel. Parameters as of MarginalLikelihood.
+/// Refers to `input` and `outputs`.
+class FeatureLikelihood final : public Likelihood {
+  public:
+    /// `omega` d x (n k), before division by the length scale.
+    FeatureLikelihood(const InputMap& input, const OutputLikelihood& outputs, Eigen::MatrixXd omega)
+        : input_(input), outputs_(outputs), omega_(std::move(omega)) {}
+
+    /// O(N (2d)^2 + (2d)^3), and O(N 2d m p) with p columns of physics.
+    std::optional<LikelihoodValue> evaluate(const Eigen::VectorXd& theta) const override;
+
+  private:
+    const InputMap& input_;
+    const OutputLikelihood& outputs_;
+    Eigen::MatrixXd omega_;
+};
+
+} // namespace dfdyn::tools

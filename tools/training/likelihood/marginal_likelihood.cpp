@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/training/likelihood/marginal_likelihood.hpp"
+
+#include "tools/training/likelihood/covariance_factor.hpp"
+#include "tools/training/likelihood/gaussian_kernel.hpp"
+#include "tools/training/likelihood/stacked.hpp"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace dfdyn::tools {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// dL/dC, every entry.
+MatrixXd covariance_gradient(const Evidence& evidence, const CovarianceFactor& factor) {
+    MatrixXd gradient = evidence.count * factor.inverse();
+    gradient.noalias() -=
+        evidence.directions * evidence.weights.asDiagonal() * evidence.directions.transpose();
+    return gradient;
+}
+
+} // namespace
+
+VectorXd joined(double log_noise_ratio, double log_length_scale, const VectorXd& rest) {
+    VectorXd result(kernel_parameters + rest.size());
+    result << log_noise_ratio, log_length_scale, rest;
+    return result;
+}
+
+Hyperparameters MarginalLikelihood::split(const VectorXd& theta) const {
+    const Eigen::Index inputs = input_.bounds().lower.size();
+    return {std::exp(theta[0]), std::exp(theta[1]), theta.segment(kernel_parameters, inputs),
+            theta.tail(theta.size() - kernel_parameters - inputs)};
+}
+
+std::optional<LikelihoodValue> MarginalLikelihood::evaluate(const VectorXd& theta) const {
+    const Hyperparameters parameters = split(theta);
+    const MatrixXd inputs = input_.inputs(parameters.input);
+    const MatrixXd kernel = gaussian_kernel(inputs, parameters.length_scale);
+    MatrixXd covariance = kernel;
+    covariance.diagonal().array() += parameters.noise_ratio;
+    const std::optional<CovarianceFactor> factor = CovarianceFactor::of(std::move(covariance));
+    if (!factor) {
+        return std::nullopt;
+    }
+    const auto evidence = outputs_.evaluate(*factor, theta.tail(theta.size() - kernel_parameters));
+    if (!evidence) {
+        return std::nullopt;
+    }
+    const MatrixXd slope = covariance_gradient(*evidence, *factor);
+    const KernelGradient gradient = gaussian_kernel_pull_back(inputs, parameters.length_scale, kernel, slope);
+    LikelihoodValue value{
+        evidence->minus_two_log_likelihood, {}, evidence->output_variance, evidence->physics};
+    value.gradient = joined(parameters.noise_ratio * slope.trace(), gradient.log_length_scale,
+                            evidence->parameter_gradient);
+    value.gradient.segment(kernel_parameters, parameters.input.size()) +=
+        input_.pull_back(parameters.input, gradient.inputs);
+    return finite_or_nothing(std::move(value));
+}
+
+Bounds MarginalLikelihood::bounds() const {
+    const Bounds input = input_.bounds();
+    const Bounds own = outputs_.bounds();
+    return {joined(std::log(1e-6), std::log(1e-2), stacked(input.lower, own.lower)),
+            joined(std::log(1e2), std::log(1e3), stacked(input.upper, own.upper))};
+}
+
+VectorXd MarginalLikelihood::start(int index, NormalSource& random) const {
+    constexpr std::array<double, 2> noise_ratios{1e-2, 1e-3};
+    constexpr std::array<double, 2> length_scales{4, 8};
+    const auto variant = static_cast<std::size_t>(index / 3) % 2;
+    const VectorXd input = input_.start(index, random);
+    return joined(std::log(noise_ratios[variant]), std::log(length_scales[variant]),
+                  stacked(input, outputs_.start(input)));
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/training/likelihood/output_likelihood.hpp"
+#include "tools/training/physics/physics_columns.hpp"
+#include "tools/training/search/variance_components.hpp"
+
+namespace dfdyn::tools {
+
+/// Outputs with physics: y_k = Psi_k pi + e_k, e_k ~ N(0, rho_k^2 C). Without prior on pi: model SP,
+/// eq:profile_marginal_lik (P's and SP2's least squares with C = I); with a prior: SPK,
+/// eq:SP-Kernel_model_statistics with gamma^2 Psi Psi' added by the matrix inversion lemma (P with C = I).
+/// All rho_k^2, pi and gamma^2 have their most likely values at every C: the statistics Psi_k' C^-1 Psi_k are
+/// all it takes to find them. The logarithms of a diagonal prior are parameters instead, behind those of the
+/// physics. Refers to `physics`, which must outlive it.
+class PhysicsLikelihood final : public OutputLikelihood {
+  public:
+    /// `outputs` N x m, not centred: the physics explains the mean.
+    PhysicsLikelihood(Eigen::MatrixXd outputs, const PhysicsColumns& physics, PhysicsPrior prior)
+        : outputs_(std::move(outputs)), physics_(physics), prior_(prior) {}
+
+    Bounds bounds() const override;
+    Eigen::VectorXd start(const Eigen::VectorXd& input) const override;
+
+    /// One solve with m (p + 1) right-hand sides, O(N m p^2) and a few O(m p^3).
+    std::optional<Evidence> evaluate(const Covariance& covariance,
+                                     const Eigen::VectorXd& parameters) const override;
+
+  private:
+    /// How many of the parameters are logarithms of the prior's variances.
+    Eigen::Index prior_parameters() const {
+        return prior_ == PhysicsPrior::diagonal ? physics_.columns() : 0;
+    }
+
+    Eigen::MatrixXd outputs_;
+    const PhysicsColumns& physics_;
+    PhysicsPrior prior_;
+};
+
+/// The statistics of outputs (N x m) and columns Psi (N x (m p), see PhysicsColumns) where C^-1 times both is
+/// known.
+LinearStatistics linear_statistics(const Eigen::MatrixXd& outputs, const Eigen::MatrixXd& columns,
+                                   const Eigen::MatrixXd& solved_outputs,
+                                   const Eigen::MatrixXd& solved_columns);
+
+} // namespace dfdyn::tools

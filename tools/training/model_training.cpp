@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/training/model_training.hpp"
+
+#include "tools/base/numerics/to_vector.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/model/chain_model.hpp"
+#include "tools/model/file/model_file.hpp"
+#include "tools/model/run_time/host_model.hpp"
+#include "tools/training/data/lag_spacing.hpp"
+#include "tools/training/data/recorded_data.hpp"
+#include "tools/training/data/stored_motion.hpp"
+#include "tools/training/physics/machine_size.hpp"
+#include "tools/training/physics/robot_regressor.hpp"
+#include "tools/training/start/limits.hpp"
+#include "tools/training/start/start_state.hpp"
+#include "tools/training/training_options.hpp"
+
+#include <algorithm>
+
+namespace dfdyn::tools {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+bool have_derivatives(std::span<const Recording> recordings) {
+    return std::ranges::all_of(recordings, [](const Recording& recording) {
+        return recording.velocity.present() && recording.acceleration.present();
+    });
+}
+
+/// 0 where the URDF has none.
+std::vector<double> joint_efforts(const Robot& robot) {
+    std::vector<double> efforts;
+    for (const RobotJoint& joint : robot.joints) {
+        efforts.push_back(joint.effort.value_or(0));
+    }
+    return efforts;
+}
+
+/// The chain, its effects and the outputs' gains.
+struct PhysicsColumnsOf {
+    ChainModel chain;
+    std::vector<EffectModel> effects;
+    std::vector<double> output_gain;
+};
+
+/// Of currents; nothing for other outputs.
+std::vector<TorqueGain> torque_gains(const PreparedTraining& prepared, OutputKind outputs,
+                                     const RobotPhysics& physics) {
+    const auto count = static_cast<std::size_t>(prepared.data.outputs.cols());
+    if (outputs != OutputKind::motor_current) {
+        return {};
+    }
+    if (physics.torque_constants.empty()) {
+        return estimate_torque_gains(physics.robot, prepared.data, physics.sign_velocity);
+    }
+    if (physics.torque_constants.size() != count) {
+        throw InputError("torque constants: expected " + std::to_string(count) + ", one per joint, found " +
+                         std::to_string(physics.torque_constants.size()));
+    }
+    std::vector<TorqueGain> gains;
+    for (const double constant : physics.torque_constants) {
+        if (!(constant > 0)) {
+            throw InputError("torque constants: expected positive numbers, found " +
+                             std::to_string(constant));
+        }
+        gains.push_back({1 / constant, TorqueGain::Source::given});
+    }
+    return gains;
+}
+
+std::vector<double> output_gains(const std::vector<TorqueGain>& torque_gains, Index outputs) {
+    std::vector<double> gains(static_cast<std::size_t>(outputs), 1);
+    std::ranges::transform(torque_gains, gains.begin(), &TorqueGain::gain);
+    return gains;
+}
+
+void check_joints(const Robot& robot, const TrainingData& data) {
+    const auto joints = static_cast<Index>(robot.joints.size());
+    if (joints != data.positions.cols()) {
+        throw InputError("robot " + robot.name + ": expected a chain of " +
+                         std::to_string(data.positions.cols()) + " joints as the recording has, found " +
+                         std::to_string(joints));
+    }
+}
+
+/// The motion that the physics sees, as a model stores it.
+InputModel motion_model(const TrainedModel& model, const MatrixXd& rows) {
+    InputModel motion;
+    if (rows.size() == 0) {
+        motion = model.input; // STD: its derivatives
+    } else {
+        motion.kind = InputKind::DFR;
+        motion.lags = static_cast<int>(rows.cols()) - 1;
+        const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> by_rows = rows;
+        motion.rows.assign(by_rows.data(), by_rows.data() + by_rows.size());
+    }
+    motion.rows_per_joint = 3;
+    motion.scale.assign(3 * static_cast<std::size_t>(model.joints), 1);
+    return motion;
+}
+
+StartModel start_model(const PhysicsStart& start) {
+    return {to_vector(start.parameters), start.unit_upper, start.diagonal};
+}
+
+std::vector<double> flattened(const std::vector<MatrixXd>& coupling) {
+    std::vector<double> result;
+    for (const MatrixXd& of_output : coupling) {
+        result.insert(result.end(), of_output.data(), of_output.data() + of_output.size());
+    }
+    return result;
+}
+
+PhysicsModel physics_model(const TrainedModel& model, const TrainedPhysics& trained,
+                           const PhysicsColumnsOf& columns, const Robot& robot) {
+    PhysicsModel physics;
+    physics.chain = columns.chain;
+    physics.effects = columns.effects;
+    physics.output_gain = columns.output_gain;
+    physics.motion = motion_model(model, trained.motion_rows);
+    const std::vector<std::string> names = column_names(robot, columns.chain, columns.effects);
+    for (const Index column : trained.columns) {
+        physics.selected.push_back(static_cast<int>(column));
+        physics.parameter_names.push_back(names[static_cast<std::size_t>(column)]);
+    }
+    physics.column_scale = to_vector(trained.column_scale);
+    physics.prior_variance = trained.prior_variance;
+    physics.start = start_model(trained.start);
+    physics.coupling = flattened(trained.start.coupling);
+    return physics;
+}
+
+/// Input STD takes what the recording has, sample by sample, without a window.
+void set_derivatives(TrainedModel& model, const PreparedTraining& prepared) {
+    if (model.input.kind != InputKind::STD || prepared.derivatives == Derivatives::estimated) {
+        return;
+    }
+    model.input.derivatives = Derivatives::measured;
+    model.input.lags = 0;
+    model.input.position_noise_bound = 0;
+}
+
+/// The selected columns in their units, N x (m p), as PhysicsColumns orders them.
+MatrixXd columns_of(const PhysicsModel& physics, const TrainingData& data, const RowList& rows) {
+    const auto regressor = robot_regressor(physics.chain, physics.effects, physics.output_gain);
+    const ColumnChoice choice{{physics.selected.begin(), physics.selected.end()},
+                              Eigen::Map<const VectorXd>(physics.column_scale.data(),
+                                                         static_cast<Index>(physics.column_scale.size()))};
+    return chosen_columns(*regressor, stored_motion(physics.motion, data, rows), choice);
+}
+
+JointStart joint_start_of(const TrainedModel& model, const PhysicsProblem& problem) {
+    const PhysicsModel& physics = *model.physics;
+    const ParameterPrior prior =
+        ParameterPrior::independent(static_cast<Index>(physics.selected.size()), physics.prior_variance);
+    if (model.structure == "P") {
+        return parametric_start(problem, prior);
+    }
+    if (model.structure == "SPK") {
+        return joint_start(problem, prior);
+    }
+    return residual_start(problem,
+                          Eigen::Map<const VectorXd>(physics.start.weights.data(),
+                                                     static_cast<Index>(physics.start.weights.size())));
+}
+
+int lags_of(const TrainedModel& model) {
+    return std::max(has_features(model.structure) ? model.input.lags : 0,
+                    model.physics ? model.physics->motion.lags : 0);
+}
+
+} // namespace
+
+bool sees_derivatives(const ModelTraining& training) {
+    return training.options.input == InputKind::STD ||
+           (training.physics && training.physics->torque_constants.empty());
+}
+
+PreparedTraining prepare_training(std::span<const Recording> recordings, const ModelTraining& training) {
+    PreparedTraining prepared;
+    prepared.data = gather_training_data(recordings);
+    if (!sees_derivatives(training)) {
+        return prepared;
+    }
+    const bool measured = have_derivatives(recordings);
+    if (training.derivatives == DerivativeSource::measured && !measured) {
+        throw InputError(recordings.front().source +
+                         ": expected columns qd1… and qdd1… for measured derivatives, found none");
+    }
+    if (measured && training.derivatives != DerivativeSource::estimated) {
+        prepared.derivatives = Derivatives::measured;
+        copy_derivatives(prepared.data, recordings);
+        return prepared;
+    }
+    prepared.position_noise_bound = estimate_position_noise_bound(prepared.data);
+    const int lags = dense_lags({training.options.lags, training.options.every});
+    estimate_derivatives(prepared.data, recordings, lags, prepared.position_noise_bound);
+    return prepared;
+}
+
+ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind outputs,
+                                const ModelTraining& training, const ProgressCallback& progress) {
+    TrainingOptions options = training.options;
+    options.position_noise_bound = prepared.position_noise_bound;
+    if (options.model == ModelClass::NP) {
+        TrainingResult result = train(prepared.data, options, progress);
+        set_derivatives(result.model, prepared);
+        return {std::move(result.model), std::move(result.hold_out), {}};
+    }
+    if (!training.physics) {
+        throw InputError("model " + to_string(options.model) +
+                         ": expected a robot (--robot, --tip), found none");
+    }
+    const RobotPhysics& robot = *training.physics;
+    check_joints(robot.robot, prepared.data);
+    std::vector<TorqueGain> gains = torque_gains(prepared, outputs, robot);
+    PhysicsColumnsOf columns{
+        chain_model(robot.robot, outputs), {}, output_gains(gains, prepared.data.outputs.cols())};
+    columns.effects = effect_models(robot.effects, columns.chain, robot.sign_velocity);
+    const auto regressor = robot_regressor(columns.chain, columns.effects, columns.output_gain);
+    options.physics.regressor = regressor.get();
+    options.physics.parameter_size = parameter_sizes(robot.robot, columns.chain, columns.effects);
+    options.physics.nominal = expected_parameters(robot.robot, columns.chain, columns.effects);
+    options.physics.nominal_deviation = parameter_deviations(robot.robot, columns.chain, columns.effects);
+    TrainingResult result = train(prepared.data, options, progress);
+    TrainedModel model = std::move(result.model);
+    set_derivatives(model, prepared);
+    model.physics = physics_model(model, *result.physics, columns, robot.robot);
+    check_parameters(*model.physics, options.physics.parameter_size);
+    model.physics->motion_limit = motion_limits(model.physics->motion, prepared.data);
+    if (outputs == OutputKind::joint_torque) {
+        bound_by_efforts(model.limits, joint_efforts(robot.robot));
+    }
+    if (!has_features(model.structure)) {
+        model.input = {};
+    }
+    return {std::move(model), std::move(result.hold_out), std::move(gains)};
+}
+
+void restart_model(TrainedModel& model, const PreparedTraining& prepared) {
+    const RowList rows = usable_rows(prepared.data.gap_before, lags_of(model));
+    if (!model.physics) {
+        model.start = batch_start(model, prepared.data, rows);
+        return;
+    }
+    PhysicsModel& physics = *model.physics;
+    const MatrixXd columns = columns_of(physics, prepared.data, rows);
+    const JointStart start = joint_start_of(model, {model, prepared.data, rows, columns});
+    model.start = start.kernel;
+    physics.start = start_model(start.physics);
+    physics.coupling = flattened(start.physics.coupling);
+}
+
+} // namespace dfdyn::tools

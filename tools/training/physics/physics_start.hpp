@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/model/model.hpp"
+#include "tools/training/data/row_selection.hpp"
+#include "tools/training/data/training_data.hpp"
+#include "tools/training/physics/physics_columns.hpp"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// Where learning of pi begins, in units of column_scale and noise_std: psi~_k = psi_k column_scale /
+/// noise_std_k.
+struct PhysicsStart {
+    Eigen::VectorXd parameters;     ///< p: pi^
+    std::vector<double> unit_upper; ///< of P_pi = U D U', by columns as in StartModel; empty if pi is fixed
+    std::vector<double> diagonal;   ///< p; empty if pi is fixed
+    /// SPK: G_k = Lambda_phi^-1 sum_t lambda^(N-t) phi psi~_k', m times 2d x p. The weights of output k given
+    /// pi are A_k - G_k pi, and their covariance is Lambda_phi^-1 + G_k P_pi G_k'.
+    std::vector<Eigen::MatrixXd> coupling;
+};
+
+/// Start states of NP's part and of the physics.
+struct JointStart {
+    StartModel kernel; ///< P: empty. SPK: `weights` holds A_k. Otherwise those of the residual.
+    PhysicsStart physics;
+};
+
+/// What the start of a model with physics is made from.
+struct PhysicsProblem {
+    const TrainedModel& model; ///< forgetting factor, input, features, outputs; P: no features
+    const TrainingData& data;
+    const RowList& rows;
+    const Eigen::MatrixXd& columns; ///< psi column_scale at `rows`, N x (m p) as of PhysicsColumns
+};
+
+/// A Gaussian prior of pi, in the units of PhysicsStart::parameters.
+struct ParameterPrior {
+    Eigen::VectorXd mean;        ///< p
+    Eigen::MatrixXd information; ///< p x p, the inverse of the covariance
+
+    /// The paper's: N(0, prior_variance I).
+    static ParameterPrior independent(Eigen::Index p, double prior_variance);
+};
+
+/// The regularised least-squares solution (eq:ReLS) of P: pi^ and its covariance under the prior. The prior's
+/// weight under forgetting as of batch_start(). O(N m p^2 + p^3). Throws InputError where the information
+/// matrix cannot be factored.
+JointStart parametric_start(const PhysicsProblem& problem, const ParameterPrior& prior);
+
+/// SP, SP2: NP's start on what the fixed `parameters` leave of the outputs.
+JointStart residual_start(const PhysicsProblem& problem, const Eigen::VectorXd& parameters);
+
+/// SPK in block-arrow form: the factor of Lambda_phi, which all outputs share, and the Schur complement of
+/// pi. Equal to the solution for all unknowns at once. O(N (2d)^2 + N m 2d p + (2d)^3).
+JointStart joint_start(const PhysicsProblem& problem, const ParameterPrior& prior);
+
+} // namespace dfdyn::tools

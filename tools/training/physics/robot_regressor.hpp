@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/model/model.hpp"
+#include "tools/training/physics/regressor.hpp"
+
+#include <memory>
+
+namespace dfdyn::tools {
+
+/// The firmware's own columns in double: ten per body of `chain`, then `effects`, in output units by
+/// `output_gain`. Thread-safe.
+std::unique_ptr<Regressor> robot_regressor(const ChainModel& chain, const std::vector<EffectModel>& effects,
+                                           const std::vector<double>& output_gain);
+
+} // namespace dfdyn::tools

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/training/likelihood/likelihood.hpp"
+#include "tools/training/search/minimise.hpp"
+#include "tools/training/train.hpp"
+
+#include <mutex>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// Local searches of likelihoods on `options.threads` threads, with one count of evaluations over all runs.
+/// Refers to both arguments.
+class MultiStart {
+  public:
+    /// `searches`: of all runs to come, for the progress, beside one refinement.
+    MultiStart(const TrainingOptions& options, const ProgressCallback& callback, int searches)
+        : options_(options), callback_(callback) {
+        progress_.evaluations_most =
+            searches * options.evaluations_per_start + options.refinement_evaluations;
+    }
+
+    /// One Minimum per start, in their order, its value -2 log L; each search depends on its own start only.
+    /// `announced`: the callback hears of every end. An exception of a search is passed on.
+    std::vector<Minimum> run(const Likelihood& likelihood, const Bounds& bounds,
+                             const std::vector<Eigen::VectorXd>& starts, bool announced);
+
+    /// One search with the budget of the refinement.
+    Minimum refine(const Likelihood& likelihood, const Bounds& bounds, const Eigen::VectorXd& start);
+
+  private:
+    /// `tolerance` of -2 log L; at most `evaluations`.
+    Minimum search(const Likelihood& likelihood, const Bounds& bounds, const Eigen::VectorXd& start,
+                   double tolerance, int evaluations);
+    void report(int evaluations, const std::optional<TrainingProgress::End>& end);
+
+    const TrainingOptions& options_;
+    const ProgressCallback& callback_;
+    std::mutex mutex_;
+    TrainingProgress progress_;
+};
+
+} // namespace dfdyn::tools

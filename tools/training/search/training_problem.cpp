@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/training/search/training_problem.hpp"
+
+#include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
+#include "tools/training/likelihood/stacked.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace dfdyn::tools {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int rows_least = 20;
+constexpr Index structured_betas = 2; // where DFSR's parameters hold the logits of its poles
+
+} // namespace
+
+TrainingRows choose_rows(const TrainingData& data, const TrainingOptions& options) {
+    TrainingRows rows;
+    rows.usable = usable_rows(data.gap_before, options.lags);
+    const MotionSplit split = split_by_motion(data.positions, rows.usable, options.lags);
+    if (split.moving.size() < rows_least) {
+        throw InputError("training data: expected at least " + std::to_string(rows_least) +
+                         " rows in motion with " + std::to_string(options.lags) +
+                         " rows before them without a gap, found " + std::to_string(split.moving.size()));
+    }
+    rows.moving = split.moving;
+    rows.likelihood = likelihood_rows(split, options.likelihood_rows);
+    return rows;
+}
+
+TrainingSetup::TrainingSetup(const TrainingData& training_data, const TrainingOptions& training_options)
+    : data(training_data), options(training_options), rows(choose_rows(data, options)),
+      spread(data.positions, rows.moving, options.lags) {}
+
+std::unique_ptr<InputMap> TrainingSetup::input(InputKind kind, const RowList& at) const {
+    const auto lagged = [&](std::unique_ptr<RowFamily> family) {
+        return lag_input(data.positions, at, spread, std::move(family));
+    };
+    switch (kind) {
+    case InputKind::STD:
+        return derivative_input(data, at, rows.moving, spread, options.relevance);
+    case InputKind::DF:
+        return lagged(identity_rows(options.lags));
+    case InputKind::DFW:
+        return lagged(diagonal_rows(options.lags));
+    case InputKind::DFSR:
+        return lagged(structured_rows(options.lags));
+    default:
+        return lagged(free_rows(options.lags, options.rows_per_joint, spread.pooled_factor()));
+    }
+}
+
+std::unique_ptr<MotionRows> TrainingSetup::motion_rows(InputKind kind) const {
+    const double period = data.sample_period_s;
+    if (options.physics.own_motion) {
+        const Index inputs = input(kind, {rows.moving.front()})->bounds().lower.size();
+        return difference_motion(options.lags, period, inputs, true);
+    }
+    switch (kind) {
+    case InputKind::STD:
+        return nullptr;
+    case InputKind::DFSR:
+        return difference_motion(options.lags, period, structured_betas, false);
+    case InputKind::DFR: {
+        const MatrixXd pooled = spread.pooled_factor();
+        return scaled_motion(free_rows(options.lags, options.rows_per_joint, pooled), options.lags, period,
+                             pooled);
+    }
+    default:
+        return polynomial_motion(options.lags, period);
+    }
+}
+
+std::unique_ptr<LearnedMotion> TrainingSetup::motion(InputKind kind, const RowList& at) const {
+    std::unique_ptr<MotionRows> own = motion_rows(kind);
+    return own == nullptr ? given_motion(data, at)
+                          : lag_motion(data.positions, at, options.lags, std::move(own));
+}
+
+VectorXd TrainingSetup::motion_start(InputKind kind) const {
+    const RowList any{rows.moving.front()};
+    NormalSource random(options.seed);
+    const VectorXd start = input(kind, any)->start(0, random);
+    return stacked(start, motion(kind, any)->start(start));
+}
+
+std::unique_ptr<PhysicsColumns> TrainingSetup::physics(InputKind kind, const RowList& at,
+                                                       const ColumnChoice& choice) const {
+    return std::make_unique<RegressorColumns>(*options.physics.regressor, motion(kind, at), choice);
+}
+
+VectorXd output_deviations(const TrainingSetup& setup) {
+    const MatrixXd outputs = setup.outputs(setup.rows.likelihood);
+    const MatrixXd centred = outputs.rowwise() - outputs.colwise().mean();
+    return centred.colwise().norm().transpose() / std::sqrt(static_cast<double>(outputs.rows()));
+}
+
+VectorXd output_offset(const TrainingSetup& setup) {
+    if (setup.options.model != ModelClass::NP || !setup.options.centred) {
+        return VectorXd::Zero(setup.data.outputs.cols());
+    }
+    return setup.outputs(setup.rows.moving).colwise().mean().transpose();
+}
+
+void check_outputs_vary(const TrainingSetup& setup) {
+    const MatrixXd outputs = setup.outputs(setup.rows.likelihood);
+    for (Index k = 0; k < outputs.cols(); ++k) {
+        if (outputs.col(k).minCoeff() == outputs.col(k).maxCoeff()) {
+            throw InputError("training data: expected outputs that vary, found " +
+                             setup.data.output_names[static_cast<std::size_t>(k)] + " constant at " +
+                             number_text(outputs(0, k)) + " over the rows in motion");
+        }
+    }
+}
+
+ColumnChoice choose_columns(const TrainingSetup& setup) {
+    const Regressor& regressor = *setup.options.physics.regressor;
+    const InputKind kind = setup.options.input;
+    const MatrixXd columns =
+        all_columns(regressor, setup.motion(kind, setup.rows.likelihood)->evaluate(setup.motion_start(kind)));
+    const VectorXd deviations = output_deviations(setup);
+    const Index samples = columns.rows();
+    MatrixXd relative(samples * regressor.outputs(), regressor.columns());
+    for (Index k = 0; k < regressor.outputs(); ++k) {
+        const double unit = std::isfinite(deviations[k]) ? deviations[k] : 1; // the search will say so
+        relative.middleRows(k * samples, samples) =
+            columns.middleCols(k * regressor.columns(), regressor.columns()) / unit;
+    }
+    if (!relative.allFinite()) {
+        throw InputError("training: expected finite columns of the physics over the recording, found some "
+                         "that are not");
+    }
+    const PhysicsOptions& physics = setup.options.physics;
+    ColumnChoice choice = select_columns(relative, physics.column_threshold, physics.parameter_size);
+    if (choice.columns.empty()) {
+        throw InputError("training: expected physics that the recording excites, found " +
+                         std::to_string(regressor.columns()) + " columns without effect on the outputs");
+    }
+    if (physics.prior == PriorForm::unit) {
+        choice.scale.setOnes();
+    }
+    return choice;
+}
+
+} // namespace dfdyn::tools
