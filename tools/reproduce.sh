@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # reproduce.sh [--quick] [EVALUATE OPTION...]: installs what is missing, builds dfdyn, simulates the paper's two recordings of the
-# iCub arm, runs the paper's experiment on them and on recordings of a real UR5, and writes docs/reproduction.md and pictures.
+# iCub arm, runs the paper's experiment on them and on recordings of a real UR5, and writes docs/results/reproduction.md with the
+# verdicts; comparisons, tables and all pictures are written into build/reproduction.
 # A run that was ended goes on where it was.
 # --quick: one draw, few features and rows, into build/reproduction only; shows that everything runs, not how good it is.
 set -euo pipefail
@@ -10,7 +11,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 out=build/reproduction
 dfdyn=build/release/tools/dfdyn
 robot=tests/data/robots/icub_right_arm/icub_right_arm.urdf
-page=docs/reproduction.md
+page=docs/results/reproduction.md
 plans=(icub icub_1khz icub_swapped ur5 ur5_swapped)
 options=(--jobs "$(nproc)")
 kind=full
@@ -69,11 +70,12 @@ introduction() {
     cat <<'TEXT'
 # The paper's findings, tried again
 
-Written by `tools/reproduce.sh`; every verdict follows from the numbers beside it by the rule stated below.
+Written by `tools/reproduce.sh`, with all comparisons, tables and pictures in `build/reproduction/full/`; every verdict follows from the numbers by the
+rule stated below. [evaluation.md](../guide/evaluation.md) describes the experiment.
 
 What differs from the paper:
 
-- Its recordings are not public. The iCub's are simulated (`dfdyn simulate`, [what is known and what is guessed](../tests/data/scenarios/README.md)):
+- Its recordings are not public. The iCub's are simulated (`dfdyn simulate`, [what is known and what is guessed](../../tests/data/scenarios/README.md)):
   beyond the sensor the simulated arm is exactly rigid, but its encoders are eccentric and its sensor's calibration is wrong. The UR5's are measured.
 - How good numerical derivatives are decides some findings. Those of the first chapter are estimated from readings every 10 ms, as they reach a program
   on the robot's computer in the iCub's configuration; the second chapter has the same arm with derivatives estimated at 1 kHz.
@@ -93,7 +95,19 @@ chapters in which the motions exchange their roles were run after all of this wa
 TEXT
 }
 
-mkdir -p "$out/data" "$(dirname "$page")"
+# beyond_the_paper PLAN: the four pictures of that figure, for the first plan of each arm.
+beyond_the_paper() {
+    local shown picture
+    [[ $1 == icub || $1 == ur5 ]] || return 0
+    shown=$(grep -x -F -A 5 '### Beyond the paper' "$out/$kind/$1/findings.md")
+    echo
+    echo "$shown"
+    grep -o 'pictures/[a-z0-9_]*\.svg' <<<"$shown" | while IFS= read -r picture; do
+        cp "$out/$kind/$1/$picture" "$(dirname "$page")/pictures/"
+    done
+}
+
+mkdir -p "$out/data" "$(dirname "$page")/pictures"
 failed=0
 step 1 "packages"
 tools/install_packages.sh demo
@@ -112,17 +126,12 @@ done
 {
     introduction
     for plan in "${plans[@]}"; do
-        cat "$out/$kind/$plan/findings.md"
+        cat "$out/$kind/$plan/verdicts.md"
+        beyond_the_paper "$plan"
         echo
     done
 } >"$page.tmp"
 mv "$page.tmp" "$page"
-mkdir -p "$(dirname "$page")/pictures"
-rm -f "$(dirname "$page")"/pictures/{icub,ur5}_*.svg
-for plan in "${plans[@]}"; do
-    cp "$out/$kind/$plan"/pictures/*.svg "$(dirname "$page")/pictures/"
-done
-
 echo
 echo "Done in $SECONDS s: $page"
 echo "  $out/$kind/PLAN/report.html  the same as pages, PLAN: ${plans[*]}"

@@ -60,6 +60,10 @@ TEST_CASE("an evaluation writes page, tables, findings, figures and pictures") {
         CHECK_THAT(text, !ContainsSubstring("Because of that."));
         CHECK_THAT(text, ContainsSubstring("at least 30 % less, transient"));
     }
+    const std::string verdicts = file_content(directory.path() / "verdicts.md");
+    CHECK_THAT(verdicts, ContainsSubstring("| A wins | 1 | 0 | 0 | reproduced |"));
+    CHECK_THAT(verdicts, ContainsSubstring("B wins (not reproduced): Because of this."));
+    CHECK_THAT(verdicts, !ContainsSubstring("Because of that."));
     CHECK_THAT(file_content(directory.path() / "tables.md"), ContainsSubstring("| A | 0.05"));
     for (const std::string name : {"plan_1_force_curves", "plan_1_torque_boxes"}) {
         CHECK_THAT(markdown, ContainsSubstring("(pictures/" + name + ".svg)"));

@@ -84,7 +84,7 @@ struct Figure {
     std::vector<std::string> cases;
 };
 
-/// What `dfdyn evaluate` does; see docs/evaluation.md for its file.
+/// What `dfdyn evaluate` does; see docs/guide/evaluation.md for its file.
 struct Plan {
     std::string name; ///< begins the names of the pictures: letters, digits, '-' and '_'
     std::string title;

@@ -50,6 +50,11 @@ class EvaluationPage {
         return page;
     }
 
+    /// The verdicts, and the reasons why findings are not reproduced.
+    FigurePage verdicts() const {
+        return {plan_.title, protocol_sentence(), verdict_sections(), {}};
+    }
+
     std::string tables_markdown() const {
         std::string text;
         for (const ReportTable& table : tables()) {
@@ -169,11 +174,26 @@ class EvaluationPage {
                             {outcome.finding->statement},
                             {},
                             {comparison_table("Comparisons", outcome.comparisons)}};
-        if (outcome.verdict != FindingVerdict::reproduced && !outcome.finding->if_not.empty()) {
+        if (needs_reason(outcome)) {
             section.paragraphs.push_back("Why it is " + to_string(outcome.verdict) + ": " +
                                          outcome.finding->if_not);
         }
         return section;
+    }
+
+    static bool needs_reason(const FindingOutcome& outcome) {
+        return outcome.verdict != FindingVerdict::reproduced && !outcome.finding->if_not.empty();
+    }
+
+    std::vector<PageSection> verdict_sections() const {
+        PageSection reasons{"Why not all are reproduced", {}, {}, {}};
+        for (const FindingOutcome& outcome : findings_) {
+            if (needs_reason(outcome)) {
+                reasons.paragraphs.push_back(outcome.finding->name + " (" + to_string(outcome.verdict) +
+                                             "): " + outcome.finding->if_not);
+            }
+        }
+        return {{"Findings", {rule_sentence()}, {}, {finding_table(findings_)}}, reasons};
     }
 
     std::vector<PageSection> finding_sections() const {
@@ -211,6 +231,7 @@ void write_evaluation(const std::filesystem::path& folder, const Plan& plan, con
     write_file(folder / "tables.md", evaluation.tables_markdown());
     write_file(folder / "report.html", render_figure_page(page));
     write_file(folder / "findings.md", figure_page_markdown(page));
+    write_file(folder / "verdicts.md", figure_page_markdown(evaluation.verdicts()));
     for (const PageSection& section : page.sections) {
         for (const PageChart& chart : section.charts) {
             write_file(folder / "pictures" / (chart.name + ".svg"), standalone_chart(chart.svg));

@@ -31,7 +31,7 @@ ReportTable comparison_table(const std::string& caption, std::span<const Compari
 /// Statement and verdict, a row per finding.
 ReportTable finding_table(std::span<const FindingOutcome> findings);
 
-/// One row per case, draw and group, then one per opponent: see docs/evaluation.md for the columns.
+/// One row per case, draw and group, then one per opponent: see docs/guide/evaluation.md for the columns.
 void write_results_csv(std::ostream& out, const Plan& plan, std::span<const UnitResult> units,
                        const PlanOpponents& opponents, const std::vector<std::string>& outputs);
 
