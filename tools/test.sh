@@ -8,9 +8,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 jobs=$(nproc)
 log_dir=build/logs
 
-# All but the headers that make_ur5_headers.sh writes.
+# All but the header that make_ur5_model.sh writes.
 all_sources() {
-    find firmware_lib hal tools tests '(' -name '*.hpp' -o -name '*.cpp' ')' ! -name 'ur5_*.hpp' -print0
+    find firmware_lib hal tools tests '(' -name '*.hpp' -o -name '*.cpp' ')' ! -name ur5_model.hpp -print0
 }
 
 install_packages() { tools/install_packages.sh test; }

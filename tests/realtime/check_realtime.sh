@@ -20,8 +20,9 @@ if [[ -z $compiler ]] || ! "$compiler" -fsanitize=realtime -x c++ - -o "$scratch
     exit 77 # skipped
 fi
 
+awk -v table=samples -f firmware_lib/examples/ur5_tables.awk tests/data/ur5_kufieta/Movement_No6_Acc_slow_Verify_Model.csv >"$scratch/ur5_samples.hpp"
 compile=("$compiler" -std=c++20 -O1 -Wfunction-effects -Werror=function-effects -fsanitize=realtime -DNDEBUG
-    -I. -Ifirmware_lib/include -Ihal/include tests/realtime/realtime.cpp)
+    -I. "-I$scratch" -Ifirmware_lib/include -Ihal/include tests/realtime/realtime.cpp)
 if "${compile[@]}" -DDFDYN_MUST_NOT_COMPILE -fsyntax-only 2>"$scratch/refused.txt"; then
     echo "realtime: a function that may not block allocates, and compiles"
     exit 1
