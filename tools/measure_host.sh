@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # measure_host.sh [PASSES]: builds dfdyn for this machine, runs `dfdyn bench` and writes its tables between the marks "host" of
-# docs/performance.md anew, and its picture beside it. Takes some 20 minutes, 10 of them the loop; more passes on a busy machine.
+# docs/reference/performance.md anew, and its picture beside it. Takes some 20 minutes, 10 of them the loop; more passes on a busy machine.
 # Peers from Debian, measured where they are installed: libqrupdate-dev, libdlib-dev, and libopenblas-serial-dev for BLAS.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-page=docs/performance.md
+page=docs/reference/performance.md
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
@@ -20,5 +20,5 @@ build/release/tools/dfdyn bench --hour --stretch 3600000 --passes "${1:-60}" --l
     sed -n '/^<!-- host: end/,$p' "$page"
 } >"$scratch/page"
 cp "$scratch/page" "$page"
-mkdir -p docs/pictures
-cp "$scratch"/bench/pictures/*.svg docs/pictures/
+mkdir -p docs/reference/pictures
+cp "$scratch"/bench/pictures/*.svg docs/reference/pictures/

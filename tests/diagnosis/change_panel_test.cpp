@@ -16,7 +16,7 @@ int count(const std::vector<ChangeScore>& scores, bool (*holds)(const ChangeScor
 
 } // namespace
 
-// The floors are what these seeds have to give at least; docs/monitor.md has the shares of many more.
+// The floors are what these seeds have to give at least; docs/guide/monitor.md has the shares of many more.
 TEST_CASE("most changes hidden in simulated arms are found, named and placed", "[changes]") {
     ChangeMix mix;
     mix.duration_s = 82;

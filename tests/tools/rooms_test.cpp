@@ -2,6 +2,7 @@
 #include "tools/base/system/read_file.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/tools/support/project.hpp"
 
 #include <filesystem>
 #include <map>
@@ -11,7 +12,7 @@
 
 namespace {
 
-const std::filesystem::path project = std::filesystem::path(DFDYN_TEST_DATA_DIR) / "../..";
+using dfdyn::tests::project;
 
 /// The level of each room of `tools/`, from the table of docs/architecture.md.
 std::map<std::string, int> documented_levels() {

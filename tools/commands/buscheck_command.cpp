@@ -80,7 +80,7 @@ void add_buscheck_command(CLI::App& app, Command& chosen) {
     command
         ->add_option(
             "--bus", options->bus,
-            "What should be there: docs/can.md. Without: counts, timing, losses and error frames only")
+            "What should be there: docs/reference/can.md. Without: counts, timing, losses and error frames only")
         ->type_name("B.json");
     command->add_option("--can", options->interface, "Look there; nothing is sent")->type_name("IFACE");
     command->add_option("--log", options->log, "Or into a log of candump -L")->type_name("L.log");

@@ -47,7 +47,7 @@ void add_evaluate_command(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<EvaluateOptions>();
     CLI::App* command = app.add_subcommand(
         "evaluate", "Runs the paper's experiment over a plan's cases; writes tables, curves and box plots");
-    command->add_option("--plan", options->plan, "What to run: see docs/evaluation.md")
+    command->add_option("--plan", options->plan, "What to run: see docs/guide/evaluation.md")
         ->required()
         ->type_name("P.json");
     command

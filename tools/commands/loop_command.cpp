@@ -260,7 +260,7 @@ void add_model(CLI::App& command, LoopOptions& options) {
     command
         .add_option("--on-finding", options.on_finding,
                     "What to do when the learner's monitor names a change, as CAUSE=ACTION,...: report (the "
-                    "default), relearn, compensate (bias_moved) or stop; causes: docs/control.md")
+                    "default), relearn, compensate (bias_moved) or stop; causes: docs/guide/control.md")
         ->delimiter(',')
         ->type_name("CAUSE=ACTION");
 }
@@ -285,7 +285,7 @@ void add_limits(CLI::App& command, LoopLimits& limits) {
         .add_option(
             "--observer-bandwidth", limits.observer_bandwidth,
             "Of the disturbance observer, rad/s; one value, or one per joint; 0: no observer. None: as "
-            "docs/control.md says, at most 40")
+            "docs/guide/control.md says, at most 40")
         ->delimiter(',')
         ->check(CLI::NonNegativeNumber)
         ->type_name("B");
@@ -319,11 +319,11 @@ void add_loop_command(CLI::App& app, Command& chosen) {
     command
         ->add_option("--scenario", options->scenario,
                      "Task, gains, limits; for --simulate also friction, payloads, sensors, faults: "
-                     "docs/scenario.md")
+                     "docs/reference/scenario.md")
         ->required()
         ->type_name("S.json");
     add_model(*command, *options);
-    command->add_option("--bus", options->bus, "Devices on the bus: docs/can.md")->type_name("bus.json");
+    command->add_option("--bus", options->bus, "Devices on the bus: docs/reference/can.md")->type_name("bus.json");
     command->add_option("--can", options->interface, "The arm is here")->type_name("IFACE");
     command->add_flag("--simulate", options->simulate, "The arm is simulated, in simulated time");
     command->add_option("--duration", options->duration_s, "Seconds; with --can none: until Ctrl-C")

@@ -146,7 +146,7 @@ void add_simulate_command(CLI::App& app, Command& chosen) {
     command->add_option("--robot", options->robot, "The arm")->required()->type_name("R.urdf");
     command
         ->add_option("--scenario", options->scenario,
-                     "Chain, task, controller, friction, sensors, recording: docs/scenario.md")
+                     "Chain, task, controller, friction, sensors, recording: docs/reference/scenario.md")
         ->required()
         ->type_name("S.json");
     command->add_option("-o,--output", options->recording, "The recording")->required()->type_name("L.csv");
@@ -156,7 +156,7 @@ void add_simulate_command(CLI::App& app, Command& chosen) {
         ->type_name("T.csv");
     command->add_option("--candump", options->candump, "The frames of the devices in --bus, as of candump -L")
         ->type_name("L.log");
-    command->add_option("--bus", options->bus, "The devices: docs/can.md")->type_name("B.json");
+    command->add_option("--bus", options->bus, "The devices: docs/reference/can.md")->type_name("B.json");
     command->add_option("--seed", options->seed, "Instead of the scenario's own")->type_name("N");
     command->footer("Example:\n  dfdyn simulate --robot arm.urdf --scenario circles.json -o run.csv\n"
                     "The same robot, scenario and seed give the same bytes.\n"

@@ -19,7 +19,7 @@ struct SetupQuestion {
 /// Finds classic mistakes behind a recording, before any work starts: units, clock, wrapped angles, dead
 /// channels, signs, and with a robot the order of columns and gravity. Checks by the robot are left out where
 /// its number of joints is not the recording's, or the torque constants cannot be: other messages name that.
-/// Docs: docs/setup-check.md. Cost: half a second for an arm of six joints.
+/// Docs: docs/guide/setup-check.md. Cost: half a second for an arm of six joints.
 SetupFindings check_setup(const Recording& recording, const SetupQuestion& question);
 
 } // namespace dfdyn::tools

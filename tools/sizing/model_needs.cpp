@@ -14,7 +14,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-// Of -O3 on a Cortex-M (docs/performance.md), with some room.
+// Of -O3 on a Cortex-M (docs/reference/performance.md), with some room.
 constexpr std::int64_t code_bytes = 20 * 1024;
 constexpr std::int64_t physics_code_bytes = 20 * 1024;
 constexpr std::int64_t stack_bytes = 2 * 1024;

@@ -37,7 +37,7 @@ struct ExtrapolationConstants {
 /// error is the output's prior variance times 4t / (1 + 3t): the odds of novelty are multiplied by four,
 /// because residuals of real arms are correlated in time and carry less information than independent ones.
 /// Form and constants were chosen on two motions of one measured arm and on a servo (see
-/// docs/extrapolation.md).
+/// docs/reference/extrapolation.md).
 ///
 /// For the same reason the variance of the physics' parameters is multiplied by `parameter_variance_factor`.
 /// Where the data have not determined the physics, this variance exceeds the range of the output. A

@@ -4,6 +4,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/diagnosis/swinging_arm.hpp"
 #include "tests/tools/robot/arms.hpp"
+#include "tests/tools/support/project.hpp"
 #include "tools/base/system/read_file.hpp"
 #include "tools/model/effects.hpp"
 
@@ -20,8 +21,6 @@ namespace {
 
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
-
-const std::filesystem::path project = std::filesystem::path(DFDYN_TEST_DATA_DIR) / "../..";
 
 /// `amplitude (N·m), phase (rad)`: names with the same unit in front of it.
 std::string listed(const std::vector<ParameterKind>& parameters) {
@@ -125,7 +124,7 @@ TEST_CASE("no name of the catalogue of effects is a literal outside its file and
 }
 
 TEST_CASE("the documentation's table of effects is the catalogue") {
-    const std::string text = read_file(project / "docs/diagnosis.md");
+    const std::string text = read_file(project / "docs/guide/diagnosis.md");
     const std::string rule = "| --- | --- | --- | --- |\n";
     const std::size_t first = text.find(rule, text.find("| effect | where |")) + rule.size();
     std::string expected;

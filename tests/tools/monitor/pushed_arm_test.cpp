@@ -28,7 +28,7 @@ Recording recording(const std::string& name) {
                           options);
 }
 
-/// Rigid body and friction, as `dfdyn train` makes it of docs/monitor.md's options.
+/// Rigid body and friction, as `dfdyn train` makes it of docs/guide/monitor.md's options.
 TrainedModel trained(const Recording& data, const Robot& robot) {
     ModelTraining training;
     training.options.model = ModelClass::P;

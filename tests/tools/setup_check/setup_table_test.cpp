@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of docs/setup-check.md: mistakes x recordings, and right recordings that are refused.
+// The table of docs/guide/setup-check.md: mistakes x recordings, and right recordings that are refused.
 #include "tools/setup_check/setup_check.hpp"
 
 #include "tests/support/catch.hpp"

@@ -39,7 +39,7 @@ struct BusBoard {
     std::array<int, 2> joint{hal::unused_joint, hal::unused_joint};
 };
 
-/// An arm on a CAN bus: which devices, where, how often (`dfdyn.bus/1`, docs/can.md).
+/// An arm on a CAN bus: which devices, where, how often (`dfdyn.bus/1`, docs/reference/can.md).
 struct BusDescription {
     std::string source; ///< the file, as the user named it
     int joint_count = 0;

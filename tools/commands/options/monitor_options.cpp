@@ -13,7 +13,7 @@ namespace dfdyn::tools {
 void MonitorOptions::add_to(CLI::App& command) {
     command.add_flag("--monitor", chosen,
                      "Watch the innovations for a change of the arm or its sensors, and say what changed "
-                     "(docs/monitor.md)");
+                     "(docs/guide/monitor.md)");
     command.add_option("--changes", file, "Likewise, and write the changes here")->type_name("CHANGES.json");
     command
         .add_option("--false-alarms", false_alarm_hours,

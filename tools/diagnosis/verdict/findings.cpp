@@ -186,7 +186,7 @@ void add_push(std::vector<Finding>& findings, Finding push) {
 
 double calibrated_confidence(const Finding& finding, double duration_s) {
     // Logistic regression on what was right and wrong in simulated recordings of 50 and of 200 s:
-    // docs/diagnosis-panel.md. How far the next cause is behind did not tell more. What the model has wrong
+    // docs/results/diagnosis-panel.md. How far the next cause is behind did not tell more. What the model has wrong
     // grows with the time as a true cause does.
     const double to_nothing = std::log(std::max(finding.margin_to_nothing, 0.1));
     const double time = std::log(std::clamp(duration_s, 50.0, 200.0) / 50);

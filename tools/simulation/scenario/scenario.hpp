@@ -31,7 +31,7 @@ struct RecordingModel {
     std::vector<std::string> columns; ///< of q, qd, qdd, tau, i, wrench
 };
 
-/// All that a simulation needs beside the robot. Its file: docs/scenario.md.
+/// All that a simulation needs beside the robot. Its file: docs/reference/scenario.md.
 struct Scenario {
     std::uint64_t seed = 1;
     double integration_rate_hz = 8000; ///< a multiple of every sensor's and the controller's rate

@@ -10,7 +10,7 @@ namespace dfdyn::tools {
 
 /// What the physics leaves of a real arm's outputs (friction, gears, temperature) stays alike for about so
 /// long (s): samples within it count as one. Chosen on two motions of a UR5 and on a servo (see
-/// docs/extrapolation.md).
+/// docs/reference/extrapolation.md).
 inline constexpr double residual_correlation_s = 4;
 /// The same where features explain most of it (SP, SPK). Chosen on one of these motions, after the other.
 inline constexpr double residual_correlation_with_features_s = 0.5;

@@ -59,7 +59,7 @@ class ChangeDetector {
     static constexpr Scalar change_scale = Scalar(0.1);
     static constexpr Scalar least_range = Scalar(0.1); ///< smallest maximum, in predicted deviations
     /// Factor between the specified rate of false alarms and the rate that the thresholds are for: the tails
-    /// of the sums of real arms are heavier than exponential (measured, docs/monitor.md).
+    /// of the sums of real arms are heavier than exponential (measured, docs/guide/monitor.md).
     static constexpr Scalar caution = 20;
 
     /// `friction`: true if outputs are joint torques. `blocks_between_false_alarms` > 1: their mean distance.
