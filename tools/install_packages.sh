@@ -20,7 +20,6 @@ demo_packages=(
 test_packages=(
     "catch2:the unit tests cannot be built"
     "libkdl-parser-dev:the robots that are read cannot be compared with KDL's reading of them"
-    "libbenchmark-dev:the benchmarks cannot be built"
     "liborocos-kdl-dev:no comparison with other programs' dynamics"
     "libkdl-parser-dev:no comparison with other programs' dynamics"
     "libdart-dev:no comparison with other programs' dynamics"

@@ -273,7 +273,6 @@ void check_all() {
     check_physics<Scalar, Chain<6>, TorquesOfSix>("physics of six torques ");
     check_physics<Scalar, Chain<6, WrenchAtSensor<3>>, WrenchOfThree>("physics of a wrench ");
     check_learner<Scalar, UdCovariance>("U-D covariance ");
-    check_learner<Scalar, CholeskyInformation>("Cholesky information ");
     check_block_arrow<Scalar>("block arrow ");
     check_common_parameters<Scalar>("common parameters ");
     using Input = DerivativeFreeReduced<10, 3>;

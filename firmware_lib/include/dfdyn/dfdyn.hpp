@@ -18,7 +18,6 @@
 #include "dfdyn/input/derivative_free_reduced.hpp"
 #include "dfdyn/input/derivative_free_structured.hpp"
 #include "dfdyn/input/standard.hpp"
-#include "dfdyn/learner/cholesky_information.hpp"
 #include "dfdyn/learner/ud_covariance.hpp"
 #include "dfdyn/model.hpp"
 #include "dfdyn/physics/effects.hpp"

@@ -18,12 +18,9 @@ using namespace dfdyn::tests;
 using Single = Counted<float>;
 using Double = Counted<double>;
 
-template <class Scalar, template <class, int, int> class Form, int d = 15>
-using ModelOf = TestModel<Scalar, DerivativeFreeReduced<6, 3>, d, Form>;
-using UdSingle = ModelOf<Single, UdCovariance>;
-using UdDouble = ModelOf<Double, UdCovariance>;
-using UdWhole = ModelOf<Double, UdCovariance, 16>; // whole panels and vectors
-using Information = ModelOf<Double, CholeskyInformation>;
+using UdSingle = TestModel<Single, DerivativeFreeReduced<6, 3>, 15>;
+using UdDouble = TestModel<Double, DerivativeFreeReduced<6, 3>, 15>;
+using UdWhole = TestModel<Double, DerivativeFreeReduced<6, 3>, 16>; // whole panels and vectors
 using Parametric = TestParametric<Double>;
 using Mean = TestMean<Double, DerivativeFree<6>, 15, DerivativeFreeReduced<6, 3>>;
 using Kernel = TestKernel<Double, DerivativeFreeReduced<6, 3>, 15>;
@@ -87,7 +84,7 @@ Sample perhaps_faulty(Sample sample, std::mt19937_64& engine) {
 }
 
 TEMPLATE_TEST_CASE("a tick that learns its sample at once costs what prediction and learning cost together",
-                   "", UdSingle, UdDouble, UdWhole, Information, Parametric, Mean, Kernel, KernelSingle) {
+                   "", UdSingle, UdDouble, UdWhole, Parametric, Mean, Kernel, KernelSingle) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine);
     Estimator<TestType> estimator(constants);
@@ -108,7 +105,7 @@ TEMPLATE_TEST_CASE("a tick that learns its sample at once costs what prediction 
 
 // Beyond its budget a tick does a prediction and a variance, for any sample; the maximum is reached exactly.
 TEMPLATE_TEST_CASE("no tick does more than a prediction, a variance and its budget", "", UdSingle, UdDouble,
-                   UdWhole, Information, Parametric, Mean, Kernel, KernelSingle) {
+                   UdWhole, Parametric, Mean, Kernel, KernelSingle) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr Cost cost = cost_of<TestType>();
     for (const double forgetting_factor : {1.0, 0.99}) {
@@ -130,7 +127,7 @@ TEMPLATE_TEST_CASE("no tick does more than a prediction, a variance and its budg
 }
 
 TEMPLATE_TEST_CASE("work between ticks stays within its budget and within the cost of learning", "", UdSingle,
-                   UdDouble, UdWhole, Information, Parametric, Mean, Kernel, KernelSingle) {
+                   UdDouble, UdWhole, Parametric, Mean, Kernel, KernelSingle) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr Cost cost = cost_of<TestType>();
     for (const double forgetting_factor : {1.0, 0.99}) {
@@ -176,7 +173,6 @@ TEMPLATE_TEST_CASE_SIG("the cost of learning is that of any size", "",
         }
     };
     check(std::type_identity<UdCovariance<Double, columns, outputs>>{});
-    check(std::type_identity<CholeskyInformation<Double, columns, outputs>>{});
 }
 
 TEMPLATE_TEST_CASE("an input map costs what it declares", "", DerivativeFree<6>, DerivativeFreeWeighted<3>,

@@ -64,7 +64,6 @@ TEMPLATE_TEST_CASE_SIG("a learner takes the bytes that it declares", "",
                        ((int columns, int outputs), columns, outputs), (1, 1), (4, 2), (7, 6), (50, 6),
                        (100, 1), (201, 6), (1000, 6)) {
     check_learner<UdCovariance, columns, outputs>();
-    check_learner<CholeskyInformation, columns, outputs>();
 }
 
 TEMPLATE_TEST_CASE_SIG("the learner of SPK takes the bytes that it declares", "",

@@ -88,8 +88,8 @@ TEMPLATE_TEST_CASE("no call of an estimator uses the heap", "", DerivativeFree<5
                    (DerivativeFreeReduced<5, 3>), DerivativeFreeStructuredRecursive<5>, Standard<5>,
                    StandardMeasured) {
     DFDYN_SEEDED_ENGINE(engine);
-    check<TestModel<float, TestType, 4, UdCovariance>>(engine);
-    check<TestModel<double, TestType, 4, CholeskyInformation>>(engine);
+    check<TestModel<float, TestType, 4>>(engine);
+    check<TestModel<double, TestType, 4>>(engine);
 }
 
 TEMPLATE_TEST_CASE("no call of an estimator with physics uses the heap", "", (DerivativeFreeReduced<5, 3>),

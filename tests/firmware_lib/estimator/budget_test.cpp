@@ -14,12 +14,8 @@ namespace estimator_budget_test {
 using namespace dfdyn;
 using namespace dfdyn::tests;
 
-template <class Scalar, template <class, int, int> class Form>
-using ModelOf = TestModel<Scalar, DerivativeFreeReduced<6, 3>, 15, Form>;
-using UdFloat = ModelOf<float, UdCovariance>;
-using UdDouble = ModelOf<double, UdCovariance>;
-using InformationFloat = ModelOf<float, CholeskyInformation>;
-using InformationDouble = ModelOf<double, CholeskyInformation>;
+using UdFloat = TestModel<float, DerivativeFreeReduced<6, 3>, 15>;
+using UdDouble = TestModel<double, DerivativeFreeReduced<6, 3>, 15>;
 using Parametric = TestParametric<float>;
 using ParametricDouble = TestParametric<double, StandardMeasured>;
 using Mean = TestMean<float, DerivativeFreeReduced<6, 3>, 15>;
@@ -48,8 +44,7 @@ double largest_difference(const Storage<Scalar, m>& a, const Storage<Scalar, m>&
 
 // The estimator without slicing learns exactly the samples that the sliced one began to learn.
 TEMPLATE_TEST_CASE("random budgets learn the same as unlimited ones, bit for bit", "", UdFloat, UdDouble,
-                   InformationFloat, InformationDouble, Parametric, ParametricDouble, Mean, Kernel,
-                   KernelDouble) {
+                   Parametric, ParametricDouble, Mean, Kernel, KernelDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine, 0.99);
     Estimator<TestType> sliced(constants);
@@ -75,7 +70,7 @@ TEMPLATE_TEST_CASE("random budgets learn the same as unlimited ones, bit for bit
 }
 
 TEMPLATE_TEST_CASE("while a sample is being learned the estimates are those before it", "", UdFloat, UdDouble,
-                   InformationFloat, InformationDouble, Mean) {
+                   Mean) {
     DFDYN_SEEDED_ENGINE(engine);
     const double rounding = std::is_same_v<typename TestType::Scalar, float> ? 1e-4 : 1e-12;
     const auto constants = make_constants<TestType>(engine, 0.999);
@@ -105,7 +100,7 @@ TEMPLATE_TEST_CASE("while a sample is being learned the estimates are those befo
 }
 
 TEMPLATE_TEST_CASE("samples that arrive while another is being learned are skipped and counted", "", UdFloat,
-                   InformationDouble, Parametric, Mean, Kernel) {
+                   Parametric, Mean, Kernel) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine);
     Estimator<TestType> estimator(constants);
@@ -127,8 +122,7 @@ TEMPLATE_TEST_CASE("samples that arrive while another is being learned are skipp
 }
 
 TEMPLATE_TEST_CASE("a budget of the largest step always makes progress, a smaller one never finishes", "",
-                   UdFloat, UdDouble, InformationFloat, InformationDouble, Parametric, ParametricDouble, Mean,
-                   Kernel, KernelDouble) {
+                   UdFloat, UdDouble, Parametric, ParametricDouble, Mean, Kernel, KernelDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine);
     Estimator<TestType> enough(constants);

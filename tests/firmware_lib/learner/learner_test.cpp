@@ -102,9 +102,7 @@ void with_each_learner(const Problem& problem, const Check& check) {
         check(problem, Learned<Kind>(problem.regression));
     };
     with(UdDouble{});
-    with(InformationDouble{});
     with(UdFloat{});
-    with(InformationFloat{});
 }
 
 /// Checks each weight: double has enough digits even if columns are nearly equal.
@@ -157,9 +155,7 @@ TEST_CASE("each weight equals that of the normal equations for well-conditioned 
         CAPTURE(columns);
         CHECK(relative_error(problem.truth.weights, truth.weights) < 1e-12);
         CHECK(relative_error(Learned<UdDouble>(problem.regression).weights(), truth.weights) < 1e-9);
-        CHECK(relative_error(Learned<InformationDouble>(problem.regression).weights(), truth.weights) < 1e-9);
         CHECK(relative_error(Learned<UdFloat>(problem.regression).weights(), truth.weights) < 1e-3);
-        CHECK(relative_error(Learned<InformationFloat>(problem.regression).weights(), truth.weights) < 1e-3);
     }
 }
 
@@ -189,7 +185,6 @@ TEST_CASE("copies of a column under a weak prior affect neither predictions nor 
             with_each_learner(problem,
                               [](const Problem& same, const auto& learned) { check_weights(same, learned); });
             check_variances(problem, Learned<UdDouble>(problem.regression));
-            check_variances(problem, Learned<InformationDouble>(problem.regression));
         }
     }
 }
@@ -201,18 +196,13 @@ TEST_CASE("fixed sizes give the same result as run-time sizes") {
         const Problem problem(engine, {100, p, m}, Columns::independent, 100, some_forgetting);
         CHECK(information_error(problem.truth, Learned<UdDouble, p, m>(problem.regression).weights()) < 1e-9);
         CHECK(information_error(problem.truth, Learned<UdFloat, p, m>(problem.regression).weights()) < 1e-3);
-        CHECK(information_error(problem.truth,
-                                Learned<InformationDouble, p, m>(problem.regression).weights()) < 1e-9);
-        CHECK(information_error(problem.truth,
-                                Learned<InformationFloat, p, m>(problem.regression).weights()) < 1e-3);
     };
     check(Extent<1>{}, Extent<1>{});
     check(Extent<4>{}, Extent<3>{});
     check(Extent<13>{}, Extent<6>{});
 }
 
-TEMPLATE_TEST_CASE("an initial state equals having learned its rows", "", UdFloat, UdDouble, InformationFloat,
-                   InformationDouble) {
+TEMPLATE_TEST_CASE("an initial state equals having learned its rows", "", UdFloat, UdDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     for (const int columns : {1, 3, 8, 33}) {
         CAPTURE(columns);
@@ -234,8 +224,7 @@ TEMPLATE_TEST_CASE("an initial state equals having learned its rows", "", UdFloa
     }
 }
 
-TEMPLATE_TEST_CASE("reset returns to the initial state", "", UdFloat, UdDouble, InformationFloat,
-                   InformationDouble) {
+TEMPLATE_TEST_CASE("reset returns to the initial state", "", UdFloat, UdDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     const Problem problem(engine, {50, 9, 2}, Columns::independent, 100, some_forgetting);
     Learned<TestType> learned(problem.regression);
@@ -249,8 +238,7 @@ TEMPLATE_TEST_CASE("reset returns to the initial state", "", UdFloat, UdDouble, 
     CHECK(learned.weights() == Learned<TestType>(problem.regression).weights());
 }
 
-TEMPLATE_TEST_CASE("the ratio of a row is one plus its variance before learning", "", UdFloat, UdDouble,
-                   InformationFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("the ratio of a row is one plus its variance before learning", "", UdFloat, UdDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     const Problem problem(engine, {40, 10, 2}, Columns::independent, 100, some_forgetting);
     Learned<TestType> learned(problem.regression);
@@ -262,8 +250,7 @@ TEMPLATE_TEST_CASE("the ratio of a row is one plus its variance before learning"
     }
 }
 
-TEMPLATE_TEST_CASE("rows with other noise are weighted as in the batch solution", "", UdFloat, UdDouble,
-                   InformationFloat, InformationDouble) {
+TEMPLATE_TEST_CASE("rows with other noise are weighted as in the batch solution", "", UdFloat, UdDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr int columns = 20;
     Regression regression =
@@ -282,7 +269,7 @@ TEMPLATE_TEST_CASE("rows with other noise are weighted as in the batch solution"
 }
 
 TEMPLATE_TEST_CASE("a covariance reset keeps the weights and learns as from that initial state", "", UdFloat,
-                   UdDouble, InformationFloat, InformationDouble) {
+                   UdDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr int columns = 20;
     const Regression regression =

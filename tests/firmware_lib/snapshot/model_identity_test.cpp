@@ -52,7 +52,6 @@ std::vector<ModelKind> kinds(std::mt19937_64& engine) {
         kind<TestModel<float, Standard<lags>>>("NP, STD", engine),
         kind<TestModel<float, StandardMeasured>>("NP, measured STD", engine),
         kind<TestModel<double, Reduced>>("NP, DFR, double", engine),
-        kind<TestModel<float, Reduced, 8, CholeskyInformation>>("NP, DFR, information", engine),
         kind<TestParametric<float, Reduced>>("P, DFR", engine),
         kind<TestParametric<float, DerivativeFreeStructured<lags>>>("P, DFSR", engine),
         kind<TestParametric<float, Standard<lags>>>("P, STD", engine),

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/learner/cholesky_information.hpp"
 #include "dfdyn/learner/ud_covariance.hpp"
 #include "tools/base/numerics/dynamic_storage.hpp"
 
@@ -13,23 +12,18 @@
 
 namespace dfdyn::tests {
 
-/// A form of learner, its precision, and its tolerance with respect to the batch solution.
-template <template <class, int, int> class FormType, class ScalarType>
+/// A precision of the learner, and its tolerance with respect to the batch solution.
+template <class ScalarType>
 struct LearnerKind {
     using Scalar = ScalarType;
     template <int p, int m>
-    using Learner = FormType<Scalar, p, m>;
+    using Learner = UdCovariance<Scalar, p, m>;
     static constexpr double tolerance = std::is_same_v<Scalar, float> ? 1e-3 : 1e-9;
-    static constexpr std::string_view name =
-        std::is_same_v<FormType<Scalar, 1, 1>, UdCovariance<Scalar, 1, 1>>
-            ? (std::is_same_v<Scalar, float> ? "U-D, float" : "U-D, double")
-            : (std::is_same_v<Scalar, float> ? "information, float" : "information, double");
+    static constexpr std::string_view name = std::is_same_v<Scalar, float> ? "U-D, float" : "U-D, double";
 };
 
-using UdFloat = LearnerKind<UdCovariance, float>;
-using UdDouble = LearnerKind<UdCovariance, double>;
-using InformationFloat = LearnerKind<CholeskyInformation, float>;
-using InformationDouble = LearnerKind<CholeskyInformation, double>;
+using UdFloat = LearnerKind<float>;
+using UdDouble = LearnerKind<double>;
 
 /// Initial state of a learner under test: weights, and the covariance P = U D U' (U full, with unit
 /// diagonal).

@@ -17,9 +17,8 @@
 namespace dfdyn::tests {
 
 /// A small model of a two-joint arm with two outputs.
-template <class Scalar, class Input = DerivativeFreeReduced<6, 3>, int d = 8,
-          template <class, int, int> class Form = UdCovariance>
-using TestModel = Model<Scalar, Joints<2, 2>, Input, RandomFourier<d>, Nonparametric<Form>>;
+template <class Scalar, class Input = DerivativeFreeReduced<6, 3>, int d = 8>
+using TestModel = Model<Scalar, Joints<2, 2>, Input, RandomFourier<d>, Nonparametric<>>;
 
 /// The physics of the test arm: rigid bodies, viscous friction, offsets.
 template <class Motion = DerivativeFreeReduced<6, 3>>
