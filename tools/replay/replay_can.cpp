@@ -85,6 +85,7 @@ void CanReplayer::tick(const BusSample& sample) {
 }
 
 ReplayedBus CanReplayer::finish(const hal::BusCounters& counters) {
+    sampler_.finish();
     const hal::BusWatch& watch = sampler_.arm().bus();
     return {replayer_.finish(), {sampler_.frames(), counters, watch.unknown, watch.rejected}};
 }

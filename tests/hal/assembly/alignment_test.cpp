@@ -149,7 +149,8 @@ TEST_CASE("an arm whose joints measure their currents has one output per joint")
                     .position = track,
                     .position_range = {Range{-3, 3}, Range{-3, 3}},
                     .clock = {},
-                    .output_bus = 0},
+                    .output_bus = 0,
+                    .limits = {MotionLimits{500, 1e6}, MotionLimits{500, 1e6}}},
                    EffortOutput<2, 8>({.track = track, .range = {Range{-10, 10}, Range{-5, 5}}}));
     const auto send = [&](std::size_t board, double position_rad, double current_A, std::int64_t stamp) {
         std::array<JointValue, 1> value{};
@@ -172,12 +173,13 @@ TEST_CASE("an arm whose joints measure their currents has one output per joint")
     CHECK(sample.output[0] == Approx(-4.8).margin(1e-9));
     CHECK(sample.output[1] == Approx(4).margin(1e-9));
     // The current of either joint is beyond its range: predicted only.
-    send(0, 0.7, 5.5, 3 * ms);
-    send(1, -0.7, -5, 3 * ms + 100 * us);
+    send(0, 0.9, 5.5, 3 * ms);
+    send(1, -0.9, -5, 3 * ms + 100 * us);
     CHECK(arm.assemble(3 * ms, 4 * ms).report.output == Reason::output_out_of_range);
     for (int cycle = 4; cycle < 6; ++cycle) { // both neighbours of the next instant
-        send(0, 0.7, 4, cycle * ms);
-        send(1, -0.7, cycle == 4 ? -5 : -11, cycle * ms + 100 * us);
+        const double position_rad = 0.2 * cycle + 0.3;
+        send(0, position_rad, 4, cycle * ms);
+        send(1, -position_rad, cycle == 4 ? -5 : -11, cycle * ms + 100 * us);
     }
     CHECK(arm.assemble(5 * ms, 6 * ms).report.output == Reason::output_out_of_range);
     CHECK_FALSE(arm.colliding_id().has_value());

@@ -26,7 +26,8 @@ Arm make_drives() {
              .position = track,
              .position_range = {Range{-10, 10}, Range{-10, 10}},
              .clock = {},
-             .output_bus = 0},
+             .output_bus = 0,
+             .limits = {MotionLimits{30, 100}, MotionLimits{30, 100}}},
             EffortOutput<2, 8>({.track = track, .range = {Range{-30, 30}, Range{-30, 30}}})};
 }
 

@@ -43,6 +43,13 @@ constexpr std::pair<int, const char*> published_reasons[] = {
     {53, "id_collision"},
     {60, "full_scale_contradicted"},
     {61, "device_restarted"},
+    {62, "position_missing"},
+    {63, "output_missing"},
+    {64, "position_jump"},
+    {65, "position_lost"},
+    {66, "position_frozen"},
+    {67, "sync_unknown"},
+    {68, "output_jump"},
 };
 
 } // namespace

@@ -100,7 +100,7 @@ TEST_CASE("F20: a second sensor on the same identifiers is seen, and neither is 
             CHECK(mixed.output() == Reason::id_collision);
         }
         CHECK(arm.assembly.output().pairing().doubles() >= 100);
-        CHECK(arm.ticks_to_recover() <= 3);
+        CHECK(arm.ticks_to_recover() <= 5); // the last collision, and three wrenches that agree
     }
 }
 

@@ -47,7 +47,7 @@ TEST_CASE("F12: a sensor that repeats itself under fresh stamps is not learned")
         CHECK(frozen.predicted == (tick >= ArmOnBus::lags));
     }
     CHECK(arm.assembly.output().frozen().count() == 1);
-    CHECK(arm.ticks_to_recover() <= 2);
+    CHECK(arm.ticks_to_recover() <= 3);
     CHECK(arm.run(20));
 }
 
@@ -85,7 +85,7 @@ TEST_CASE("F12: the last good wrench that a saturated sensor repeats is not lear
             CHECK(saturated.predicted);
             CHECK(saturated.output() == Reason::output_saturated);
         }
-        CHECK(arm.ticks_to_recover() == 1); // the tick between a saturated wrench and a good one
+        CHECK(arm.ticks_to_recover() <= 3); // after a silence three wrenches must agree
         CHECK(arm.run(10));
     }
     CHECK(arm.assembly.output().saturation().count() == 33);
@@ -125,7 +125,7 @@ TEST_CASE("F13: a full scale that cannot be stops the learning until all are tol
         arm.tick();
         CHECK(arm.tick().output() == Reason::full_scale_contradicted);
         arm.answer_full_scales();
-        CHECK(arm.ticks_to_recover() <= 2);
+        CHECK(arm.ticks_to_recover() <= 3);
         CHECK(arm.run(10));
     }
 }
@@ -141,7 +141,7 @@ TEST_CASE("F13: a full scale that changes never rescales the wrench; of another 
         CHECK(arm.tick().output() == Reason::full_scale_contradicted);
     }
     arm.answer_full_scales();
-    CHECK(arm.ticks_to_recover() <= 2);
+    CHECK(arm.ticks_to_recover() <= 3);
     CHECK(arm.run(10));
 }
 
@@ -189,7 +189,7 @@ TEST_CASE("F24: a board that comes back from a restart qualifies anew") {
         CHECK_FALSE(arm.tick([](Frames& frames) { frames[joint_frame].data = {}; }).assembled.valid());
     }
     CHECK(arm.ticks_to_recover() <= ArmOnBus::qualification_ticks + ArmOnBus::lags + 1);
-    CHECK(arm.assembly.position(0).qualification().restarts() >= 1);
+    CHECK(arm.assembly.position(0).gap().count() >= 1);
 }
 
 TEST_CASE("F24: zeros of a sensor after power-on are not a wrench") {

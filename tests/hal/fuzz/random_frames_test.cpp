@@ -88,7 +88,7 @@ TEST_CASE("whatever is on the bus, every valid sample is within the range of its
     }
     CHECK(sound);
     CHECK(arms.samples() > 100'000); // it is not sound by saying nothing
-    CHECK(arms.outputs() > 2'000);
+    CHECK(arms.outputs() > 20);      // several that agree are needed, which is rare here
 }
 
 TEST_CASE("a frame costs no allocation, nor does a sample") {

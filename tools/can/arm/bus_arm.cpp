@@ -17,7 +17,11 @@ template <int n>
 using Efforts = hal::EffortOutput<n, capacity>;
 
 hal::TrackConfig track_config(const BusSource& source) {
-    return {.max_age_ns = source.max_age_ns, .latency_ns = source.latency_ns, .qualification = {}};
+    return {.max_age_ns = source.max_age_ns,
+            .latency_ns = source.latency_ns,
+            .qualification = {},
+            .period_ns = std::llround(1e9 / source.rate_hz),
+            .jitter_ns = source.jitter_ns};
 }
 
 template <std::size_t n>
@@ -37,7 +41,7 @@ Output make_output(const BusDescription& description) {
                                               .pairing = description.pairing,
                                               .frozen_limit = description.frozen_after});
     } else {
-        return Output({.track = track, .range = ranges});
+        return Output({.track = track, .range = ranges, .frozen_limit = description.frozen_after});
     }
 }
 
@@ -67,6 +71,10 @@ class BusArmOf final : public BusArm {
         assembly_.update(state, counters);
     }
 
+    bool pending(std::int64_t instant_ns, std::int64_t now_ns) const override {
+        return assembly_.pending(instant_ns, now_ns);
+    }
+
     const BusSample& assemble(std::int64_t instant_ns, std::int64_t now_ns) override {
         const typename Assembly::Assembled assembled = assembly_.assemble(instant_ns, now_ns);
         const auto& [sample, report] = assembled;
@@ -75,6 +83,9 @@ class BusArmOf final : public BusArm {
         sample_.joint = report.joint;
         sample_.output_reason = report.output;
         sample_.position.assign(sample.position.begin(), sample.position.end());
+        sample_.joint_reason.assign(report.joint_reason.begin(), report.joint_reason.end());
+        sample_.position_origin.assign(report.position_origin.begin(), report.position_origin.end());
+        sample_.output_origin = report.output_origin;
         sample_.output.assign(sample.output.begin(), sample.output.end());
         sample_.position_age_ns.assign(report.position_age_ns.begin(), report.position_age_ns.end());
         return sample_;
@@ -115,6 +126,7 @@ class BusArmOf final : public BusArm {
                                          .clock = clock_config(description),
                                          .output_bus = 0};
         std::ranges::transform(description.boards, config.board.begin(), &BusBoard::board);
+        std::ranges::copy(description.joint_limits, config.limits.begin());
         config.position_range.fill({-description.position_limit_rad, description.position_limit_rad});
         return config;
     }

@@ -17,9 +17,12 @@ struct BusSample {
     hal::Reason position_reason = hal::Reason::ok; ///< ok: `position` is valid
     int joint = hal::unused_joint;                 ///< the first that `position_reason` is about
     hal::Reason output_reason = hal::Reason::ok;   ///< ok: `output` is valid
-    std::vector<double> position;                  ///< rad
-    std::vector<double> output;                    ///< in the order of `output_names`
-    std::vector<std::int64_t> position_age_ns;     ///< per joint: see hal::SampleReport
+    std::vector<double> position;                  ///< rad; of the joints with ok in `joint_reason`
+    std::vector<hal::Reason> joint_reason;         ///< per joint
+    std::vector<hal::ValueOrigin> position_origin; ///< per joint: see hal::SampleReport
+    hal::ValueOrigin output_origin = hal::ValueOrigin::none;
+    std::vector<double> output;                ///< in the order of `output_names`
+    std::vector<std::int64_t> position_age_ns; ///< per joint: see hal::SampleReport
 
     [[nodiscard]] bool valid() const noexcept { return position_reason == hal::Reason::ok; }
     [[nodiscard]] bool output_valid() const noexcept { return valid() && output_reason == hal::Reason::ok; }
@@ -36,6 +39,9 @@ class BusArm {
 
     /// State and counters of the bus, before the frames that were read with them are taken.
     virtual void update(hal::BusState state, const hal::BusCounters& counters) = 0;
+
+    /// Whether a value of this instant is missing that may yet be interpolated.
+    virtual bool pending(std::int64_t instant_ns, std::int64_t now_ns) const = 0;
 
     /// The result lives until the next call.
     virtual const BusSample& assemble(std::int64_t instant_ns, std::int64_t now_ns) = 0;

@@ -64,7 +64,9 @@ void BusCheck::describe() {
                 const hal::Frame& position = frames.frame.front();
                 name_sender(span_of(frames), "joint " + std::to_string(joint + 1));
                 position_keys_.at(static_cast<std::size_t>(joint)) = {position.extended, position.id};
-                joints_.at(static_cast<std::size_t>(joint)) = ValueWatch(encoder_turn_rad(board.board));
+                const auto index = static_cast<std::size_t>(joint);
+                joints_.at(index) =
+                    ValueWatch(encoder_turn_rad(board.board), description_->joint_limits.at(index));
             }
         }
     }

@@ -10,9 +10,6 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double impossible_rad_per_s = 30;   ///< no joint of an arm is so fast
-constexpr double impossible_rad_per_s2 = 100; ///< nor does one start like that
-constexpr double hard_stop_rad_per_s2 = 20;   ///< nor stop like that without slowing down before
 constexpr double few_counts = 3;
 constexpr std::uint64_t least_equal = 20; ///< positions in a row
 constexpr double least_equal_s = 0.1;
@@ -70,7 +67,7 @@ void ValueWatch::take_step(std::int64_t step_ns, double step_rad) {
     smallest_step_rad_ = std::min(smallest_step_rad_, std::abs(step_rad));
     const bool jump = jumped(step_ns, step_rad);
     const bool far = std::abs(step_rad) > few_counts * smallest_step_rad_;
-    if (is_long() && far && std::abs(step_rad) / step_s > impossible_rad_per_s2 * step_s) {
+    if (is_long() && far && std::abs(step_rad) / step_s > limits_.acceleration * step_s) {
         frozen_positions_ += equal_;
     } else {
         frozen_positions_ += pending_frozen();
@@ -110,12 +107,12 @@ bool ValueWatch::is_long() const noexcept {
 /// A late frame may be close behind its predecessor: half a mean interval at least.
 bool ValueWatch::jumped(std::int64_t step_ns, double step_rad) const {
     const double step_s = std::max(seconds_of(step_ns), 0.5e-9 * mean_interval_ns_);
-    return std::abs(step_rad) > impossible_rad_per_s * step_s;
+    return std::abs(step_rad) > limits_.velocity * step_s;
 }
 
 /// Of the run of equal positions that has not ended.
 std::uint64_t ValueWatch::pending_frozen() const noexcept {
-    return is_long() && stop_rad_per_s2_ > hard_stop_rad_per_s2 ? equal_ : 0;
+    return is_long() && stop_rad_per_s2_ > limits_.stop ? equal_ : 0;
 }
 
 void ValueWatch::take_effort(const hal::JointValue& value) {

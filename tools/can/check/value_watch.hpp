@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dfdyn/hal/device/decoded.hpp"
+#include "dfdyn/hal/gate/motion_line.hpp"
 
 #include <cstdint>
 
@@ -12,7 +13,9 @@ namespace dfdyn::tools {
 class ValueWatch {
   public:
     /// `turn_rad`: the positions at which the joint's encoder begins anew lie so far apart; 0: never.
-    explicit ValueWatch(double turn_rad = 0) : turn_rad_(turn_rad) {}
+    /// `limits`: see hal::MotionGate, which refuses by them.
+    explicit ValueWatch(double turn_rad = 0, const hal::MotionLimits& limits = {})
+        : turn_rad_(turn_rad), limits_(limits) {}
 
     void take(const hal::JointValue& value);
 
@@ -46,6 +49,7 @@ class ValueWatch {
     std::uint64_t pending_frozen() const noexcept;
 
     double turn_rad_;
+    hal::MotionLimits limits_;
     std::uint64_t positions_ = 0, efforts_ = 0;
     std::uint64_t jumps_ = 0, wraps_ = 0, zeros_ = 0;
     double largest_jump_rad_ = 0;

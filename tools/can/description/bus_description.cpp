@@ -8,6 +8,7 @@
 #include "tools/can/arm/bus_wire.hpp"
 #include "tools/can/arm/device_frames.hpp"
 #include "tools/can/description/bus_fields.hpp"
+#include "tools/robot/urdf/read_robot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,6 +40,7 @@ BusSource read_source(const JsonReader& reader, double default_rate_hz) {
     source.rate_hz = reader.number_or("rate_hz", default_rate_hz, 0.1, 100'000);
     source.max_age_ns = nanoseconds_or(reader, "max_age_s", 3 / source.rate_hz);
     source.latency_ns = nanoseconds_or(reader, "latency_s", 0);
+    source.jitter_ns = nanoseconds_or(reader, "jitter_s", 0.25 / source.rate_hz);
     return source;
 }
 
@@ -61,17 +63,66 @@ int count_joints(const JsonReader& reader, const std::vector<BusBoard>& boards) 
     return static_cast<int>(joints.size());
 }
 
+/// Velocity limits (rad/s) of a robot's file, which is beside the description; none for the joints without.
+std::vector<std::optional<double>> robot_velocities(const JsonReader& joints,
+                                                    const std::filesystem::path& folder, int joint_count) {
+    std::vector<std::optional<double>> velocities(static_cast<std::size_t>(joint_count));
+    if (!joints.has("robot")) {
+        return velocities;
+    }
+    const JsonReader reader = joints.object("robot");
+    reader.allow_only(std::array<std::string_view, 3>{"urdf", "tip", "base"});
+    const Robot robot =
+        read_robot(folder / reader.text("urdf"), {.tip = reader.text("tip"),
+                                                  .base = reader.has("base") ? reader.text("base") : "",
+                                                  .ft_joint = {},
+                                                  .parent_to_child = {}});
+    if (robot.joints.size() != velocities.size()) {
+        throw joints.error("robot", "the arm's " + std::to_string(joint_count) + " joints",
+                           std::to_string(robot.joints.size()) + " between base and tip");
+    }
+    std::ranges::transform(robot.joints, velocities.begin(), &RobotJoint::velocity);
+    return velocities;
+}
+
+/// Numbers of `name`, one for all joints or one for each; none where the file has none.
+std::vector<std::optional<double>> per_joint(const JsonReader& reader, const std::string& name,
+                                             int joint_count) {
+    std::vector<std::optional<double>> values(static_cast<std::size_t>(joint_count));
+    if (reader.has(name) && reader.is_array(name)) {
+        std::ranges::copy(reader.positive_numbers(name, joint_count), values.begin());
+    } else if (reader.has(name)) {
+        std::ranges::fill(values, reader.positive_number(name));
+    }
+    return values;
+}
+
+/// Of the description, else of the robot's file, else beyond what joints do.
+std::vector<hal::MotionLimits> read_limits(const JsonReader& reader, const std::filesystem::path& folder,
+                                           int joint_count) {
+    const auto velocity = per_joint(reader, "velocity_limit", joint_count);
+    const auto acceleration = per_joint(reader, "acceleration_limit", joint_count);
+    const auto robot_velocity = robot_velocities(reader, folder, joint_count);
+    std::vector<hal::MotionLimits> limits(velocity.size());
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+        limits[i].velocity = velocity[i].value_or(robot_velocity[i].value_or(limits[i].velocity));
+        limits[i].acceleration = acceleration[i].value_or(limits[i].acceleration);
+    }
+    return limits;
+}
+
 void read_joints(const JsonReader& reader, const std::filesystem::path& folder, BusDescription& description) {
     description.joints = read_source(reader, description.sample_rate_hz);
     description.position_limit_rad = reader.number_or("limit_rad", 7, 1e-3, 1e6);
     read_boards(reader, folder, description);
     description.joint_count = count_joints(reader, description.boards);
+    description.joint_limits = read_limits(reader, folder, description.joint_count);
 }
 
 /// Efforts of the joints' own boards.
 void read_efforts(const JsonReader& reader, bool measured, BusDescription& description) {
-    reader.allow_only(
-        std::array<std::string_view, 5>{"family", "quantity", "limit", "max_age_s", "latency_s"});
+    reader.allow_only(std::array<std::string_view, 7>{"family", "quantity", "limit", "max_age_s", "latency_s",
+                                                      "jitter_s", "frozen_after"});
     if (!measured) {
         throw reader.error("family", "a sensor, because the joints' boards send no efforts", "\"efforts\"");
     }
@@ -83,6 +134,7 @@ void read_efforts(const JsonReader& reader, bool measured, BusDescription& descr
     const double limit =
         reader.number_or("limit", std::numeric_limits<float>::max(), 0, std::numeric_limits<float>::max());
     description.output_range.assign(static_cast<std::size_t>(description.joint_count), {-limit, limit});
+    description.frozen_after = reader.whole_or("frozen_after", 100, 2, 1'000'000);
 }
 
 /// How long a wrench takes on its bus at worst: it waits for whatever else of the arm is sent meanwhile.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/gate/motion.hpp"
 #include "dfdyn/hal/gate/pairing.hpp"
 #include "dfdyn/hal/gate/range.hpp"
 #include "tools/base/recording/recording.hpp"
@@ -31,6 +32,7 @@ struct BusSource {
     double rate_hz = 0;
     std::int64_t max_age_ns = 0;
     std::int64_t latency_ns = 0; ///< from the measurement to the end of its frame
+    std::int64_t jitter_ns = 0;  ///< by how much a frame is later than another, at most
 };
 
 /// A board, and which joints of the arm its own ones are (from 0; hal::unused_joint for none).
@@ -52,7 +54,8 @@ struct BusDescription {
     std::vector<BusBoard> boards; ///< each joint of the arm is on exactly one
     bool synchronous = false;     ///< they measure at a SYNC, which is sent at the joints' rate
     BusSource joints;
-    double position_limit_rad = 0; ///< positions beyond ± this are not believed
+    double position_limit_rad = 0;               ///< positions beyond ± this are not believed
+    std::vector<hal::MotionLimits> joint_limits; ///< per joint
 
     std::optional<AnySensor> sensor; ///< none: the outputs are the joints' own efforts
     BusSource output;

@@ -19,9 +19,10 @@ void allow_only(const JsonReader& reader, Names names, const Names& own) {
     reader.allow_only(names);
 }
 
-const Names joint_fields{"family", "boards", "rate_hz", "max_age_s", "latency_s", "limit_rad"};
-const Names sensor_fields{"family", "rate_hz",       "max_age_s",   "latency_s",
-                          "limit",  "pair_window_s", "frozen_after"};
+const Names joint_fields{"family",   "boards",    "rate_hz",        "max_age_s",          "latency_s",
+                         "jitter_s", "limit_rad", "velocity_limit", "acceleration_limit", "robot"};
+const Names sensor_fields{"family",   "rate_hz", "max_age_s",     "latency_s",
+                          "jitter_s", "limit",   "pair_window_s", "frozen_after"};
 
 /// From 0, of a board with one.
 int joint_of(const JsonReader& board) { return board.whole_number("joint", 1, largest_bus_joint_count) - 1; }

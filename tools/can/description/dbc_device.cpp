@@ -8,6 +8,8 @@ namespace dfdyn::tools {
 
 namespace {
 
+constexpr double float_step = 1.2e-7; ///< of a float's value
+
 std::span<const std::uint8_t> data_of(const hal::Frame& frame) { return {frame.data.data(), frame.length}; }
 std::span<std::uint8_t> data_of(hal::Frame& frame) { return {frame.data.data(), frame.length}; }
 
@@ -134,6 +136,10 @@ hal::Decoded DbcJoint::decode(const hal::Frame& frame) const noexcept {
     value.stamp_ns = frame.stamp_ns;
     if (position && config_.position.is_there(frame)) {
         value.position_rad = config_.position.value(frame);
+        const hal::Signal& signal = config_.position.signal;
+        value.from_zero_rad = value.position_rad - signal.offset;
+        value.step_rad = signal.step() > 0 ? signal.step() : float_step * std::abs(value.from_zero_rad);
+        value.wrap_rad = signal.span();
         value.raw_zero = config_.position.raw(frame) == 0;
         value.position_reason = config_.position.is_void(value.position_rad)
                                     ? hal::Reason::position_out_of_range

@@ -22,14 +22,36 @@ int delay_of(const BusDescription& description, double loop_period_s) {
     return 0;
 }
 
+/// The loop looks itself for joints that do what they cannot (JointWatch), and says which.
+BusDescription without_motion_limits(BusDescription description) {
+    constexpr double none = 1e12;
+    description.joint_limits.assign(description.joint_limits.size(), {none, none, none});
+    return description;
+}
+
+/// Whether joints are missing, or cannot be believed, for this instant, and others are there.
+bool lacks_single_values(const BusSample& sample) {
+    const auto lacks = [](hal::Reason reason) {
+        return reason == hal::Reason::position_missing || reason == hal::Reason::position_jump ||
+               reason == hal::Reason::sync_unknown;
+    };
+    return std::ranges::any_of(sample.joint_reason, lacks) &&
+           std::ranges::any_of(sample.joint_reason,
+                               [](hal::Reason reason) { return reason == hal::Reason::ok; }) &&
+           std::ranges::all_of(sample.joint_reason, [&](hal::Reason reason) {
+               return reason == hal::Reason::ok || lacks(reason);
+           });
+}
+
 } // namespace
 
 LoopPort::LoopPort(const BusDescription& description, double loop_period_s)
     : timer_(description.trigger == BusTrigger::timer),
       measures_torque_(description.outputs == OutputKind::joint_torque),
       delay_ticks_(delay_of(description, loop_period_s)), period_ns_(std::llround(loop_period_s * 1e9)),
-      latency_ns_(description.joints.latency_ns), clock_(period_ns_), arm_(make_bus_arm(description)),
-      commands_(description), position_(description.joint_count), torque_(description.joint_count),
+      latency_ns_(description.joints.latency_ns), clock_(period_ns_),
+      arm_(make_bus_arm(without_motion_limits(description))), commands_(description),
+      position_(description.joint_count), torque_(description.joint_count),
       missing_(static_cast<std::size_t>(description.joint_count)),
       newest_ns_(missing_.size(), std::numeric_limits<std::int64_t>::min()),
       next_request_ns_(std::numeric_limits<std::int64_t>::min()) {}
@@ -87,7 +109,8 @@ bool LoopPort::find_missing(const BusSample& sample, std::int64_t now_ns) {
     bool any = false;
     for (std::size_t joint = 0; joint < missing_.size(); ++joint) {
         const std::int64_t newest_ns = now_ns - sample.position_age_ns[joint];
-        missing_[joint] = newest_ns == newest_ns_[joint] && newest_ns < sample.time_ns;
+        missing_[joint] = sample.joint_reason[joint] != hal::Reason::ok ||
+                          (newest_ns == newest_ns_[joint] && newest_ns < sample.time_ns);
         newest_ns_[joint] = newest_ns;
         any = any || missing_[joint];
     }
@@ -114,18 +137,22 @@ LoopInput LoopPort::sense(std::int64_t tick_ns, std::int64_t now_ns) {
     follow_clock(sample, now_ns);
     // or the instant was a wrong one
     const bool corrected = ticks_across_ > 0 || (timer_ && clock_.correction_ns() != correction_ns);
-    if (!sample.valid()) {
+    if (!sample.valid() && !lacks_single_values(sample)) {
         ++counters_.invalid;
         counters_.last_reason = sample.position_reason;
         counters_.last_joint = sample.joint;
     }
-    if (!sample.valid() || corrected) {
+    if ((!sample.valid() && !lacks_single_values(sample)) || corrected) {
         input.returning = corrected || sample.position_reason == hal::Reason::qualifying ||
                           sample.position_reason == hal::Reason::clock_jumped ||
                           sample.position_reason == hal::Reason::time_not_increasing;
         return input;
     }
-    position_ = Eigen::Map<const Eigen::VectorXd>(sample.position.data(), position_.size());
+    for (Eigen::Index joint = 0; joint < position_.size(); ++joint) {
+        const auto index = static_cast<std::size_t>(joint);
+        position_[joint] =
+            sample.joint_reason[index] == hal::Reason::ok ? sample.position[index] : position_[joint];
+    }
     input.time_ns = *instant + clock_.correction_ns() - set_ns_;
     input.position = &position_;
     input.missing = find_missing(sample, now_ns) ? &missing_ : nullptr;

@@ -76,6 +76,8 @@ template <std::signed_integral T>
     return number >= std::numeric_limits<T>::max() || number <= -std::numeric_limits<T>::max();
 }
 
+[[nodiscard]] constexpr double magnitude(double value) noexcept { return value < 0 ? -value : value; }
+
 enum class ByteOrder : std::uint8_t {
     intel,   ///< `@1` in a DBC: the start bit is the lowest, the number goes on to higher bits and bytes
     motorola ///< `@0` in a DBC: the start bit is the highest, the number goes on to lower bits and higher
@@ -140,6 +142,16 @@ struct Signal {
         return false;
     }
 
+    /// What one count of an integer stands for, and all of them together; 0 for a float.
+    [[nodiscard]] constexpr double step() const noexcept { return is_integer() ? magnitude(factor) : 0; }
+    [[nodiscard]] constexpr double span() const noexcept {
+        double counts = 1;
+        for (int bit = 0; bit < length; ++bit) {
+            counts *= 2;
+        }
+        return counts * step();
+    }
+
     /// The physical value. Integers beyond 53 bits are rounded to a double. Requires `fits(data.size())`.
     [[nodiscard]] constexpr double extract(std::span<const std::uint8_t> data) const noexcept {
         return factor * number(extract_raw(data)) + offset;
@@ -152,6 +164,10 @@ struct Signal {
     }
 
   private:
+    [[nodiscard]] constexpr bool is_integer() const noexcept {
+        return encoding == Encoding::unsigned_integer || encoding == Encoding::signed_integer;
+    }
+
     [[nodiscard]] static constexpr std::uint64_t mask(int width) noexcept {
         return width >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << width) - 1;
     }

@@ -9,8 +9,8 @@ namespace dfdyn::hal {
 /// The time that passes in a recording: that of its stamps, but it never runs backward. A frame stamped
 /// before the latest by up to `overtaken_ns` was overtaken, and one further behind is a stray: both are due
 /// at once. Where the recorder's clock was set back, which `set_back_after` frames that go on from each other
-/// show, time goes on from the latest: from then on it is ahead of the stamps, as the clock of a live bus is
-/// (`ClockGate`).
+/// show, time goes on from the latest, and by as much as these frames took: from then on it is ahead of the
+/// stamps, as the clock of a live bus is (`ClockGate`), and the frames in between are a gap.
 class LogClock {
   public:
     static constexpr std::int64_t overtaken_ns = 5'000'000;
@@ -27,7 +27,7 @@ class LogClock {
         if (difference(latest_ns_, sum(stamp_ns, offset_ns_)) <= overtaken_ns) {
             run_ = 0;
         } else if (goes_on(stamp_ns)) {
-            offset_ns_ = difference(latest_ns_, stamp_ns);
+            offset_ns_ = difference(latest_ns_, run_begin_ns_);
             run_ = 0;
             ++set_back_;
         }
@@ -39,6 +39,14 @@ class LogClock {
     [[nodiscard]] constexpr std::int64_t time_of(std::int64_t stamp_ns) const noexcept {
         return std::max(latest_ns_, sum(stamp_ns, offset_ns_));
     }
+
+    /// Whether a frame's stamp is so far ahead of the latest that it may be a stray.
+    [[nodiscard]] constexpr bool leads(std::int64_t stamp_ns) const noexcept {
+        return started_ && difference(sum(stamp_ns, offset_ns_), latest_ns_) > overtaken_ns;
+    }
+
+    /// What is added to the stamps.
+    [[nodiscard]] constexpr std::int64_t offset_ns() const noexcept { return offset_ns_; }
 
     /// How often the recorder's clock was set back.
     [[nodiscard]] constexpr std::uint64_t set_back() const noexcept { return set_back_; }
@@ -57,13 +65,15 @@ class LogClock {
         const std::int64_t step_ns = difference(stamp_ns, behind_ns_);
         const bool next = run_ > 0 && step_ns >= -overtaken_ns && step_ns <= longest_step_ns;
         run_ = next ? run_ + 1 : 1;
+        run_begin_ns_ = next ? run_begin_ns_ : stamp_ns;
         behind_ns_ = stamp_ns;
         return run_ >= set_back_after;
     }
 
     std::int64_t latest_ns_ = 0;
     std::int64_t offset_ns_ = 0;
-    std::int64_t behind_ns_ = 0; ///< stamp of the last frame that was behind
+    std::int64_t behind_ns_ = 0;    ///< stamp of the last frame that was behind
+    std::int64_t run_begin_ns_ = 0; ///< stamp of the first of those in a row
     std::uint64_t set_back_ = 0;
     int run_ = 0; ///< frames that were behind, in a row
     bool started_ = false;

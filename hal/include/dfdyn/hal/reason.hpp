@@ -85,10 +85,31 @@ enum class Reason : std::uint8_t {
     full_scale_contradicted = 60,
     /// The device restarted between two values: its zero may have moved. It must qualify again.
     device_restarted = 61,
+    /// The position of this instant was due and has not come: a frame was lost or is late. It is interpolated
+    /// once the next one comes. Cure: lower the load; see the counters of lost frames.
+    position_missing = 62,
+    /// The output of this instant was due and has not come; likewise.
+    output_missing = 63,
+    /// A position that the joint cannot have reached since the last one that was believed. Ends with the next
+    /// one that it can have reached. Cure, where true motions are refused: joints.velocity_limit,
+    /// acceleration_limit.
+    position_jump = 64,
+    /// After a jump or a restart the joint's positions go on from elsewhere: the encoder has lost its zero,
+    /// or another device sends. Ends when they jump to where the joint can be. Cure: check the joint's
+    /// position; set its zero; start again.
+    position_lost = 65,
+    /// A moving joint repeats its last position, bit for bit, and cannot have stopped. Ends when it changes.
+    position_frozen = 66,
+    /// The answer to a SYNC came so late, or so early after one was missing, that it may belong to another
+    /// SYNC. Ends with an answer at the usual time. Cure: a lower load, or a longer period of the SYNC.
+    sync_unknown = 67,
+    /// An output that is further from the last one than outputs are that follow each other. Ends with the
+    /// next that agrees with the one before, or when several in a row agree with each other.
+    output_jump = 68,
 };
 
 /// One past the largest number of a reason; sizes tables indexed by it.
-inline constexpr int reason_count = 62;
+inline constexpr int reason_count = 69;
 
 struct NamedReason {
     Reason reason;
@@ -128,6 +149,13 @@ inline constexpr NamedReason reason_names[] = {
     {Reason::id_collision, "id_collision"},
     {Reason::full_scale_contradicted, "full_scale_contradicted"},
     {Reason::device_restarted, "device_restarted"},
+    {Reason::position_missing, "position_missing"},
+    {Reason::output_missing, "output_missing"},
+    {Reason::position_jump, "position_jump"},
+    {Reason::position_lost, "position_lost"},
+    {Reason::position_frozen, "position_frozen"},
+    {Reason::sync_unknown, "sync_unknown"},
+    {Reason::output_jump, "output_jump"},
 };
 
 /// The reason's name as written in reports and logs ("ok" for none). O(number of reasons).

@@ -3,8 +3,12 @@
 
 #include "dfdyn/hal/assembly/bus_watch.hpp"
 #include "dfdyn/hal/assembly/effort_output.hpp"
+#include "dfdyn/hal/assembly/moment.hpp"
+#include "dfdyn/hal/assembly/position_track.hpp"
+#include "dfdyn/hal/assembly/sample_report.hpp"
 #include "dfdyn/hal/assembly/wrench_output.hpp"
 #include "dfdyn/hal/bus.hpp"
+#include "dfdyn/hal/gate/clock_step.hpp"
 #include "dfdyn/sample.hpp"
 
 #include <algorithm>
@@ -15,34 +19,14 @@
 
 namespace dfdyn::hal {
 
-/// Why a sample is as it is.
-template <int n>
-struct SampleReport {
-    Reason position = Reason::ok; ///< ok: there is a sample
-    int joint = unused_joint;     ///< the first joint that `position` is about, if it is about one
-    Reason output = Reason::ok;   ///< ok: its output is valid
-    /// Time since the newest position of each joint, and the newest output, were measured; the largest number
-    /// where there is none.
-    std::array<std::int64_t, static_cast<std::size_t>(n)> position_age_ns{};
-    std::int64_t output_age_ns = 0;
-};
-
-/// How often each reason occurred; never decreases.
-struct AssemblyCounters {
-    std::uint64_t calls = 0;
-    std::uint64_t samples = 0;                                   ///< of them: with positions
-    std::uint64_t outputs = 0;                                   ///< of them: with a valid output
-    std::array<std::uint64_t, reason_count> positions_refused{}; ///< by the reason's number
-    std::array<std::uint64_t, reason_count> outputs_refused{};   ///< of calls with positions
-};
-
 /// Makes samples of what is on one or two buses: all joints and the output, at one instant.
 ///
 /// Frames go in as they come (`take`, or `drain` for all that a bus has); at a moment of the caller's choice
 /// `assemble(instant, now)` gives the sample of an instant in the recent past. Every value is brought to it:
-/// linearly between the measurements before and after, or held from the last one if there is none after. So
-/// the stamps have the steady period that a lag window needs, if the instants have it, whatever the devices'
-/// phases and jitter:
+/// linearly between the measurements before and after, or held from the last one if the next is not due yet.
+/// A value that was due and has not come is missing: no sample, until the next one comes (`pending`, Track).
+/// Positions are those that the joint's motion leads to (MotionGate). So the stamps have the steady period
+/// that a lag window needs, if the instants have it, whatever the devices' phases and jitter:
 /// - by SYNC: `Moment::sync`, its instant is the SYNC at which the values that are complete now were
 /// measured;
 /// - by a timer: `now - delay`. With a delay of the output's latency and one period of the slowest source
@@ -52,7 +36,8 @@ struct AssemblyCounters {
 /// A latency from the measurement to the frame is taken off each stamp first. An output is valid at most
 /// once: not again until one of its measurements is new.
 ///
-/// Positions that are bad: no sample. An output that is bad: a sample with output_valid = false.
+/// Positions that are bad: no sample; the report says which joints have one all the same. An output that is
+/// bad: a sample with output_valid = false.
 ///
 /// `Board` is the JointSource of each of `boards` boards; `Output` a WrenchOutput or EffortOutput. Positions
 /// are on bus 0. `take`: O(boards + n). `assemble`: O(capacity (n + outputs)).
@@ -69,21 +54,13 @@ class SampleAssembly {
         std::array<Range, static_cast<std::size_t>(n)> position_range; ///< rad
         ClockGate::Config clock;
         int output_bus = 0; ///< 0, or 1 where the sensor has a bus for itself
+        std::array<MotionLimits, static_cast<std::size_t>(n)> limits{};
     };
 
     constexpr SampleAssembly(const Config& config, const Output& output) noexcept
         : SampleAssembly(config, output, std::make_index_sequence<static_cast<std::size_t>(n)>{}) {}
 
-    /// A moment at which a sample may be assembled.
-    struct Moment {
-        enum class Kind : std::uint8_t {
-            none,
-            sync, ///< a SYNC came: the values measured at the one before are complete
-            set   ///< every joint and the output have new measurements since the last set
-        };
-        Kind kind = Kind::none;
-        std::int64_t instant_ns = 0;
-    };
+    using Moment = SampleMoment;
 
     /// Takes a frame of bus 0 or 1, read at `now_ns`.
     constexpr Moment take(const Frame& frame, std::int64_t now_ns, int bus = 0) noexcept {
@@ -145,22 +122,31 @@ class SampleAssembly {
         [[nodiscard]] constexpr bool valid() const noexcept { return report.position == Reason::ok; }
     };
 
-    /// The sample of an instant not later than `now_ns`, both on the clock of the buses. Without `valid()`
-    /// its positions are 0, and without output_valid its outputs.
+    /// Whether a value of this instant is missing that may yet be interpolated: `assemble` gives more after
+    /// the next frames. Never for longer than the sources' `max_age` and a period after the last value.
+    [[nodiscard]] constexpr bool pending(std::int64_t instant_ns, std::int64_t now_ns) const noexcept {
+        return output_.pending(instant_ns, now_ns) || std::ranges::any_of(position_, [&](const auto& track) {
+                   return track.pending(instant_ns, now_ns);
+               });
+    }
+
+    /// The sample of an instant not later than `now_ns`, both on the clock of the buses. The positions of
+    /// joints without one are 0, and without output_valid the outputs.
     constexpr Assembled assemble(std::int64_t instant_ns, std::int64_t now_ns) noexcept {
         Assembled result{};
         result.sample.time_ns = instant_ns;
         fill_ages(result.report, now_ns);
-        result.report.position = fill_positions(result.sample, result.report.joint);
+        result.report.position = fill_positions(result.sample, result.report, now_ns);
         const bool loss = take_losses();
         if (result.valid()) {
             last_instant_ns_ = instant_ns;
-            result.report.output = fill_output(result.sample, loss);
+            result.report.output = fill_output(result.sample, loss, now_ns);
         } else {
-            result.sample.position = {};
-            result.report.output = output_condition(output_.at(instant_ns), loss);
+            result.report.output = output_condition(output_.at(instant_ns, now_ns), loss);
         }
         result.sample.output_valid = result.valid() && result.report.output == Reason::ok;
+        result.report.output_origin =
+            result.sample.output_valid ? output_.origin(instant_ns) : ValueOrigin::none;
         count(result);
         return result;
     }
@@ -184,7 +170,7 @@ class SampleAssembly {
     [[nodiscard]] constexpr const BusWatch& bus(int index) const noexcept {
         return watch_[static_cast<std::size_t>(index)];
     }
-    [[nodiscard]] constexpr const Track<1, capacity>& position(int joint) const noexcept {
+    [[nodiscard]] constexpr const PositionTrack<capacity>& position(int joint) const noexcept {
         return position_[static_cast<std::size_t>(joint)];
     }
     [[nodiscard]] constexpr const Output& output() const noexcept { return output_; }
@@ -196,10 +182,11 @@ class SampleAssembly {
     template <std::size_t... i>
     constexpr SampleAssembly(const Config& config, const Output& output,
                              std::index_sequence<i...> /*joints*/) noexcept
-        : board_(config.board), position_{Track<1, capacity>(config.position, {config.position_range[i]},
-                                                             position_reasons)...},
-          output_(output),
-          output_bus_(config.output_bus), watch_{BusWatch(config.clock), BusWatch(config.clock)} {}
+        : board_(config.board), position_{PositionTrack<capacity>(config.position, config.position_range[i],
+                                                                  config.limits[i])...},
+          output_(output), output_bus_(config.output_bus), joint_period_ns_(config.position.period_ns),
+          joint_jitter_ns_(config.position.jitter_ns), watch_{BusWatch(config.clock),
+                                                              BusWatch(config.clock)} {}
 
     /// To the boards and the sensor that are on this bus.
     constexpr Moment offer(const Frame& frame, int bus) noexcept {
@@ -214,6 +201,9 @@ class SampleAssembly {
         }
         if (bus == output_bus_) {
             const Decoded decoded = output_.take(frame);
+            if (decoded.kind == Decoded::Kind::part && decoded.part == 0) {
+                steps_.take(n, frame.stamp_ns, output_.period_ns(), joint_jitter_ns_);
+            }
             known = known || decoded.kind != Decoded::Kind::nothing || claims(output_, frame);
             moment = take_decoded(decoded, frame, bus, moment);
         }
@@ -244,7 +234,7 @@ class SampleAssembly {
             watch.health.device_lost();
             break;
         case Decoded::Kind::sync:
-            return moment.kind == Moment::Kind::none ? synchronised(frame.stamp_ns) : moment;
+            return moment.kind == Moment::Kind::none ? moments_.synchronised(frame.stamp_ns) : moment;
         case Decoded::Kind::nothing:
         case Decoded::Kind::part:
         case Decoded::Kind::status:
@@ -258,35 +248,36 @@ class SampleAssembly {
             return;
         }
         const auto joint = static_cast<std::size_t>(value.joint);
+        PositionTrack<capacity>& track = position_[joint];
+        JointValue judged = value;
         if (value.position_reason != Reason::waiting_for_position) {
-            if (value.position_reason != Reason::ok) {
-                position_[joint].disqualify();
+            steps_.take(value.joint, value.stamp_ns, joint_period_ns_, joint_jitter_ns_);
+            const Reason reason = track.push(value);
+            moments_.measured(joint);
+            follow_clock(track, value.stamp_ns);
+            const bool other_source = reason == Reason::position_jump || reason == Reason::position_lost ||
+                                      reason == Reason::position_frozen || reason == Reason::id_collision;
+            if (other_source && judged.effort_reason == Reason::ok) {
+                judged.effort_reason = reason; // the same frame's
             }
-            position_[joint].push(value.stamp_ns, value.position_reason, {value.position_rad},
-                                  value.raw_zero);
-            seen_[joint] = true;
         }
-        output_.take(value);
+        output_.take(judged, track.motion().position_rad());
     }
 
-    /// Every drive tells of the same SYNC.
-    constexpr Moment synchronised(std::int64_t stamp_ns) noexcept {
-        const bool again = synchronised_ && stamp_ns == sync_ns_;
-        const bool first = !synchronised_;
-        const std::int64_t before_ns = sync_ns_;
-        synchronised_ = true;
-        sync_ns_ = stamp_ns;
-        return first || again ? Moment{} : Moment{Moment::Kind::sync, before_ns};
+    /// A clock that was set by less than the clock gate sees moves each joint by its own velocity.
+    constexpr void follow_clock(PositionTrack<capacity>& track, std::int64_t stamp_ns) noexcept {
+        const std::int64_t tolerance_ns = 2 * joint_jitter_ns_;
+        if (!track.motion().lost()) {
+            return;
+        }
+        if (const auto step_ns = steps_.step_ns(stamp_ns, tolerance_ns)) {
+            track.motion().explain_by_clock(*step_ns);
+            track.motion().explain_by_clock(steps_.within_period(*step_ns, joint_period_ns_));
+        }
     }
 
     constexpr Moment completed_set() noexcept {
-        const bool joints = std::ranges::all_of(seen_, [](bool seen) { return seen; });
-        if (!joints || !output_.heard() || output_.newest_ns() <= set_ns_) {
-            return {};
-        }
-        seen_ = {};
-        set_ns_ = output_.newest_ns();
-        return {Moment::Kind::set, set_ns_};
+        return output_.heard() ? moments_.completed(output_.newest_ns()) : Moment{};
     }
 
     constexpr void fill_ages(Report& report, std::int64_t now_ns) const noexcept {
@@ -296,23 +287,31 @@ class SampleAssembly {
         report.output_age_ns = output_.heard() ? now_ns - output_.newest_ns() : never_ns;
     }
 
-    constexpr Reason fill_positions(Sample& sample, int& joint) noexcept {
+    constexpr Reason fill_positions(Sample& sample, Report& report, std::int64_t now_ns) noexcept {
         if (const Reason down = watch_[0].health.reason(); down != Reason::ok) {
+            report.joint_reason.fill(down);
             return down;
         }
+        Reason first = Reason::ok;
         for (std::size_t i = 0; i < position_.size(); ++i) {
-            const Measurement<1> measured = position_[i].at(sample.time_ns);
-            if (measured.reason != Reason::ok) {
-                joint = static_cast<int>(i);
-                return explain(measured.reason, 0);
+            const Measurement<1> measured = position_[i].at(sample.time_ns, now_ns);
+            report.joint_reason[i] = explain(measured.reason, 0);
+            if (measured.reason == Reason::ok) {
+                sample.position[static_cast<int>(i)] = static_cast<Scalar>(measured.value[0]);
+                report.position_origin[i] = position_[i].origin(sample.time_ns);
+            } else if (first == Reason::ok) {
+                first = report.joint_reason[i];
+                report.joint = static_cast<int>(i);
             }
-            sample.position[static_cast<int>(i)] = static_cast<Scalar>(measured.value[0]);
+        }
+        if (first != Reason::ok) {
+            return first;
         }
         return sample.time_ns > last_instant_ns_ ? Reason::ok : Reason::time_not_increasing;
     }
 
-    constexpr Reason fill_output(Sample& sample, bool loss) noexcept {
-        const Measurement<Output::outputs> measured = output_.at(sample.time_ns);
+    constexpr Reason fill_output(Sample& sample, bool loss, std::int64_t now_ns) noexcept {
+        const Measurement<Output::outputs> measured = output_.at(sample.time_ns, now_ns);
         const Reason reason = output_condition(measured, loss);
         if (reason != Reason::ok) {
             return reason;
@@ -342,7 +341,8 @@ class SampleAssembly {
     /// A source that is missing because its bus' stamps are not believed.
     [[nodiscard]] constexpr Reason explain(Reason reason, int bus) const noexcept {
         const bool missing = reason == Reason::position_stale || reason == Reason::output_stale ||
-                             reason == Reason::waiting_for_position || reason == Reason::waiting_for_output;
+                             reason == Reason::waiting_for_position || reason == Reason::waiting_for_output ||
+                             reason == Reason::position_missing || reason == Reason::output_missing;
         const bool doubtful = watch_[static_cast<std::size_t>(bus)].clock.doubtful();
         return missing && doubtful ? Reason::clock_jumped : reason;
     }
@@ -356,6 +356,11 @@ class SampleAssembly {
         ++counters_.calls;
         counters_.samples += result.valid() ? 1U : 0U;
         counters_.outputs += result.sample.output_valid ? 1U : 0U;
+        const auto bridged = [](ValueOrigin origin) { return origin == ValueOrigin::bridged; };
+        counters_.bridged += result.valid() && (bridged(result.report.output_origin) ||
+                                                std::ranges::any_of(result.report.position_origin, bridged))
+                                 ? 1U
+                                 : 0U;
         if (!result.valid()) {
             ++counters_.positions_refused[static_cast<std::size_t>(result.report.position)];
         } else if (!result.sample.output_valid) {
@@ -364,14 +369,15 @@ class SampleAssembly {
     }
 
     std::array<Board, static_cast<std::size_t>(boards)> board_;
-    std::array<Track<1, capacity>, static_cast<std::size_t>(n)> position_;
+    std::array<PositionTrack<capacity>, static_cast<std::size_t>(n)> position_;
     Output output_;
     int output_bus_;
+    std::int64_t joint_period_ns_;
+    std::int64_t joint_jitter_ns_;
     std::array<BusWatch, buses> watch_;
-    std::array<bool, static_cast<std::size_t>(n)> seen_{};
-    bool synchronised_ = false;
-    std::int64_t sync_ns_ = 0;
-    std::int64_t set_ns_ = std::numeric_limits<std::int64_t>::min(); ///< instant of the last set
+    MomentWatch<n> moments_;
+    ClockStepWatch<n + 1> steps_;
+
     std::int64_t last_instant_ns_ = std::numeric_limits<std::int64_t>::min();
     std::int64_t last_output_ns_ = std::numeric_limits<std::int64_t>::min();
     AssemblyCounters counters_;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/hal/assembly/track.hpp"
+#include "dfdyn/hal/assembly/position_track.hpp"
 #include "dfdyn/hal/device/decoded.hpp"
+#include "dfdyn/hal/gate/frozen_effort.hpp"
+#include "dfdyn/hal/gate/jump.hpp"
 
 #include <utility>
 
@@ -17,6 +19,7 @@ class EffortOutput {
     struct Config {
         TrackConfig track;
         std::array<Range, static_cast<std::size_t>(n)> range;
+        int frozen_limit = 100; ///< equal values of a moving joint, see FrozenEffortGate
     };
 
     explicit constexpr EffortOutput(const Config& config) noexcept
@@ -26,26 +29,53 @@ class EffortOutput {
     constexpr Decoded take(const Frame& /*frame*/) noexcept { return {}; }
 
     /// The effort that comes with a joint, which must be one of the arm's. Zero is as good as any: it need
-    /// not qualify.
-    constexpr void take(const JointValue& value) noexcept {
-        if (value.effort_reason != Reason::no_output) {
-            track_[static_cast<std::size_t>(value.joint)].push(value.stamp_ns, value.effort_reason,
-                                                               {value.effort}, false);
+    /// not qualify. `position_rad`: the joint's last trusted position.
+    constexpr void take(const JointValue& value, double position_rad) noexcept {
+        if (value.effort_reason == Reason::no_output) {
+            return;
         }
+        const auto joint = static_cast<std::size_t>(value.joint);
+        Reason reason = value.effort_reason;
+        const bool later = track_[joint].is_later(value.stamp_ns);
+        if (later && rated_ && collision_[joint].seen(rate_[joint].too_soon(value.stamp_ns))) {
+            reason = Reason::id_collision;
+        }
+        if (later && reason == Reason::ok && frozen_[joint].frozen(value.effort, position_rad)) {
+            reason = Reason::output_frozen;
+        }
+        if (later && reason == Reason::ok && track_[joint].range().contains({value.effort}) &&
+            jump_[joint].jumps({value.effort}, value.stamp_ns)) {
+            reason = Reason::output_jump;
+        }
+        track_[joint].push(value.stamp_ns, reason, {value.effort}, false);
     }
 
     [[nodiscard]] constexpr bool claims(std::uint32_t /*id*/) const noexcept { return false; }
 
     /// All efforts at an instant; the first reason of a joint. See Track.
-    constexpr Measurement<n> at(std::int64_t instant_ns) noexcept {
+    constexpr Measurement<n> at(std::int64_t instant_ns, std::int64_t now_ns) noexcept {
         Measurement<n> all;
         for (std::size_t i = 0; i < track_.size(); ++i) {
-            const Measurement<1> one = track_[i].at(instant_ns);
+            const Measurement<1> one = track_[i].at(instant_ns, now_ns);
             all.reason = all.reason == Reason::ok ? one.reason : all.reason;
             all.value[i] = one.value[0];
             all.stamp_ns = i == 0 ? one.stamp_ns : std::min(all.stamp_ns, one.stamp_ns);
         }
         return all;
+    }
+
+    /// The least direct of the joints'.
+    [[nodiscard]] constexpr ValueOrigin origin(std::int64_t instant_ns) const noexcept {
+        ValueOrigin all = track_[0].origin(instant_ns);
+        for (const auto& track : track_) {
+            all = std::max(all, track.origin(instant_ns));
+        }
+        return all;
+    }
+
+    [[nodiscard]] constexpr bool pending(std::int64_t instant_ns, std::int64_t now_ns) const noexcept {
+        return std::ranges::any_of(track_,
+                                   [&](const auto& track) { return track.pending(instant_ns, now_ns); });
     }
 
     [[nodiscard]] constexpr bool heard() const noexcept {
@@ -61,8 +91,16 @@ class EffortOutput {
         return newest_ns;
     }
 
+    /// Of its measurements; 0: not known.
+    [[nodiscard]] constexpr std::int64_t period_ns() const noexcept { return track_[0].period_ns(); }
+
     /// Nothing is pending.
     constexpr void lost() noexcept {}
+
+    /// How often a joint's effort froze.
+    [[nodiscard]] constexpr const FrozenEffortGate& frozen(int joint) const noexcept {
+        return frozen_[static_cast<std::size_t>(joint)];
+    }
 
     [[nodiscard]] constexpr const Track<1, capacity>& track(int joint) const noexcept {
         return track_[static_cast<std::size_t>(joint)];
@@ -71,9 +109,17 @@ class EffortOutput {
   private:
     template <std::size_t... i>
     constexpr EffortOutput(const Config& config, std::index_sequence<i...> /*joints*/) noexcept
-        : track_{Track<1, capacity>(config.track, {config.range[i]}, output_reasons)...} {}
+        : track_{Track<1, capacity>(config.track, {config.range[i]}, output_reasons)...},
+          frozen_{(static_cast<void>(i), FrozenEffortGate(config.frozen_limit))...},
+          jump_{(static_cast<void>(i), JumpGate<1>(config.track.max_age_ns))...},
+          rate_{(static_cast<void>(i), joint_rate(config.track))...}, rated_(config.track.period_ns > 0) {}
 
     std::array<Track<1, capacity>, static_cast<std::size_t>(n)> track_;
+    std::array<FrozenEffortGate, static_cast<std::size_t>(n)> frozen_;
+    std::array<JumpGate<1>, static_cast<std::size_t>(n)> jump_;
+    std::array<SendRateGate, static_cast<std::size_t>(n)> rate_;
+    bool rated_;
+    std::array<CollisionHold, static_cast<std::size_t>(n)> collision_{};
 };
 
 } // namespace dfdyn::hal

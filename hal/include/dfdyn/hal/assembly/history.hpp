@@ -41,6 +41,9 @@ class History {
     /// Requires that it is not empty.
     [[nodiscard]] constexpr const Entry& newest() const noexcept { return ring_[newest_]; }
 
+    /// The newest is not to be used after all. Requires that there is one.
+    constexpr void spoil_newest(Reason reason) noexcept { ring_[newest_].reason = reason; }
+
     /// The neighbours of an instant: the last entry not later than it, and the first one later; null for
     /// none. O(capacity).
     struct Neighbours {

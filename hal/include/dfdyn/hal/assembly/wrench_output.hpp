@@ -4,6 +4,7 @@
 #include "dfdyn/hal/assembly/track.hpp"
 #include "dfdyn/hal/device/decoded.hpp"
 #include "dfdyn/hal/gate/frozen.hpp"
+#include "dfdyn/hal/gate/jump.hpp"
 #include "dfdyn/hal/gate/pairing.hpp"
 #include "dfdyn/hal/gate/saturation.hpp"
 
@@ -26,7 +27,7 @@ class WrenchOutput {
 
     constexpr WrenchOutput(const Source& source, const Config& config) noexcept
         : source_(source), pairing_(config.pairing), frozen_(config.frozen_limit),
-          track_(config.track, config.range, output_reasons) {}
+          jump_(config.track.max_age_ns), track_(config.track, config.range, output_reasons) {}
 
     /// Decodes a frame and takes it; a wrench may come with it.
     constexpr Decoded take(const Frame& frame) noexcept {
@@ -44,6 +45,7 @@ class WrenchOutput {
             track_.push(pairing_.orphan_ns(), Reason::output_incomplete, {}, false);
             break;
         case PairGate::Result::doubled:
+            collision_.seen(true);
             track_.push(frame.stamp_ns, Reason::id_collision, {}, false);
             break;
         }
@@ -51,14 +53,25 @@ class WrenchOutput {
     }
 
     /// Joints say nothing about a wrench.
-    constexpr void take(const JointValue& /*value*/) noexcept {}
+    constexpr void take(const JointValue& /*value*/, double /*position_rad*/) noexcept {}
 
     [[nodiscard]] constexpr bool claims(std::uint32_t id) const noexcept { return source_.claims(id); }
 
     /// See Track.
-    constexpr Measurement<6> at(std::int64_t instant_ns) noexcept { return track_.at(instant_ns); }
+    constexpr Measurement<6> at(std::int64_t instant_ns, std::int64_t now_ns) noexcept {
+        return track_.at(instant_ns, now_ns);
+    }
+    [[nodiscard]] constexpr ValueOrigin origin(std::int64_t instant_ns) const noexcept {
+        return track_.origin(instant_ns);
+    }
+    [[nodiscard]] constexpr bool pending(std::int64_t instant_ns, std::int64_t now_ns) const noexcept {
+        return track_.pending(instant_ns, now_ns);
+    }
     [[nodiscard]] constexpr bool heard() const noexcept { return track_.heard(); }
     [[nodiscard]] constexpr std::int64_t newest_ns() const noexcept { return track_.newest_ns(); }
+
+    /// Of its measurements; 0: not known.
+    [[nodiscard]] constexpr std::int64_t period_ns() const noexcept { return track_.period_ns(); }
 
     /// Frames were lost: a pending half is forgotten.
     constexpr void lost() noexcept { pairing_.reset(); }
@@ -84,6 +97,16 @@ class WrenchOutput {
         if (reason == Reason::ok && frozen) {
             reason = Reason::output_frozen;
         }
+        if (reason == Reason::ok && collision_.seen(false)) {
+            reason = Reason::id_collision;
+        }
+        if (reason == Reason::ok && !zero && track_.range().contains(reading.value) &&
+            jump_.jumps(reading.value, pairing_.first().stamp_ns)) {
+            reason = Reason::output_jump;
+        }
+        if (zero) { // all six are, to the last bit: a sensor that has just come up
+            track_.disqualify();
+        }
         track_.push(pairing_.first().stamp_ns, reason, reading.value, zero);
     }
 
@@ -91,6 +114,8 @@ class WrenchOutput {
     PairGate pairing_;
     SaturationGate saturation_;
     FrozenGate<6> frozen_;
+    JumpGate<6> jump_;
+    CollisionHold collision_;
     Track<6, capacity> track_;
 };
 

@@ -4,6 +4,7 @@
 #include "dfdyn/hal/bits.hpp"
 #include "dfdyn/hal/device/decoded.hpp"
 #include "dfdyn/hal/device/heartbeat.hpp"
+#include "dfdyn/hal/gate/sync_step.hpp"
 
 #include <optional>
 #include <utility>
@@ -179,7 +180,10 @@ class Cia402Drive {
         decoded.joints = 1;
         JointValue& value = decoded.joint[0];
         value.joint = config_.joint;
-        value.stamp_ns = config_.synchronous && synchronised_ ? sync_ns_ : frame.stamp_ns;
+        const bool to_sync = config_.synchronous && synchronised_;
+        value.stamp_ns = to_sync ? sync_ns_ : frame.stamp_ns;
+        SyncStep& step = positions ? position_step_ : effort_step_;
+        const bool in_step = !to_sync || step.answer(frame.stamp_ns);
         const Reason condition = heartbeat_.reason(frame.stamp_ns);
         const std::span<const std::uint8_t> data(frame.data.data(), frame.length);
         sending_ = true;
@@ -189,6 +193,9 @@ class Cia402Drive {
             value.position_reason = restarted ? Reason::device_restarted : value.position_reason;
             value.raw_zero = config_.position.extract_raw(data) == 0;
             value.position_rad = config_.position.extract(data);
+            value.step_rad = config_.position.step();
+            value.wrap_rad = config_.position.span();
+            value.from_zero_rad = value.position_rad - config_.position.offset;
         }
         if (has_effort() && frame.id == effort_id()) {
             const bool restarted = std::exchange(effort_restarted_, false);
@@ -199,7 +206,16 @@ class Cia402Drive {
                 value.effort_reason = Reason::output_saturated;
             }
         }
+        if (!in_step) {
+            value.position_reason = refused(value.position_reason);
+            value.effort_reason = refused(value.effort_reason);
+        }
         return decoded;
+    }
+
+    /// A value that may be the answer to another SYNC.
+    [[nodiscard]] static constexpr Reason refused(Reason reason) noexcept {
+        return reason == Reason::ok ? Reason::sync_unknown : reason;
     }
 
     constexpr Decoded decode_sync(const Frame& frame) noexcept {
@@ -211,6 +227,8 @@ class Cia402Drive {
         }
         synchronised_ = true;
         sync_ns_ = frame.stamp_ns;
+        position_step_.sync(frame.stamp_ns);
+        effort_step_.sync(frame.stamp_ns);
         Decoded decoded;
         decoded.kind = Decoded::Kind::sync;
         return decoded;
@@ -254,6 +272,8 @@ class Cia402Drive {
 
     Config config_;
     Heartbeat heartbeat_;
+    SyncStep position_step_;
+    SyncStep effort_step_;
     std::int64_t sync_ns_ = 0;
     bool synchronised_ = false;
     bool encoder_fault_ = false;

@@ -20,7 +20,10 @@ struct JointValue {
     bool raw_zero =
         false; ///< the device sent a position of 0, before any zero or scale: perhaps it has none yet
     Reason effort_reason = Reason::no_output;
-    double effort = 0; ///< torque (N·m) or motor current (A), whichever the device measures
+    double effort = 0;        ///< torque (N·m) or motor current (A), whichever the device measures
+    double step_rad = 0;      ///< one count of the position
+    double wrap_rad = 0;      ///< what the position's integer holds before it starts again; 0: endless
+    double from_zero_rad = 0; ///< from where the device's own number is 0
 };
 
 /// Marks a joint of a device that the arm does not have.

@@ -89,6 +89,9 @@ class FocBoard {
         value.position_reason = encoder_fault_ ? Reason::encoder_fault : Reason::ok;
         value.raw_zero = counts == 0;
         value.position_rad = counts * radians_per_count / config_.motor_per_joint + config_.zero_rad;
+        value.step_rad = magnitude(radians_per_count / config_.motor_per_joint);
+        value.wrap_rad = 4294967296.0 * value.step_rad;
+        value.from_zero_rad = value.position_rad - config_.zero_rad;
         const auto milliamperes = load_little<std::int16_t>(frame.data.data());
         value.effort_reason = device_fault_             ? Reason::device_fault
                               : is_at_end(milliamperes) ? Reason::output_saturated

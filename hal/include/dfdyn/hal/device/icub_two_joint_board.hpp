@@ -102,6 +102,9 @@ class TwoJointBoard {
             value.raw_zero = ticks == 0;
             value.position_rad =
                 (ticks / scale_[i].ticks_per_degree - scale_[i].zero_deg) / degrees_per_radian;
+            value.step_rad = magnitude(1 / (scale_[i].ticks_per_degree * degrees_per_radian));
+            value.wrap_rad = 4294967296.0 * value.step_rad;
+            value.from_zero_rad = value.position_rad + scale_[i].zero_deg / degrees_per_radian;
         }
         return decoded;
     }

@@ -109,6 +109,10 @@ class OdriveAxis {
                                 : lost                ? Reason::encoder_fault
                                                       : heartbeat_.reason(frame.stamp_ns);
         value.position_rad = turns * radians_per_turn / config_.motor_per_joint + config_.zero_rad;
+        value.from_zero_rad = value.position_rad - config_.zero_rad;
+        constexpr double float_step = 1.2e-7; // of a number near 1
+        value.step_rad =
+            float_step * magnitude(radians_per_turn / config_.motor_per_joint) * (1 + magnitude(turns));
         return decoded;
     }
 

@@ -26,11 +26,16 @@ class RangeGate {
 
     /// Whether all are within; a set that is not is counted.
     constexpr bool within(const Values& value) noexcept {
+        const bool all = contains(value);
+        beyond_ += all ? 0U : 1U;
+        return all;
+    }
+
+    [[nodiscard]] constexpr bool contains(const Values& value) const noexcept {
         bool all = true;
         for (std::size_t i = 0; i < value.size(); ++i) {
             all = all && value[i] >= ranges_[i].lowest && value[i] <= ranges_[i].highest;
         }
-        beyond_ += all ? 0U : 1U;
         return all;
     }
 

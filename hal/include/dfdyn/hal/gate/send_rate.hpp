@@ -30,7 +30,7 @@ class SendRateGate {
             return false;
         }
         const bool soon = started_ && !could_have_sent_again_by(stamp_ns);
-        const std::int64_t earliest_ns = stamp_ns - delay_ns_;
+        const std::int64_t earliest_ns = stamp_ns - (soon ? delay_ns_ / 2 : delay_ns_); // it is on trial
         sent_ns_ = started_ && !soon ? std::max(earliest_ns, sent_ns_ + shortest_ns_) : earliest_ns;
         last_ns_ = stamp_ns;
         started_ = true;
@@ -56,6 +56,26 @@ class SendRateGate {
     std::int64_t sent_ns_ = 0; ///< the last frame's, at the earliest
     std::int64_t last_ns_ = 0;
     bool started_ = false;
+};
+
+/// Refuses what comes right after a second sender was seen, too: of two interleaved senders every other frame
+/// is in time.
+class CollisionHold {
+  public:
+    /// `too_soon`: of a SendRateGate. Whether this frame is refused.
+    constexpr bool seen(bool too_soon) noexcept {
+        count_ += too_soon ? 1U : 0U;
+        left_ = too_soon ? frames : left_ - (left_ > 0 ? 1 : 0);
+        return left_ > 0;
+    }
+
+    /// How often a second sender was seen.
+    [[nodiscard]] constexpr std::uint64_t count() const noexcept { return count_; }
+
+  private:
+    static constexpr int frames = 2; ///< this one and the next
+    int left_ = 0;
+    std::uint64_t count_ = 0;
 };
 
 } // namespace dfdyn::hal

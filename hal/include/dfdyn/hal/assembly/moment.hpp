@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace dfdyn::hal {
+
+/// A moment at which a sample may be assembled.
+struct SampleMoment {
+    enum class Kind : std::uint8_t {
+        none,
+        sync, ///< a SYNC came: the values measured at the one before are complete
+        set   ///< every joint and the output have new measurements since the last set
+    };
+    Kind kind = Kind::none;
+    std::int64_t instant_ns = 0;
+};
+
+/// Finds the moments of an arm of n joints: SYNCs, and complete sets. O(n) per frame.
+template <int n>
+class MomentWatch {
+  public:
+    /// A SYNC with this stamp; every drive reports the same one.
+    constexpr SampleMoment synchronised(std::int64_t stamp_ns) noexcept {
+        const bool again = synchronised_ && stamp_ns == sync_ns_;
+        if (again) {
+            return {};
+        }
+        const bool first = !synchronised_;
+        const std::int64_t before_ns = sync_ns_;
+        synchronised_ = true;
+        sync_ns_ = stamp_ns;
+        return first ? SampleMoment{} : SampleMoment{SampleMoment::Kind::sync, before_ns};
+    }
+
+    /// A new position of a joint.
+    constexpr void measured(std::size_t joint) noexcept { seen_[joint] = true; }
+
+    /// A moment if all joints and the output, measured at `output_ns`, are new.
+    constexpr SampleMoment completed(std::int64_t output_ns) noexcept {
+        const bool joints = std::ranges::all_of(seen_, [](bool seen) { return seen; });
+        if (!joints || output_ns <= set_ns_) {
+            return {};
+        }
+        seen_ = {};
+        set_ns_ = output_ns;
+        return {SampleMoment::Kind::set, set_ns_};
+    }
+
+  private:
+    std::array<bool, static_cast<std::size_t>(n)> seen_{};
+    bool synchronised_ = false;
+    std::int64_t sync_ns_ = 0;
+    std::int64_t set_ns_ = std::numeric_limits<std::int64_t>::min(); ///< instant of the last set
+};
+
+} // namespace dfdyn::hal

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/assembly/track.hpp"
+#include "dfdyn/hal/device/decoded.hpp"
+#include "dfdyn/hal/gate/motion.hpp"
+#include "dfdyn/hal/gate/send_rate.hpp"
+
+namespace dfdyn::hal {
+
+/// What one sender of a joint's values can do: a frame may wait for the bus for a whole period, or be an
+/// answer to a SYNC that is that uneven.
+[[nodiscard]] constexpr SendRateGate joint_rate(const TrackConfig& config) noexcept {
+    return SendRateGate(SendRateGate::Config{config.period_ns, config.period_ns});
+}
+
+/// The recent positions of one joint: those of one sender (SendRateGate) that its motion leads to
+/// (MotionGate).
+template <int capacity>
+class PositionTrack {
+  public:
+    constexpr PositionTrack(const TrackConfig& config, const Range& range,
+                            const MotionLimits& limits) noexcept
+        : track_(without_qualification(config), {range}, position_reasons),
+          motion_(
+              {limits, range, config.max_age_ns, config.period_ns, config.jitter_ns, config.qualification}),
+          rate_(joint_rate(config)), rated_(config.period_ns > 0), latency_ns_(config.latency_ns) {}
+
+    /// Takes what a device says about this joint's position; what became of it.
+    constexpr Reason push(const JointValue& value) noexcept {
+        if (!track_.is_later(value.stamp_ns)) {
+            track_.push(value.stamp_ns, value.position_reason, {value.position_rad}, false);
+            return Reason::time_not_increasing;
+        }
+        MotionGate::Verdict verdict{value.position_reason};
+        const bool collides = rated_ && collision_.seen(rate_.too_soon(value.stamp_ns));
+        if (value.position_reason == Reason::ok) {
+            verdict = motion_.take(reading_of(value));
+            verdict.reason = collides ? Reason::id_collision : verdict.reason;
+        } else if (value.position_reason != Reason::sync_unknown) { // which says nothing about the device
+            motion_.interrupt();
+        }
+        track_.push(value.stamp_ns, verdict.reason, {verdict.position_rad}, false);
+        return verdict.reason;
+    }
+
+    /// See Track.
+    constexpr Measurement<1> at(std::int64_t instant_ns, std::int64_t now_ns) noexcept {
+        return track_.at(instant_ns, now_ns);
+    }
+    [[nodiscard]] constexpr ValueOrigin origin(std::int64_t instant_ns) const noexcept {
+        return track_.origin(instant_ns);
+    }
+    [[nodiscard]] constexpr bool pending(std::int64_t instant_ns, std::int64_t now_ns) const noexcept {
+        return track_.pending(instant_ns, now_ns);
+    }
+    [[nodiscard]] constexpr bool heard() const noexcept { return track_.heard(); }
+    [[nodiscard]] constexpr std::int64_t newest_ns() const noexcept { return track_.newest_ns(); }
+    [[nodiscard]] constexpr const StalenessGate& staleness() const noexcept { return track_.staleness(); }
+    [[nodiscard]] constexpr const GapGate& gap() const noexcept { return track_.gap(); }
+    [[nodiscard]] constexpr std::uint64_t not_later() const noexcept { return track_.not_later(); }
+
+    [[nodiscard]] constexpr MotionGate& motion() noexcept { return motion_; }
+    [[nodiscard]] constexpr const MotionGate& motion() const noexcept { return motion_; }
+
+    /// How often a second sender was seen.
+    [[nodiscard]] constexpr std::uint64_t collisions() const noexcept { return collision_.count(); }
+
+  private:
+    [[nodiscard]] constexpr EncoderReading reading_of(const JointValue& value) const noexcept {
+        return {.stamp_ns = value.stamp_ns - latency_ns_,
+                .position_rad = value.position_rad,
+                .step_rad = value.step_rad,
+                .wrap_rad = value.wrap_rad,
+                .from_zero_rad = value.from_zero_rad,
+                .zero = value.raw_zero};
+    }
+
+    /// The motion gate qualifies.
+    [[nodiscard]] static constexpr TrackConfig without_qualification(TrackConfig config) noexcept {
+        config.qualification = {.readings = 0, .zero_readings = 0};
+        return config;
+    }
+
+    Track<1, capacity> track_;
+    MotionGate motion_;
+    SendRateGate rate_;
+    bool rated_;
+    std::int64_t latency_ns_;
+    CollisionHold collision_;
+};
+
+} // namespace dfdyn::hal

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/bus.hpp"
+#include "dfdyn/hal/log_clock.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+namespace dfdyn::hal {
+
+/// When samples are assembled.
+struct SamplerConfig {
+    bool timer = true;            ///< at the period; else at the moments of the arm
+    std::int64_t period_ns = 0;   ///< of the samples
+    std::int64_t delay_ns = 0;    ///< of a timer's samples behind the time at which they are assembled
+    std::int64_t patience_ns = 0; ///< after the last moment; then the period calls for samples
+};
+
+/// Makes the samples of a stream of frames when they are due. Time is what the frames' stamps say (LogClock),
+/// so that the same frames with the same stamps give the same samples, bit for bit, whether they come from a
+/// bus or from a recording.
+///
+/// A frame whose stamp is ahead is held until the next: where time did not go on from it, it is left out.
+/// A sample with a value that is missing waits for the next value, from which it is interpolated, or until it
+/// cannot come any more; those after it wait with it, at most `capacity` of them. Where no moment comes,
+/// samples are assembled at the period instead, and say why they are incomplete; for `longest_silence_ns` at
+/// most after the last frame.
+///
+/// `Arm`: `take(frame, now)` returns the instant that can be assembled, if any; `update`, `pending` and
+/// `assemble` as of SampleAssembly. `on_sample(assembled, now_ns)` gets every sample, in the order of time.
+template <class Arm, std::size_t capacity = 16>
+class Sampler {
+  public:
+    static constexpr std::int64_t longest_silence_ns = 1'000'000'000;
+
+    explicit constexpr Sampler(const SamplerConfig& config) noexcept : config_(config) {}
+
+    /// The next frame; state and counters of its bus as they are with it.
+    template <class OnSample>
+    void take(Arm& arm, const Frame& frame, BusState state, const BusCounters& counters,
+              OnSample&& on_sample) {
+        if (!started_) {
+            start(frame.stamp_ns);
+        }
+        if (holds_ && !goes_on_from(held_.stamp_ns, frame.stamp_ns)) {
+            ++strays_;
+            holds_ = false;
+        }
+        let_go(arm, on_sample);
+        if (clock_.leads(frame.stamp_ns)) {
+            holds_ = true;
+            held_ = frame;
+            held_state_ = state;
+            held_counters_ = counters;
+        } else {
+            put_through(arm, frame, state, counters, on_sample);
+        }
+    }
+
+    /// No frame will come with a stamp up to `stamp_ns`: what is due by then is assembled. A frame must have
+    /// come.
+    template <class OnSample>
+    void advance_to(Arm& arm, std::int64_t stamp_ns, OnSample&& on_sample) {
+        let_go(arm, on_sample);
+        const std::int64_t end_ns = std::min(clock_.time_of(stamp_ns) + 1, now_ns_ + longest_silence_ns);
+        assemble_before(arm, end_ns, on_sample);
+        release(arm, end_ns, on_sample);
+    }
+
+    /// No frame will come any more: what waits is assembled as it is.
+    template <class OnSample>
+    void finish(Arm& arm, OnSample&& on_sample) {
+        let_go(arm, on_sample);
+        for (; waiting_ > 0; --waiting_, first_ = next(first_)) {
+            on_sample(arm.assemble(instant_[first_], now_ns_), now_ns_);
+        }
+    }
+
+    /// The time of the first frame, and of the last; 0 before.
+    [[nodiscard]] constexpr std::int64_t start_ns() const noexcept { return start_ns_; }
+    [[nodiscard]] constexpr std::int64_t now_ns() const noexcept { return now_ns_; }
+    [[nodiscard]] constexpr bool started() const noexcept { return started_; }
+    [[nodiscard]] constexpr const LogClock& clock() const noexcept { return clock_; }
+
+    /// Frames that were left out because their stamps were ahead of those after them.
+    [[nodiscard]] constexpr std::uint64_t strays() const noexcept { return strays_; }
+
+  private:
+    [[nodiscard]] static constexpr std::size_t next(std::size_t place) noexcept {
+        return (place + 1) % capacity;
+    }
+
+    /// Whether time went on from a stamp to the one of the next frame.
+    [[nodiscard]] static constexpr bool goes_on_from(std::int64_t held_ns, std::int64_t next_ns) noexcept {
+        return next_ns >= held_ns - LogClock::overtaken_ns && next_ns <= held_ns + LogClock::longest_step_ns;
+    }
+
+    template <class OnSample>
+    void let_go(Arm& arm, OnSample& on_sample) {
+        if (holds_) {
+            holds_ = false;
+            put_through(arm, held_, held_state_, held_counters_, on_sample);
+        }
+    }
+
+    template <class OnSample>
+    void put_through(Arm& arm, const Frame& frame, BusState state, const BusCounters& counters,
+                     OnSample& on_sample) {
+        const std::int64_t time_ns = clock_.due_ns(frame.stamp_ns);
+        assemble_before(arm, std::min(time_ns, now_ns_ + longest_silence_ns), on_sample);
+        now_ns_ = time_ns;
+        leave_out_before(now_ns_);
+        release(arm, now_ns_, on_sample);
+        arm.update(state, counters);
+        const std::optional<std::int64_t> moment = arm.take(frame, now_ns_);
+        release(arm, now_ns_, on_sample);
+        if (moment) {
+            wait(arm, *moment, now_ns_, on_sample);
+            due_ns_ = now_ns_ + config_.patience_ns;
+        }
+    }
+
+    constexpr void start(std::int64_t stamp_ns) noexcept {
+        started_ = true;
+        start_ns_ = now_ns_ = stamp_ns;
+        due_ns_ = stamp_ns + (config_.timer ? config_.period_ns : config_.patience_ns);
+    }
+
+    /// What time alone makes due before `time_ns`.
+    template <class OnSample>
+    void assemble_before(Arm& arm, std::int64_t time_ns, OnSample& on_sample) {
+        for (; due_ns_ < time_ns; due_ns_ += config_.period_ns) {
+            release(arm, due_ns_, on_sample);
+            wait(arm, due_ns_ - config_.delay_ns, due_ns_, on_sample);
+        }
+    }
+
+    /// Leaves out what a long silence made due.
+    constexpr void leave_out_before(std::int64_t time_ns) noexcept {
+        if (due_ns_ < time_ns) {
+            due_ns_ += (time_ns - due_ns_ + config_.period_ns - 1) / config_.period_ns * config_.period_ns;
+        }
+    }
+
+    /// Assembles an instant now, or after those that wait.
+    template <class OnSample>
+    void wait(Arm& arm, std::int64_t instant_ns, std::int64_t now_ns, OnSample& on_sample) {
+        if (waiting_ == 0 && !arm.pending(instant_ns, now_ns)) {
+            on_sample(arm.assemble(instant_ns, now_ns), now_ns);
+            return;
+        }
+        if (waiting_ == capacity) {
+            on_sample(arm.assemble(instant_[first_], now_ns), now_ns);
+            first_ = next(first_);
+            --waiting_;
+        }
+        instant_[(first_ + waiting_) % capacity] = instant_ns;
+        ++waiting_;
+    }
+
+    /// Assembles those that wait and need to no longer.
+    template <class OnSample>
+    void release(Arm& arm, std::int64_t now_ns, OnSample& on_sample) {
+        for (; waiting_ > 0 && !arm.pending(instant_[first_], now_ns); --waiting_, first_ = next(first_)) {
+            on_sample(arm.assemble(instant_[first_], now_ns), now_ns);
+        }
+    }
+
+    SamplerConfig config_;
+    LogClock clock_;
+    bool started_ = false;
+    std::int64_t start_ns_ = 0;
+    std::int64_t now_ns_ = 0;                      ///< of the last frame, by that clock
+    std::int64_t due_ns_ = 0;                      ///< of the next sample that time alone calls for
+    std::array<std::int64_t, capacity> instant_{}; ///< of the samples that wait, a ring
+    std::size_t first_ = 0;
+    std::size_t waiting_ = 0;
+    bool holds_ = false; ///< a frame that leads, until the next shows whether time went on
+    Frame held_;
+    BusState held_state_ = BusState::active;
+    BusCounters held_counters_;
+    std::uint64_t strays_ = 0;
+};
+
+} // namespace dfdyn::hal

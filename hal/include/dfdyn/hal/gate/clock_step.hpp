@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+namespace dfdyn::hal {
+
+/// Detects a clock of stamps that was set by less than ClockGate sees. Then the interval of every source
+/// differs from its period by the same time at once; a single source that does is late, lost or another one.
+/// O(sources).
+template <int sources>
+class ClockStepWatch {
+  public:
+    /// Takes the stamp of a source that sends every `period_ns`, up to `jitter_ns` late. A period of 0: it is
+    /// not watched.
+    constexpr void take(int source, std::int64_t stamp_ns, std::int64_t period_ns,
+                        std::int64_t jitter_ns) noexcept {
+        if (period_ns <= 0) {
+            return;
+        }
+        Source& mine = source_[static_cast<std::size_t>(source)];
+        const std::int64_t step_ns = stamp_ns - mine.stamp_ns - period_ns;
+        if (mine.heard && distance(step_ns, 0) > jitter_ns) {
+            mine.step_ns = step_ns;
+            mine.stepped_ns = stamp_ns;
+            mine.stepped = true;
+        }
+        mine.stamp_ns = stamp_ns;
+        mine.period_ns = period_ns;
+        mine.heard = true;
+    }
+
+    /// By how much the clock was set recently before `now_ns`, if all sources show it, to within
+    /// `tolerance_ns`. A source that lost frames meanwhile shows that many periods more.
+    [[nodiscard]] constexpr std::optional<std::int64_t> step_ns(std::int64_t now_ns,
+                                                                std::int64_t tolerance_ns) const noexcept {
+        std::optional<std::int64_t> least;
+        for (const Source& one : source_) {
+            const bool recent = one.stepped && distance(now_ns, one.stepped_ns) <= memory_ns;
+            if (one.heard && !recent) {
+                return std::nullopt;
+            }
+            if (one.heard) {
+                least = std::min(least.value_or(one.step_ns), one.step_ns);
+            }
+        }
+        for (const Source& one : source_) {
+            const std::int64_t more_ns = one.step_ns - least.value_or(0);
+            const std::int64_t periods = one.heard ? (more_ns + one.period_ns / 2) / one.period_ns : 0;
+            if (one.heard &&
+                (periods > most_lost || distance(more_ns, periods * one.period_ns) > tolerance_ns)) {
+                return std::nullopt;
+            }
+        }
+        return least;
+    }
+
+    /// The step that is left of this one where all sources lost the same number of frames meanwhile.
+    [[nodiscard]] static constexpr std::int64_t within_period(std::int64_t step_ns,
+                                                              std::int64_t period_ns) noexcept {
+        const std::int64_t rest_ns = step_ns % period_ns;
+        return rest_ns > period_ns / 2    ? rest_ns - period_ns
+               : rest_ns < -period_ns / 2 ? rest_ns + period_ns
+                                          : rest_ns;
+    }
+
+  private:
+    static constexpr std::int64_t memory_ns = 200'000'000;
+    static constexpr int most_lost = 3; ///< frames of a source
+
+    struct Source {
+        std::int64_t stamp_ns = 0; ///< of its last frame
+        std::int64_t period_ns = 0;
+        std::int64_t step_ns = 0;    ///< of its last interval that was not its period
+        std::int64_t stepped_ns = 0; ///< end of that interval
+        bool heard = false;
+        bool stepped = false;
+    };
+
+    [[nodiscard]] static constexpr std::int64_t distance(std::int64_t a, std::int64_t b) noexcept {
+        return a < b ? b - a : a - b;
+    }
+
+    std::array<Source, static_cast<std::size_t>(sources)> source_{};
+};
+
+} // namespace dfdyn::hal

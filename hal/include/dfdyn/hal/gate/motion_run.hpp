@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/gate/motion_line.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace dfdyn::hal {
+
+/// By what readings of one joint are compared.
+struct MotionTolerance {
+    MotionLimits limits;
+    std::int64_t period_ns = 0; ///< of the readings; 0: not known
+    double jitter_s = 0;        ///< largest lateness of a stamp against another one
+
+    /// Largest distance of two positions of one joint that were measured `dt_s` apart.
+    [[nodiscard]] constexpr double reach(double dt_s, double step_rad) const noexcept {
+        return limits.velocity * (dt_s + jitter_s) + 2 * step_rad;
+    }
+
+    [[nodiscard]] constexpr bool reaches(const EncoderReading& from,
+                                         const EncoderReading& to) const noexcept {
+        const double distance = magnitude(to.position_rad - from.position_rad);
+        return distance <= reach(seconds_between(from.stamp_ns, to.stamp_ns), to.step_rad);
+    }
+
+    /// Largest distance of a reading from the line through those before it.
+    [[nodiscard]] constexpr double error(const MotionLine& line, double dt_s,
+                                         double step_rad) const noexcept {
+        return line.error(dt_s, limits.acceleration, step_rad, jitter_s);
+    }
+
+    /// Whether a joint with the motion of this line cannot have stopped so that it repeats a reading after
+    /// `dt_s`.
+    [[nodiscard]] constexpr bool must_move(const MotionLine& line, double dt_s,
+                                           double step_rad) const noexcept {
+        if (line.span_s <= 0) {
+            return false;
+        }
+        const double braking = 0.5 * limits.stop * dt_s * (dt_s + line.span_s);
+        return magnitude(line.velocity) * (dt_s - 2 * jitter_s) > braking + 4 * step_rad;
+    }
+};
+
+/// Readings of one joint that lead from one to the next. Takes O(1) and keeps no more than ten of them.
+class MotionRun {
+  public:
+    /// Takes a reading as the next. Stamps must increase.
+    constexpr void extend(const EncoderReading& reading, const MotionTolerance& tolerance) noexcept {
+        changed_ = changed_ || (count_ > 0 && reading.position_rad != last_.position_rad);
+        const bool moved = count_ == 0 || reading.position_rad != last_.position_rad;
+        first_ = count_ == 0 ? reading : first_;
+        last_ = reading;
+        first_readings_.add_first(reading);
+        last_readings_.add_last(reading);
+        line_ = last_readings_.line(count_ >= ReadingWindow::size - 1 ? 1 : 0, 0, tolerance.period_ns);
+        if (moved) {
+            moving_ = line_;
+            moved_ns_ = reading.stamp_ns;
+        }
+        count_ = std::min(count_ + 1, most);
+        zeros_ = reading.zero ? std::min(zeros_ + 1, most) : 0;
+        readings_ = std::min(readings_ + (reading.zero ? 0 : 1), most);
+    }
+
+    /// Whether a joint with this motion can have the reading next. `longest_s`: from here on a longer time
+    /// since the last reading allows no larger distance.
+    [[nodiscard]] constexpr bool leads_to(const EncoderReading& to, const MotionTolerance& tolerance,
+                                          double longest_s = 1e9) const noexcept {
+        if (!tolerance.reaches(last_, to) || repeats(to, tolerance)) {
+            return false;
+        }
+        const double dt_s = seconds_between(last_.stamp_ns, to.stamp_ns);
+        return line_.span_s <= 0 || magnitude(to.position_rad - line_.at(to.stamp_ns)) <=
+                                        tolerance.error(line_, std::min(dt_s, longest_s), to.step_rad);
+    }
+
+    /// Whether a reading repeats the last one, bit for bit, although the joint must have moved.
+    [[nodiscard]] constexpr bool repeats(const EncoderReading& to,
+                                         const MotionTolerance& tolerance) const noexcept {
+        const double dt_s = seconds_between(moved_ns_, to.stamp_ns);
+        return count_ > 0 && to.position_rad == last_.position_rad &&
+               tolerance.must_move(moving_, dt_s, to.step_rad);
+    }
+
+    /// Whether the joint is so fast that it cannot have one position twice.
+    [[nodiscard]] constexpr bool moves(const MotionTolerance& tolerance) const noexcept {
+        return tolerance.must_move(moving_, moving_.span_s, last_.step_rad);
+    }
+
+    /// Lines through its first and its last readings, without the outermost `skip`.
+    [[nodiscard]] constexpr MotionLine begin_line(int skip, std::int64_t period_ns) const noexcept {
+        return first_readings_.line(skip, 0, period_ns);
+    }
+    [[nodiscard]] constexpr MotionLine end_line(int skip, std::int64_t period_ns) const noexcept {
+        return last_readings_.line(0, skip, period_ns);
+    }
+
+    [[nodiscard]] constexpr bool empty() const noexcept { return count_ == 0; }
+    [[nodiscard]] constexpr const EncoderReading& first() const noexcept { return first_; }
+    [[nodiscard]] constexpr const EncoderReading& last() const noexcept { return last_; }
+
+    /// Whether any two of its readings differ.
+    [[nodiscard]] constexpr bool changed() const noexcept { return changed_; }
+
+    /// Readings that were not zero, and the zeros in a row at its end; up to a million.
+    [[nodiscard]] constexpr int readings() const noexcept { return readings_; }
+    [[nodiscard]] constexpr int zeros() const noexcept { return zeros_; }
+
+  private:
+    static constexpr int most = 1'000'000;
+
+    EncoderReading first_;
+    EncoderReading last_;
+    ReadingWindow first_readings_;
+    ReadingWindow last_readings_;
+    MotionLine line_;           ///< through the last four readings
+    MotionLine moving_;         ///< that line at the last reading that differed from the one before
+    std::int64_t moved_ns_ = 0; ///< stamp of that reading
+    int count_ = 0;
+    int readings_ = 0;
+    int zeros_ = 0;
+    bool changed_ = false;
+};
+
+} // namespace dfdyn::hal

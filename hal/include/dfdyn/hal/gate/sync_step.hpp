@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace dfdyn::hal {
+
+/// Decides whether the answer of a device to a SYNC belongs to the last SYNC. A device answers each SYNC
+/// once. An answer is in step unless
+/// - it is the second since the SYNC: one of the two is late;
+/// - it is so late that the next SYNC was lost, or is about to come: by more than three quarters of the
+/// period,
+///   if that is not its usual time;
+/// - no answer came to the SYNC before, and this one is not at its usual time: it may be that one. Then the
+///   device may be late by a period from there on. None is in step until two come between two SYNCs, or a
+///   great many at the usual time.
+///
+/// O(1).
+class SyncStep {
+  public:
+    constexpr void sync(std::int64_t stamp_ns) noexcept {
+        if (synchronised_) {
+            learn_period(stamp_ns - sync_ns_);
+            missing_ += answered_ && answers_ == 0 && missing_ < most_missing ? 1 : 0;
+        }
+        synchronised_ = true;
+        sync_ns_ = stamp_ns;
+        answers_ = 0;
+    }
+
+    /// Takes an answer; whether it is in step. Before the first SYNC none is.
+    constexpr bool answer(std::int64_t stamp_ns) noexcept {
+        answered_ = true;
+        if (!synchronised_) {
+            return false;
+        }
+        const std::int64_t after_ns = stamp_ns - sync_ns_;
+        ++answers_;
+        if (answers_ > 1) {
+            missing_ -= missing_ > 0 ? 1 : 0;
+            behind_ = behind_ && missing_ > 0; // 0: all have come
+            return false;
+        }
+        if (period_ns_ == 0) {
+            return true;
+        }
+        const bool usual = usual_ns_ >= 0 && distance(after_ns, usual_ns_) <= period_ns_ / 8 &&
+                           distance(after_ns + period_ns_, usual_ns_) > period_ns_ / 4;
+        behind_ = behind_ || (missing_ > 0 && !usual);
+        if (behind_) {
+            usual_answers_ = usual ? usual_answers_ + 1 : 0;
+            behind_ = usual_answers_ < great_many;
+            return false;
+        }
+        usual_answers_ = 0;
+        missing_ = 0;
+        if (!usual && after_ns > period_ns_ - period_ns_ / 4) {
+            return false;
+        }
+        learn_usual_time(after_ns, usual);
+        return true;
+    }
+
+    /// Of the last SYNC.
+    [[nodiscard]] constexpr std::int64_t sync_ns() const noexcept { return sync_ns_; }
+
+  private:
+    static constexpr int great_many = 100;
+    static constexpr int most_missing = 1000;
+
+    [[nodiscard]] static constexpr std::int64_t distance(std::int64_t a, std::int64_t b) noexcept {
+        return a < b ? b - a : a - b;
+    }
+
+    /// Follows the usual time; another one is taken over only after very many answers, because on a loaded
+    /// bus answers come late for a while.
+    constexpr void learn_usual_time(std::int64_t after_ns, bool usual) noexcept {
+        constexpr int very_many = 500;
+        unusual_ = usual ? 0 : std::min(unusual_ + 1, very_many);
+        if (usual) {
+            usual_ns_ += (after_ns - usual_ns_) / 8;
+        } else if (usual_ns_ < 0 || unusual_ == very_many) {
+            usual_ns_ = after_ns;
+        }
+    }
+
+    /// Follows the period; a lasting change of more than a quarter is taken over after eight in a row.
+    constexpr void learn_period(std::int64_t interval_ns) noexcept {
+        constexpr int patience = 8;
+        if (period_ns_ > 0 && distance(interval_ns, period_ns_) > period_ns_ / 4 && others_ < patience) {
+            ++others_;
+            return;
+        }
+        period_ns_ = others_ == patience || period_ns_ == 0 ? interval_ns
+                                                            : period_ns_ + (interval_ns - period_ns_) / 8;
+        others_ = 0;
+    }
+
+    std::int64_t sync_ns_ = 0;
+    std::int64_t period_ns_ = 0;
+    std::int64_t usual_ns_ = -1; ///< from a SYNC to its answer; -1: not known
+    int unusual_ = 0;            ///< answers in a row that were not at the usual time
+    int others_ = 0;             ///< intervals in a row that were not the period
+    int answers_ = 0;            ///< since the last SYNC
+    bool synchronised_ = false;
+    bool answered_ = false;
+    int missing_ = 0;       ///< answers to earlier SYNCs that may yet come
+    bool behind_ = false;   ///< all answers may be those to the SYNC before
+    int usual_answers_ = 0; ///< in a row, while they may be behind
+};
+
+} // namespace dfdyn::hal

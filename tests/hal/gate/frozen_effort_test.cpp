@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/gate/frozen_effort.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+
+namespace frozen_effort_test {
+
+using dfdyn::hal::FrozenEffortGate;
+
+double position(int tick) { return 2e-3 * tick; }
+double effort(int tick) { return std::round(500 * std::sin(0.01 * tick)) / 100; }
+
+TEST_CASE("an effort that repeats its value while the joint moves is frozen until it changes") {
+    FrozenEffortGate gate(100);
+    for (int tick = 0; tick < 2000; ++tick) {
+        CHECK_FALSE(gate.frozen(effort(tick), position(tick)));
+    }
+    int accepted = 0;
+    for (int tick = 2000; tick < 2500; ++tick) {
+        accepted += gate.frozen(effort(2000), position(tick)) ? 0 : 1;
+    }
+    CHECK(accepted < 100);
+    CHECK(gate.count() == 1);
+    CHECK_FALSE(gate.frozen(effort(2500), position(2500)));
+}
+
+TEST_CASE("the effort of a joint at rest may be constant for ever") {
+    FrozenEffortGate gate(100);
+    for (int tick = 0; tick < 5000; ++tick) {
+        CHECK_FALSE(gate.frozen(3, 0.5));
+    }
+}
+
+TEST_CASE("before it has learned the device's resolution, the limit decides") {
+    FrozenEffortGate gate(100);
+    for (int tick = 0; tick < 150; ++tick) {
+        CHECK(gate.frozen(3, position(tick)) == (tick >= 99));
+    }
+}
+
+} // namespace frozen_effort_test

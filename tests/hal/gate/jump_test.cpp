@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/gate/jump.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+
+namespace jump_test {
+
+using dfdyn::hal::JumpGate;
+
+constexpr std::int64_t ms = 1'000'000;
+
+double force(int tick) { return 20 * std::sin(0.02 * tick) + 0.05 * std::sin(7.0 * tick); }
+
+JumpGate<1> ready_gate(int ticks) {
+    JumpGate<1> gate(6 * ms);
+    for (int tick = 0; tick < ticks; ++tick) {
+        CHECK_FALSE(gate.jumps({force(tick)}, 2 * ms * tick));
+    }
+    return gate;
+}
+
+TEST_CASE("a single output far from those before is refused, the next good one believed") {
+    JumpGate<1> gate = ready_gate(500);
+    CHECK(gate.jumps({force(500) + 12}, 1000 * ms));
+    CHECK(gate.count() == 1);
+    CHECK_FALSE(gate.jumps({force(501)}, 1002 * ms));
+}
+
+TEST_CASE("a force that did jump is believed once four outputs agree on it") {
+    JumpGate<1> gate = ready_gate(500);
+    for (int tick = 500; tick < 510; ++tick) {
+        CHECK(gate.jumps({force(tick) + 12}, 2 * ms * tick) == (tick < 503));
+    }
+}
+
+TEST_CASE("after a silence three outputs must agree") {
+    JumpGate<1> gate = ready_gate(500);
+    CHECK(gate.jumps({100}, 2 * ms * 510));
+    CHECK(gate.jumps({force(511)}, 2 * ms * 511));
+    CHECK(gate.jumps({force(512)}, 2 * ms * 512));
+    CHECK_FALSE(gate.jumps({force(513)}, 2 * ms * 513));
+}
+
+} // namespace jump_test

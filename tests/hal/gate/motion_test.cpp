@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/gate/motion.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+
+namespace motion_test {
+
+using dfdyn::hal::EncoderReading;
+using dfdyn::hal::MotionGate;
+using dfdyn::hal::Reason;
+
+constexpr std::int64_t ms = 1'000'000;
+constexpr std::int64_t period = 2 * ms;
+constexpr double count_rad = 1e-5;
+
+MotionGate make_gate(double highest_rad = 3) {
+    return MotionGate({.limits = {5, 20},
+                       .range = {-highest_rad, highest_rad},
+                       .max_age_ns = 3 * period,
+                       .period_ns = period,
+                       .jitter_ns = 0,
+                       .qualification = {.readings = 10, .zero_readings = 1000}});
+}
+
+EncoderReading reading(int tick, double position_rad) {
+    return {.stamp_ns = tick * period,
+            .position_rad = position_rad,
+            .step_rad = count_rad,
+            .from_zero_rad = position_rad + 1,
+            .zero = position_rad == -1};
+}
+
+/// A joint in motion: 1 rad/s on average, 6 rad/s² at most.
+double truth(int tick) {
+    const double t = 2e-3 * tick;
+    return 0.3 + 0.6 * std::sin(2 * t + 0.5);
+}
+
+/// Takes the true positions of ticks [from, to); the last verdict.
+Reason follow(MotionGate& gate, int from, int to, double offset_rad = 0) {
+    Reason last = Reason::ok;
+    for (int tick = from; tick < to; ++tick) {
+        last = gate.take(reading(tick, truth(tick) + offset_rad)).reason;
+    }
+    return last;
+}
+
+MotionGate ready_gate() {
+    MotionGate gate = make_gate();
+    follow(gate, 0, 20);
+    return gate;
+}
+
+TEST_CASE("a joint is trusted after ten readings that lead from one to the next") {
+    MotionGate gate = make_gate();
+    CHECK(follow(gate, 0, 9) == Reason::qualifying);
+    CHECK(follow(gate, 9, 10) == Reason::ok);
+    CHECK(follow(gate, 10, 3000) == Reason::ok);
+    CHECK(gate.position_rad() == Approx(truth(2999)));
+}
+
+TEST_CASE("a position that the joint cannot have reached is refused, and the next true one trusted") {
+    for (const double off_rad : {2e-3, -0.02, 0.5, -2.2}) {
+        MotionGate gate = ready_gate();
+        CAPTURE(off_rad);
+        CHECK(gate.take(reading(20, truth(20) + off_rad)).reason == Reason::position_jump);
+        CHECK(follow(gate, 21, 22) == Reason::ok);
+        CHECK(gate.position_rad() == Approx(truth(21)));
+    }
+}
+
+TEST_CASE("the position of the period before is refused where the joint moves") {
+    MotionGate gate = ready_gate();
+    CHECK(gate.take(reading(20, truth(19))).reason == Reason::position_frozen);
+    CHECK(follow(gate, 21, 22) == Reason::ok);
+}
+
+TEST_CASE("an encoder that counts from elsewhere is refused for as long as it goes on so") {
+    MotionGate gate = ready_gate();
+    CHECK(follow(gate, 20, 29, 0.05) == Reason::position_jump);
+    CHECK(follow(gate, 29, 5000, 0.05) == Reason::position_lost);
+    CHECK(gate.lost());
+    // It jumps back: twenty times as many readings are needed.
+    CHECK(follow(gate, 5000, 5199) != Reason::ok);
+    CHECK(follow(gate, 5199, 5200) == Reason::ok);
+}
+
+TEST_CASE("after a silence a joint is trusted where it can have gone, and not at its encoder's own zero") {
+    MotionGate gate = ready_gate();
+    CHECK(follow(gate, 40, 49) == Reason::qualifying);
+    CHECK(follow(gate, 49, 50) == Reason::ok);
+    CHECK(follow(gate, 70, 80, 0.4) == Reason::position_lost);
+
+    MotionGate restarted = ready_gate();
+    for (int tick = 60; tick < 200; ++tick) { // encoder and joint at -1 rad
+        const double position_rad = -1 + 0.1 * (truth(tick) - truth(60));
+        CHECK(restarted.take(reading(tick, position_rad)).reason != Reason::ok);
+    }
+}
+
+TEST_CASE("an impact changes the velocity at once and is followed after ten readings") {
+    MotionGate gate = make_gate();
+    int tick = 0;
+    for (; tick < 50; ++tick) {
+        gate.take(reading(tick, 2e-3 * tick));
+    }
+    Reason last = Reason::ok;
+    for (; tick < 62; ++tick) {
+        last = gate.take(reading(tick, 2e-3 * 49 - 1e-3 * (tick - 49))).reason;
+    }
+    CHECK(last == Reason::ok);
+}
+
+TEST_CASE("a frozen encoder is refused while the joint cannot have stopped; a joint at rest is not") {
+    MotionGate gate = ready_gate();
+    for (int tick = 20; tick < 500; ++tick) {
+        CHECK(gate.take(reading(tick, truth(19))).reason == Reason::position_frozen);
+    }
+    CHECK(follow(gate, 500, 515) == Reason::ok);
+
+    MotionGate resting = make_gate();
+    for (int tick = 0; tick < 500; ++tick) { // comes to rest with 10 rad/s²
+        const double t = std::min(2e-3 * tick, 0.1);
+        const Reason reason = resting.take(reading(tick, t - 5 * t * t)).reason;
+        CHECK((tick < 9 || reason == Reason::ok));
+    }
+}
+
+TEST_CASE("of one reading after a jump more time does not make it more likely") {
+    MotionGate gate = make_gate();
+    for (int tick = 0; tick < 20; ++tick) {
+        gate.take(reading(tick, 1e-3 * tick));
+    }
+    for (int tick = 20; tick < 29; ++tick) {
+        CHECK(gate.take(reading(tick, 1e-3 * tick + 1e-3)).reason == Reason::position_jump);
+    }
+}
+
+TEST_CASE("an integer that wraps is unwrapped where one turn alone can be meant") {
+    const auto wrapped = [](int tick) {
+        EncoderReading one = reading(tick, std::remainder(4 * truth(tick), 2.0));
+        one.wrap_rad = 2;
+        return one;
+    };
+    MotionGate gate({.limits = {20, 100},
+                     .range = {-9, 9},
+                     .max_age_ns = 3 * period,
+                     .period_ns = period,
+                     .jitter_ns = 0,
+                     .qualification = {.readings = 10, .zero_readings = 1000}});
+    const double first_turn = 4 * truth(0) - std::remainder(4 * truth(0), 2.0);
+    for (int tick = 0; tick < 2000; ++tick) {
+        const MotionGate::Verdict verdict = gate.take(wrapped(tick));
+        CHECK((tick < 9 || verdict.reason == Reason::ok));
+        CHECK(verdict.position_rad == Approx(4 * truth(tick) - first_turn));
+    }
+    CHECK(gate.take(wrapped(3000)).reason == Reason::position_lost); // which turn is not known
+}
+
+TEST_CASE("a clock that was set explains the positions of a lost joint, another step does not") {
+    for (const auto& [step, believed] : {std::pair{-1.4, true}, std::pair{3.0, false}}) {
+        MotionGate gate = ready_gate();
+        for (int tick = 20; tick < 40; ++tick) { // stamps are 1.4 ms early
+            EncoderReading one = reading(tick, truth(tick));
+            one.stamp_ns -= 1'400'000;
+            gate.take(one);
+        }
+        CHECK(gate.lost());
+        gate.explain_by_clock(static_cast<std::int64_t>(step * 1e6));
+        CHECK(gate.lost() != believed);
+    }
+}
+
+} // namespace motion_test

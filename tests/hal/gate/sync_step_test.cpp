@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/gate/sync_step.hpp"
+#include "tests/support/catch.hpp"
+
+namespace sync_step_test {
+
+using dfdyn::hal::SyncStep;
+
+constexpr std::int64_t us = 1000;
+constexpr std::int64_t period = 2000 * us;
+
+/// A device that answers every SYNC after 400 µs, for `cycles` of them.
+SyncStep running(int cycles) {
+    SyncStep step;
+    for (int cycle = 0; cycle < cycles; ++cycle) {
+        step.sync(cycle * period);
+        CHECK(step.answer(cycle * period + 400 * us));
+    }
+    return step;
+}
+
+TEST_CASE("no answer is in step before the first SYNC") { CHECK_FALSE(SyncStep().answer(5 * us)); }
+
+TEST_CASE("a lost answer refuses none of those after it at the usual time") {
+    SyncStep step = running(50);
+    step.sync(50 * period);
+    step.sync(51 * period);
+    CHECK(step.answer(51 * period + 420 * us));
+}
+
+TEST_CASE("an answer that comes after the next SYNC is not taken for the answer to it") {
+    SyncStep step = running(50);
+    step.sync(50 * period);
+    step.sync(51 * period);
+    CHECK_FALSE(step.answer(51 * period + 100 * us)); // to SYNC 50
+    CHECK_FALSE(step.answer(51 * period + 800 * us)); // to SYNC 51, but who can tell
+    step.sync(52 * period);
+    CHECK(step.answer(52 * period + 400 * us));
+}
+
+TEST_CASE("where all answers are a period late none is in step, until two come between two SYNCs") {
+    SyncStep step = running(50);
+    step.sync(50 * period);
+    for (int cycle = 51; cycle < 140; ++cycle) {
+        step.sync(cycle * period);
+        CHECK_FALSE(step.answer(cycle * period + 900 * us));
+    }
+    CHECK_FALSE(step.answer(139 * period + 1200 * us));
+    step.sync(140 * period);
+    CHECK(step.answer(140 * period + 400 * us));
+}
+
+TEST_CASE("after a lost SYNC, the answer to it is not taken for one to the SYNC before") {
+    SyncStep step = running(50);
+    CHECK_FALSE(step.answer(50 * period + 400 * us)); // the second since SYNC 49
+    step.sync(51 * period);
+    CHECK(step.answer(51 * period + 400 * us));
+}
+
+} // namespace sync_step_test
