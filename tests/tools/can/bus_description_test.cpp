@@ -86,7 +86,8 @@ TEST_CASE("what a bus description cannot be is refused by field, expectation and
         {"ur5_icub_2foc.json", "\"set\"", "\"sync\"",
          R"(trigger.on: expected timer or set, because no joint measures at a SYNC, found "sync")"},
         {"icub_arm_strain.json", "icub_strain", "efforts",
-         "output.field \"address\": expected one of family, quantity, limit, max_age_s, latency_s, found "
+         "output.field \"address\": expected one of family, quantity, limit, max_age_s, latency_s, jitter_s, "
+         "frozen_after, found "
          "another"},
         {"icub_arm_strain.json",
          R"("icub_strain", "address": 13, "full_scale": [1500, 1500, 2000, 35, 35, 25])",

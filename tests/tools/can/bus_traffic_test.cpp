@@ -25,11 +25,14 @@ struct Row {
 std::vector<Row> random_rows(std::mt19937_64& engine, std::size_t count, std::int64_t period_ns,
                              std::size_t joints, const std::vector<double>& output_range) {
     std::uniform_real_distribution<double> within(-1, 1);
+    const double slow = 2 + within(engine); // rad/s
+    const double phase = 3 * within(engine);
     std::vector<Row> rows;
     for (std::size_t k = 0; k < count; ++k) {
         Row row{static_cast<std::int64_t>(k) * period_ns, {}, {}};
         for (std::size_t i = 0; i < joints; ++i) {
-            row.position.push_back(3 * within(engine));
+            const double t = 1e-9 * static_cast<double>(row.time_ns);
+            row.position.push_back(1.5 * std::sin(slow * t + phase + static_cast<double>(i)));
         }
         for (const double range : output_range) {
             row.output.push_back(0.99 * range * within(engine));

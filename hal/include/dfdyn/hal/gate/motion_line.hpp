@@ -15,7 +15,7 @@ namespace dfdyn::hal {
 struct MotionLimits {
     double velocity = 10;      ///< rad/s
     double acceleration = 100; ///< rad/s²
-    double stop = 30;          ///< rad/s²; from motion to a reading that repeats for ever
+    double stop = 20;          ///< rad/s²; from motion to a reading that repeats for ever
 };
 
 /// Straight line through a few readings: where a joint was, and how fast it moved.
