@@ -4,13 +4,13 @@
 #include "dfdyn/hal/assembly/position_track.hpp"
 #include "dfdyn/hal/device/decoded.hpp"
 #include "dfdyn/hal/gate/frozen_effort.hpp"
-#include "dfdyn/hal/gate/jump.hpp"
 
 #include <utility>
 
 namespace dfdyn::hal {
 
-/// An arm's output that its joints measure themselves: one torque (N·m) or current (A) per joint.
+/// An arm's output that its joints measure themselves: one torque (N·m) or current (A) per joint. Nothing
+/// bounds how fast a motor's current may change, so that no step of it is refused.
 template <int n, int capacity>
 class EffortOutput {
   public:
@@ -42,10 +42,6 @@ class EffortOutput {
         }
         if (later && reason == Reason::ok && frozen_[joint].frozen(value.effort, position_rad)) {
             reason = Reason::output_frozen;
-        }
-        if (later && reason == Reason::ok && track_[joint].range().contains({value.effort}) &&
-            jump_[joint].jumps({value.effort}, value.stamp_ns)) {
-            reason = Reason::output_jump;
         }
         track_[joint].push(value.stamp_ns, reason, {value.effort}, false);
     }
@@ -111,12 +107,10 @@ class EffortOutput {
     constexpr EffortOutput(const Config& config, std::index_sequence<i...> /*joints*/) noexcept
         : track_{Track<1, capacity>(config.track, {config.range[i]}, output_reasons)...},
           frozen_{(static_cast<void>(i), FrozenEffortGate(config.frozen_limit))...},
-          jump_{(static_cast<void>(i), JumpGate<1>(config.track.max_age_ns))...},
           rate_{(static_cast<void>(i), joint_rate(config.track))...}, rated_(config.track.period_ns > 0) {}
 
     std::array<Track<1, capacity>, static_cast<std::size_t>(n)> track_;
     std::array<FrozenEffortGate, static_cast<std::size_t>(n)> frozen_;
-    std::array<JumpGate<1>, static_cast<std::size_t>(n)> jump_;
     std::array<SendRateGate, static_cast<std::size_t>(n)> rate_;
     bool rated_;
     std::array<CollisionHold, static_cast<std::size_t>(n)> collision_{};
