@@ -47,10 +47,18 @@ TEST_CASE("a CiA 402 drive's PDOs are read as they are mapped") {
 
 TEST_CASE("a synchronous drive measures at the SYNC before") {
     Cia402Drive drive(elbow_config());
+    const auto answer = [&](std::int64_t stamp_ns) {
+        Frame frame = minus_two;
+        frame.stamp_ns = stamp_ns;
+        return drive.decode(frame).joint[0];
+    };
     CHECK(drive.decode(frame_of(0x080, {}, 5 * ms)).kind == Kind::sync);
-    CHECK(drive.decode(minus_two).joint[0].stamp_ns == 5 * ms);
+    CHECK(answer(5 * ms + ms / 4).stamp_ns == 5 * ms);
     CHECK(drive.decode(frame_of(0x080, {0x17}, 6 * ms)).kind == Kind::sync); // with a counter
-    CHECK(drive.decode(minus_two).joint[0].stamp_ns == 6 * ms);
+    CHECK(answer(6 * ms + ms / 4).stamp_ns == 6 * ms);
+    const JointValue late = answer(7 * ms + ms / 4); // to the SYNC of 7 ms, which was lost
+    CHECK(late.position_reason == Reason::sync_unknown);
+    CHECK(late.stamp_ns == 7 * ms + ms / 4);
     Cia402Drive::Config config = elbow_config();
     config.synchronous = false;
     Cia402Drive free_running(config);

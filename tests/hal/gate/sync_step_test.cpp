@@ -34,6 +34,7 @@ TEST_CASE("an answer that comes after the next SYNC is not taken for the answer 
     step.sync(51 * period);
     CHECK_FALSE(step.answer(51 * period + 100 * us)); // to SYNC 50
     CHECK_FALSE(step.answer(51 * period + 800 * us)); // to SYNC 51, but who can tell
+    CHECK_FALSE(step.late());
     step.sync(52 * period);
     CHECK(step.answer(52 * period + 400 * us));
 }
@@ -50,9 +51,40 @@ TEST_CASE("where all answers are a period late none is in step, until two come b
     CHECK(step.answer(140 * period + 400 * us));
 }
 
+TEST_CASE("two lost answers and a lost SYNC after them refuse no answer to the next SYNC") {
+    SyncStep step = running(50);
+    step.sync(50 * period);
+    step.sync(51 * period);
+    CHECK_FALSE(step.answer(52 * period + 420 * us)); // to SYNC 52, which was lost
+    step.sync(53 * period);
+    CHECK(step.answer(53 * period + 400 * us));
+}
+
+TEST_CASE("after a lost answer, one that is a whole period late is not taken for an answer to a lost SYNC") {
+    SyncStep step = running(50);
+    step.sync(50 * period);
+    step.sync(51 * period);
+    CHECK_FALSE(step.answer(51 * period + 1950 * us)); // to SYNC 50
+    step.sync(52 * period);
+    CHECK_FALSE(step.answer(52 * period + 400 * us)); // to SYNC 51
+}
+
+TEST_CASE("an answer that comes just before the next SYNC is in step, if answers take that long") {
+    SyncStep step;
+    for (int cycle = 0; cycle < 50; ++cycle) {
+        step.sync(cycle * period);
+        CHECK(step.answer(cycle * period + 1150 * us)); // a frame fills more than half of the period
+    }
+    step.sync(50 * period);
+    CHECK(step.answer(50 * period + 1800 * us)); // it has waited for another frame
+    step.sync(51 * period);
+    CHECK_FALSE(step.answer(51 * period + 2750 * us)); // SYNC 52 was lost and came early
+}
+
 TEST_CASE("after a lost SYNC, the answer to it is not taken for one to the SYNC before") {
     SyncStep step = running(50);
     CHECK_FALSE(step.answer(50 * period + 400 * us)); // the second since SYNC 49
+    CHECK(step.late());                               // which leaves the first one as it is
     step.sync(51 * period);
     CHECK(step.answer(51 * period + 400 * us));
 }

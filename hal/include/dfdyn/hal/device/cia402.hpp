@@ -209,6 +209,7 @@ class Cia402Drive {
         if (!in_step) {
             value.position_reason = refused(value.position_reason);
             value.effort_reason = refused(value.effort_reason);
+            value.stamp_ns = step.late() ? frame.stamp_ns : value.stamp_ns;
         }
         return decoded;
     }

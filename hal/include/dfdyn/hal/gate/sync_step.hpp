@@ -9,18 +9,19 @@ namespace dfdyn::hal {
 /// Decides whether the answer of a device to a SYNC belongs to the last SYNC. A device answers each SYNC
 /// once. An answer is in step unless
 /// - it is the second since the SYNC: one of the two is late;
-/// - it is so late that the next SYNC was lost, or is about to come: by more than three quarters of the
-/// period,
-///   if that is not its usual time;
+/// - it is so late that it may be the answer to a SYNC after the last one: three quarters of a period later
+///   than the earliest answers, if that is not its usual time;
 /// - no answer came to the SYNC before, and this one is not at its usual time: it may be that one. Then the
 ///   device may be late by a period from there on. None is in step until two come between two SYNCs, or a
-///   great many at the usual time.
+///   great many at the usual time. Not so where the next SYNC shows that the one between was lost, after
+///   which this one was at its usual time.
 ///
 /// O(1).
 class SyncStep {
   public:
     constexpr void sync(std::int64_t stamp_ns) noexcept {
         if (synchronised_) {
+            explain_late_answer(stamp_ns - sync_ns_);
             learn_period(stamp_ns - sync_ns_);
             missing_ += answered_ && answers_ == 0 && missing_ < most_missing ? 1 : 0;
         }
@@ -36,31 +37,30 @@ class SyncStep {
             return false;
         }
         const std::int64_t after_ns = stamp_ns - sync_ns_;
+        const bool usual = usual_ns_ >= 0 && distance(after_ns, usual_ns_) <= period_ns_ / 8 &&
+                           distance(after_ns + period_ns_, usual_ns_) > period_ns_ / 4;
+        late_ = period_ns_ > 0 && !usual && after_ns - earliest_ns_ > period_ns_ - period_ns_ / 4;
         ++answers_;
         if (answers_ > 1) {
             missing_ -= missing_ > 0 ? 1 : 0;
-            behind_ = behind_ && missing_ > 0; // 0: all have come
+            behind_ = (behind_ || late_ns_ >= 0) && missing_ > 0; // 0: all have come
+            late_ns_ = -1;
             return false;
         }
         if (period_ns_ == 0) {
             return true;
         }
-        const bool usual = usual_ns_ >= 0 && distance(after_ns, usual_ns_) <= period_ns_ / 8 &&
-                           distance(after_ns + period_ns_, usual_ns_) > period_ns_ / 4;
-        behind_ = behind_ || (missing_ > 0 && !usual);
-        if (behind_) {
-            usual_answers_ = usual ? usual_answers_ + 1 : 0;
-            behind_ = usual_answers_ < great_many;
+        if (late_) {
+            late_ns_ = after_ns;
+            usual_answers_ = 0;
             return false;
         }
-        usual_answers_ = 0;
-        missing_ = 0;
-        if (!usual && after_ns > period_ns_ - period_ns_ / 4) {
-            return false;
-        }
-        learn_usual_time(after_ns, usual);
-        return true;
+        return at_its_time(after_ns, usual);
     }
+
+    /// Whether the last answer came so late that it belongs to another SYNC than one before it: it says
+    /// nothing about the value measured at the last SYNC.
+    [[nodiscard]] constexpr bool late() const noexcept { return late_; }
 
     /// Of the last SYNC.
     [[nodiscard]] constexpr std::int64_t sync_ns() const noexcept { return sync_ns_; }
@@ -73,15 +73,44 @@ class SyncStep {
         return a < b ? b - a : a - b;
     }
 
+    /// Whether an answer is in step that is not too late.
+    constexpr bool at_its_time(std::int64_t after_ns, bool usual) noexcept {
+        behind_ = behind_ || (missing_ > 0 && !usual);
+        if (behind_) {
+            usual_answers_ = usual ? usual_answers_ + 1 : 0;
+            behind_ = usual_answers_ < great_many;
+            return false;
+        }
+        usual_answers_ = 0;
+        missing_ = 0;
+        learn_usual_time(after_ns, usual);
+        return true;
+    }
+
+    /// An answer came late, and no other, since the SYNC that was `interval_ns` before this one.
+    constexpr void explain_late_answer(std::int64_t interval_ns) noexcept {
+        if (late_ns_ < 0) {
+            return;
+        }
+        const std::int64_t lost = (interval_ns + period_ns_ / 2) / period_ns_ - 1;
+        const std::int64_t periods = (late_ns_ - usual_ns_ + period_ns_ / 2) / period_ns_;
+        const bool to_a_lost_one = usual_ns_ >= 0 && periods >= 1 && periods <= lost &&
+                                   distance(late_ns_ - periods * period_ns_, usual_ns_) <= period_ns_ / 8;
+        behind_ = behind_ || (missing_ > 0 && !to_a_lost_one);
+        missing_ = to_a_lost_one ? 0 : missing_;
+        late_ns_ = -1;
+    }
+
     /// Follows the usual time; another one is taken over only after very many answers, because on a loaded
     /// bus answers come late for a while.
     constexpr void learn_usual_time(std::int64_t after_ns, bool usual) noexcept {
         constexpr int very_many = 500;
+        earliest_ns_ = usual_ns_ < 0 ? after_ns : std::min(earliest_ns_, after_ns);
         unusual_ = usual ? 0 : std::min(unusual_ + 1, very_many);
         if (usual) {
             usual_ns_ += (after_ns - usual_ns_) / 8;
         } else if (usual_ns_ < 0 || unusual_ == very_many) {
-            usual_ns_ = after_ns;
+            usual_ns_ = earliest_ns_ = after_ns;
         }
     }
 
@@ -99,13 +128,16 @@ class SyncStep {
 
     std::int64_t sync_ns_ = 0;
     std::int64_t period_ns_ = 0;
-    std::int64_t usual_ns_ = -1; ///< from a SYNC to its answer; -1: not known
-    int unusual_ = 0;            ///< answers in a row that were not at the usual time
-    int others_ = 0;             ///< intervals in a row that were not the period
-    int answers_ = 0;            ///< since the last SYNC
+    std::int64_t usual_ns_ = -1;   ///< from a SYNC to its answer; -1: not known
+    std::int64_t earliest_ns_ = 0; ///< the least of those times
+    std::int64_t late_ns_ = -1;    ///< time of an answer since the last SYNC that was too late; -1: none
+    int unusual_ = 0;              ///< answers in a row that were not at the usual time
+    int others_ = 0;               ///< intervals in a row that were not the period
+    int answers_ = 0;              ///< since the last SYNC
     bool synchronised_ = false;
     bool answered_ = false;
     int missing_ = 0;       ///< answers to earlier SYNCs that may yet come
+    bool late_ = false;     ///< the last answer
     bool behind_ = false;   ///< all answers may be those to the SYNC before
     int usual_answers_ = 0; ///< in a row, while they may be behind
 };
