@@ -34,13 +34,15 @@ BusTrigger read_trigger(const JsonReader& reader) {
     throw reader.error("on", "sync, timer or set", in_quotes(kind));
 }
 
+constexpr double usual_jitter = 0.25; ///< of a period
+
 /// Three periods without a value are too many, unless the file says otherwise.
 BusSource read_source(const JsonReader& reader, double default_rate_hz) {
     BusSource source;
     source.rate_hz = reader.number_or("rate_hz", default_rate_hz, 0.1, 100'000);
     source.max_age_ns = nanoseconds_or(reader, "max_age_s", 3 / source.rate_hz);
     source.latency_ns = nanoseconds_or(reader, "latency_s", 0);
-    source.jitter_ns = nanoseconds_or(reader, "jitter_s", 0.25 / source.rate_hz);
+    source.jitter_ns = nanoseconds_or(reader, "jitter_s", usual_jitter / source.rate_hz);
     return source;
 }
 
@@ -137,21 +139,36 @@ void read_efforts(const JsonReader& reader, bool measured, BusDescription& descr
     description.frozen_after = reader.whole_or("frozen_after", 100, 2, 1'000'000);
 }
 
-/// How long a wrench takes on its bus at worst: it waits for whatever else of the arm is sent meanwhile.
-double waiting_s(const BusDescription& description) {
-    const auto seconds = [&](std::span<const hal::Frame> frames) {
-        int bits = 0;
-        for (const hal::Frame& frame : frames) {
-            bits += frame_bits(frame);
-        }
-        return bits / description.bit_rate;
-    };
+double seconds_on_wire(std::span<const hal::Frame> frames, double bit_rate) {
+    int bits = 0;
+    for (const hal::Frame& frame : frames) {
+        bits += frame_bits(frame);
+    }
+    return bits / bit_rate;
+}
+
+/// How long the frames of all joints take on their bus.
+double joints_on_wire_s(const BusDescription& description) {
     BusDescription joints = description;
     joints.sensor.reset(); // which need not be able to send
     const std::vector<double> zeros(static_cast<std::size_t>(description.joint_count));
-    const double joints_s = seconds(DeviceFrames(joints).joints(zeros, {}));
+    return seconds_on_wire(DeviceFrames(joints).joints(zeros, {}), description.bit_rate);
+}
+
+/// How long the frames of a wrench take; 0 where there is no sensor.
+double wrench_on_wire_s(const BusDescription& description) {
+    if (!description.sensor) {
+        return 0;
+    }
     const hal::FrameList wrench = description.sensor->encode(hal::Wrench{});
-    const double wrench_s = seconds(std::span(wrench.frame).first(static_cast<std::size_t>(wrench.count)));
+    return seconds_on_wire(std::span(wrench.frame).first(static_cast<std::size_t>(wrench.count)),
+                           description.bit_rate);
+}
+
+/// How long a wrench takes on its bus at worst: it waits for whatever else of the arm is sent meanwhile.
+double waiting_s(const BusDescription& description) {
+    const double joints_s = joints_on_wire_s(description);
+    const double wrench_s = wrench_on_wire_s(description);
     const double period_s = 1 / description.output.rate_hz;
     double wait_s = wrench_s;
     for (double before_s = 0; wait_s > before_s && wait_s < period_s;) {
@@ -192,6 +209,17 @@ void read_output(const JsonReader& reader, const std::filesystem::path& folder, 
     efforts ? read_efforts(reader, measured, description) : read_sensor(reader, folder, description);
 }
 
+/// A frame that waits until all other frames of the arm have been sent is late by the time they take, which
+/// on a loaded bus is more than usual. Values that are stamped by a SYNC do not wait.
+void allow_waiting(const JsonReader& reader, const BusDescription& description, BusSource& source) {
+    if (!reader.has("jitter_s") && !description.synchronous) {
+        const double all_s = joints_on_wire_s(description) + wrench_on_wire_s(description);
+        const double most_s = 0.9 / source.rate_hz;
+        source.jitter_ns =
+            std::max<std::int64_t>(source.jitter_ns, std::llround(1e9 * std::min(all_s, most_s)));
+    }
+}
+
 /// Long enough that every source has sent a value after the instant.
 double default_delay_s(const BusDescription& description) {
     const auto latency_ns = std::max(description.joints.latency_ns, description.output.latency_ns);
@@ -226,7 +254,10 @@ BusDescription parse(const JsonReader& reader, const std::filesystem::path& path
     if (description.trigger == BusTrigger::sync && !description.synchronous) {
         throw trigger.error("on", "timer or set, because no joint measures at a SYNC", "\"sync\"");
     }
-    read_output(reader.object("output"), folder, description);
+    const JsonReader output = reader.object("output");
+    read_output(output, folder, description);
+    allow_waiting(joints, description, description.joints);
+    allow_waiting(output, description, description.output);
     description.delay_ns = nanoseconds_or(trigger, "delay_s", default_delay_s(description));
     check_identifiers(joints, description);
     return description;
