@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/control/bus/loop_port.hpp"
 
+#include "tools/control/safe_stop.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,24 +24,32 @@ int delay_of(const BusDescription& description, double loop_period_s) {
     return 0;
 }
 
-/// The loop looks itself for joints that do what they cannot (JointWatch), and says which.
-BusDescription without_motion_limits(BusDescription description) {
+/// The loop looks itself for joints that do what they cannot (JointWatch), and says which. A joint that was
+/// missing for no longer than the loop coasts need not qualify again.
+BusDescription for_loop(BusDescription description, double loop_period_s) {
     constexpr double none = 1e12;
     description.joint_limits.assign(description.joint_limits.size(), {none, none, none});
+    const int coasted = SafeStopConfig{}.position_patience + 1; // the period with the next reading
+    description.joints.max_age_ns =
+        std::max<std::int64_t>(description.joints.max_age_ns, std::llround(1e9 * coasted * loop_period_s));
     return description;
 }
 
-/// Whether joints are missing, or cannot be believed, for this instant, and others are there.
-bool lacks_single_values(const BusSample& sample) {
-    const auto lacks = [](hal::Reason reason) {
-        return reason == hal::Reason::position_missing || reason == hal::Reason::position_jump ||
-               reason == hal::Reason::sync_unknown;
+/// Whether some joints cannot be believed at this instant, and others can.
+bool lacks_single_joints(const BusSample& sample) {
+    const auto good = [](hal::Reason reason) { return reason == hal::Reason::ok; };
+    return std::ranges::any_of(sample.joint_reason, good) && !std::ranges::all_of(sample.joint_reason, good);
+}
+
+/// Whether all that is missing is so for a while only, because devices or clocks qualify.
+bool returns(const BusSample& sample) {
+    const auto passing = [](hal::Reason reason) {
+        return reason == hal::Reason::qualifying || reason == hal::Reason::clock_jumped ||
+               reason == hal::Reason::time_not_increasing;
     };
-    return std::ranges::any_of(sample.joint_reason, lacks) &&
-           std::ranges::any_of(sample.joint_reason,
-                               [](hal::Reason reason) { return reason == hal::Reason::ok; }) &&
+    return passing(sample.position_reason) &&
            std::ranges::all_of(sample.joint_reason, [&](hal::Reason reason) {
-               return reason == hal::Reason::ok || lacks(reason);
+               return reason == hal::Reason::ok || passing(reason);
            });
 }
 
@@ -50,7 +60,7 @@ LoopPort::LoopPort(const BusDescription& description, double loop_period_s)
       measures_torque_(description.outputs == OutputKind::joint_torque),
       delay_ticks_(delay_of(description, loop_period_s)), period_ns_(std::llround(loop_period_s * 1e9)),
       latency_ns_(description.joints.latency_ns), clock_(period_ns_),
-      arm_(make_bus_arm(without_motion_limits(description))), commands_(description),
+      arm_(make_bus_arm(for_loop(description, loop_period_s))), commands_(description),
       position_(description.joint_count), torque_(description.joint_count),
       missing_(static_cast<std::size_t>(description.joint_count)),
       newest_ns_(missing_.size(), std::numeric_limits<std::int64_t>::min()),
@@ -137,15 +147,14 @@ LoopInput LoopPort::sense(std::int64_t tick_ns, std::int64_t now_ns) {
     follow_clock(sample, now_ns);
     // or the instant was a wrong one
     const bool corrected = ticks_across_ > 0 || (timer_ && clock_.correction_ns() != correction_ns);
-    if (!sample.valid() && !lacks_single_values(sample)) {
+    const bool usable = sample.valid() || lacks_single_joints(sample);
+    if (!usable) {
         ++counters_.invalid;
         counters_.last_reason = sample.position_reason;
         counters_.last_joint = sample.joint;
     }
-    if ((!sample.valid() && !lacks_single_values(sample)) || corrected) {
-        input.returning = corrected || sample.position_reason == hal::Reason::qualifying ||
-                          sample.position_reason == hal::Reason::clock_jumped ||
-                          sample.position_reason == hal::Reason::time_not_increasing;
+    input.returning = corrected || (!sample.valid() && returns(sample));
+    if (!usable || corrected) {
         return input;
     }
     for (Eigen::Index joint = 0; joint < position_.size(); ++joint) {
