@@ -60,10 +60,14 @@ void swap_frames(FaultSite& site) {
     }
     site.sort();
 }
+/// Not those of efforts, which may step.
 void corrupt_bits(FaultSite& site) {
     site.change([&](Sent& sent) {
-        if (is_device(sent) && site.chance(0.1)) {
-            const int bit = site.pick(8 * sent.frame.length);
+        if (is_device(sent) && sent.frame.length > 0 && site.chance(0.1)) {
+            const bool has_effort_too = sent.role == Role::joints && has_effort(sent.frame);
+            const Bytes bytes =
+                has_effort_too ? position_bytes(sent.frame, sent.unit) : Bytes{0, sent.frame.length};
+            const int bit = 8 * bytes.begin + site.pick(8 * bytes.length);
             sent.frame.data[static_cast<std::size_t>(bit / 8)] ^= static_cast<std::uint8_t>(1 << bit % 8);
         }
     });
@@ -305,6 +309,7 @@ void malform(FaultSite& site) {
         if (!is_device(sent) || !site.chance(0.1)) {
             return;
         }
+        sent.role = Role::noise; // for faults that are put on top
         switch (site.pick(4)) {
         case 0:
             sent.frame.length = static_cast<std::uint8_t>((sent.frame.length + 1 + site.pick(7)) % 9);
@@ -343,10 +348,19 @@ void stick_bit(FaultSite& site) {
         }
     });
 }
-/// Two boards with each other's identifiers.
+/// Two boards with each other's identifiers, where both show that.
 void swap_nodes(FaultSite& site) {
-    if (std::abs(site.truth.position(0, seconds_of(site.begin_ns)) -
-                 site.truth.position(1, seconds_of(site.begin_ns))) > 0.2) {
+    std::array<const Sent*, 2> last{};
+    for (const Sent& sent : site.traffic) {
+        if (sent.role == Role::joints && sent.true_ns < site.begin_ns) {
+            last[static_cast<std::size_t>(sent.unit)] = &sent;
+        }
+    }
+    if (last[0] == nullptr || last[1] == nullptr) {
+        return;
+    }
+    const double apart = std::abs(position_of(last[0]->frame, 0) - position_of(last[1]->frame, 1));
+    if (apart > 0.2 * std::max(per_radian(last[0]->frame), per_radian(last[1]->frame))) {
         site.change([](Sent& sent) {
             if (sent.role == Role::joints && !is_two_joint_board(sent.frame)) {
                 sent.frame.id = other_node(sent.frame.id);

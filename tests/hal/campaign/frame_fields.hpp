@@ -5,6 +5,7 @@
 #include "dfdyn/hal/frame.hpp"
 
 #include <cstring>
+#include <numbers>
 
 namespace dfdyn::tests {
 
@@ -44,6 +45,20 @@ inline double position_of(const hal::Frame& frame, int joint) {
     std::int32_t counts = 0;
     std::memcpy(&counts, frame.data.data() + begin, static_cast<std::size_t>(length));
     return length == 2 ? static_cast<std::int16_t>(counts) : counts;
+}
+/// Of the device's unit, for a radian of the joint.
+inline double per_radian(const hal::Frame& frame) {
+    constexpr double radians = 2 * std::numbers::pi; // in a turn
+    switch (frame.id) {
+    case 0x111:
+        return 91 * 360 / radians;
+    case 0x29:
+        return 1 / radians;
+    case 0x49:
+        return 8 / radians;
+    default:
+        return (is_foc(frame) ? 2 * 65536 : frame.length == 4 ? 65536 : 1048576) / radians;
+    }
 }
 inline void set_position(hal::Frame& frame, int joint, double position) {
     const auto [begin, length] = position_bytes(frame, joint);

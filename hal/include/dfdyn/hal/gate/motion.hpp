@@ -7,6 +7,7 @@
 #include "dfdyn/hal/reason.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 
 namespace dfdyn::hal {
@@ -60,14 +61,14 @@ class MotionGate {
         if (fresh(reading.stamp_ns)) {
             if (leads_from_trusted(reading)) {
                 run_ = {};
+                note(false);
                 return trust(reading);
             }
             const bool frozen = trusted_.repeats(reading, tolerance_);
             disturbed_ = !frozen;
             return follow(reading, frozen ? Reason::position_frozen : Reason::position_jump);
         }
-        if (lost() && !continues(run_, reading) && goes_on(refused_, reading)) {
-            refused_.extend(reading, tolerance_);
+        if (lost() && !continues(run_, reading) && still_lost(reading)) {
             run_ = {};
             return refuse(reading, Reason::position_lost);
         }
@@ -112,19 +113,33 @@ class MotionGate {
     [[nodiscard]] constexpr bool fresh(std::int64_t stamp_ns) const noexcept {
         return !trusted_.empty() && !interrupted_ && near(trusted_.last().stamp_ns, stamp_ns);
     }
-    /// After a jump, the time that passes does not make the positions that it led to more likely.
+    /// After a jump, the time that passes does not make the positions that it led to more likely: from here
+    /// on it allows no larger distance.
+    [[nodiscard]] constexpr double longest_s() const noexcept {
+        return disturbed_ && config_.period_ns > 0 ? 1.5 * seconds_between(0, config_.period_ns)
+                                                   : MotionRun::unlimited_s;
+    }
     [[nodiscard]] constexpr bool leads_from_trusted(const EncoderReading& reading) const noexcept {
-        const bool tightly = disturbed_ && config_.period_ns > 0;
-        return tightly ? trusted_.leads_to(reading, tolerance_, 1.5 * seconds_between(0, config_.period_ns))
-                       : trusted_.leads_to(reading, tolerance_);
+        return trusted_.leads_to(reading, tolerance_, longest_s());
     }
     [[nodiscard]] constexpr bool continues(const MotionRun& run, const EncoderReading& to) const noexcept {
         return !run.empty() && near(run.last().stamp_ns, to.stamp_ns) && run.leads_to(to, tolerance_);
     }
-    /// Whether a reading belongs to a run: tightly while it is recent, after a silence if it can.
-    [[nodiscard]] constexpr bool goes_on(const MotionRun& run, const EncoderReading& to) const noexcept {
-        return near(run.last().stamp_ns, to.stamp_ns) ? run.leads_to(to, tolerance_)
-                                                      : tolerance_.reaches(run.last(), to);
+    /// Whether a reading belongs to those that are refused: tightly while they are recent, after a silence if
+    /// it can. Takes it.
+    constexpr bool still_lost(const EncoderReading& reading) noexcept {
+        if (near(refused_.last().stamp_ns, reading.stamp_ns)) {
+            const bool leads = refused_.leads_to(reading, tolerance_);
+            if (leads) {
+                refused_.extend(reading, tolerance_);
+            }
+            return leads;
+        }
+        const bool reaches = tolerance_.reaches(refused_.last(), reading);
+        if (reaches) {
+            refused_.resume(reading, tolerance_);
+        }
+        return reaches;
     }
 
     /// The turn that is meant, if it is clear: the range has room for one only, or the last reading is near.
@@ -150,6 +165,7 @@ class MotionGate {
 
     constexpr Verdict take_beyond_range(const EncoderReading& reading) noexcept {
         run_ = {};
+        note(true);
         ++beyond_;
         if (lost()) {
             refused_.extend(reading, tolerance_); // it is no better when it comes back
@@ -162,8 +178,15 @@ class MotionGate {
         trusted_.extend(reading, tolerance_);
         refused_ = {};
         disturbed_ = false;
-        return {Reason::ok, reading.position_rad};
+        return settled(reading);
     }
+
+    /// Where two of eight readings were off, the others prove nothing: they may be the wrong ones.
+    constexpr Verdict settled(const EncoderReading& reading) noexcept {
+        return std::popcount(off_) < 2 ? Verdict{Reason::ok, reading.position_rad}
+                                       : refuse(reading, Reason::position_jump);
+    }
+    constexpr void note(bool off) noexcept { off_ = static_cast<std::uint8_t>(off_ << 1U | (off ? 1U : 0U)); }
 
     constexpr void believe(const MotionRun& run) noexcept {
         trusted_ = run;
@@ -175,7 +198,9 @@ class MotionGate {
 
     /// Counts a reading that is not trusted yet; trusts it where it ends a run that is long enough.
     constexpr Verdict follow(const EncoderReading& reading, Reason reason) noexcept {
-        if (!continues(run_, reading)) {
+        const bool continued = continues(run_, reading);
+        note(!continued);
+        if (!continued) {
             if (run_.readings() > 1 && near(run_.last().stamp_ns, reading.stamp_ns)) {
                 return refuse(reading, reason); // a single one that is off does not end a run
             }
@@ -200,7 +225,7 @@ class MotionGate {
             return refuse(reading, Reason::position_lost);
         }
         believe(MotionRun(run_));
-        return {Reason::ok, reading.position_rad};
+        return settled(reading);
     }
 
     /// Whether the joint can have come from its last trusted position to where the run begins.
@@ -225,7 +250,7 @@ class MotionGate {
         if (from.span_s <= 0 || to.span_s <= 0) {
             return false;
         }
-        const double dt_s = seconds_between(from.end_ns, to.begin_ns);
+        const double dt_s = std::min(seconds_between(from.end_ns, to.begin_ns), longest_s());
         const double before = to.at(from.end_ns) - from.end_rad;
         const double after = to.at(to.begin_ns) - from.at(to.begin_ns);
         const double limit =
@@ -278,6 +303,7 @@ class MotionGate {
     MotionRun run_;              ///< of readings that qualify
     MotionRun refused_;          ///< does not connect; while its readings go on they are refused
     std::int64_t newest_ns_ = 0; ///< of any reading in the range
+    std::uint8_t off_ = 0;       ///< which of the last eight readings led from no other, a bit each
     bool suspected_ = false;     ///< the run may be of a frozen encoder: begun where the joint moved
     bool disturbed_ = false;     ///< a jump has come since the last trusted reading
     bool interrupted_ = false;

@@ -46,6 +46,8 @@ struct MotionTolerance {
 /// Readings of one joint that lead from one to the next. Takes O(1) and keeps no more than ten of them.
 class MotionRun {
   public:
+    static constexpr double unlimited_s = 1e9;
+
     /// Takes a reading as the next. Stamps must increase.
     constexpr void extend(const EncoderReading& reading, const MotionTolerance& tolerance) noexcept {
         changed_ = changed_ || (count_ > 0 && reading.position_rad != last_.position_rad);
@@ -54,6 +56,7 @@ class MotionRun {
         last_ = reading;
         first_readings_.add_first(reading);
         last_readings_.add_last(reading);
+        earlier_ = line_;
         line_ = last_readings_.line(count_ >= ReadingWindow::size - 1 ? 1 : 0, 0, tolerance.period_ns);
         if (moved) {
             moving_ = line_;
@@ -64,16 +67,23 @@ class MotionRun {
         readings_ = std::min(readings_ + (reading.zero ? 0 : 1), most);
     }
 
-    /// Whether a joint with this motion can have the reading next. `longest_s`: from here on a longer time
-    /// since the last reading allows no larger distance.
+    /// Takes a reading after a silence, during which the motion may have become another one.
+    constexpr void resume(const EncoderReading& reading, const MotionTolerance& tolerance) noexcept {
+        last_readings_ = {};
+        line_ = {};
+        extend(reading, tolerance);
+    }
+
+    /// Whether a joint with this motion can have the reading next: as the line through its last readings has
+    /// it, and the one without the very last, which may itself be as far off as a reading can be.
+    /// `longest_s`: from here on a longer time since the last reading allows no larger distance.
     [[nodiscard]] constexpr bool leads_to(const EncoderReading& to, const MotionTolerance& tolerance,
-                                          double longest_s = 1e9) const noexcept {
+                                          double longest_s = unlimited_s) const noexcept {
         if (!tolerance.reaches(last_, to) || repeats(to, tolerance)) {
             return false;
         }
-        const double dt_s = seconds_between(last_.stamp_ns, to.stamp_ns);
-        return line_.span_s <= 0 || magnitude(to.position_rad - line_.at(to.stamp_ns)) <=
-                                        tolerance.error(line_, std::min(dt_s, longest_s), to.step_rad);
+        return is_near(line_, to, tolerance, longest_s) &&
+               is_near(earlier_, to, tolerance, longest_s + seconds_between(earlier_.end_ns, line_.end_ns));
     }
 
     /// Whether a reading repeats the last one, bit for bit, although the joint must have moved.
@@ -111,11 +121,20 @@ class MotionRun {
   private:
     static constexpr int most = 1'000'000;
 
+    [[nodiscard]] static constexpr bool is_near(const MotionLine& line, const EncoderReading& to,
+                                                const MotionTolerance& tolerance, double longest_s) noexcept {
+        const double dt_s = seconds_between(line.end_ns, to.stamp_ns);
+        return line.span_s <= 0 || magnitude(to.position_rad - line.at(to.stamp_ns)) <=
+                                       tolerance.error(line, std::min(dt_s, longest_s), to.step_rad);
+    }
+
     EncoderReading first_;
     EncoderReading last_;
     ReadingWindow first_readings_;
     ReadingWindow last_readings_;
-    MotionLine line_;           ///< through the last four readings
+    MotionLine line_; ///< through the last four readings
+    MotionLine
+        earlier_; ///< that line at the reading before: what one after the other is late adds up in `line_`
     MotionLine moving_;         ///< that line at the last reading that differed from the one before
     std::int64_t moved_ns_ = 0; ///< stamp of that reading
     int count_ = 0;
