@@ -4,15 +4,9 @@
 #include "dfdyn/hal/assembly/effort_output.hpp"
 #include "dfdyn/hal/assembly/wrench_output.hpp"
 #include "dfdyn/hal/candump.hpp"
-#include "dfdyn/hal/device/ati_netcan.hpp"
-#include "dfdyn/hal/device/cia402.hpp"
-#include "dfdyn/hal/device/icub_2foc.hpp"
-#include "dfdyn/hal/device/icub_strain.hpp"
-#include "dfdyn/hal/device/icub_two_joint_board.hpp"
-#include "dfdyn/hal/device/odrive.hpp"
-#include "dfdyn/hal/device/robotous_rft.hpp"
 #include "dfdyn/hal/replay_bus.hpp"
 #include "dfdyn/hal/sample_assembly.hpp"
+#include "every_family.hpp"
 
 /// A CAN controller's driver: the application's own.
 struct BareController {
@@ -46,46 +40,45 @@ constexpr WrenchOutput<Sensor, 8> wrench_of(const Sensor& sensor) {
              .frozen_limit = 100}};
 }
 
-template <class Board, int boards, class Output>
-using Arm = SampleAssembly<float, 2, Board, boards, Output, 8>;
-
-template <class Assembly>
-typename Assembly::Config config_of(const decltype(Assembly::Config::board)& boards) {
-    return {.board = boards,
-            .position = track,
-            .position_range = {joint_range, joint_range},
-            .clock = {},
-            .output_bus = 0};
+template <class Board, std::size_t boards, class Output>
+auto arm_of(const std::array<Board, boards>& board, const Output& output) {
+    using Arm = SampleAssembly<float, 2, Board, static_cast<int>(boards), Output, 8>;
+    return Arm({.board = board,
+                .position = track,
+                .position_range = {joint_range, joint_range},
+                .clock = {},
+                .output_bus = 0},
+               output);
 }
 
-template <class Assembly>
-bool tick(Assembly& arm, BareController& controller) {
+template <class Family>
+auto arm_with() {
+    if constexpr (dfdyn::tests::JointFamily<Family>) {
+        return arm_of(Family::boards(),
+                      EffortOutput<2, 8>({.track = track, .range = {joint_range, joint_range}}));
+    } else {
+        return arm_of(dfdyn::tests::boards_of<Family>(), wrench_of(Family::sensor()));
+    }
+}
+
+template <class Family>
+bool tick(BareController& controller) {
+    static auto arm = arm_with<Family>();
     static std::array<Frame, 16> room;
     arm.drain(controller, room);
     return arm.assemble(controller.now_ns() - ms, controller.now_ns()).valid();
 }
 
+template <class... Family>
+struct Families {
+    static bool tick_all(BareController& controller) { return (tick<Family>(controller) && ...); }
+};
+
 } // namespace
 
 /// One tick of each; whether all have a sample.
 bool tick_all(BareController& controller) {
-    using Icub = Arm<icub::TwoJointBoard, 1, WrenchOutput<icub::StrainBoard, 8>>;
-    static Icub icub_arm(config_of<Icub>({icub::TwoJointBoard(1, {0, 11.375, 0}, {1, 11.375, 0})}),
-                         wrench_of(icub::StrainBoard(13)));
-    using Foc = Arm<icub::FocBoard, 2, WrenchOutput<RobotousRft, 8>>;
-    static Foc foc_arm(config_of<Foc>({icub::FocBoard({.address = 1, .joint = 0}),
-                                       icub::FocBoard({.address = 2, .joint = 1})}),
-                       wrench_of(RobotousRft(RobotousRft::Config{})));
-    using Drives = Arm<Cia402Drive, 2, EffortOutput<2, 8>>;
-    static Drives drives(
-        config_of<Drives>({Cia402Drive({.node = 1, .joint = 0}), Cia402Drive({.node = 2, .joint = 1})}),
-        EffortOutput<2, 8>({.track = track, .range = {joint_range, joint_range}}));
-    using Axes = Arm<OdriveAxis, 2, WrenchOutput<AtiNetcan, 8>>;
-    static Axes axes(
-        config_of<Axes>({OdriveAxis({.node = 1, .joint = 0}), OdriveAxis({.node = 2, .joint = 1})}),
-        wrench_of(AtiNetcan(AtiNetcan::Config{})));
-    return tick(icub_arm, controller) && tick(foc_arm, controller) && tick(drives, controller) &&
-           tick(axes, controller);
+    return dfdyn::tests::EveryFamily<Families>::tick_all(controller);
 }
 
 /// A log in memory, played on a board.

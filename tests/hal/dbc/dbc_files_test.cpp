@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The DBC files say what the decoders do, as far as a DBC file can.
-#include "dfdyn/hal/device/ati_netcan.hpp"
-#include "dfdyn/hal/device/cia402.hpp"
-#include "dfdyn/hal/device/icub_2foc.hpp"
-#include "dfdyn/hal/device/icub_strain.hpp"
-#include "dfdyn/hal/device/icub_two_joint_board.hpp"
-#include "dfdyn/hal/device/odrive.hpp"
-#include "dfdyn/hal/device/robotous_rft.hpp"
-
+#include "every_family.hpp"
 #include "tests/hal/support/frames.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
@@ -15,6 +8,7 @@
 #include <fstream>
 #include <map>
 #include <regex>
+#include <set>
 #include <string>
 
 using namespace dfdyn::hal;
@@ -119,11 +113,20 @@ void check_joint(const char* name, Board board, bool effort, const char* effort_
 
 constexpr std::array axis_names{"fx", "fy", "fz", "mx", "my", "mz"};
 
+/// The DBC files of all families.
+template <class... Family>
+struct DbcNames {
+    static std::set<std::string> get() {
+        std::set<std::string> names{Family::dbc...};
+        names.erase("");
+        return names;
+    }
+};
+
 } // namespace
 
 TEST_CASE("every signal of the DBC files lies within its message") {
-    for (const char* name : {"ati_netcan.dbc", "cia402.dbc", "icub_2foc.dbc", "icub_strain.dbc",
-                             "icub_two_joint_boards.dbc", "odrive.dbc", "robotous_rft.dbc"}) {
+    for (const std::string& name : EveryFamily<DbcNames>::get()) {
         const DbcFile dbc(name);
         for (const auto& [signal, named] : dbc.signals()) {
             INFO(name << " " << signal);

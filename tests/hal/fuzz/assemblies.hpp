@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/hal/device/ati_netcan.hpp"
-#include "dfdyn/hal/device/cia402.hpp"
-#include "dfdyn/hal/device/icub_2foc.hpp"
-#include "dfdyn/hal/device/icub_strain.hpp"
-#include "dfdyn/hal/device/icub_two_joint_board.hpp"
-#include "dfdyn/hal/device/odrive.hpp"
-#include "dfdyn/hal/device/robotous_rft.hpp"
 #include "dfdyn/hal/sample_assembly.hpp"
+#include "every_family.hpp"
 
+#include <tuple>
 #include <vector>
 
 namespace dfdyn::tests {
@@ -49,16 +44,50 @@ auto fuzz_assembly(const std::array<Board, boards>& board, const Output& output)
                     output);
 }
 
-/// An arm of every kind of device, listening to the same frames.
-class EveryArm {
+/// An arm of a family: boards with their efforts, or a sensor.
+template <class Family>
+auto fuzz_arm() {
+    if constexpr (JointFamily<Family>) {
+        return fuzz_assembly(boards_of<Family>(), fuzz_efforts<2>());
+    } else {
+        return fuzz_assembly(boards_of<Family>(), fuzz_wrench(Family::sensor()));
+    }
+}
+
+/// Frames that the devices of a family send for some values, and those besides.
+template <class Family>
+void add_good_frames(double size, std::vector<hal::Frame>& frames) {
+    const auto add = [&](const hal::FrameList& list) {
+        frames.insert(frames.end(), list.frame.begin(), list.frame.begin() + list.count);
+    };
+    const auto others = Family::other_frames();
+    frames.insert(frames.end(), others.begin(), others.end());
+    if constexpr (JointFamily<Family>) {
+        for (const auto& board : Family::boards()) {
+            std::array<hal::JointValue, std::remove_cvref_t<decltype(board)>::joints> values{};
+            for (std::size_t i = 0; i < values.size(); ++i) {
+                values[i].position_rad = i == 0 ? size : -size;
+                values[i].effort = size;
+            }
+            add(board.encode(values));
+        }
+    } else {
+        auto sensor = Family::sensor();
+        for (const hal::Frame& frame : others) {
+            sensor.decode(frame);
+        }
+        add(sensor.encode({40 * size, 10, 60 * size, size, size, size}));
+    }
+}
+
+/// An arm of every family, listening to the same frames.
+template <class... Family>
+class ArmsOf {
   public:
     /// Whether all samples assembled so far were within the ranges of their sensors and later than the one
     /// before.
     bool take(const hal::Frame& frame, std::int64_t now_ns) {
-        take(icub_, frame, now_ns);
-        take(foc_, frame, now_ns);
-        take(canopen_, frame, now_ns);
-        take(odrive_, frame, now_ns);
+        std::apply([&](auto&... arm) { (take(arm, frame, now_ns), ...); }, arms_);
         return sound_;
     }
 
@@ -69,51 +98,11 @@ class EveryArm {
     /// Frames that the devices would send for some values.
     [[nodiscard]] std::vector<hal::Frame> good_frames(double size) const {
         std::vector<hal::Frame> frames;
-        std::array<hal::JointValue, 2> two{};
-        two[0].position_rad = size;
-        two[1].position_rad = -size;
-        std::array<hal::JointValue, 1> one{};
-        one[0].position_rad = size;
-        one[0].effort = size;
-        const hal::Wrench wrench{40 * size, 10, 60 * size, size, size, size};
-        hal::icub::StrainBoard strain(0x0D);
-        for (int channel = 0; channel < 6; ++channel) {
-            frames.push_back(strain.encode_full_scale(channel, channel < 3 ? 300 : 10));
-            strain.decode(frames.back());
-        }
-        for (const auto& list :
-             {mc4_.encode(two), strain.encode(wrench), foc_boards_[0].encode(one), foc_boards_[1].encode(one),
-              drives_[0].encode(one), drives_[1].encode(one), axes_[0].encode(one), axes_[1].encode(one),
-              robotous_.encode(wrench), ati_.encode(wrench)}) {
-            frames.insert(frames.end(), list.frame.begin(), list.frame.begin() + list.count);
-        }
-        for (const hal::Frame& frame :
-             {hal::Cia402Drive::encode_sync(),
-              drives_[0].encode_heartbeat(hal::Cia402Drive::State::operational), drives_[1].encode_emcy(0),
-              axes_[0].encode_heartbeat(false), axes_[1].encode_heartbeat(false), mc4_.encode_status(0, 0),
-              foc_boards_[0].encode_status(0, 0)}) {
-            frames.push_back(frame);
-        }
+        (add_good_frames<Family>(size, frames), ...);
         return frames;
     }
 
   private:
-    using Drive = hal::Cia402Drive;
-
-    static hal::AtiNetcan::Config ati_config() {
-        hal::AtiNetcan::Config config;
-        for (std::size_t i = 0; i < 6; ++i) {
-            config.matrix[i][i] = 1;
-            config.matrix[i][(i + 1) % 6] = 0.25;
-        }
-        config.counts_per_newton = 100;
-        config.counts_per_newton_metre = 5000;
-        return config;
-    }
-    static Drive::Config drive_config(int joint) {
-        return {.node = joint + 1, .joint = joint, .effort_pdo = 0x380};
-    }
-
     template <class Assembly>
     void take(Assembly& assembly, const hal::Frame& frame, std::int64_t now_ns) {
         const auto moment = assembly.take(frame, now_ns);
@@ -144,24 +133,12 @@ class EveryArm {
         }
     }
 
-    hal::icub::TwoJointBoard mc4_{1, {0, -11.375, 5}, {1, 11.375, 0}};
-    std::array<hal::icub::FocBoard, 2> foc_boards_{hal::icub::FocBoard({.address = 3, .joint = 0}),
-                                                   hal::icub::FocBoard({.address = 4, .joint = 1})};
-    std::array<Drive, 2> drives_{Drive(drive_config(0)), Drive(drive_config(1))};
-    std::array<hal::OdriveAxis, 2> axes_{hal::OdriveAxis({.node = 1, .joint = 0}),
-                                         hal::OdriveAxis({.node = 2, .joint = 1})};
-    hal::RobotousRft robotous_{hal::RobotousRft::Config{}};
-    hal::AtiNetcan ati_{ati_config()};
-
-    decltype(fuzz_assembly(std::array{mc4_}, fuzz_wrench(hal::icub::StrainBoard(0x0D)))) icub_ =
-        fuzz_assembly(std::array{mc4_}, fuzz_wrench(hal::icub::StrainBoard(0x0D)));
-    decltype(fuzz_assembly(foc_boards_, fuzz_wrench(robotous_))) foc_ =
-        fuzz_assembly(foc_boards_, fuzz_wrench(robotous_));
-    decltype(fuzz_assembly(drives_, fuzz_efforts<2>())) canopen_ = fuzz_assembly(drives_, fuzz_efforts<2>());
-    decltype(fuzz_assembly(axes_, fuzz_wrench(ati_))) odrive_ = fuzz_assembly(axes_, fuzz_wrench(ati_));
+    std::tuple<decltype(fuzz_arm<Family>())...> arms_{fuzz_arm<Family>()...};
     bool sound_ = true;
     std::uint64_t samples_ = 0;
     std::uint64_t outputs_ = 0;
 };
+
+using EveryArm = EveryFamily<ArmsOf>;
 
 } // namespace dfdyn::tests

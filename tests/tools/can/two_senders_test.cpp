@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two devices that send on the identifier of one joint: what `replay` makes of it, whatever its trigger.
 #include "tests/tools/can/bus_check_support.hpp"
-#include "tools/can/bus_sampler.hpp"
+#include "tools/can/arm/bus_sampler.hpp"
 
 #include <map>
 

@@ -4,17 +4,15 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/diagnosis/swinging_arm.hpp"
 #include "tests/tools/robot/arms.hpp"
+#include "tests/tools/support/name_literals.hpp"
 #include "tests/tools/support/project.hpp"
 #include "tools/base/system/read_file.hpp"
 #include "tools/model/effects.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
-#include <map>
 #include <set>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace {
@@ -39,69 +37,6 @@ std::string documented_row(const Effect& effect) {
            effect.remark + " | " + effect.in_extended_model + " |\n";
 }
 
-bool is_word_character(char character) {
-    return std::isalnum(static_cast<unsigned char>(character)) != 0 || character == '_';
-}
-
-/// The texts of the string literals in a C++ file; none of those in its comments.
-std::vector<std::string> string_literals(const std::string& code) {
-    std::vector<std::string> literals;
-    for (std::size_t i = 0; i < code.size(); ++i) {
-        if (code.compare(i, 2, "//") == 0) {
-            i = code.find('\n', i);
-        } else if (code[i] == '\'' && !is_word_character(code[i - 1])) { // not in 1'000
-            i = code.find('\'', code[i + 1] == '\\' ? i + 3 : i + 1);
-        } else if (code[i] == '"') {
-            std::string text;
-            for (++i; i < code.size() && code[i] != '"'; ++i) {
-                text += code[i] == '\\' ? code[++i] : code[i];
-            }
-            literals.push_back(text);
-        }
-        if (i == std::string::npos) {
-            break;
-        }
-    }
-    return literals;
-}
-
-/// A name of several words anywhere; one of a single word, which messages need, too, only alone.
-bool has_name(const std::string& literal, const std::string& name) {
-    if (name.find('_') == std::string::npos) {
-        return literal == name;
-    }
-    for (std::size_t at = literal.find(name); at != std::string::npos; at = literal.find(name, at + 1)) {
-        const std::size_t end = at + name.size();
-        if ((at == 0 || !is_word_character(literal[at - 1])) &&
-            (end == literal.size() || !is_word_character(literal[end]))) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/// Files of the product in which a literal has a name of the catalogue.
-std::map<std::string, std::set<std::string>> files_with_names() {
-    std::map<std::string, std::set<std::string>> files;
-    for (const char* const folder : {"tools", "hal", "firmware_lib/include"}) {
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(project / folder)) {
-            const std::string extension = entry.path().extension().string();
-            if (extension != ".cpp" && extension != ".hpp") {
-                continue;
-            }
-            for (const std::string& literal : string_literals(read_file(entry.path()))) {
-                for (const Effect& effect : effect_catalogue()) {
-                    if (has_name(literal, effect.name)) {
-                        files[std::filesystem::relative(entry.path(), project).generic_string()].insert(
-                            effect.name);
-                    }
-                }
-            }
-        }
-    }
-    return files;
-}
-
 } // namespace
 
 TEST_CASE("no name of the catalogue of effects is a literal outside its file and the catalogues") {
@@ -109,8 +44,12 @@ TEST_CASE("no name of the catalogue of effects is a literal outside its file and
     const std::set<std::string> catalogues{"tools/model/effects.cpp",
                                            "firmware_lib/include/dfdyn/monitor/cause.hpp",
                                            "tools/simulation/faults/actuator_gain.cpp"};
+    std::set<std::string> effects;
+    for (const Effect& effect : effect_catalogue()) {
+        effects.insert(effect.name);
+    }
     std::set<std::string> seen;
-    for (const auto& [file, names] : files_with_names()) {
+    for (const auto& [file, names] : files_with_names(effects)) {
         for (const std::string& name : names) {
             CAPTURE(file, name);
             const bool own = file == "tools/diagnosis/effects/" + name + ".cpp";

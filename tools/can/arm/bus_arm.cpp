@@ -103,14 +103,7 @@ class BusArmOf final : public BusArm {
     }
 
     std::vector<hal::Frame> requests() const override {
-        std::vector<hal::Frame> frames;
-        const auto* strain =
-            sensor() != nullptr ? std::get_if<hal::icub::StrainBoard>(&sensor()->device()) : nullptr;
-        const bool ask = strain != nullptr && strain->full_scale().reason() != hal::Reason::ok;
-        for (int channel = 0; ask && channel < 6; ++channel) {
-            frames.push_back(strain->request_full_scale(channel));
-        }
-        return frames;
+        return sensor() != nullptr ? (*sensor())->requests() : std::vector<hal::Frame>();
     }
 
     std::optional<std::uint32_t> colliding_id() const override { return assembly_.colliding_id(); }

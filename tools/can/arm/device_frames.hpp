@@ -38,6 +38,7 @@ class DeviceFrames {
     std::vector<hal::Frame> full_scales() const;
 
   private:
+    const JointFamily* family_;
     std::vector<BusBoard> boards_;
     std::optional<AnySensor> sensor_;
     bool synchronous_;

@@ -20,9 +20,8 @@ float joint_torque(const hal::Frame& frame, std::size_t second) {
 TorqueFrames::TorqueFrames(const BusDescription& description)
     : joints_(static_cast<std::size_t>(description.joint_count)) {
     for (const BusBoard& board : description.boards) {
-        const auto* drive = std::get_if<hal::Cia402Drive>(&board.board.device());
-        if (drive != nullptr && drive->has_effort()) {
-            drives_.push_back({*drive, static_cast<std::size_t>(board.joint[0])});
+        if (board.board->torque_command(0)) {
+            drives_.push_back({board.board, static_cast<std::size_t>(board.joint[0])});
         }
     }
     own_frames_ = drives_.size() < joints_;
@@ -31,7 +30,7 @@ TorqueFrames::TorqueFrames(const BusDescription& description)
 std::span<const hal::Frame> TorqueFrames::encode(std::span<const double> torque) {
     frames_.clear();
     for (const Drive& drive : drives_) {
-        frames_.push_back(drive.drive.encode_target_torque(torque[drive.joint]));
+        frames_.push_back(*drive.board->torque_command(torque[drive.joint]));
     }
     for (std::size_t joint = 0; own_frames_ && joint < joints_; joint += 2) {
         hal::Frame frame;
@@ -48,7 +47,7 @@ std::span<const hal::Frame> TorqueFrames::encode(std::span<const double> torque)
 
 bool TorqueFrames::take(const hal::Frame& frame, std::span<double> torque) const {
     for (const Drive& drive : drives_) {
-        if (const std::optional<double> value = drive.drive.decode_target_torque(frame)) {
+        if (const std::optional<double> value = drive.board->commanded_torque(frame)) {
             torque[drive.joint] = *value;
             return true;
         }

@@ -10,9 +10,8 @@ namespace dfdyn::tools {
 
 /// Torque commands from a loop to the devices of a bus description, both sides.
 ///
-/// - CiA 402 drives whose efforts are mapped: RPDO 1 (0x200 + node) with the target torque 0x6071, in the
-///   unit of the effort.
-/// - All other joints: `dfdyn`'s own frames, since those families have no public command of joint torques:
+/// - Boards whose family has a command of joint torques (Board::torque_command): that command.
+/// - All other joints: `dfdyn`'s own frames, since those families have no public one:
 ///   29-bit identifier 0x1DFD000 + k, 8 bytes: the torques of joints 2k+1 and 2k+2 in N·m, float, little
 ///   endian; 0 for a joint that is not there.
 class TorqueFrames {
@@ -28,13 +27,13 @@ class TorqueFrames {
 
   private:
     struct Drive {
-        hal::Cia402Drive drive;
+        AnyBoard board;
         std::size_t joint;
     };
 
     std::size_t joints_;
     std::vector<Drive> drives_;
-    bool own_frames_ = false; ///< for the joints that are on no such drive
+    bool own_frames_ = false; ///< for the joints that are on no such board
     std::vector<hal::Frame> frames_;
 };
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace dfdyn::tools {
 
@@ -14,19 +13,6 @@ namespace {
 
 std::span<const hal::Frame> span_of(const hal::FrameList& list) {
     return std::span(list.frame).first(static_cast<std::size_t>(list.count));
-}
-
-/// How far apart the positions (rad) lie at which a board's encoder begins anew: a turn of it; 0 where it
-/// does not.
-double encoder_turn_rad(const AnyBoard& board) {
-    constexpr double turn_rad = 2 * std::numbers::pi;
-    if (const auto* foc = std::get_if<hal::icub::FocBoard>(&board.device())) {
-        return turn_rad / std::abs(foc->config().motor_per_joint);
-    }
-    if (const auto* odrive = std::get_if<hal::OdriveAxis>(&board.device())) {
-        return turn_rad / std::abs(odrive->config().motor_per_joint);
-    }
-    return turn_rad;
 }
 
 } // namespace
@@ -66,7 +52,7 @@ void BusCheck::describe() {
                 position_keys_.at(static_cast<std::size_t>(joint)) = {position.extended, position.id};
                 const auto index = static_cast<std::size_t>(joint);
                 joints_.at(index) =
-                    ValueWatch(encoder_turn_rad(board.board), description_->joint_limits.at(index));
+                    ValueWatch(board.board->encoder_turn_rad(), description_->joint_limits.at(index));
             }
         }
     }
@@ -100,10 +86,7 @@ bool BusCheck::claimed(const hal::Frame& frame) const {
 
 /// Of the host, on the identifier on which the sensor answers.
 bool BusCheck::is_request(const hal::Frame& frame) const {
-    const auto* ati = description_ && description_->sensor
-                          ? std::get_if<hal::AtiNetcan>(&description_->sensor->device())
-                          : nullptr;
-    return ati != nullptr && hal::has_id(frame, ati->poll().id) && frame.length == 0;
+    return description_ && description_->sensor && (*description_->sensor)->is_request(frame);
 }
 
 void BusCheck::update(hal::BusState state, const hal::BusCounters& counters) {

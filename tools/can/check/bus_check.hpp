@@ -5,6 +5,7 @@
 #include "tools/can/check/bus_stream.hpp"
 #include "tools/can/check/stream_clock.hpp"
 #include "tools/can/check/value_watch.hpp"
+#include "tools/can/description/bus_finding.hpp"
 
 #include <array>
 #include <limits>
@@ -73,7 +74,9 @@ class BusCheck {
     std::uint64_t restarts(std::size_t joint) const { return restarts_.at(joint); }
     /// The stream that has a joint's positions; null where there is none.
     const BusStream* position_stream(std::size_t joint) const;
-    /// The sensor as it is after all frames; null without one.
+    /// The boards as they are after all frames; none without a description.
+    const std::vector<BusBoard>& boards() const noexcept { return boards_; }
+    /// The sensor, likewise; null without one.
     const AnySensor* sensor() const noexcept { return arm_ ? arm_->sensor() : nullptr; }
 
   private:
@@ -108,15 +111,6 @@ class BusCheck {
     std::uint64_t samples_ = 0;
     std::array<std::uint64_t, hal::reason_count> refused_{};
     hal::Reason last_position_ = hal::Reason::ok, last_output_ = hal::Reason::ok;
-};
-
-/// What is wrong, in words for whoever stands in front of the robot.
-struct BusFinding {
-    std::string rule; ///< its name, stable
-    std::string what;
-    std::string evidence; ///< what it was inferred from
-    std::string confirm;  ///< the check that would confirm it
-    std::string fix;
 };
 
 /// Those of the bus, of each source, of what the devices say, in this order.

@@ -83,20 +83,6 @@ constexpr std::array<JointRule, 7> joint_rules{{
      "a larger unit in the drive's PDO; a slower motion, a smaller load"},
 }};
 
-/// Findings of the sensor's full scales that no sample shows.
-void add_other_set(const BusCheck& check, std::vector<BusFinding>& findings) {
-    const auto* strain =
-        check.sensor() != nullptr ? std::get_if<hal::icub::StrainBoard>(&check.sensor()->device()) : nullptr;
-    if (strain != nullptr && strain->other_sets() > 0) {
-        findings.push_back({"full_scale_other_set",
-                            "the sensor reported full scales of a set of its calibration that is not in use",
-                            std::to_string(strain->other_sets()) + " replies that differ, of set " +
-                                std::to_string(strain->last_other_set()),
-                            "ask for the set in use: cansend IFACE ID#1800, and 01 to 05",
-                            "let no other program ask for it; if it is in use: output.calibration_set"});
-    }
-}
-
 } // namespace
 
 std::vector<BusFinding> value_findings(const BusCheck& check) {
@@ -114,7 +100,12 @@ std::vector<BusFinding> value_findings(const BusCheck& check) {
             }
         }
     }
-    add_other_set(check, findings);
+    for (const BusBoard& board : check.boards()) {
+        std::ranges::move(board.board->findings(), std::back_inserter(findings));
+    }
+    if (check.sensor() != nullptr) {
+        std::ranges::move((*check.sensor())->findings(), std::back_inserter(findings));
+    }
     return findings;
 }
 

@@ -1,104 +1,183 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/hal/device/ati_netcan.hpp"
-#include "dfdyn/hal/device/cia402.hpp"
-#include "dfdyn/hal/device/icub_2foc.hpp"
-#include "dfdyn/hal/device/icub_strain.hpp"
-#include "dfdyn/hal/device/icub_two_joint_board.hpp"
-#include "dfdyn/hal/device/odrive.hpp"
-#include "dfdyn/hal/device/robotous_rft.hpp"
-#include "tools/can/description/dbc_device.hpp"
+#include "dfdyn/hal/device/decoded.hpp"
+#include "tools/can/description/bus_finding.hpp"
 
 #include <algorithm>
 #include <array>
-#include <type_traits>
+#include <memory>
+#include <numbers>
+#include <optional>
 #include <utility>
-#include <variant>
+#include <vector>
 
 namespace dfdyn::tools {
 
-/// `use` of the variant's value. As std::visit, which throws for a variant without a value; these always have
-/// one.
-template <std::size_t index = 0, class Use, class Variant>
-auto use_device(Use use, Variant& variant) noexcept {
-    if constexpr (index + 1 < std::variant_size_v<std::remove_const_t<Variant>>) {
-        if (variant.index() != index) {
-            return use_device<index + 1>(use, variant);
-        }
-    }
-    return use(*std::get_if<index>(&variant));
-}
+/// A board with joints: a codec of the HAL, and what the program needs to know of its family. The rest of the
+/// program knows boards only by this interface; see families/.
+class Board {
+  public:
+    virtual ~Board() = default;
+    Board& operator=(const Board&) = delete;
 
-/// The place of a board that an arm does not have.
-struct NoBoard {
-    static constexpr int joints = 1;
-    static hal::Decoded decode(const hal::Frame& /*frame*/) noexcept { return {}; }
-    static bool claims(std::uint32_t /*id*/) noexcept { return false; }
-    static hal::FrameList encode(const std::array<hal::JointValue, 1>& /*values*/) noexcept { return {}; }
+    virtual std::unique_ptr<Board> clone() const = 0;
+
+    /// As of hal::JointSource. A board with one joint looks at the first value only.
+    virtual hal::Decoded decode(const hal::Frame& frame) noexcept = 0;
+    virtual bool claims(std::uint32_t id) const noexcept = 0;
+    virtual hal::FrameList encode(const std::array<hal::JointValue, 2>& values) const noexcept = 0;
+
+    /// Whether its frames carry efforts.
+    virtual bool measures_effort() const { return false; }
+    /// Distance (rad) between the positions of the joint at which the encoder begins again: one of its turns.
+    virtual double encoder_turn_rad() const { return 2 * std::numbers::pi; }
+    /// What the device sends unasked to say that it is well; none for most.
+    virtual std::optional<hal::Frame> heartbeat() const { return std::nullopt; }
+    /// What is wrong, from all that it decoded, that no single value shows.
+    virtual std::vector<BusFinding> findings() const { return {}; }
+
+    /// The command of a joint torque (N·m); none where the family has no public one, or it is not known how.
+    virtual std::optional<hal::Frame> torque_command(double /*torque_Nm*/) const { return std::nullopt; }
+    /// The torque (N·m) that `frame` commands this board; none where it is another frame.
+    virtual std::optional<double> commanded_torque(const hal::Frame& /*frame*/) const { return std::nullopt; }
+
+  protected:
+    Board() = default;
+    Board(const Board&) = default;
 };
 
-/// A board of the HAL, or a joint of a DBC file, whichever: the family is chosen at run time, decoding and
-/// encoding are the family's own.
-class AnyBoard {
+/// A force/torque sensor, likewise.
+class Sensor {
   public:
-    using Device = std::variant<NoBoard, hal::icub::TwoJointBoard, hal::icub::FocBoard, hal::Cia402Drive,
-                                hal::OdriveAxis, DbcJoint>;
-    static constexpr int joints = 2;
+    virtual ~Sensor() = default;
+    Sensor& operator=(const Sensor&) = delete;
 
-    AnyBoard() = default;
-    explicit AnyBoard(Device device) : device_(std::move(device)) {}
+    virtual std::unique_ptr<Sensor> clone() const = 0;
 
-    hal::Decoded decode(const hal::Frame& frame) noexcept {
-        return use_device([&](auto& device) { return device.decode(frame); }, device_);
+    /// As of hal::WrenchSource.
+    virtual hal::Decoded decode(const hal::Frame& frame) noexcept = 0;
+    virtual hal::WrenchReading wrench(const hal::Frame& first, const hal::Frame& second) const noexcept = 0;
+    virtual bool claims(std::uint32_t id) const noexcept = 0;
+    virtual hal::FrameList encode(const hal::Wrench& value) const noexcept = 0;
+
+    /// Whether its calibration is known and plausible; without one it sends nothing.
+    virtual hal::Reason calibration() const { return hal::Reason::ok; }
+    /// What the host sends so that it reports a calibration that is unknown or in doubt; none while it is
+    /// not.
+    virtual std::vector<hal::Frame> requests() const { return {}; }
+    /// What the sensor answers to such a request; none to another frame.
+    virtual std::optional<hal::Frame> answer(const hal::Frame& /*request*/) const { return std::nullopt; }
+    /// The answers to all requests.
+    virtual std::vector<hal::Frame> answers() const { return {}; }
+    /// Whether a frame on one of its identifiers is a request of the host.
+    virtual bool is_request(const hal::Frame& /*frame*/) const { return false; }
+    /// What is wrong with it that no sample shows.
+    virtual std::vector<BusFinding> findings() const { return {}; }
+
+  protected:
+    Sensor() = default;
+    Sensor(const Sensor&) = default;
+};
+
+/// A board with the codec `Codec`. `Derived`: the family's own class, which overrides what it knows better.
+template <class Derived, hal::JointSource Codec>
+class BoardOf : public Board {
+  public:
+    explicit BoardOf(Codec codec) : codec_(std::move(codec)) {}
+
+    std::unique_ptr<Board> clone() const final {
+        return std::make_unique<Derived>(static_cast<const Derived&>(*this));
     }
-    [[nodiscard]] bool claims(std::uint32_t id) const noexcept {
-        return use_device([&](const auto& device) { return device.claims(id); }, device_);
-    }
-    /// A board with one joint looks at the first value only.
-    [[nodiscard]] hal::FrameList encode(const std::array<hal::JointValue, 2>& values) const noexcept {
-        return use_device(
-            [&]<class Board>(const Board& device) {
-                std::array<hal::JointValue, static_cast<std::size_t>(Board::joints)> own;
-                std::copy_n(values.begin(), own.size(), own.begin());
-                return device.encode(own);
-            },
-            device_);
+    hal::Decoded decode(const hal::Frame& frame) noexcept override { return codec_.decode(frame); }
+    bool claims(std::uint32_t id) const noexcept final { return codec_.claims(id); }
+    hal::FrameList encode(const std::array<hal::JointValue, 2>& values) const noexcept final {
+        std::array<hal::JointValue, static_cast<std::size_t>(Codec::joints)> own;
+        std::copy_n(values.begin(), own.size(), own.begin());
+        return codec_.encode(own);
     }
 
-    [[nodiscard]] const Device& device() const noexcept { return device_; }
+    const Codec& codec() const noexcept { return codec_; }
 
   private:
-    Device device_;
+    Codec codec_;
+};
+
+/// A sensor, likewise.
+template <class Derived, hal::WrenchSource Codec>
+class SensorOf : public Sensor {
+  public:
+    explicit SensorOf(Codec codec) : codec_(std::move(codec)) {}
+
+    std::unique_ptr<Sensor> clone() const final {
+        return std::make_unique<Derived>(static_cast<const Derived&>(*this));
+    }
+    hal::Decoded decode(const hal::Frame& frame) noexcept final { return codec_.decode(frame); }
+    hal::WrenchReading wrench(const hal::Frame& first, const hal::Frame& second) const noexcept final {
+        return codec_.wrench(first, second);
+    }
+    bool claims(std::uint32_t id) const noexcept final { return codec_.claims(id); }
+    hal::FrameList encode(const hal::Wrench& value) const noexcept final { return codec_.encode(value); }
+
+    const Codec& codec() const noexcept { return codec_; }
+
+  private:
+    Codec codec_;
+};
+
+/// Owns a Board or a Sensor of any family; a copy owns a copy. Empty by default: a place without a device.
+template <class Device>
+class AnyDevice {
+  public:
+    AnyDevice() = default;
+    explicit AnyDevice(std::unique_ptr<Device> device) noexcept : device_(std::move(device)) {}
+    AnyDevice(const AnyDevice& other) : device_(other.device_ ? other.device_->clone() : nullptr) {}
+    AnyDevice(AnyDevice&&) noexcept = default;
+    AnyDevice& operator=(const AnyDevice& other) {
+        device_ = other.device_ ? other.device_->clone() : nullptr;
+        return *this;
+    }
+    AnyDevice& operator=(AnyDevice&&) noexcept = default;
+    ~AnyDevice() = default;
+
+    hal::Decoded decode(const hal::Frame& frame) noexcept {
+        return device_ ? device_->decode(frame) : hal::Decoded{};
+    }
+    [[nodiscard]] bool claims(std::uint32_t id) const noexcept { return device_ && device_->claims(id); }
+
+    /// Requires a device.
+    const Device* operator->() const noexcept { return device_.get(); }
+    const Device& operator*() const noexcept { return *device_; }
+
+  private:
+    std::unique_ptr<Device> device_;
+};
+
+/// A board of any family, as a hal::JointSource.
+class AnyBoard : public AnyDevice<Board> {
+  public:
+    static constexpr int joints = 2;
+    using AnyDevice::AnyDevice;
+
+    [[nodiscard]] hal::FrameList encode(const std::array<hal::JointValue, 2>& values) const noexcept {
+        return (*this)->encode(values);
+    }
 };
 
 static_assert(hal::JointSource<AnyBoard>);
 
-/// A force/torque sensor of the HAL, or of a DBC file, whichever.
-class AnySensor {
+/// A sensor of any family, as a hal::WrenchSource.
+class AnySensor : public AnyDevice<Sensor> {
   public:
-    using Device = std::variant<hal::icub::StrainBoard, hal::RobotousRft, hal::AtiNetcan, DbcSensor>;
+    using AnyDevice::AnyDevice;
 
-    explicit AnySensor(Device device) : device_(std::move(device)) {}
-
-    hal::Decoded decode(const hal::Frame& frame) noexcept {
-        return use_device([&](auto& device) { return device.decode(frame); }, device_);
-    }
     [[nodiscard]] hal::WrenchReading wrench(const hal::Frame& first,
                                             const hal::Frame& second) const noexcept {
-        return use_device([&](const auto& device) { return device.wrench(first, second); }, device_);
-    }
-    [[nodiscard]] bool claims(std::uint32_t id) const noexcept {
-        return use_device([&](const auto& device) { return device.claims(id); }, device_);
+        return (*this)->wrench(first, second);
     }
     [[nodiscard]] hal::FrameList encode(const hal::Wrench& value) const noexcept {
-        return use_device([&](const auto& device) { return device.encode(value); }, device_);
+        return (*this)->encode(value);
     }
-
-    [[nodiscard]] const Device& device() const noexcept { return device_; }
-
-  private:
-    Device device_;
 };
 
 static_assert(hal::WrenchSource<AnySensor>);

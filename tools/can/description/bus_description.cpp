@@ -249,7 +249,6 @@ BusDescription parse(const JsonReader& reader, const std::filesystem::path& path
     trigger.allow_only(std::array<std::string_view, 2>{"on", "delay_s"});
     description.trigger = read_trigger(trigger);
     const JsonReader joints = reader.object("joints");
-    description.synchronous = description.trigger == BusTrigger::sync && joints.text("family") == "cia402";
     read_joints(joints, folder, description);
     if (description.trigger == BusTrigger::sync && !description.synchronous) {
         throw trigger.error("on", "timer or set, because no joint measures at a SYNC", "\"sync\"");

@@ -35,6 +35,8 @@ struct BusSource {
     std::int64_t jitter_ns = 0;  ///< by how much a frame is later than another, at most
 };
 
+struct JointFamily; // families/family.hpp
+
 /// A board, and which joints of the arm its own ones are (from 0; hal::unused_joint for none).
 struct BusBoard {
     AnyBoard board;
@@ -51,8 +53,9 @@ struct BusDescription {
     BusTrigger trigger = BusTrigger::timer;
     std::int64_t delay_ns = 0; ///< of a timer's samples behind the time at which they are assembled
 
-    std::vector<BusBoard> boards; ///< each joint of the arm is on exactly one
-    bool synchronous = false;     ///< they measure at a SYNC, which is sent at the joints' rate
+    const JointFamily* joint_family = nullptr; ///< of all boards
+    std::vector<BusBoard> boards;              ///< each joint of the arm is on exactly one
+    bool synchronous = false;                  ///< they measure at a SYNC, which is sent at the joints' rate
     BusSource joints;
     double position_limit_rad = 0;               ///< positions beyond ± this are not believed
     std::vector<hal::MotionLimits> joint_limits; ///< per joint

@@ -4,8 +4,8 @@
 #include "tools/base/text/json_reader.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/can/description/bus_description.hpp"
+#include "tools/can/families/family.hpp"
 
-#include <array>
 #include <string>
 
 namespace dfdyn::tools {
@@ -24,11 +24,6 @@ void read_boards(const JsonReader& joints, const std::filesystem::path& folder, 
 
 /// Whether the boards' frames carry efforts.
 bool measures_efforts(const std::vector<BusBoard>& boards);
-
-struct DescribedWrenchSensor {
-    AnySensor device;
-    std::array<double, 6> limit; ///< what it can measure, ±
-};
 
 /// `family` and what belongs to it; files likewise.
 DescribedWrenchSensor read_wrench_sensor(const JsonReader& output, const std::filesystem::path& folder);

@@ -2,6 +2,7 @@
 #include "tools/can/description/dbc_fields.hpp"
 
 #include "tools/base/text/text.hpp"
+#include "tools/can/families/family_fields.hpp"
 
 #include <algorithm>
 #include <array>
@@ -108,17 +109,15 @@ bool same_bits(const DbcField& one, const DbcField& other) {
 
 /// Whether `test` holds for a field of one of the joints.
 template <class Test>
-bool any_field(const std::vector<BusBoard>& boards, Test test) {
-    return std::ranges::any_of(boards, [&](const BusBoard& board) {
-        const auto* joint = std::get_if<DbcJoint>(&board.board.device());
-        return joint != nullptr &&
-               (test(joint->config().position) || (joint->config().effort && test(*joint->config().effort)));
+bool any_field(std::span<const DbcJoint> joints, Test test) {
+    return std::ranges::any_of(joints, [&](const DbcJoint& joint) {
+        return test(joint.config().position) || (joint.config().effort && test(*joint.config().effort));
     });
 }
 
 /// A field of a joint, which no other joint has.
 DbcField read_own_field(const JsonReader& board, const std::string& name, const Dbc& dbc, bool angle,
-                        const std::vector<BusBoard>& before) {
+                        std::span<const DbcJoint> before) {
     const JsonReader reader = board.object(name);
     Names names{"message", "signal", "scale", "offset"};
     if (angle) {
@@ -134,10 +133,10 @@ DbcField read_own_field(const JsonReader& board, const std::string& name, const 
 
 } // namespace
 
-BusBoard read_dbc_joint(const JsonReader& board, const Dbc& dbc, const std::vector<BusBoard>& before) {
+DbcJoint read_dbc_joint(const JsonReader& board, const Dbc& dbc, std::span<const DbcJoint> before) {
     board.allow_only(Names{"joint", "position", "effort"});
     DbcJoint::Config config;
-    config.joint = board.whole_number("joint", 1, largest_bus_joint_count) - 1;
+    config.joint = read_joint(board);
     config.position = read_own_field(board, "position", dbc, true, before);
     if (board.has("effort")) {
         config.effort = read_own_field(board, "effort", dbc, false, before);
@@ -149,7 +148,7 @@ BusBoard read_dbc_joint(const JsonReader& board, const Dbc& dbc, const std::vect
     };
     config.claims_position = !claimed(config.position);
     config.claims_effort = config.effort && !claimed(*config.effort);
-    return {AnyBoard(DbcJoint(config)), {config.joint, hal::unused_joint}};
+    return DbcJoint(config);
 }
 
 DbcSensor read_dbc_sensor(const JsonReader& output, const Dbc& dbc) {

@@ -2,14 +2,16 @@
 #pragma once
 
 #include "tools/base/text/json_reader.hpp"
-#include "tools/can/description/bus_description.hpp"
 #include "tools/can/description/dbc.hpp"
+#include "tools/can/description/dbc_device.hpp"
+
+#include <span>
 
 namespace dfdyn::tools {
 
 /// The joint that an entry of `boards` maps to signals of `dbc`. `before`: the joints read so far. Errors as
 /// of JsonReader.
-BusBoard read_dbc_joint(const JsonReader& board, const Dbc& dbc, const std::vector<BusBoard>& before);
+DbcJoint read_dbc_joint(const JsonReader& board, const Dbc& dbc, std::span<const DbcJoint> before);
 
 /// The sensor whose six signals `output.wrench` names.
 DbcSensor read_dbc_sensor(const JsonReader& output, const Dbc& dbc);

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/device/cia402.hpp"
+
+#include "tools/can/families/family_fields.hpp"
+
+#include <numbers>
+
+namespace dfdyn::tools::families {
+
+namespace {
+
+/// Takes torques (RPDO 1, 0x200 + node: target torque 0x6071) where its efforts are mapped, in their unit.
+class Cia402Drive final : public BoardOf<Cia402Drive, hal::Cia402Drive> {
+  public:
+    using BoardOf::BoardOf;
+    bool measures_effort() const override { return codec().has_effort(); }
+    std::optional<hal::Frame> heartbeat() const override {
+        return codec().encode_heartbeat(hal::Cia402Drive::State::operational);
+    }
+    std::optional<hal::Frame> torque_command(double torque_Nm) const override {
+        return codec().has_effort() ? std::optional(codec().encode_target_torque(torque_Nm)) : std::nullopt;
+    }
+    std::optional<double> commanded_torque(const hal::Frame& frame) const override {
+        return codec().has_effort() ? codec().decode_target_torque(frame) : std::nullopt;
+    }
+};
+
+const std::vector<FamilyField> drive_fields{
+    {"node", "(1 to 127)"},
+    {"joint", ""},
+    {"counts_per_turn", "(of the joint, negative for the other direction)"},
+    {"zero_rad", "(0)"},
+    {"effort_per_count", "(N·m or A; where `effort` is mapped)"},
+};
+
+/// Where a drive's PDO has an object: `{"pdo": "0x280", "length": 8, "start_bit": 0, "bits": 32}`.
+void read_drive_mapping(const JsonReader& mapping, std::uint32_t& pdo, int& length, hal::Signal& signal) {
+    mapping.allow_only(std::array<std::string_view, 4>{"pdo", "length", "start_bit", "bits"});
+    pdo = identifier_or(mapping, "pdo", pdo);
+    length = mapping.whole_or("length", length, 1, 8);
+    signal.start_bit = mapping.whole_or("start_bit", signal.start_bit, 0, 63);
+    signal.length = mapping.whole_or("bits", signal.length, 1, 64);
+}
+
+/// What is the same for all drives of a bus.
+hal::Cia402Drive::Config read_drive_mappings(const JsonReader& joints, bool synchronous) {
+    hal::Cia402Drive::Config config;
+    config.synchronous = synchronous;
+    config.heartbeat_timeout_ns = nanoseconds_or(joints, "heartbeat_timeout_s", 0);
+    if (joints.has("position")) {
+        read_drive_mapping(joints.object("position"), config.position_pdo, config.position_length,
+                           config.position);
+    }
+    if (joints.has("effort")) {
+        config.effort_pdo = 0x380;
+        config.effort_length = 2;
+        read_drive_mapping(joints.object("effort"), config.effort_pdo, config.effort_length, config.effort);
+    }
+    return config;
+}
+
+BusBoard read_drive(const JsonReader& board, hal::Cia402Drive::Config config) {
+    const bool effort = config.effort_pdo != 0;
+    std::vector<std::string_view> names = names_of(drive_fields);
+    if (!effort) {
+        names.pop_back();
+    }
+    board.allow_only(names);
+    config.node = board.whole_number("node", 1, 127);
+    config.joint = read_joint(board);
+    config.position.factor = 2 * std::numbers::pi / read_ratio(board, "counts_per_turn");
+    config.position.offset = read_zero_rad(board);
+    if (effort) {
+        config.effort.factor = read_ratio(board, "effort_per_count");
+    }
+    const hal::Cia402Drive drive(config);
+    if (!drive.config_is_valid()) {
+        throw board.error("node", "PDOs with identifiers that CANopen leaves to them, and signals that fit",
+                          "others");
+    }
+    return one_joint<Cia402Drive>(drive, config.joint);
+}
+
+void read_drives(const JsonReader& joints, const std::filesystem::path& /*folder*/,
+                 BusDescription& description) {
+    description.synchronous =
+        joints.has("synchronous") ? joints.flag("synchronous") : description.trigger == BusTrigger::sync;
+    const auto config = read_drive_mappings(joints, description.synchronous);
+    read_each_board(
+        joints, [&](const JsonReader& board) { return read_drive(board, config); }, description);
+}
+
+} // namespace
+
+JointFamily cia402() {
+    return {
+        .name = "cia402",
+        .board_fields = drive_fields,
+        .fields = {{"position", ""},
+                   {"effort", "(where the PDOs have them, each `pdo`, `length`, `start_bit`, `bits`; without "
+                              "`effort` none is mapped)"},
+                   {"synchronous", "(true with trigger `sync`: values belong to the SYNC before)"},
+                   {"heartbeat_timeout_s", "(0: none is expected, as most EDS files have it; the values "
+                                           "themselves then end a boot-up)"}},
+        .dbc = "cia402.dbc",
+        .example =
+            R"({"family": "cia402", "position": {"pdo": "0x280", "length": 6, "start_bit": 0, "bits": 32},
+                "effort": {"pdo": "0x280", "length": 6, "start_bit": 32, "bits": 16}, "boards": [
+                {"node": 1, "joint": 1, "counts_per_turn": 1048576, "effort_per_count": 0.01},
+                {"node": 2, "joint": 2, "counts_per_turn": -1048576, "effort_per_count": 0.01}]})",
+        .read = read_drives,
+        .sync = hal::Cia402Drive::encode_sync};
+}
+
+} // namespace dfdyn::tools::families

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/can/families/family.hpp"
+
+namespace dfdyn::tools {
+
+/// All families of boards, and of sensors, in the order of the documentation.
+const std::vector<JointFamily>& joint_families();
+const std::vector<SensorFamily>& sensor_families();
+
+/// The family that `family` names. Throws InputError with the names of all for another one.
+const JointFamily& joint_family(const JsonReader& joints);
+const SensorFamily& sensor_family(const JsonReader& output);
+
+} // namespace dfdyn::tools

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/device/odrive.hpp"
+
+#include "tools/can/families/family_fields.hpp"
+
+#include <cmath>
+
+namespace dfdyn::tools::families {
+
+namespace {
+
+class OdriveAxis final : public BoardOf<OdriveAxis, hal::OdriveAxis> {
+  public:
+    using BoardOf::BoardOf;
+    double encoder_turn_rad() const override {
+        return BoardOf::encoder_turn_rad() / std::abs(codec().config().motor_per_joint);
+    }
+    std::optional<hal::Frame> heartbeat() const override { return codec().encode_heartbeat(false); }
+};
+
+const std::vector<FamilyField> odrive_axis_fields{
+    {"node", "(0 to 63)"},
+    {"joint", ""},
+    {"motor_per_joint", "(1)"},
+    {"zero_rad", "(0): angle = turns · 2π / motor_per_joint + zero"}};
+
+hal::OdriveFirmware read_firmware(const JsonReader& joints) {
+    const std::string firmware = joints.has("firmware") ? joints.text("firmware") : "";
+    if (firmware == "0.5") {
+        return hal::OdriveFirmware::v0_5;
+    }
+    if (firmware == "0.6") {
+        return hal::OdriveFirmware::v0_6;
+    }
+    if (joints.has("firmware")) {
+        throw joints.error("firmware", R"("0.5" or "0.6")", in_quotes(firmware));
+    }
+    return hal::OdriveFirmware::any;
+}
+
+/// `config`: what is the same for all axes of a bus.
+BusBoard read_odrive_axis(const JsonReader& board, hal::OdriveAxis::Config config) {
+    board.allow_only(names_of(odrive_axis_fields));
+    config.node = board.whole_number("node", 0, 63);
+    config.joint = read_joint(board);
+    config.motor_per_joint = ratio_or(board, "motor_per_joint", 1);
+    config.zero_rad = read_zero_rad(board);
+    return one_joint<OdriveAxis>(hal::OdriveAxis(config), config.joint);
+}
+
+void read_odrive_axes(const JsonReader& joints, const std::filesystem::path& /*folder*/,
+                      BusDescription& description) {
+    hal::OdriveAxis::Config config;
+    config.heartbeat_timeout_ns = nanoseconds_or(joints, "heartbeat_timeout_s", 0.25);
+    config.firmware = read_firmware(joints);
+    read_each_board(
+        joints, [&](const JsonReader& board) { return read_odrive_axis(board, config); }, description);
+}
+
+} // namespace
+
+JointFamily odrive() {
+    return {.name = "odrive",
+            .board_fields = odrive_axis_fields,
+            .fields = {{"heartbeat_timeout_s", "(0.25)"},
+                       {"firmware",
+                        "(`\"0.5\"` or `\"0.6\"`; without: what holds for both, so that an encoder's flag "
+                        "without a bit in the error word is 0.6's finished trajectory)"}},
+            .dbc = "odrive.dbc",
+            .example = R"({"family": "odrive", "boards": [{"node": 1, "joint": 1, "motor_per_joint": 9},
+                                                          {"node": 2, "joint": 2, "motor_per_joint": -9}]})",
+            .read = read_odrive_axes};
+}
+
+} // namespace dfdyn::tools::families
