@@ -88,7 +88,8 @@ TEST_CASE("the libraries include nothing of the program, and the firmware nothin
 }
 
 TEST_CASE("a folder of the program has at most a dozen chapters, catalogues apart") {
-    const std::set<std::filesystem::path> catalogues{"diagnosis/effects", "simulation/faults", "commands"};
+    const std::set<std::filesystem::path> catalogues{"can/families", "diagnosis/effects", "simulation/faults",
+                                                     "commands"};
     std::map<std::filesystem::path, std::set<std::string>> chapters; // a header and its source are one
     for (const auto& entry : std::filesystem::recursive_directory_iterator(project / "tools")) {
         if (entry.path().extension() == ".cpp" || entry.path().extension() == ".hpp") {
