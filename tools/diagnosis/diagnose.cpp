@@ -40,7 +40,7 @@ Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOpt
     return gains;
 }
 
-/// Adds what is wrong with the set-up, mistakes first. Returns whether there is a mistake.
+/// Adds the findings of the set-up check, mistakes first. Returns true if there is a mistake.
 bool suspect_setup(const Robot& robot, const Recording& recording, const DiagnosisOptions& options,
                    std::vector<std::string>& suspicions) {
     SetupFindings findings = check_setup(recording, {options.outputs, &robot, options.torque_constants});
@@ -76,7 +76,7 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     work.diagnosis.suspicions.insert(work.diagnosis.suspicions.end(), suspicions.sentences.begin(),
                                      suspicions.sentences.end());
     if (suspicions.fatal) {
-        measure_from(work, 0, work.explanation); // without causes
+        measure_from(work, 0, work.explanation); // without effects
         return work;
     }
     ExplanationOptions how{gains_known, 1, options.progress};

@@ -16,7 +16,7 @@ inline std::string numbered(const char* what, std::size_t index_from_0) {
     return result += std::to_string(index_from_0 + 1);
 }
 
-/// A step from zero that is as good as none: what an effect of this size brings, over it, is a slope.
+/// Returns `size`, or a minimum step if it is smaller. Dividing an effect by this step yields its slope.
 inline double at_least_small(double size) {
     constexpr double small = 1e-4;
     return std::abs(size) > small ? size : std::copysign(small, size);
@@ -36,7 +36,7 @@ inline EffectColumn on_outputs(const Eigen::MatrixXd& series) {
     return column;
 }
 
-/// Coefficients from zero to `largest`, or of either sign up to it.
+/// Accepts coefficients from zero to `largest`. The second rule accepts both signs up to it.
 inline CoefficientRule positive_up_to(double largest) {
     return [largest](const Eigen::VectorXd& coefficients) {
         return (coefficients.array() > 0).all() && coefficients.maxCoeff() <= largest;
@@ -45,13 +45,13 @@ inline CoefficientRule positive_up_to(double largest) {
 inline CoefficientRule up_to(double largest) {
     return [largest](const Eigen::VectorXd& coefficients) { return coefficients.norm() <= largest; };
 }
-/// Positive without a limit; any number at all.
+/// Accepts positive coefficients without a limit. The second rule accepts any number.
 inline bool is_positive(const Eigen::VectorXd& coefficients) { return (coefficients.array() > 0).all(); }
 inline bool is_anything(const Eigen::VectorXd& /*coefficients*/) { return true; }
-/// The first one positive, the others anything.
+/// Requires the first coefficient to be positive; the others are free.
 inline bool first_is_positive(const Eigen::VectorXd& coefficients) { return coefficients[0] > 0; }
 
-/// All columns of the candidate together.
+/// Returns the shape with all columns of the candidate.
 inline EffectShape whole_shape(const Candidate& candidate, CoefficientRule allowed) {
     EffectShape shape;
     shape.columns.resize(candidate.columns.size());
@@ -60,7 +60,7 @@ inline EffectShape whole_shape(const Candidate& candidate, CoefficientRule allow
     return shape;
 }
 
-/// A candidate of one column, without parameters.
+/// Returns a candidate with one column and without parameters.
 inline Candidate single_column(std::string where, EffectColumn column, CoefficientRule allowed) {
     Candidate candidate;
     candidate.where = std::move(where);
@@ -69,7 +69,7 @@ inline Candidate single_column(std::string where, EffectColumn column, Coefficie
     return candidate;
 }
 
-/// The same where the coefficient is the parameter.
+/// Returns a candidate with one column, with the coefficient as its parameter.
 inline Candidate single_column(std::string where, EffectColumn column, CoefficientRule allowed,
                                const ParameterKind& parameter) {
     Candidate candidate = single_column(std::move(where), std::move(column), std::move(allowed));

@@ -12,14 +12,14 @@
 
 namespace dfdyn::tools {
 
-/// Sums of squares and products of weighed rows: all that selection among columns needs.
+/// Sums of squares and products of weighted rows. Column selection needs nothing else.
 struct WeighedSums {
     Eigen::MatrixXd gram;   ///< p x p
     Eigen::VectorXd moment; ///< p
-    double energy = 0;      ///< of what is to be explained
+    double energy = 0;      ///< of the target
 };
 
-/// A column as spectral rows, for each output that it acts on.
+/// A column as spectral rows, for each output on which it acts.
 struct SpectralColumn {
     struct Part {
         Eigen::Index output = 0;
@@ -28,16 +28,15 @@ struct SpectralColumn {
     std::vector<Part> parts;
 
     SpectralColumn(const SpectralRows& rows, const EffectColumn& column);
-    const Eigen::MatrixXd* on(Eigen::Index output) const; ///< null where it does not act
+    const Eigen::MatrixXd* on(Eigen::Index output) const; ///< null if it does not act on `output`
 };
 
 using SpectralColumnPointer = std::shared_ptr<const SpectralColumn>;
 
-/// Columns and what they are to explain, weighed by the noise of each output and frequency.
+/// Linear regression of the target on the columns, weighted by the noise of each output and frequency.
 class EffectRegression {
   public:
-    /// `unexplained`: T x m, what the rigid body leaves of the measurement. Only the first `fitted_frames`
-    /// count.
+    /// `unexplained`: T x m, the residual of the rigid body. Only the first `fitted_frames` are used.
     EffectRegression(const SpectralRows& rows, const Eigen::MatrixXd& unexplained,
                      Eigen::Index fitted_frames);
 
@@ -48,26 +47,27 @@ class EffectRegression {
 
     void set_columns(std::vector<SpectralColumnPointer> columns) { columns_ = std::move(columns); }
 
-    /// The noise's spectra (bins x m), and per output how much larger than that it is where (bins x fitted
-    /// frames): the inverses of both are the weights.
+    /// Sets the noise's spectra (bins x m) and, per output, its local scale (bins x fitted frames). The
+    /// weights are the inverses of both.
     void set_noise(Eigen::MatrixXd spectra, const std::vector<Eigen::MatrixXd>& unrest);
     const Eigen::MatrixXd& noise() const noexcept { return noise_; }
 
     WeighedSums weighed_sums() const { return weighed_sums(0, fitted_frames_); }
-    /// Of `count` frames from `first` on.
+    /// Returns the sums over `count` frames from `first` on.
     WeighedSums weighed_sums(Eigen::Index first, Eigen::Index count) const;
 
-    /// Per output, the weights of squares (bins x fitted frames).
+    /// Returns an output's weights of squares (bins x fitted frames).
     Eigen::MatrixXd weight(Eigen::Index output) const {
         return weight_[static_cast<std::size_t>(output)].array().square();
     }
 
-    /// What `coefficients` of all columns leave of an output: bins x fitted frames, not weighed.
+    /// Returns the unweighted residual of an output (bins x fitted frames) for these coefficients of all
+    /// columns.
     Eigen::MatrixXd residual(Eigen::Index output, const Eigen::VectorXd& coefficients) const;
 
-    /// Per bin, how many of an output's fitted rows a fit of the columns `fitted` spends: the trace of its
-    /// hat matrix there. `covariance`: of their coefficients, were the noise just as weighed. Cost: rows
-    /// times columns squared.
+    /// Returns, per bin, the degrees of freedom that a fit of the columns `fitted` uses: the trace of its hat
+    /// matrix over an output's fitted rows. `covariance`: of their coefficients, for noise with the assumed
+    /// weights. Cost: rows times columns squared.
     Eigen::VectorXd spent(Eigen::Index output, const std::vector<Eigen::Index>& fitted,
                           const Eigen::MatrixXd& covariance) const;
 

@@ -19,7 +19,8 @@ const Eigen::VectorXd* series_on(const std::vector<EffectColumn>& of, Eigen::Ind
 } // namespace
 
 std::optional<double> demanded_by(const std::vector<EventWindow>& events) {
-    constexpr std::size_t usual = 3; // three times what this one of its kind does
+    // rank of the reference event, from 0; the threshold is three times its log-evidence
+    constexpr std::size_t usual = 3;
     return events.size() > usual ? std::optional(1.5 * events[usual].score) : std::nullopt;
 }
 

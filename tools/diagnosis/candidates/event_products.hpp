@@ -10,16 +10,17 @@
 
 namespace dfdyn::tools {
 
-inline constexpr double events_apart_s = 2; ///< windows closer than this tell of the same event
+inline constexpr double events_apart_s = 2; ///< windows closer than this belong to the same event
 
-/// What an event has to explain before it is one; none where there are too few to compare with.
+/// Returns the minimum log-evidence required of an event: three times that of the fourth-best event. Empty if
+/// fewer than four events exist.
 std::optional<double> demanded_by(const std::vector<EventWindow>& events);
 
-/// Per output, how much energy a series has when it is weighed by the noise, of that before.
+/// Returns, per output, the ratio of a series' energy after weighting by the noise to its energy before.
 Eigen::VectorXd weighed_share(const EffectRegression& regression, const Eigen::VectorXd& series);
 
-/// A series per row: of the weighed residual's products with some columns (p), and of their own (p (p + 1) /
-/// 2), summed over the outputs.
+/// Per row, the products of the weighted residual with some columns (p), and of the columns with each other
+/// (p (p + 1) / 2), summed over the outputs.
 struct EventProducts {
     Eigen::MatrixXd moment, square;
     Eigen::Index columns;
@@ -27,7 +28,7 @@ struct EventProducts {
     EventProducts(const std::vector<EffectColumn>& of, const Eigen::MatrixXd& weighed,
                   const Eigen::VectorXd& share);
 
-    /// Sum of squares that the columns explain where these are the sums of their products.
+    /// Returns the sum of squares that the columns explain, from these sums of products.
     double gain(const Eigen::VectorXd& moments, const Eigen::VectorXd& squares) const;
 };
 

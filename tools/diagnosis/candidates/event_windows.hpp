@@ -8,13 +8,14 @@
 
 namespace dfdyn::tools {
 
-/// A stretch of time in which something may have happened.
+/// A time window that may contain an event.
 struct EventWindow {
-    double score = 0; ///< how much speaks for it
+    double score = 0; ///< evidence for an event in this window
     double start_s = 0, end_s = 0;
 };
 
-/// The best window of each event, the best event first; windows closer than `apart_s` tell of the same one.
+/// Returns the best window of each event, in descending order of score. Windows closer than `apart_s` belong
+/// to the same event.
 template <std::derived_from<EventWindow> Window>
 std::vector<Window> events_of(std::vector<Window> windows, double apart_s) {
     std::ranges::sort(windows, std::greater<>{}, &Window::score);

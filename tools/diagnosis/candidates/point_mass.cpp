@@ -8,9 +8,10 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// The first moment of 1 kg at `centre`, moved by 1 kg·m along `axis` while the mass stays.
+/// Change of the inertial parameters of 1 kg at `centre` if its first moment changes by 1 kg·m along `axis`
+/// and its mass remains.
 InertialParameters first_moment(const Eigen::Vector3d& centre, Eigen::Index axis) {
-    constexpr double step = 1e-4; // m: linear in it up to this
+    constexpr double step = 1e-4; // m: small enough for linearity
     const Eigen::Vector3d shift = step * Eigen::Vector3d::Unit(axis);
     return (point_mass(1, centre + shift) - point_mass(1, centre - shift)) / (2 * step);
 }

@@ -9,14 +9,14 @@
 
 namespace dfdyn::tools {
 
-/// The span of candidates that add a point mass to the last link: a payload is part of it.
+/// The span of candidates that add a point mass to the last link, such as a payload.
 inline constexpr const char* last_body = "last body";
 
-/// Point mass at `centre` (m), kg.
+/// Inertial parameters of a point mass (kg) at `centre` (m).
 InertialParameters point_mass(double mass, const Eigen::Vector3d& centre);
 
-/// Columns of body `body`: a point mass at `centre` (per kg), then its first moments about it (per kg·m);
-/// seen in a frame at `placement` of the body.
+/// Returns the columns of body `body` for a point mass at `centre` (per kg), then for its first moments about
+/// it (per kg·m). Both are expressed in a frame at `placement` of the body.
 std::vector<EffectColumn> mass_columns(const DiagnosisSignals& signals, Eigen::Index body,
                                        const Eigen::Vector3d& centre, const Eigen::Isometry3d& placement);
 

@@ -8,7 +8,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// What is left of an output (bins x fitted frames), weighed, in time.
+/// Returns the weighted residual of an output (`left`: bins x fitted frames) as a time series.
 Eigen::VectorXd weighed_series(const EffectRegression& regression, Eigen::Index output,
                                const Eigen::MatrixXd& left) {
     const SpectralRows& rows = regression.rows();
@@ -17,7 +17,7 @@ Eigen::VectorXd weighed_series(const EffectRegression& regression, Eigen::Index 
     return rows.synthesise(all, output);
 }
 
-/// Rows within 0.12 s of a change of the sign.
+/// Marks the rows within 0.12 s of a change of the velocity's sign.
 std::vector<bool> near_reversals(const Eigen::VectorXd& velocity, double rate_hz) {
     const auto reach = static_cast<Eigen::Index>(0.12 * rate_hz);
     std::vector<bool> near(static_cast<std::size_t>(velocity.size()), false);
@@ -30,8 +30,8 @@ std::vector<bool> near_reversals(const Eigen::VectorXd& velocity, double rate_hz
     return near;
 }
 
-/// A straight line in the place of each run of rows that are `away`, from the mean of `beside` rows before it
-/// to that of as many behind; level where the series ends.
+/// Replaces each run of rows that are `away` by a straight line. The line connects the mean of the `beside`
+/// rows before it with the mean of the `beside` rows after it. At the ends of the series it is constant.
 void bridge(Eigen::VectorXd& series, const std::vector<bool>& away, Eigen::Index beside) {
     const auto is_away = [&](Eigen::Index row) { return away[static_cast<std::size_t>(row)]; };
     for (Eigen::Index first = 0; first < series.size(); ++first) {
@@ -77,7 +77,7 @@ Eigen::MatrixXd weighed_residual_away_from_reversals(const DiagnosisSignals& sig
         Eigen::MatrixXd left = Eigen::MatrixXd::Zero(rows.bins(), rows.frames());
         left.leftCols(regression.fitted_frames()) = regression.residual(output, coefficients);
         Eigen::VectorXd series = rows.synthesise(left, output);
-        // bridged before it is weighed: pieces cut out of what is mostly high frequencies look like pushes
+        // before weighting: pieces cut out of a high-frequency signal resemble contact pulses
         bridge(series, near_reversals(signals.measured.motion.velocity.col(output), signals.measured.rate_hz),
                beside);
         result.col(output) =

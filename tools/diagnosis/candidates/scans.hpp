@@ -7,30 +7,30 @@
 
 namespace dfdyn::tools {
 
-/// Per output, the residual of a model weighed by its noise twice, in time (T x m): a column's product with
-/// it is the column's share of the normal equations' right-hand side.
+/// Returns the residual of a model, weighted twice by the noise, as time series (T x m). The product with a
+/// column is that column's entry in the right-hand side of the normal equations.
 Eigen::MatrixXd weighed_residual(const EffectRegression& regression, const Eigen::VectorXd& coefficients);
 
-/// The same where the residual of a joint's torque is bridged around the joint's reversals: there a friction
-/// that is not quite right leaves pulses of its own.
+/// Returns the same with the residual of each joint's torque bridged around the joint's reversals. Small
+/// errors of the friction model leave pulses there.
 Eigen::MatrixXd weighed_residual_away_from_reversals(const DiagnosisSignals& signals,
                                                      const EffectRegression& regression,
                                                      const Eigen::VectorXd& coefficients);
 
-/// Of each site the stretch of time in which a push there explains most of the residual, which is best taken
-/// away from reversals. `sites` must outlive the candidates.
+/// Returns, for each site, the time windows in which a contact explains most of the residual. The residual
+/// should be bridged around reversals. `sites` must outlive the candidates.
 std::vector<Candidate> scan_contacts(const DiagnosisSignals& signals, const EffectRegression& regression,
                                      const Eigen::MatrixXd& weighed, const std::vector<ContactSite>& sites);
 
-/// A payload (`payload`: its columns) that is taken up when that explains most.
+/// Returns a payload (`payload`: its columns) that is picked up at the time that explains most.
 std::vector<Candidate> scan_taken_payload(const DiagnosisSignals& signals, const EffectRegression& regression,
                                           const Eigen::MatrixXd& weighed,
                                           const std::vector<EffectColumn>& payload);
 
-/// What one that is taken up at `taken_s` has to explain, in units of the evidence: three times, as far as
-/// that can be told without a fit, what it would in the fourth best of the stretches of time that are as long
-/// and apart. 0 where there are not four of them: when it is there for more than about a fifth of the time.
-/// Cost: T p² for p columns, and a transform per output.
+/// Minimum log-evidence required of a payload picked up at `taken_s`: three times the approximate
+/// log-evidence of the fourth-best non-overlapping window of the same length. Returns 0 if fewer than four
+/// windows fit, that is, if the payload is present for more than about a fifth of the time. Cost: T p² for p
+/// columns, and one transform per output.
 double demanded_of_payload(const DiagnosisSignals& signals, const EffectRegression& regression,
                            const Eigen::MatrixXd& weighed, const std::vector<EffectColumn>& payload,
                            double taken_s);

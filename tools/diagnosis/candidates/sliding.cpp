@@ -12,7 +12,7 @@ JointSignals::JointSignals(const DiagnosisSignals& signals, std::size_t joint)
       velocity(signals.measured.motion.velocity.col(output)), direction(signals.direction(output)) {}
 
 Eigen::VectorXd dahl(const JointSignals& joint, double distance, const Eigen::VectorXd& level) {
-    constexpr double least = 1e-9; // no level at all would divide by it
+    constexpr double least = 1e-9; // avoids a division by zero
     Eigen::VectorXd friction(joint.position.size());
     for (const Stretch& stretch : joint.all.measured.stretches) {
         double state = 0;

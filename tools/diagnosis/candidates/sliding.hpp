@@ -8,7 +8,7 @@
 
 namespace dfdyn::tools {
 
-/// What the effects of one joint are made of; velocity, direction: per row.
+/// The signals from which the effects of one joint are computed; velocity and direction: per row.
 struct JointSignals {
     const DiagnosisSignals& all;
     std::string where;
@@ -25,22 +25,22 @@ struct JointSignals {
     EffectColumn column(Eigen::VectorXd series) const { return on_output(output, std::move(series)); }
 };
 
-/// Dahl's friction that builds up to `level` (T) over `distance` (rad) where that is 1, by the same stiffness
-/// where it is not: df/dq = (1 - f sgn q' / level) / distance, exact for steps of constant direction (P. R.
-/// Dahl, "A solid friction model", 1968).
+/// Dahl friction (P. R. Dahl, "A solid friction model", 1968): df/dq = (1 - f sgn q' / level) / distance. It
+/// builds up to `level` (T) over `distance` (rad) where the level is 1, and with the same stiffness
+/// elsewhere. The integration is exact for steps with constant direction.
 Eigen::VectorXd dahl(const JointSignals& joint, double distance, const Eigen::VectorXd& level);
 
-/// The same for a level of 1.
+/// Dahl friction with a level of 1.
 Eigen::VectorXd dahl(const JointSignals& joint, double distance);
 
-inline constexpr double shortest_presliding =
-    3e-3; // rad; what builds up over less is called Coulomb friction
+/// rad; friction that builds up over a shorter distance is Coulomb friction
+inline constexpr double shortest_presliding = 3e-3;
 
-/// Which way a joint slides, in columns 0 to 2 of Coulomb's and Stribeck's friction: by its velocity, or by
-/// its travel, which keeps the direction where the joint stands.
+/// Returns the direction of sliding of a joint for columns 0 to 2 of Coulomb and Stribeck friction: from its
+/// velocity, or from its travel, which keeps the direction during standstill.
 std::vector<Eigen::VectorXd> sliding_directions(const JointSignals& joint);
 
-/// Effects of one family are different models of the same sliding: at most one of them is chosen.
+/// Returns the family of the friction models of one joint. At most one of them is chosen.
 inline std::string sliding_family(const JointSignals& joint) { return "sliding at " + joint.where; }
 
 } // namespace dfdyn::tools

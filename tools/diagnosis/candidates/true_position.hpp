@@ -5,13 +5,13 @@
 
 namespace dfdyn::tools {
 
-/// The rigid body's outputs along the measured motion, where the true position of `joint` is by `change` (T,
-/// rad) another. T x m.
+/// Returns the rigid body's outputs (T x m) along the measured motion, with the position of `joint` changed
+/// by `change` (T, rad).
 Eigen::MatrixXd outputs_with_position(const DiagnosisSignals& signals, std::size_t joint,
                                       const Eigen::VectorXd& change);
 
-/// A change of the position of `joint` (T), low-passed at `share` of where its measured position was:
-/// accelerations of it are to be taken.
+/// Returns a change (T) of the position of `joint`, low-pass filtered at `share` of the cutoff of its
+/// measured position, so that accelerations can be computed from it.
 Eigen::VectorXd smooth_change(const DiagnosisSignals& signals, std::size_t joint,
                               const Eigen::VectorXd& change, double share);
 

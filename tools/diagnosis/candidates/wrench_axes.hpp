@@ -11,11 +11,11 @@ namespace dfdyn::tools {
 inline constexpr std::array<const char*, 6> wrench_axes{"fx", "fy", "fz", "mx", "my", "mz"};
 inline constexpr std::array<const char*, 6> wrench_units{"N", "N", "N", "N·m", "N·m", "N·m"};
 
-/// `series` (T) on the axes of the F/T sensor, a column each: every axis alone, the forces, the torques, or
-/// all together. `kinds`: the parameter of each axis.
+/// Returns a candidate that adds `series` (T) to the axes of the F/T sensor, one column each. Its shapes are
+/// every axis alone, the forces, the torques, and all axes. `kinds`: the parameter of each axis.
 Candidate on_each_axis(const Eigen::VectorXd& series, const std::array<ParameterKind, 6>& kinds);
 
-/// What one axis shows of another one, or of itself, in the model's output; `pair`: 6 from + to.
+/// Influence of one axis on another one, or on itself, in the model's output; `pair`: 6 from + to.
 struct AxisPair {
     Eigen::Index from, to;
 

@@ -10,7 +10,8 @@ namespace {
 
 constexpr ParameterKind true_over_assumed{"gain", "1", 1};
 
-/// None where the unit of the joint's output cannot be trusted: for currents of unknown torque constants.
+/// Returns no candidate for a wrench, or for motor currents with unknown torque constants: their unit is
+/// unknown, so a gain error cannot be distinguished.
 std::vector<Candidate> actuator_gain_candidates(const DiagnosisSignals& signals, const FittedModel& model,
                                                 std::size_t number) {
     if (signals.wrench() || !model.gains_known) {

@@ -13,12 +13,12 @@ namespace dfdyn::tools {
 
 namespace {
 
-// a rotor falls otherwise than the whole joint, by a share that nobody knows: simulated gears come out up to
-// 13 % too wide
+// Relative model error: the link's share of the joint's motion in the gap is uncertain. For simulated gears
+// the estimated gap is up to 13 % too wide.
 constexpr ParameterKind backlash_gap{"gap", "rad", 0, 0.08};
 
-/// How far a link is off its motor while it is carried on one flank of its gear's teeth, falls through the
-/// gap where its load turns over, and is caught by the other flank without springing back. T, rad.
+/// Displacement (rad, T) of a link relative to its motor. A flank of the gear's teeth carries the link. When
+/// the load changes sign, the link falls through the gap, and the other flank catches it without rebound.
 Eigen::VectorXd travel_in_gap(const DiagnosisSignals& signals, Eigen::Index joint, double gap) {
     constexpr int substeps = 8;
     const double step_s = 1 / (substeps * signals.measured.rate_hz);
@@ -47,7 +47,7 @@ constexpr double narrowest_gap = 5e-4; // rad
 constexpr double widest_gap = 0.1;
 constexpr double gap_ratio = 1.5; // from one gap to the next
 
-/// Looks for the gap at each joint whose course goes best with a residual.
+/// Searches, for each joint, for the gap whose torque course correlates best with the residual.
 class BacklashScan : public EffectScan {
   public:
     BacklashScan(const DiagnosisSignals& signals, const SpectralRows& rows);
@@ -103,7 +103,7 @@ std::vector<Candidate> BacklashScan::candidates(const FittedResidual& residual) 
 } // namespace
 
 Eigen::MatrixXd play_course(const DiagnosisSignals& signals, std::size_t joint, double gap) {
-    constexpr double sure_hz = 7; // how hard the flanks hit each other, nobody knows
+    constexpr double sure_hz = 7; // the hardness of the tooth impact is unknown
     const auto index = static_cast<Eigen::Index>(joint);
     const Eigen::VectorXd travel = travel_in_gap(signals, index, gap) / gap;
     return signals.of_position(
@@ -124,7 +124,8 @@ Candidate backlash_candidate(const DiagnosisSignals& signals, std::size_t joint,
         result.shapes.push_back({{result.columns.size()}, allowed, gap});
         result.columns.push_back(on_outputs(play_course(signals, joint, gap)));
     }
-    // the course tells the gap: how long the link falls; not the coefficient, which is how hard it is caught
+    // The gap follows from the course, that is, from the duration of the fall. The coefficient only describes
+    // how hard the link is caught.
     result.parameters = [](const Eigen::VectorXd&, const EffectShape& shape) {
         return std::vector{backlash_gap.at(shape.value)};
     };

@@ -12,7 +12,7 @@ constexpr ParameterKind coulomb_level{"coulomb", "N·m"};
 constexpr ParameterKind coulomb_forward{"coulomb_pos", "N·m"};
 constexpr ParameterKind coulomb_backward{"coulomb_neg", "N·m"};
 
-/// The same level in both directions, or one for each.
+/// One friction level for both directions, or one for each.
 std::vector<Candidate> coulomb_candidates(const DiagnosisSignals& signals, std::size_t number) {
     const JointSignals joint(signals, number);
     Candidate result = joint.candidate();
@@ -35,7 +35,7 @@ std::vector<Candidate> coulomb_candidates(const DiagnosisSignals& signals, std::
     return {std::move(result)};
 }
 
-/// Two levels are a level and an offset.
+/// Two levels are equivalent to one level and an offset.
 EffectDisposition extend_by_coulomb(Extension& extension, const ChosenEffect& chosen) {
     if (chosen.coefficients.size() == 2) {
         add_column(extension, chosen, on_joint(chosen, effect_kinds::torque_offset), 1);

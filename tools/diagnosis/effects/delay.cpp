@@ -9,7 +9,7 @@ namespace {
 constexpr ParameterKind output_delay{"delay", "s"};
 constexpr double longest_delay_s = 0.25;
 
-/// About the delay that the model has: the column is what it adds there, per second.
+/// Linearized about the delay of the current model: the column is the additional effect per second of delay.
 std::vector<Candidate> delay_candidates(const DiagnosisSignals& signals, const FittedModel& model,
                                         std::size_t number) {
     if (signals.wrench()) {

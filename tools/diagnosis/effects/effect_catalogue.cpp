@@ -32,7 +32,8 @@ std::size_t count_of(Each each, const DiagnosisSignals& signals) {
     return 0;
 }
 
-/// Candidates of all effects at all their places; `make` returns those of one effect at one.
+/// Returns the candidates of all effects at all their places. `make` returns those of one effect at one
+/// place.
 template <class Make>
 std::vector<Candidate> candidates_by(const DiagnosisSignals& signals, const Make& make) {
     std::vector<Candidate> result;

@@ -8,7 +8,7 @@
 
 namespace dfdyn::tools {
 
-/// A new effect is one file in this folder, with one line here and one in the catalogue.
+/// To add an effect, write one file in this folder, declare it here, and add a line to the catalogue.
 namespace effects {
 
 Effect viscous_friction();
@@ -39,22 +39,23 @@ Effect ft_crosstalk();
 
 } // namespace effects
 
-/// All of them, in the order in which candidates at one place are made.
+/// Returns all effects, in the order in which the candidates at one place are made.
 const std::vector<Effect>& effect_catalogue();
 
-/// Null for a name that is none of them, as the empty one of an unnamed dependence.
+/// Returns the effect with this name, or null for an unknown name. The empty name of an unnamed dependence is
+/// unknown, too.
 const Effect* find_effect(const std::string& name);
 
-/// Throws std::logic_error for a name that is none of them.
+/// Returns the effect with this name. Throws std::logic_error for an unknown name.
 const Effect& effect_named(const std::string& name);
 
-/// False for a name that is none of them.
+/// Returns the trait of the effect with this name, or false for an unknown name.
 bool has_trait(const std::string& effect, bool Effect::*trait);
 
-/// Candidates that do not depend on a fitted model.
+/// Returns the candidates that do not depend on a fitted model.
 std::vector<Candidate> lasting_candidates(const DiagnosisSignals& signals);
 
-/// Candidates that do: gains, delays, drifts, crosstalk.
+/// Returns the candidates that depend on a fitted model: gains, delays, drifts, crosstalk.
 std::vector<Candidate> fitted_candidates(const DiagnosisSignals& signals, const FittedModel& model);
 
 } // namespace dfdyn::tools

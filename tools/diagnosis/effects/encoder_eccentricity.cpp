@@ -13,8 +13,8 @@ namespace {
 constexpr ParameterKind eccentric_amplitude{"amplitude", "rad"};
 constexpr ParameterKind eccentric_phase{"phase", "rad"};
 
-/// About an amplitude of sine and cosine: with them as coefficients, the columns' sum is what they bring,
-/// exactly.
+/// Linearized about an amplitude of sine and cosine. With these amplitudes as coefficients, the sum of the
+/// columns is exact.
 Candidate eccentric_candidate(const DiagnosisSignals& signals, std::size_t joint, double sine,
                               double cosine) {
     const Eigen::ArrayXd measured = signals.measured.motion.position.col(static_cast<Eigen::Index>(joint));

@@ -12,7 +12,7 @@ namespace {
 
 constexpr ParameterKind offset_angle{"offset", "rad"};
 
-/// About an offset: with it as coefficient, the column is what it brings, exactly.
+/// Linearized about an offset. With this offset as coefficient, the column is exact.
 Candidate offset_candidate(const DiagnosisSignals& signals, std::size_t joint, double angle) {
     const double reference = at_least_small(angle);
     const Eigen::VectorXd everywhere = Eigen::VectorXd::Constant(signals.rows(), reference);
@@ -26,7 +26,7 @@ Candidate offset_candidate(const DiagnosisSignals& signals, std::size_t joint, d
     return result;
 }
 
-/// The joint's zero moves by the offset, so that the measured position means the true one.
+/// Moves the joint's zero by the offset, so that the model interprets the measured position correctly.
 EffectDisposition extend_by_offset(Extension& extension, const ChosenEffect& chosen) {
     RobotJoint& joint = extension.robot.joints[static_cast<std::size_t>(chosen.number())];
     const double offset = chosen.coefficients[0];

@@ -23,8 +23,8 @@ constexpr ParameterKind contact_peak{"peak", "N·m, N"}; // at a joint, at the t
 constexpr std::array contact_direction{ParameterKind{"base_x", "1"}, ParameterKind{"base_y", "1"},
                                        ParameterKind{"base_z", "1"}};
 
-/// The outputs of an arm of nothing but 1 kg at its tip, at rest, while gravity is 1 m/s² along `axis`: of 1
-/// N along it. T x m.
+/// Outputs (T x m) for a force of 1 N along `axis` at the tip: those of an arm at rest that consists of 1 kg
+/// at its tip only, with gravity of 1 m/s² along `axis`.
 Eigen::MatrixXd of_force_at_tip(const DiagnosisSignals& signals, const Eigen::Vector3d& axis) {
     const InertialParameters mass = moved(
         body_parameters(1, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()), signals.robot.tip_placement);
@@ -82,7 +82,7 @@ Candidate contact_with_shapes(const DiagnosisSignals& signals, const ContactSite
     return result;
 }
 
-/// All windows of one length.
+/// Appends the candidate windows of one length to `found`.
 void scan_windows(const DiagnosisSignals& signals, const EffectRegression& regression,
                   const Eigen::MatrixXd& weighed, const ContactSite& site, double length_s,
                   std::vector<EventWindow>& found) {
@@ -116,8 +116,8 @@ class ContactScan : public EffectScan {
                                                                   residual.coefficients),
                              sites_);
     }
-    /// Pushes at a site are all judged alike: once the largest are chosen, those left stand out less against
-    /// each other.
+    /// Gives all contacts at a site the same evidence offset. After the largest ones are chosen, the
+    /// remaining ones differ less from each other.
     void set_prices(const std::vector<Candidate*>& own, const FittedResidual& /*residual*/) const override {
         for (const Candidate* const one : own) {
             for (Candidate* const other : own) {
@@ -132,7 +132,7 @@ class ContactScan : public EffectScan {
     std::vector<ContactSite> sites_;
 };
 
-/// Over the stretch of the contact with what is before and after it.
+/// Time, limited to the contact and the time before and after it.
 ExplainingVariable around_contact(const PlottedFinding& at) {
     ExplainingVariable variable = over_time(at);
     const Eigen::VectorXd& time = variable.value;
@@ -197,7 +197,7 @@ std::vector<ContactSite> contact_sites(const DiagnosisSignals& signals) {
         return {std::move(tip)};
     }
     for (Eigen::Index joint = 0; joint < signals.outputs(); ++joint) {
-        // what the surroundings exert, the actuators need not
+        // negative: a torque that the environment exerts reduces the actuator's torque
         sites.push_back({numbered("joint", static_cast<std::size_t>(joint)),
                          "N·m",
                          {on_output(joint, -Eigen::VectorXd::Ones(signals.rows()))}});

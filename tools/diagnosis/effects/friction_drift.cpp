@@ -8,7 +8,8 @@ namespace {
 
 constexpr ParameterKind friction_rate{"rate", "1/s"};
 
-/// The level of the joint's friction changes with time; none for a joint whose model has no friction.
+/// The level of the joint's friction changes with time. Returns no candidate for a joint whose model has no
+/// friction.
 std::vector<Candidate> drift_candidates(const DiagnosisSignals& signals, const FittedModel& model,
                                         std::size_t number) {
     const auto joint = static_cast<Eigen::Index>(number);

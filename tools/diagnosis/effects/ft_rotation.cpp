@@ -14,7 +14,7 @@ namespace {
 constexpr std::array sensor_angles{ParameterKind{"roll", "rad"}, ParameterKind{"pitch", "rad"},
                                    ParameterKind{"yaw", "rad"}};
 
-/// Measured = rotation · true, of force and torque: roll, pitch, yaw about x, y, z.
+/// Measured = rotation · true, for force and torque: roll, pitch, yaw about x, y, z.
 std::vector<Candidate> rotation_candidates(const DiagnosisSignals&, const FittedModel& model, std::size_t) {
     const Eigen::MatrixXd& wrench = model.output;
     Candidate result;
@@ -41,7 +41,7 @@ std::vector<Candidate> rotation_candidates(const DiagnosisSignals&, const Fitted
     return {std::move(result)};
 }
 
-/// The frame that is measured in sits turned by the inverse.
+/// Turns the model's sensor frame by the inverse rotation.
 EffectDisposition extend_by_rotation(Extension& extension, const ChosenEffect& chosen) {
     Eigen::Vector3d angles = Eigen::Vector3d::Zero();
     for (Eigen::Index i = 0; i < chosen.coefficients.size(); ++i) {

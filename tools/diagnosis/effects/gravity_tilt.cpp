@@ -12,7 +12,7 @@ namespace {
 constexpr ParameterKind tilt_about_x{"tilt_x", "rad"};
 constexpr ParameterKind tilt_about_y{"tilt_y", "rad"};
 
-/// Gravity in the frame of a base that turned by +x, then +y: turned the other way.
+/// Gravity in the frame of a base that is turned by +x, then by +y.
 Eigen::Vector3d tilted_gravity(const Eigen::Vector3d& gravity, double x, double y) {
     return Eigen::AngleAxisd(-x, Eigen::Vector3d::UnitX()) *
            (Eigen::AngleAxisd(-y, Eigen::Vector3d::UnitY()) * gravity);
@@ -24,7 +24,7 @@ Eigen::MatrixXd tilted_outputs(const DiagnosisSignals& signals, double x, double
     return rigid_outputs(robot, signals.kind, signals.measured.motion);
 }
 
-/// About a tilt by x and y: the columns' sum with these coefficients is what that tilt brings, exactly.
+/// Linearized about a tilt by x and y. With these angles as coefficients, the sum of the columns is exact.
 Candidate tilt_candidate(const DiagnosisSignals& signals, double x, double y) {
     Candidate result;
     result.where = "base";

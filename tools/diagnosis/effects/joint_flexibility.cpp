@@ -10,7 +10,7 @@ namespace {
 
 constexpr ParameterKind joint_stiffness{"stiffness", "N·m/rad"};
 
-/// Between encoder and link.
+/// Elasticity between encoder and link.
 std::vector<Candidate> flexibility_candidates(const DiagnosisSignals& signals, std::size_t number) {
     const auto joint = static_cast<Eigen::Index>(number);
     Candidate result =

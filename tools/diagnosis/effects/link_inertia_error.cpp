@@ -15,7 +15,7 @@ constexpr ParameterKind link_delta_mass{"delta_mass", "kg"};
 constexpr std::array link_delta_centre{ParameterKind{"delta_com_x", "m"}, ParameterKind{"delta_com_y", "m"},
                                        ParameterKind{"delta_com_z", "m"}};
 
-/// Another mass at the link's centre of mass, another centre of mass, or both.
+/// Error of the mass at the link's centre of mass, of the centre of mass, or of both.
 std::vector<Candidate> link_candidates(const DiagnosisSignals& signals, std::size_t number) {
     const auto index = static_cast<Eigen::Index>(number);
     const Eigen::VectorXd nominal = nominal_parameters(signals.robot, signals.kind);
@@ -28,8 +28,8 @@ std::vector<Candidate> link_candidates(const DiagnosisSignals& signals, std::siz
     result.span = index + 1 == bodies ? last_body : "";
     result.columns = mass_columns(signals, index, centre, Eigen::Isometry3d::Identity());
     const auto body = [mass](double delta_mass, const Eigen::VectorXd& moments) {
-        constexpr double farthest = 0.3; // m that a centre of mass is off
-        constexpr double heaviest = 5;   // times what the robot's file says
+        constexpr double farthest = 0.3; // m: largest error of a centre of mass
+        constexpr double heaviest = 5;   // multiple of the mass in the robot's file
         return mass + delta_mass > 0 && mass + delta_mass <= heaviest * mass &&
                moments.norm() <= farthest * (mass + delta_mass);
     };
@@ -50,7 +50,7 @@ std::vector<Candidate> link_candidates(const DiagnosisSignals& signals, std::siz
     return {std::move(result)};
 }
 
-/// The point mass that the model has at the link's centre of mass becomes heavier, and moves.
+/// Changes the mass and the position of the link's centre of mass in the model.
 EffectDisposition extend_by_link(Extension& extension, const ChosenEffect& chosen) {
     auto parameters = extension.body(chosen.number());
     const bool with_mass = chosen.shape.columns.front() == 0;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr ParameterKind friction_per_load{"mu", "1"};
 
-/// Its shapes: over which distance it builds up at the load's rms.
+/// The shapes differ by the distance over which the friction builds up at the rms load.
 std::vector<Candidate> load_friction_candidates(const DiagnosisSignals& signals, std::size_t number) {
     const JointSignals joint(signals, number);
     const Eigen::VectorXd load = joint.all.joint_torque.col(joint.output).cwiseAbs();
@@ -32,7 +32,7 @@ std::vector<Candidate> load_friction_candidates(const DiagnosisSignals& signals,
     return {std::move(result)};
 }
 
-/// Over the load with the sign of the direction of motion.
+/// Plots over the load, signed by the direction of motion.
 ExplainingVariable over_driven_load(const PlottedFinding& at) {
     const Eigen::ArrayXd velocity = at.signals.measured.motion.velocity.col(at.joint());
     const Eigen::ArrayXd load = at.signals.joint_torque.col(at.joint());

@@ -19,15 +19,16 @@ constexpr ParameterKind payload_mass{"mass", "kg"};
 constexpr std::array payload_centre{ParameterKind{"com_x", "m"}, ParameterKind{"com_y", "m"},
                                     ParameterKind{"com_z", "m"}};
 constexpr ParameterKind payload_attached{"attached", "s", std::nullopt};
-constexpr const char* one_payload = "payload"; // family: there is one at most, from the beginning or taken up
+constexpr const char* one_payload = "payload"; // family: at most one payload, either permanent or picked up
 constexpr double farthest_payload = 0.5;       // m from the tip
 
-/// The best mass and moments with the centre of mass as far off as it may be, by the multiplier of that
-/// bound.
+/// Best mass and first moments with the centre of mass at its farthest admissible distance, by the Lagrange
+/// multiplier of this bound.
 Eigen::VectorXd at_farthest(const Eigen::MatrixXd& squares, const Eigen::VectorXd& moments) {
     constexpr double margin = 0.999;
     const double bound = margin * farthest_payload;
-    const Eigen::Vector4d cone(-bound * bound, 1, 1, 1); // times the coefficients' squares: 0 at the bound
+    // the quadratic form of the coefficients that is 0 at the bound
+    const Eigen::Vector4d cone(-bound * bound, 1, 1, 1);
     const auto at = [&](double multiplier) {
         Eigen::MatrixXd system = squares;
         system.diagonal() += multiplier * cone;
@@ -64,7 +65,7 @@ std::vector<EffectParameter> payload_parameters(const Eigen::VectorXd& coefficie
     return values;
 }
 
-/// One that is there all the time: at the tip, or with its centre of mass anywhere.
+/// A payload for the whole recording: at the tip, or with its centre of mass anywhere.
 std::vector<Candidate> payload_candidates(const DiagnosisSignals& signals, std::size_t /*number*/) {
     Candidate result;
     result.where = "tool";
@@ -76,7 +77,8 @@ std::vector<Candidate> payload_candidates(const DiagnosisSignals& signals, std::
     return {std::move(result)};
 }
 
-/// As a payload's columns are weighed while they are `there` (T, 0 or 1): where they begin and end matters.
+/// Products of the payload's columns, with the weight of the columns while `there` (T, 0 or 1) is 1: their
+/// beginnings and ends influence the spectrum.
 EventProducts products_of_payload(const EffectRegression& regression, const Eigen::MatrixXd& weighed,
                                   const std::vector<EffectColumn>& payload, const Eigen::VectorXd& there) {
     Eigen::VectorXd share = Eigen::VectorXd::Zero(weighed.cols());
@@ -87,7 +89,7 @@ EventProducts products_of_payload(const EffectRegression& regression, const Eige
     return {payload, weighed, share};
 }
 
-/// What comes behind the fitted time leaves no residual.
+/// Number of rows up to the last one with a residual. Rows after the fitted time have none.
 Eigen::Index fitted_rows(const Eigen::MatrixXd& weighed) {
     Eigen::Index rows = weighed.rows();
     while (rows > 0 && weighed.row(rows - 1).isZero(0)) {
@@ -96,7 +98,7 @@ Eigen::Index fitted_rows(const Eigen::MatrixXd& weighed) {
     return rows;
 }
 
-/// One that is taken up.
+/// Searches for a payload that is picked up during the recording.
 class PayloadScan : public EffectScan {
   public:
     explicit PayloadScan(const DiagnosisSignals& signals) : payload_(payload_columns(signals)) {}
@@ -104,7 +106,7 @@ class PayloadScan : public EffectScan {
     std::vector<Candidate> candidates(const FittedResidual& residual) const override {
         return scan_taken_payload(residual.signals, residual.regression, residual.weighed, payload_);
     }
-    /// Chosen already or not, each must stand out against its kind in what is left now.
+    /// Every candidate, chosen or not, must exceed the other windows in the current residual.
     void set_prices(const std::vector<Candidate*>& own, const FittedResidual& residual) const override {
         for (Candidate* const candidate : own) {
             candidate->extra_price =
@@ -168,7 +170,7 @@ Candidate taken_payload(const DiagnosisSignals& signals, const std::vector<Effec
 std::vector<Candidate> scan_taken_payload(const DiagnosisSignals& signals, const EffectRegression& regression,
                                           const Eigen::MatrixXd& weighed,
                                           const std::vector<EffectColumn>& payload) {
-    constexpr double least_share = 0.05; // of the time, before and after
+    constexpr double least_share = 0.05; // of the time, before and after the payload is picked up
     const EventProducts products =
         products_of_payload(regression, weighed, payload, Eigen::VectorXd::Ones(signals.rows()));
     const Eigen::Index rows = fitted_rows(weighed);

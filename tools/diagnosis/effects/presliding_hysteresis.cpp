@@ -31,7 +31,7 @@ std::vector<Candidate> presliding_candidates(const DiagnosisSignals& signals, st
     return {std::move(result)};
 }
 
-/// Over how far the joint has travelled since it last reversed, with the sign of the direction.
+/// Plots over the travel since the last reversal, signed by the direction of motion.
 ExplainingVariable over_travel(const PlottedFinding& at) {
     const Eigen::VectorXd position = at.signals.measured.motion.position.col(at.joint());
     Eigen::VectorXd travel = Eigen::VectorXd::Zero(position.size());
@@ -45,7 +45,7 @@ ExplainingVariable over_travel(const PlottedFinding& at) {
             travel[row] = position[row] - reversal;
         }
     }
-    constexpr double reach = 6; // of the distance over which the friction builds up
+    constexpr double reach = 6; // multiple of the distance over which the friction builds up
     const double distance =
         at.parameter(break_away.name) / std::max(1e-9, at.parameter(presliding_stiffness.name));
     return at.whole(at.named("travel since its last reversal") + " (rad)",

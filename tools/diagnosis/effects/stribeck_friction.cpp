@@ -12,8 +12,8 @@ constexpr ParameterKind stribeck_coulomb{"coulomb", "N·m"};
 constexpr ParameterKind stribeck_static{"static", "N·m"};
 constexpr ParameterKind stribeck_velocity{"stribeck_velocity", "rad/s"};
 
-/// Static friction that is a tenth and more above Coulomb's: less is no effect of its own, but how far a
-/// model of Coulomb's friction is wrong.
+/// Requires static friction at least a tenth above the Coulomb friction. A smaller excess is within the error
+/// of a Coulomb model and is not an effect of its own.
 bool is_stribeck(const Eigen::VectorXd& coefficients) {
     constexpr double least_excess = 0.1;
     return coefficients[0] > 0 && coefficients[1] >= least_excess * coefficients[0];

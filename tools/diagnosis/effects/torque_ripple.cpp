@@ -21,15 +21,15 @@ constexpr ParameterKind ripple_cycles{cycles_per_turn, "1"};
 constexpr ParameterKind ripple_phase{"phase", "rad"};
 
 constexpr int fewest_cycles = 2;
-constexpr int most_cycles = 330; // harmonic drives up to 1:160 make twice their ratio
+constexpr int most_cycles = 330; // harmonic drives up to 1:160 cause two cycles per motor turn
 
 struct RippleGain {
     double gain = 0;
     int cycles = 0;
 };
 
-/// Sum of squares that a ripple would explain, per number of cycles; its energy is taken at the frequency of
-/// each instant.
+/// Sum of squares that a ripple would explain, for each number of cycles per turn. The noise level is that of
+/// the ripple's current frequency.
 std::vector<RippleGain> ripple_gains(const DiagnosisSignals& signals, const EffectRegression& regression,
                                      const Eigen::MatrixXd& weighed, Eigen::Index joint) {
     const Eigen::VectorXd position = signals.measured.motion.position.col(joint);
@@ -53,7 +53,7 @@ std::vector<RippleGain> ripple_gains(const DiagnosisSignals& signals, const Effe
     return result;
 }
 
-/// The three best local maxima with their neighbours.
+/// Returns the three best local maxima and their neighbours.
 std::vector<int> best_cycles(const std::vector<RippleGain>& gains) {
     std::vector<RippleGain> peaks;
     for (std::size_t i = 0; i < gains.size(); ++i) {
@@ -75,11 +75,12 @@ std::vector<int> best_cycles(const std::vector<RippleGain>& gains) {
 
 class RippleScan : public EffectScan {
   public:
-    /// Of each joint the numbers of cycles per turn that go best with the residual; candidates have these and
-    /// their neighbours as shapes. Whole numbers whose frequency stays within the analysed band.
+    /// Returns, for each joint, the whole numbers of cycles per turn that explain most of the residual. Each
+    /// candidate has such numbers and their neighbours as shapes. Only numbers whose frequency is within the
+    /// analysed band are considered.
     std::vector<Candidate> candidates(const FittedResidual& residual) const override {
         const DiagnosisSignals& signals = residual.signals;
-        // a free function of the position can hide a ripple
+        // without the unnamed effects: a free function of the position can hide a ripple
         const Eigen::MatrixXd weighed = weighed_residual(residual.regression, residual.named);
         std::vector<Candidate> result;
         for (std::size_t joint = 0; !signals.wrench() && joint < signals.joints(); ++joint) {
@@ -94,7 +95,7 @@ class RippleScan : public EffectScan {
     }
 };
 
-/// A wave of any phase is a sine and a cosine.
+/// A wave with any phase is the sum of a sine and a cosine.
 EffectDisposition extend_by_ripple(Extension& extension, const ChosenEffect& chosen) {
     EffectModel wave = on_joint(chosen, effect_kinds::torque_ripple);
     wave.cycles_per_rev = chosen.shape.value;

@@ -31,10 +31,11 @@ using Eigen::VectorXd;
 
 constexpr double window_s = 0.2;
 constexpr int most_lags = 100;
-constexpr std::array filter_poles{0.0, 0.3, 0.5, 0.65, 0.75, 0.83, 0.9, 0.95}; ///< that are tried
-constexpr std::size_t rows_for_filters = 1500; ///< that filters are compared on
+/// the poles that are compared
+constexpr std::array filter_poles{0.0, 0.3, 0.5, 0.65, 0.75, 0.83, 0.9, 0.95};
+constexpr std::size_t rows_for_filters = 1500; ///< the number of rows for the comparison of filters
 
-/// Velocity and acceleration as weighted means of first and second differences, a pole each.
+/// Velocity and acceleration as weighted means of first and second differences, with one pole each.
 InputModel filters(double velocity_pole, double acceleration_pole, const TrainingData& data) {
     InputModel motion;
     motion.kind = InputKind::DFR;
@@ -50,7 +51,7 @@ InputModel filters(double velocity_pole, double acceleration_pole, const Trainin
     return motion;
 }
 
-/// The extension along recorded positions.
+/// Prediction of the extension along recorded positions.
 class Prediction {
   public:
     Prediction(const Extension& extension, const TrainingData& data)
@@ -68,7 +69,7 @@ class Prediction {
     const ChainModel& chain() const { return chain_; }
     const std::vector<EffectModel>& effects() const { return effects_; }
 
-    /// Measured less predicted, rows x m.
+    /// Returns measured minus predicted outputs, rows x m.
     MatrixXd error(const InputModel& motion, const RowList& rows) const {
         const MotionSamples samples = stored_motion(motion, data_, rows);
         MatrixXd error(static_cast<Index>(rows.size()), data_.outputs.cols());
@@ -126,7 +127,8 @@ InputModel best_filters(const Prediction& prediction, const TrainingData& data) 
     return best;
 }
 
-/// How far the inertial parameters of a body may be off: its mass by a tenth, its centre of mass by 2 cm.
+/// Prior standard deviations of a body's inertial parameters, for a mass error of a tenth and a
+/// centre-of-mass error of 2 cm.
 VectorXd body_deviation(const VectorXd& bodies) {
     constexpr double share = 0.1;
     constexpr double least_kg = 0.05;
@@ -141,7 +143,8 @@ VectorXd body_deviation(const VectorXd& bodies) {
     return deviation;
 }
 
-/// What the model learns: base parameters of the bodies, then the effects, with their covariance.
+/// Initial values of the learned parameters (base parameters of the bodies, then the effects) and their
+/// covariance.
 struct StartingPoint {
     std::vector<int> selected;
     std::vector<std::string> names;
@@ -177,7 +180,7 @@ StartingPoint starting_point(const Extension& extension, const Prediction& predi
     return start;
 }
 
-/// In units of each parameter's deviation: the covariance becomes a correlation.
+/// Scales each parameter by its standard deviation, so that the covariance becomes a correlation matrix.
 void set_start(PhysicsModel& physics, const StartingPoint& start) {
     const VectorXd deviation = start.covariance.diagonal().cwiseSqrt();
     const MatrixXd correlation =

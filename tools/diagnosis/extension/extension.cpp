@@ -14,7 +14,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// What the diagnosis granted without calling it a finding: masses a little off, torque constants.
+/// Adds the nuisance parameters, which are no findings: small mass errors and torque constants.
 void add_nuisance(Extension& extension, const DiagnosisWork& work) {
     const Explanation& explanation = work.explanation;
     const Eigen::Index bodies = explanation.uncertain_masses;

@@ -12,43 +12,45 @@
 
 namespace dfdyn::tools {
 
-/// A column of the physics beside the rigid body: what its coefficient is, and how far it may be off.
+/// A column of the physics in addition to the rigid body: the value and the prior standard deviation of its
+/// coefficient.
 struct ExtensionColumn {
     EffectModel effect;
     double value = 0, deviation = 0; ///< in the unit of the effect's parameter
 };
 
-/// How the extended model has a finding.
+/// Representation of a finding in the extended model.
 struct CarriedFinding {
     using How = EffectDisposition;
     std::string effect, where;
     How how = How::left_out;
 };
 
-/// A robot's rigid body with what a diagnosis found, as a parametric model holds it.
+/// A robot's rigid body and the findings of a diagnosis, as a parametric model represents them.
 struct Extension {
-    Robot robot; ///< with the geometry, gravity and sensor frame that were found
+    Robot robot; ///< with the estimated geometry, gravity and sensor frame
     OutputKind kind = OutputKind::joint_torque;
     Eigen::VectorXd bodies;               ///< ten inertial parameters per body
     std::vector<ExtensionColumn> columns; ///< in the order of the physics' columns
     Eigen::VectorXd output_gain;          ///< output per N·m (N)
-    std::vector<CarriedFinding> carried;  ///< a line per chosen effect
+    std::vector<CarriedFinding> carried;  ///< one per chosen effect
 
-    /// The parameters of `linkK` of the robot; `link`: from 0.
+    /// Returns the ten parameters of a link. `link`: from 0.
     auto body(Eigen::Index link) {
         const Eigen::Index beyond = static_cast<Eigen::Index>(robot.joints.size()) - link;
         return bodies.segment<10>(bodies.size() - 10 * beyond);
     }
 };
 
-/// The robot as its file says, without any effect.
+/// Returns the robot as described in its file, without effects.
 Extension nominal_extension(const DiagnosisWork& work);
 
-/// With every effect that the diagnosis chose, and its masses where those are uncertain.
+/// Returns the robot with every effect that the diagnosis chose, and with the estimated masses if masses are
+/// uncertain.
 Extension extension_of(const DiagnosisWork& work);
 
-/// The nominal robot with the columns of `extension`, which know nothing yet: they start at zero with the
-/// deviation that the whole of what was found would have.
+/// Returns the nominal robot with the columns of `extension`, without their estimated values. Each
+/// coefficient starts at zero, with the standard deviation of the complete effect.
 Extension names_only(const DiagnosisWork& work, const Extension& extension);
 
 } // namespace dfdyn::tools

@@ -16,33 +16,33 @@ struct ChosenEffect {
     const Eigen::VectorXd& coefficients;
     const Eigen::VectorXd& deviations;
 
-    Eigen::Index output() const; ///< of the first column in use
-    Eigen::Index number() const; ///< of `jointK`, `linkK`, …: from 0
+    Eigen::Index output() const; ///< output of the first column in use
+    Eigen::Index number() const; ///< index of `jointK`, `linkK`, …, from 0
 };
 
-/// A column of `kind` on the effect's output, with the direction of motion as uncertain as the diagnosis took
-/// it.
+/// Returns a column of `kind` on the effect's output. The uncertainty of the direction of motion is that of
+/// the diagnosis.
 EffectModel on_joint(const ChosenEffect& chosen, const EffectKind& kind);
 
-/// Adds a column, or its value to that of the same one. Coefficients go on adapting: they may be a tenth off,
-/// however well the recording determined them.
+/// Adds a column, or adds `value` to an equal column. Coefficients continue to adapt: their prior standard
+/// deviation is at least a tenth of the value, however well the recording determined them.
 void add_column(Extension& extension, const EffectModel& effect, double value, double deviation);
 
-/// The same with one of the effect's coefficients.
+/// Adds a column for one of the effect's coefficients.
 void add_column(Extension& extension, const ChosenEffect& chosen, const EffectModel& effect,
                 Eigen::Index coefficient);
 
-/// The same with its first coefficient, as a column of `kind`.
+/// Adds a column of `kind` for the effect's first coefficient.
 EffectDisposition add_single(Extension& extension, const ChosenEffect& chosen, const EffectKind& kind);
 
-/// A gain of an actuator or a sensor's axis: it multiplies all that the model has on that output.
+/// Applies the gain of an actuator or of a sensor axis. The gain multiplies everything that the model
+/// predicts on that output.
 EffectDisposition add_gain(Extension& extension, const ChosenEffect& chosen);
 
-/// Multiplies what the rigid body gives on an output. `effects_too`: its columns as well; otherwise they stay
-/// what they are.
+/// Multiplies the rigid body's part of an output. `effects_too`: also multiplies the output's columns.
 void scale_output(Extension& extension, Eigen::Index output, double factor, bool effects_too);
 
-/// Into the order of the physics' columns.
+/// Sorts the columns into the order of the physics' columns.
 void sort_columns(Extension& extension);
 
 } // namespace dfdyn::tools

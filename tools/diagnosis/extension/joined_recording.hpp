@@ -7,8 +7,8 @@
 
 namespace dfdyn::tools {
 
-/// Several recordings as one with gaps: each begins two seconds after the last row of the one before it. At
-/// least one; all of the same columns.
+/// Joins several recordings into one with gaps: each begins two seconds after the last row of the previous
+/// one. At least one recording is required, and all must have the same columns.
 Recording joined_recording(std::span<const Recording> recordings);
 
 } // namespace dfdyn::tools

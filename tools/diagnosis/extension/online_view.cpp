@@ -18,7 +18,8 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr std::size_t most_rows = 40000; ///< for learners whose ticks take a tenth of a millisecond
+/// bounds the run time of learners that need a tenth of a millisecond per tick
+constexpr std::size_t most_rows = 40000;
 
 OnlineError error_of(std::string learner, const TrainedModel& model, const Recording& recording,
                      bool from_prior = false) {
@@ -38,7 +39,7 @@ OnlineError error_of(std::string learner, const TrainedModel& model, const Recor
     return error;
 }
 
-/// Hyperparameters by few evaluations: the table compares learners, it does not ship them.
+/// Fits hyperparameters with few evaluations, because the table only compares learners.
 ModelTraining quick_training(ModelClass structure) {
     ModelTraining training;
     training.options.model = structure;
@@ -52,7 +53,7 @@ ModelTraining quick_training(ModelClass structure) {
     return training;
 }
 
-/// The names that a training can give columns without a search; each gets one per joint.
+/// Returns the effects for which a training can add columns without a search, one per joint.
 std::vector<std::string> trainable_names(const Extension& extension) {
     std::vector<std::string> names;
     for (const ExtensionColumn& column : extension.columns) {

@@ -12,22 +12,27 @@
 
 namespace dfdyn::tools {
 
-/// The one-step error of an online learner, of the measured output's deviation; NaN where there is none.
+/// One-step prediction error of an online learner, relative to the measured output's standard deviation. NaN
+/// if there is none.
 struct OnlineError {
     std::string learner;
     Eigen::VectorXd transient, steady; ///< per output: over the first third of the ticks, and over the rest
 };
 
-/// The diagnosis as learners see it that run over the recordings tick by tick, from positions alone.
+/// One-step errors of learners that run over the recordings tick by tick, from positions alone.
 struct OnlineView {
     std::vector<OnlineError> learners;
-    std::string left_out; ///< why learners with random features were not run; empty where they were
+    std::string left_out; ///< why learners with random features were not run; empty if they were run
 };
 
-/// Parametric learners, from the robot's own parameters: the rigid body alone; with the named effects, which
-/// start at zero; and `written`, the extended model, which has seen the recordings. Then, on recordings of
-/// up to 40,000 rows, NP and SPK without and with the names, of 100 random features: their hyperparameters
-/// are of the recordings, what they learn starts from nothing.
+/// Runs parametric learners that start from the robot's own parameters:
+///
+/// - the rigid body alone;
+/// - the rigid body with the named effects, which start at zero;
+/// - `written`, the extended model, which was fitted to the recordings.
+///
+/// On recordings of up to 40,000 rows it also runs NP and SPK with 100 random features, without and with the
+/// named effects. Their hyperparameters are fitted to the recordings; their weights start at zero.
 OnlineView online_view(const DiagnosisWork& work, const Extension& extension, const TrainedModel& written,
                        std::span<const Recording> recordings);
 

@@ -32,7 +32,7 @@ ordered_json causes(const std::vector<OtherCause>& list, bool reasons) {
     return result;
 }
 
-/// Axes are named, not numbered.
+/// Writes a sensor axis by its name instead of its number.
 ordered_json value_of(const FoundParameter& parameter) {
     const std::optional<std::string> axis = axis_of(parameter);
     return axis ? ordered_json(*axis) : ordered_json(parameter.value);

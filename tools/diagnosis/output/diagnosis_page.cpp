@@ -26,7 +26,7 @@ std::string recording_names(const std::vector<Recording>& recordings) {
     return names;
 }
 
-/// The output whose error is the largest share of its deviation.
+/// Returns the output with the largest error relative to its standard deviation.
 Eigen::Index worst_output(const ErrorMeasure& error) {
     Eigen::Index worst = 0;
     error.nrmse.maxCoeff(&worst);
@@ -96,7 +96,7 @@ std::string gain_sentence(const Diagnosis& diagnosis) {
         .append(".");
 }
 
-/// Three sentences.
+/// Returns a summary of three sentences.
 std::string summary(const DiagnosisCase& one) {
     const Diagnosis& diagnosis = one.work.diagnosis;
     if (diagnosis.nominal.rms.size() == 0 || one.work.explanation.candidates.empty()) {
@@ -115,7 +115,7 @@ PageSection suspicion_section(const Diagnosis& diagnosis) {
     return section;
 }
 
-/// The errors without the rows where joints stand, as one more column.
+/// Adds a column with the errors without standstill.
 void add_moving_errors(ReportTable& table, const Diagnosis& diagnosis) {
     table.columns.push_back("while it moves");
     table.note += " While it moves: without the rows where the output's joint stands and friction holds "

@@ -10,8 +10,7 @@
 
 namespace dfdyn::tools {
 
-/// All that the report of a diagnosis tells of. `extension` and `online` are empty where the recording could
-/// not answer.
+/// Content of a diagnosis report. `extension` and `online` are empty if the recording is unsuitable.
 struct DiagnosisCase {
     const Robot& robot;
     const std::vector<Recording>& recordings;
@@ -20,7 +19,7 @@ struct DiagnosisCase {
     const OnlineView& online;
 };
 
-/// The report as one HTML page that needs no other file, no network and no script.
+/// Returns the report as one HTML page without external files, network access or scripts.
 std::string diagnosis_page(const DiagnosisCase& one);
 
 } // namespace dfdyn::tools

@@ -26,7 +26,7 @@ void print_suspicions(std::ostream& out, const Diagnosis& diagnosis) {
     }
 }
 
-/// The errors without the rows where the joint stands; nothing, where there are hardly any.
+/// Returns the error without standstill as text; empty if the share of standstill is negligible.
 std::string while_moving(const Diagnosis& diagnosis, Eigen::Index output) {
     if (!(diagnosis.standing_share[output] > noticeable_standing)) {
         return "";
@@ -104,13 +104,13 @@ void print_findings(std::ostream& out, const Diagnosis& diagnosis) {
     }
 }
 
-/// Masses as the file says tell nothing.
+/// Returns whether a nuisance parameter differs noticeably from the value in the file.
 bool is_new(const GrantedQuantity& granted) {
     constexpr double noticeable = 0.01;
     return !granted.given || std::abs(granted.parameter.value / *granted.given - 1) > noticeable;
 }
 
-/// All of one name on one line.
+/// Prints all nuisance parameters with one name on one line.
 void print_granted(std::ostream& out, const Diagnosis& diagnosis, const std::string& name, const char* lead) {
     std::string list;
     for (const GrantedQuantity& one : diagnosis.granted) {
@@ -123,7 +123,7 @@ void print_granted(std::ostream& out, const Diagnosis& diagnosis, const std::str
     }
 }
 
-/// Of those that are least sure.
+/// Prints the experiments for the findings with the lowest confidence.
 void print_experiments(std::ostream& out, const Diagnosis& diagnosis) {
     std::vector<const Finding*> unsure;
     for (const Finding& finding : diagnosis.findings) {
@@ -149,7 +149,7 @@ void print_unexplained(std::ostream& out, const Diagnosis& diagnosis) {
     }
 }
 
-/// Those of one kind on one line, each once.
+/// Prints the findings with one disposition on one line, each once.
 void print_not_whole(std::ostream& out, const std::vector<CarriedFinding>& carried, CarriedFinding::How how,
                      const char* lead) {
     std::set<std::string> told;

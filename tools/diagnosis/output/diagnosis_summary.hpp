@@ -9,8 +9,8 @@
 
 namespace dfdyn::tools {
 
-/// A diagnosis on a terminal, in one screenful: what makes the recording suspect first, then the errors per
-/// output, the findings, what is left, and what the extended model does not have.
+/// Prints a diagnosis on a terminal, in one screen: first why the recording may be unsuitable, then the
+/// errors per output, the findings, the unexplained rest, and what the extended model lacks.
 void print_diagnosis(std::ostream& out, const Diagnosis& diagnosis,
                      const std::vector<CarriedFinding>& carried);
 

@@ -17,15 +17,15 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double shown_s = 20; ///< of the recording: more would be a blur
+constexpr double shown_s = 20; ///< of the recording: longer curves would be illegible
 constexpr Eigen::Index most_points = 700;
 
-/// In the outputs' own units.
+/// Converts torques to the units of the outputs.
 Eigen::MatrixXd in_output_units(const DiagnosisWork& work, const Eigen::MatrixXd& torques) {
     return torques * work.torque_gains.asDiagonal();
 }
 
-/// Rows that are drawn: from the start of the held-out time, or of the recording.
+/// Rows of the plots: from the start of the held-out time, or of the recording.
 std::vector<Eigen::Index> shown_rows(const DiagnosisWork& work) {
     const Eigen::VectorXd& time = work.signals->measured.time_s;
     const double from = std::max(work.diagnosis.heldout_from_s, time[0]);
@@ -43,7 +43,7 @@ std::vector<Eigen::Index> shown_rows(const DiagnosisWork& work) {
     return thin;
 }
 
-/// Interrupted where the recording is.
+/// Returns a line with gaps where the recording has gaps.
 XyLine over_time(const DiagnosisWork& work, std::string name, const Eigen::VectorXd& series,
                  const std::vector<Eigen::Index>& rows) {
     const Eigen::VectorXd& time = work.signals->measured.time_s;
@@ -60,7 +60,7 @@ XyLine over_time(const DiagnosisWork& work, std::string name, const Eigen::Vecto
     return line;
 }
 
-/// Lag one: 0 of white noise, near 1 of what changes slowly.
+/// Autocorrelation at lag one: 0 for white noise, near 1 for slow signals.
 double autocorrelation(const DiagnosisSignals& signals, const Eigen::VectorXd& series) {
     double product = 0;
     double square = 0;
@@ -85,7 +85,7 @@ ChartCurve spectrum(const SpectralRows& rows, std::string name, const Eigen::Mat
     return curve;
 }
 
-/// The level of the upper half of the band, where a motion has nothing: what a white noise would have.
+/// Level of the upper half of the band, where the motion has no energy: the level of white noise.
 ChartCurve white_level(const ChartCurve& rest) {
     const auto half = static_cast<std::ptrdiff_t>(rest.y.size() / 2);
     const double level = median({rest.y.begin() + half, rest.y.end()});

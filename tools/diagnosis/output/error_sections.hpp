@@ -6,10 +6,10 @@
 
 namespace dfdyn::tools {
 
-/// Measured, simulated and extended over a stretch of time, and the errors of both models, per output.
+/// Measured, simulated and extended outputs over a time window, and the errors of both models, per output.
 PageSection comparison_section(const DiagnosisWork& work);
 
-/// Spectra of the errors, how white what is left is, and what it still depends on.
+/// Spectra of the errors, whiteness of the residual, and its remaining dependences.
 PageSection rest_section(const DiagnosisWork& work);
 
 } // namespace dfdyn::tools

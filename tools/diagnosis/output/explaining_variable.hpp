@@ -9,43 +9,44 @@
 
 namespace dfdyn::tools {
 
-/// What a finding's share of an output is drawn over: velocity for friction, the angle within a turn for what
-/// repeats with it, load, time, … Where an effect depends on several inputs at once, the share itself, so
-/// that a right cause lies on the diagonal.
+/// Abscissa for the plot of a finding's contribution to an output: velocity for friction, the angle within a
+/// turn for periodic effects, load, time, … If an effect depends on several inputs, the abscissa is the
+/// contribution itself, so that a correct cause lies on the diagonal.
 struct ExplainingVariable {
     std::string label;
     Eigen::VectorXd value;             ///< T
-    Eigen::Index first = 0, count = 0; ///< the rows that are worth drawing
+    Eigen::Index first = 0, count = 0; ///< the rows to draw
     bool time = false;                 ///< drawn as a line over time
 };
 
-/// A finding and what there is to plot it over.
+/// A finding and the signals for its plot.
 struct PlottedFinding {
     const DiagnosisSignals& signals;
     const Finding& finding;
-    const Eigen::VectorXd& share; ///< T: what it gives on its output
+    const Eigen::VectorXd& share; ///< T: contribution to its output
 
-    Eigen::Index joint() const;                ///< of `jointK`, from 0
+    Eigen::Index joint() const;                ///< index of `jointK`, from 0
     std::string named(const char* what) const; ///< `velocity of joint 2`
-    double parameter(const char* name) const;  ///< 0 where it has none of this name
-    /// All rows of `value` (T).
+    /// value of a parameter; 0 if the finding has none with this name
+    double parameter(const char* name) const;
+    /// Returns the abscissa `value` (T) with all rows.
     ExplainingVariable whole(std::string label, Eigen::VectorXd value) const;
 };
 
-/// The parameter of a finding that repeats so many times in a turn; once where there is none.
+/// The parameter with the number of cycles per turn; a finding without it repeats once per turn.
 inline constexpr const char* cycles_per_turn = "cycles_per_rev";
 
-// Variables that several effects are plotted over.
+// Abscissas that several effects share.
 ExplainingVariable over_velocity(const PlottedFinding& at);
 ExplainingVariable over_position(const PlottedFinding& at);
 ExplainingVariable over_time(const PlottedFinding& at);
 ExplainingVariable over_load(const PlottedFinding& at);
 ExplainingVariable over_output(const PlottedFinding& at);
-/// One turn, or what the joint covers of it; for a fine ripple one wave of it, which a turn would show as a
-/// blur.
+/// The angle within one turn, or the part of it that the joint covers. For a ripple with many cycles, the
+/// angle within one cycle, because a whole turn would be illegible.
 ExplainingVariable over_angle(const PlottedFinding& at);
 
-/// The variable of the finding's effect. `share` (T): what the finding gives on its output.
+/// Returns the abscissa for the finding's effect. `share` (T): contribution of the finding to its output.
 ExplainingVariable explaining_variable(const DiagnosisSignals& signals, const Finding& finding,
                                        const Eigen::VectorXd& share);
 

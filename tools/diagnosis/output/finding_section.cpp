@@ -21,7 +21,7 @@ std::string unit_of(const DiagnosisWork& work, const Finding& finding) {
     return work.signals->wrench() && finding.output < 3 ? "N" : "N·m";
 }
 
-/// Every so many-th entry, so that at most `most` are left.
+/// Returns every k-th entry, with the smallest k that leaves at most `most` entries.
 std::vector<double> thinned(const Eigen::VectorXd& values, std::size_t most) {
     const auto size = static_cast<std::size_t>(values.size());
     const std::size_t step = (size + most - 1) / std::max<std::size_t>(1, most);
@@ -32,7 +32,7 @@ std::vector<double> thinned(const Eigen::VectorXd& values, std::size_t most) {
     return result;
 }
 
-/// The effect as a curve over its variable: means of what it gives in fine bins.
+/// Returns the effect as a curve over its abscissa: means of its contribution in fine bins.
 XyLine fitted_curve(const ExplainingVariable& over, const Eigen::VectorXd& x, const Eigen::VectorXd& share) {
     const std::string name = "named effect";
     if (over.time) {

@@ -6,8 +6,8 @@
 
 namespace dfdyn::tools {
 
-/// A finding with its evidence: the error without this effect over what explains it, parameters with their
-/// intervals, what else was considered, what would settle it. `number`: from 1.
+/// A finding and its evidence: the error without this effect over the explaining variable, parameters with
+/// their intervals, alternatives, and an experiment that would confirm it. `number`: from 1.
 PageSection finding_section(const DiagnosisWork& work, const Finding& finding, std::size_t number);
 
 } // namespace dfdyn::tools

@@ -13,7 +13,7 @@ std::string words(std::string effect, const std::string& where) {
     return effect.append(" at ").append(where);
 }
 
-/// Whether they are parts of one quantity: `com_x`, `com_z`; `coulomb_pos`, `coulomb_neg`.
+/// Returns whether both names are components of one quantity: `com_x`, `com_z`; `coulomb_pos`, `coulomb_neg`.
 bool are_parts_of_one(const std::string& one, const std::string& other) {
     const std::size_t stem = one.rfind('_');
     return stem != std::string::npos && stem == other.rfind('_') && one.compare(0, stem, other, 0, stem) == 0;
@@ -42,7 +42,7 @@ std::string parameter_words(const FoundParameter& parameter) {
         text.append(" ").append(parameter.unit);
     }
     if (parameter.low == parameter.high) {
-        return text; // a shape that is picked, not measured
+        return text; // selected from a list, not estimated
     }
     return text.append(" (").append(interval_words(parameter)).append(")");
 }
@@ -55,7 +55,7 @@ std::string main_parameter_words(const Finding& finding) {
     if (measured == finding.parameters.end()) {
         return "";
     }
-    // of a vector's coordinates, and of both directions, the one that is known best
+    // of the components of a vector, or of both directions, the one with the smallest interval
     const auto known = [&](const FoundParameter& parameter) {
         const double reach = parameter.high - parameter.low;
         return are_parts_of_one(parameter.name, measured->name) && reach > 0

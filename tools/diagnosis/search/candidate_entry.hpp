@@ -22,8 +22,8 @@ struct CandidateEntry {
         complete(rows);
     }
 
-    /// Shapes around the value of one of its shapes, in the place of earlier ones; returns where that shape
-    /// now is.
+    /// Replaces the shapes added by earlier refinements by shapes near the value of the shape `chosen`.
+    /// Returns the new index of that shape.
     std::size_t refine(std::size_t chosen, const SpectralRows& rows) {
         const EffectShape shape = candidate.shapes[chosen];
         candidate.columns.resize(own_columns);
@@ -36,13 +36,13 @@ struct CandidateEntry {
             candidate.columns.push_back(candidate.at_value(shape, near.value));
             candidate.shapes.push_back(std::move(near));
         }
-        // so close to each other they do not count as alternatives
+        // neighbouring shapes do not count as alternatives
         candidate.tried = static_cast<double>(own_shapes) / static_cast<double>(candidate.shapes.size());
         complete(rows);
         return own_shapes;
     }
 
-    /// Rows of the columns that have none yet.
+    /// Computes the rows of the columns that have none.
     void complete(const SpectralRows& rows) {
         for (std::size_t i = columns.size(); i < candidate.columns.size(); ++i) {
             columns.push_back(std::make_shared<const SpectralColumn>(rows, candidate.columns[i]));

@@ -10,10 +10,10 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Odds against a cause that nobody has a name for, where a named one explains as much.
+/// Prior log-odds of a named cause against an unnamed one that explains as much.
 constexpr double price_of_no_name = 4;
 
-/// What outputs may depend on: one joint's motion, by functions of each.
+/// Inputs on which outputs may depend: the motion of one joint and functions of it.
 struct JointInputs {
     std::string position_name, velocity_name;
     Eigen::VectorXd velocity, direction;
@@ -26,10 +26,10 @@ struct JointInputs {
           of_position(harmonics(signals.measured.motion.position.col(joint), 5)) {}
 };
 
-/// What one output would show if it depended on some inputs.
+/// Candidate for the dependence of one output on some inputs.
 class Dependence {
   public:
-    /// `largest`: that it may be, rms.
+    /// `largest`: limit of its rms.
     Dependence(Eigen::Index output, double largest, std::vector<std::string> inputs)
         : output_(output), largest_(largest) {
         candidate_.where = numbered("output", static_cast<std::size_t>(output));
@@ -75,7 +75,8 @@ Candidate of_position(Eigen::Index output, double largest, const JointInputs& jo
     return result.take();
 }
 
-/// `own`: friction of its own joint has a name; what is the same in both directions has none.
+/// `own`: only functions that are equal in both directions, because friction of the output's own joint has a
+/// name.
 Candidate of_velocity(Eigen::Index output, double largest, const JointInputs& joint, bool own) {
     Dependence result(output, largest, {joint.velocity_name});
     result.add_function(joint.velocity.cwiseAbs2());
@@ -92,7 +93,7 @@ Candidate of_velocity(Eigen::Index output, double largest, const JointInputs& jo
     return result.take();
 }
 
-/// Friction of a joint that is not the same everywhere.
+/// Friction of a joint that depends on its position.
 Candidate of_position_and_velocity(Eigen::Index output, double largest, const JointInputs& joint) {
     Dependence result(output, largest, {joint.position_name, joint.velocity_name});
     for (const Eigen::VectorXd& friction : {joint.velocity, joint.direction}) {

@@ -13,26 +13,27 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double least_gain = 1e-6;           ///< of the evidence: below it nothing changes
-constexpr double least_independent = 1e-3;    ///< share of a column that the others must leave
-constexpr double least_beyond_nuisance = 0.1; ///< of it: to count as if the nuisance left no less
+constexpr double least_gain = 1e-6;        ///< of the log-evidence: smaller differences are ignored
+constexpr double least_independent = 1e-3; ///< share of a column that is independent of the others
+/// minimum share of a column, relative to its rest after the nuisance columns
+constexpr double least_beyond_nuisance = 0.1;
 constexpr std::size_t most_effects = 48;
 
 const SearchCandidate::Shape& shape_of(const SearchProblem& problem, const ChosenShape& chosen) {
     return problem.candidates[chosen.candidate].shapes[chosen.shape];
 }
 
-/// What coefficients cost that explain a sum of squares of `explained`: before anything was measured, every
-/// order of magnitude of their joint size was as likely as any other within `orders` (of e), and every
-/// direction.
+/// Occam factor of coefficients that explain a sum of squares `explained`. The prior is uniform in the
+/// logarithm of their joint size over `orders` (of e), and uniform in direction.
 double price_of_coefficients(double count, double explained) {
-    constexpr double orders = 7; // from a twentieth of what can be noticed to fifty times as much
+    constexpr double orders = 7; // from a twentieth to fifty times the smallest size that can be detected
     const double size = std::sqrt(std::max(explained, 1.0));
     const double sphere = std::log(2.0) + count / 2 * std::log(std::numbers::pi) - std::lgamma(count / 2);
     return std::log(orders) + sphere + count * std::log(size) - count / 2 * std::log(2 * std::numbers::pi);
 }
 
-/// What a candidate costs for being one of many, of many shapes, with coefficients that explain so much.
+/// Prior penalty of a candidate: for the number of candidates and shapes, and the Occam factor of its
+/// coefficients.
 double price(const SearchProblem& problem, const ChosenShape& chosen, double explained) {
     const SearchCandidate& candidate = problem.candidates[chosen.candidate];
     const SearchCandidate::Shape& shape = candidate.shapes[chosen.shape];
@@ -54,7 +55,7 @@ std::vector<Eigen::Index> columns_of(const SearchProblem& problem, const std::ve
     return columns;
 }
 
-/// The normal equations' matrix of a model, with the nuisance's priors.
+/// Matrix of a model's normal equations, with the priors of the nuisance parameters.
 Eigen::MatrixXd system_of(const SearchProblem& problem, const std::vector<Eigen::Index>& columns) {
     Eigen::MatrixXd system = problem.sums.gram(columns, columns);
     for (std::size_t i = 0; i < problem.nuisance.size(); ++i) {
@@ -78,7 +79,8 @@ double nuisance_price(const SearchProblem& problem, const Eigen::MatrixXd& syste
     return result;
 }
 
-/// What the nuisance's coefficients cost: half the sum of their squares, in deviations.
+/// Prior penalty of the nuisance coefficients: half the sum of their squares in units of their standard
+/// deviation.
 double price_of_nuisance(const SearchProblem& problem, const Eigen::VectorXd& coefficients) {
     double result = 0;
     for (std::size_t i = 0; i < problem.nuisance.size(); ++i) {
@@ -88,9 +90,9 @@ double price_of_nuisance(const SearchProblem& problem, const Eigen::VectorXd& co
     return result;
 }
 
-/// What a shape explains beyond a model, from what the model leaves of its columns (`left`) and of their
-/// products with what is to be explained; negative infinity when it may not, or next to nothing is left of
-/// it.
+/// Sum of squares that a shape explains in addition to a model. `left` and `moment`: products of the shape's
+/// columns with each other and with the target, after projection on the complement of the model. Returns
+/// minus infinity if the coefficients are not admissible or the columns are almost dependent on the model.
 double gain_of(const SearchCandidate::Shape& shape, const Eigen::VectorXd& own, const Eigen::MatrixXd& left,
                const Eigen::VectorXd& moment) {
     constexpr double never = -std::numeric_limits<double>::infinity();
@@ -129,10 +131,10 @@ void keep_best(Step& best, const SearchProblem& problem, const std::vector<Chose
     }
 }
 
-/// The best of `chosen` with one more, of those `ranked` by their scores.
+/// Replaces `best` by the best model with one of the `ranked` candidates added to `chosen`.
 void keep_best_addition(Step& best, const SearchProblem& problem, const std::vector<ChosenShape>& chosen,
                         const std::vector<Replacement>& ranked) {
-    constexpr std::size_t tried = 3; // the first may give another effect a sign that it may not have
+    constexpr std::size_t tried = 3; // the first one may give another effect an inadmissible sign
     for (std::size_t i = 0; i < std::min(tried, ranked.size()) && ranked[i].score > best.score; ++i) {
         std::vector<ChosenShape> more = chosen;
         more.push_back(ranked[i].with);
@@ -290,7 +292,7 @@ std::vector<ChosenShape> search_effects(const SearchProblem& problem, std::vecto
             keep_best_addition(best, problem, at.chosen, near.additions());
         }
         if (best.chosen.size() <=
-            at.chosen.size()) { // nothing to add: is what there is the best of its kind?
+            at.chosen.size()) { // no addition helps: compare each chosen effect with its alternatives
             for (std::size_t i = 0; i < at.chosen.size(); ++i) {
                 const std::vector<ChosenShape> fewer = without(at.chosen, i);
                 if (near.score_without(i) > best.score) {

@@ -22,10 +22,11 @@ namespace {
 
 constexpr int most_rounds = 10;
 constexpr int white_rounds = 3;
-constexpr double mass_deviation = 0.058; ///< of a link's relative mass error that is uniform within ±10 %
+/// standard deviation of a link's relative mass error, uniform within ±10 %
+constexpr double mass_deviation = 0.058;
 
-/// A chosen candidate, made anew about what was found of it. That it has other shapes now makes it no
-/// likelier.
+/// Returns a chosen candidate, relinearized about its estimate. The number of its new shapes does not change
+/// its prior.
 Candidate about(const Candidate& chosen, const EffectShape& shape, const Eigen::VectorXd& coefficients) {
     Candidate result = chosen.about(shape, coefficients);
     result.effect = chosen.effect;
@@ -70,7 +71,8 @@ class Search {
             gather(std::move(dependent));
             at_.chosen = search_effects(at_.problem, at_.chosen);
             at_.fit = fit_effects(at_.problem, at_.chosen);
-            // weighed by the spectrum of what is not explained yet, an effect would be taken for noise
+            // with the spectrum of a residual that still contains effects, these effects would be taken for
+            // noise
             estimate_noise(round + 1 < white_rounds);
             if (round + 1 == white_rounds) {
                 forget_prices();
@@ -108,13 +110,13 @@ class Search {
     };
     std::vector<Scan> scans_;
     EffectRegression regression_;
-    std::vector<CandidateEntry> lasting_; ///< candidates that do not depend on the model at hand
+    std::vector<CandidateEntry> lasting_; ///< candidates that do not depend on the current model
     std::vector<SpectralColumnPointer> nuisance_;
     std::vector<double> nuisance_deviation_;
     Explanation at_;
 };
 
-/// Links whose masses are a little off, and joints whose torque constants nobody knows.
+/// Adds the nuisance parameters: small errors of the links' masses, and unknown torque constants.
 void Search::add_nuisance() {
     const auto add = [this](EffectColumn column, double deviation) {
         nuisance_.push_back(std::make_shared<const SpectralColumn>(rows_, column));
@@ -157,7 +159,7 @@ FittedResidual Search::fitted_residual() const {
             weighed_residual(regression_, coefficients)};
 }
 
-/// Candidates that depend on the model at hand.
+/// Returns the candidates that depend on the current model.
 std::vector<CandidateEntry> Search::passing() const {
     std::vector<Candidate> found;
     const auto add = [&](std::vector<Candidate> more) {
@@ -200,7 +202,7 @@ std::vector<CandidateEntry> Search::passing() const {
     return result;
 }
 
-/// Chosen candidates with a continuous shape get shapes around the chosen one.
+/// Adds shapes near the chosen one to chosen candidates with a continuous shape.
 void Search::refine() {
     for (ChosenShape& one : at_.chosen) {
         const Candidate& chosen = at_.candidates[one.candidate];
@@ -214,7 +216,7 @@ void Search::refine() {
     }
 }
 
-/// The first columns.
+/// Uses the first columns for the nuisance parameters.
 void Search::place_nuisance() {
     at_.problem.nuisance.clear();
     for (std::size_t i = 0; i < nuisance_.size(); ++i) {
@@ -222,7 +224,7 @@ void Search::place_nuisance() {
     }
 }
 
-/// Of each candidate: those with a name, or those without, whichever it is.
+/// Counts the candidates of each class: named and unnamed.
 void Search::count_rivals() {
     const auto named = std::ranges::count_if(at_.candidates, &Candidate::named);
     const auto unnamed = std::ssize(at_.candidates) - named;
@@ -231,12 +233,13 @@ void Search::count_rivals() {
     }
 }
 
-/// The problem of all candidates with the noise at hand; chosen ones stay chosen where they are still there.
+/// Builds the problem of all candidates with the current noise. Chosen candidates remain chosen if they still
+/// exist.
 void Search::gather(std::vector<CandidateEntry> passing) {
     struct Kept {
         std::string key;
         std::size_t shape;
-        std::optional<std::size_t> columns; ///< of the shape, where shapes are made anew for each model
+        std::optional<std::size_t> columns; ///< of the shape, if shapes are made for each model
     };
     std::vector<Kept> chosen;
     for (const ChosenShape& one : at_.chosen) {
@@ -320,8 +323,8 @@ void Search::estimate_noise(bool white) {
     at_.noise = std::move(noise);
 }
 
-/// How far a push, or a payload that is taken up, must stand out was learned while the noise was taken for
-/// white: now it is learned anew.
+/// Resets the evidence offsets of contacts and picked-up payloads. They were computed for white noise and are
+/// computed again.
 void Search::forget_prices() {
     for (const ChosenShape& one : at_.chosen) {
         at_.candidates[one.candidate].extra_price = 0;

@@ -12,41 +12,41 @@
 namespace dfdyn::tools {
 
 struct ExplanationOptions {
-    bool gains_known = true; ///< false: every joint has a factor of its own, which is no finding
-    double fitted_share = 1; ///< of the recording's time, from its beginning; the rest may only be predicted
+    bool gains_known = true; ///< false: every joint has an unknown gain, which is a nuisance parameter
+    double fitted_share = 1; ///< of the recording's time, from its beginning; the rest is held out
     std::function<void(int round)> progress = {};
 };
 
-/// What explains the difference between a measurement and the rigid body.
+/// Model of the difference between a measurement and the rigid body.
 struct Explanation {
     std::vector<Candidate> candidates;
-    std::vector<ChosenShape> chosen; ///< of `candidates`, those with a name first
+    std::vector<ChosenShape> chosen; ///< of `candidates`, named ones first
     SearchProblem problem;
-    EffectFit fit;   ///< of all of them
-    EffectFit named; ///< of those with a name alone: nothing unnamed may bend their coefficients
-    Eigen::Index uncertain_masses =
-        0;                 ///< links that are a little off, the first of the nuisance: all or none
-    Eigen::MatrixXd noise; ///< bins x m: spectra of what is left
+    EffectFit fit;   ///< fit of all chosen effects
+    EffectFit named; ///< fit of the named effects only, without influence of the unnamed ones
+    /// Number of links with uncertain mass, the first nuisance parameters: all or none.
+    Eigen::Index uncertain_masses = 0;
+    Eigen::MatrixXd noise; ///< bins x m: spectra of the residual
     std::vector<EffectColumn> nuisance;
 
-    /// T x m: what those of the chosen effects that are `wanted` add to the rigid body's outputs, by `fit`.
+    /// Returns the contribution (T x m) of the `wanted` chosen effects to the outputs, by `fit`.
     Eigen::MatrixXd effects(const DiagnosisSignals& signals,
                             const std::function<bool(const Candidate&)>& wanted) const;
-    /// T x m: all effects and the nuisance, by `fit`.
+    /// Returns the contribution (T x m) of all effects and nuisance parameters, by `fit`.
     Eigen::MatrixXd all(const DiagnosisSignals& signals) const;
-    /// T x m: the named effects and the nuisance, by `named`.
+    /// Returns the contribution (T x m) of the named effects and nuisance parameters, by `named`.
     Eigen::MatrixXd model(const DiagnosisSignals& signals) const;
-    /// The coefficients of a chosen candidate's shape with a name, and their covariance, by `named`.
+    /// Coefficients of a chosen named candidate's shape, and their covariance, by `named`.
     Eigen::VectorXd coefficients(std::size_t chosen_index) const;
     Eigen::MatrixXd covariance(std::size_t chosen_index) const;
 
-    /// Those of the chosen that have a name: `named` is their fit.
+    /// Returns the chosen effects that have a name, which are those of the fit `named`.
     std::vector<ChosenShape> named_effects() const;
 
-    /// By `fit`, what one of the nuisance's bodies or gains is multiplied by; 1 where that would be none.
+    /// Returns the factor of a nuisance body or gain by `fit`; 1 if the estimate is below 0.1.
     double nuisance_factor(Eigen::Index number) const;
 
-    /// Of both fits: where a chosen candidate's columns begin.
+    /// Index of the first column of a chosen candidate, in both fits.
     Eigen::Index first_column(std::size_t chosen_index) const;
 
   private:
@@ -56,9 +56,10 @@ struct Explanation {
                                   const std::function<bool(const Candidate&)>& wanted) const;
 };
 
-/// Searches among all candidates at once, in rounds: the noise is what the model at hand leaves, candidates
-/// that depend on the model (delays, gains, drifts, ripples, contacts) are made anew, shapes are refined,
-/// until nothing changes. `measured`: T x m, in N·m (N) also for currents.
+/// Searches all candidates for the model with the highest evidence, in rounds. Each round estimates the noise
+/// from the current residual, makes the candidates that depend on the model again (delays, gains, drifts,
+/// ripples, contacts) and refines shapes. The search ends when nothing changes. `measured`: T x m, in N·m (N)
+/// also for currents.
 Explanation explain(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
                     const ExplanationOptions& options);
 

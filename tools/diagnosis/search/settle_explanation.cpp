@@ -11,9 +11,9 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr Eigen::Index validation_blocks = 6;
-constexpr double price_of_a_name = 5; ///< evidence: one cause of 150
+constexpr double price_of_a_name = 5; ///< log-evidence: prior odds of 1 to 150
 
-/// Whether exact masses need names that uncertain ones do without, and those are of links.
+/// Returns whether the model with exact masses needs additional named effects, all of them errors of links.
 bool needs_links_only(const Explanation& at, const std::vector<ChosenShape>& exact) {
     bool links = false;
     for (const ChosenShape& one : exact) {
@@ -27,9 +27,9 @@ bool needs_links_only(const Explanation& at, const std::vector<ChosenShape>& exa
     return links;
 }
 
-/// Are the links' masses as the robot's file says? The search went on as if they need not be. That one link
-/// is off (or some: that costs as much again for each) is as likely as that all are; what it costs to be one
-/// cause of many does not speak against it.
+/// Decides whether the links' masses equal those of the robot's file. The search before assumed uncertain
+/// masses. The prior probability that one link is wrong equals that of all being uncertain; each further link
+/// has the full penalty. The penalty for one cause of many is therefore compensated.
 void decide_masses(Explanation& at, const EffectRegression& regression) {
     at.problem.sums = regression.weighed_sums();
     at.chosen = search_effects(at.problem, at.chosen);
@@ -57,7 +57,8 @@ std::vector<WeighedSums> sums_of_blocks(const EffectRegression& regression) {
     return blocks;
 }
 
-/// Of all columns: coefficients of the chosen events, whose time no other time tells of; zero of all others.
+/// Returns the coefficients of all columns: those of the chosen events, and zeros elsewhere. Other times
+/// carry no information on an event.
 Eigen::VectorXd of_events(const Explanation& at, Eigen::Index columns) {
     Eigen::VectorXd result = Eigen::VectorXd::Zero(columns);
     const Eigen::VectorXd all = at.fit.of_all(columns);
@@ -70,12 +71,12 @@ Eigen::VectorXd of_events(const Explanation& at, Eigen::Index columns) {
     return result;
 }
 
-/// Drops, one after the other, lasting effects without which blocks of time are predicted no worse by what
-/// fits the other blocks, also from those that are `promising`; what the events explain is taken out of all.
-/// Whether there were any.
+/// Leave-one-block-out pruning: removes each persistent effect whose removal does not worsen the held-out
+/// prediction, also from the `promising` candidates. The events' contribution is subtracted from all blocks.
+/// Returns true if any effect was removed.
 bool keep_what_predicts(Explanation& at, const EffectRegression& regression, SearchProblem& promising) {
     if (regression.fitted_frames() < validation_blocks) {
-        return false; // too short a recording to leave any of it out
+        return false; // too few frames for cross-validation
     }
     SearchProblem problem = at.problem;
     std::vector<WeighedSums> blocks = sums_of_blocks(regression);
@@ -118,8 +119,9 @@ void fit_named(Explanation& at) {
     at.named = fit_effects(at.problem, at.named_effects());
 }
 
-/// Drops, one after the other, named effects whose coefficients are such as no machine has once nothing
-/// unnamed is beside them; they are `promising` no longer, nor rivals of others. Whether there were any.
+/// Removes, one by one, named effects whose coefficients are inadmissible in the fit without unnamed effects.
+/// A removed effect is no longer a candidate of `promising` or of the model's problem. Returns true if any
+/// effect was removed.
 bool keep_what_is_allowed(Explanation& at, SearchProblem& promising) {
     bool dropped = false;
     for (fit_named(at); !at.named.allowed; fit_named(at)) {
@@ -139,7 +141,7 @@ bool keep_what_is_allowed(Explanation& at, SearchProblem& promising) {
 
 void settle(Explanation& at, const EffectRegression& regression) {
     decide_masses(at, regression);
-    SearchProblem promising = at.problem; // without the shapes of what does not predict
+    SearchProblem promising = at.problem; // without the shapes of removed effects
     while (keep_what_predicts(at, regression, promising) || keep_what_is_allowed(at, promising)) {
         at.chosen = search_effects(promising, at.chosen);
         at.fit = fit_effects(at.problem, at.chosen);

@@ -6,10 +6,9 @@
 
 namespace dfdyn::tools {
 
-/// What of an explanation stands once its search is at its end: whether masses are off, and of the chosen
-/// effects those that predict blocks of time which did not fit them, and that a machine can have.
-/// `regression`: of the explanation's problem. Makes its fit of the named effects alone. Cost: a search for
-/// each time that something is dropped.
+/// Prunes an explanation at the end of its search. Decides whether masses are uncertain, and keeps the chosen
+/// effects that are admissible and that predict held-out blocks of time. `regression`: that of the
+/// explanation's problem. Also fits the named effects alone. Cost: one search after each removal.
 void settle(Explanation& at, const EffectRegression& regression);
 
 } // namespace dfdyn::tools

@@ -19,22 +19,22 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double beside_s = 0.25; ///< of the same stand, before a push and behind it
-constexpr double between_s = 0.5; ///< pulses closer than this tell of the same push
+constexpr double beside_s = 0.25; ///< of the same standstill, before and after a contact
+constexpr double between_s = 0.5; ///< pulses closer than this belong to the same contact
 constexpr double least_probability = 0.25;
-constexpr double known_deviations = 4;  ///< by which friction that is known differs from none
-constexpr double uncertain_share = 0.2; ///< of the rigid body's change, as a deviation
+constexpr double known_deviations = 4;  ///< minimum ratio of known friction to its standard deviation
+constexpr double uncertain_share = 0.2; ///< standard deviation, as a share of the rigid body's change
 
-/// The most that dry friction holds at a joint, N·m.
+/// Largest dry friction torque of a joint (N·m) and its variance.
 struct Holding {
     double most = 0, variance = 0;
 
-    /// Friction that is hardly there may as well be several times as much: one error, and all stands show
-    /// pushes.
+    /// Friction with a large relative uncertainty is treated as unknown: if it were too small, every
+    /// standstill would contain contacts.
     bool known() const { return most > known_deviations * std::sqrt(variance); }
 };
 
-/// The largest of the parameters that tell of it; none, where the effect is no dry friction.
+/// Returns the largest dry friction parameter; null if the effect is no dry friction.
 const FoundParameter* dry_friction(const std::vector<FoundParameter>& parameters) {
     constexpr std::array<std::string_view, 6> names{"coulomb", "coulomb_pos", "coulomb_neg",
                                                     "static",  "break_away",  "mu"};
@@ -68,7 +68,7 @@ Holding holding_at(const DiagnosisSignals& signals, const Explanation& explanati
     return result;
 }
 
-/// A pulse of some rows, and as many beside it as its level is taken from.
+/// Fits a contact pulse with level rows before and after it.
 class PulseFit {
   public:
     PulseFit(double length_s, double rate_hz)
@@ -85,10 +85,11 @@ class PulseFit {
 
     struct Result {
         double height = 0;
-        double share = 0; ///< of the squares that it explains
+        double share = 0; ///< of the squares that the pulse explains
     };
 
-    /// From row `first`: beside a straight line from the level before it to that behind it.
+    /// Fits from row `first` on, relative to a straight line from the level before the pulse to the level
+    /// after it.
     Result of(const Eigen::VectorXd& series, Eigen::Index first) const {
         const double before = series.segment(first, beside_).mean();
         const double behind = series.segment(first + beside_ + shape_.size(), beside_).mean();
@@ -108,15 +109,15 @@ class PulseFit {
     Eigen::VectorXd shape_;
 };
 
-/// A pulse that a joint's torque has while it stands.
+/// A pulse of a joint's torque during standstill.
 struct StandPulse : EventWindow {
-    std::size_t length = 0; ///< of the lengths that are looked for
+    std::size_t length = 0; ///< index of the pulse length
     Eigen::Index first = 0; ///< row
-    double height = 0;      ///< N·m
-    double rest = 0;        ///< N·m, in what the explanation leaves
+    double height = 0;      ///< N·m, the smaller one of both residuals
+    double rest = 0;        ///< N·m, in the residual of the explanation
 };
 
-/// Of the pulses of one length: their standard deviation, were they of a normal distribution but for a few.
+/// Robust standard deviation of the pulses of one length, from the median of their magnitudes.
 double usual_height(const std::vector<StandPulse>& pulses, std::size_t length) {
     std::vector<double> heights;
     for (const StandPulse& pulse : pulses) {
@@ -127,10 +128,10 @@ double usual_height(const std::vector<StandPulse>& pulses, std::size_t length) {
     return median_to_deviation * median(std::move(heights));
 }
 
-/// Looks for pushes at one joint.
+/// Searches for contacts at one joint during its standstills.
 class JointStands {
   public:
-    /// `missed`: by the rigid body; `rest`: by the explanation.
+    /// `missed`: residual of the rigid body; `rest`: residual of the explanation.
     JointStands(const DiagnosisSignals& signals, Eigen::Index joint, Eigen::VectorXd missed,
                 Eigen::VectorXd rest)
         : signals_(signals), joint_(joint), missed_(std::move(missed)), rest_(std::move(rest)) {
@@ -142,7 +143,7 @@ class JointStands {
         }
     }
 
-    /// Long enough for a push.
+    /// Returns true if no standstill is long enough for a contact.
     bool none() const { return pulses_.empty(); }
 
     std::vector<StandingContact> contacts(const Holding& holding) const {

@@ -8,31 +8,40 @@
 
 namespace dfdyn::tools {
 
-/// A push at a joint that stood.
+/// A contact at a joint during standstill.
 struct StandingContact {
     std::size_t joint = 0;
     ContactPulse pulse;
-    /// Of the joint's torque, N·m: the push is against it, and larger by what friction takes up.
+    /// Change of the joint's torque (N·m). The contact acts against it and is larger by the part that
+    /// friction balances.
     double change = 0, change_deviation = 0;
-    /// By how much friction can change it, from all of it one way to all of it the other; its deviation has
-    /// what the rigid body's own change is uncertain by.
+    /// Largest change that friction allows: from its maximum in one direction to its maximum in the other.
+    /// The deviation includes the uncertainty of the rigid body's own change.
     double held = 0, held_deviation = 0;
-    Eigen::VectorXd share; ///< T: what the push adds to the joint's output
+    Eigen::VectorXd share; ///< T: contribution of the contact to the joint's output
 
-    /// That friction cannot have taken up the change, by what is known of both.
+    /// Probability that friction alone cannot explain the change, from both uncertainties.
     double probability() const;
     double deviation() const; ///< of their difference
 };
 
-/// Rows of joints that stand and whose output strays are in no regression (`joint_row_weight`, which
-/// `signals.measured.weight` must hold): friction is anything there. But not everything: a joint that stands
-/// without being touched changes its torque by at most twice its dry friction, beside what moves the rest of
-/// the arm. These are the pulses that are more, both in what the rigid body misses of `measured` (T x m) and
-/// in what the explanation leaves of that, `rest` (T x m): a cause that was found while the joint moved may
-/// say anything of it while it stands. A push that stays is none: a step is what friction leaves, too. Where
-/// no dry friction of the joint is known, by four of its deviations, nothing is said. Friction is taken to
-/// hold no more than it does while sliding, unless a static one was found. None for a wrench. Cost: 8 T
-/// products per length of a push, and a fit of each shape of each cause at a joint.
+/// Returns contacts at joints during standstill.
+///
+/// The regression excludes rows in which a joint is stationary and its output deviates from the rigid body
+/// (`joint_row_weight`, which `signals.measured.weight` must contain), because static friction is
+/// undetermined there. It is bounded, however: without a contact, the torque of a stationary joint changes by
+/// at most twice its dry friction, in addition to the influence of the moving links. The function returns the
+/// pulses that exceed this bound, both in the residual of the rigid body for `measured` (T x m) and in the
+/// residual of the explanation, `rest` (T x m). A cause identified during motion may be wrong during
+/// standstill.
+///
+/// Limits:
+/// - A contact that persists is not detected, because static friction can leave a step, too.
+/// - Joints whose dry friction is unknown (less than four standard deviations) have no result.
+/// - Static friction is assumed equal to sliding friction unless a static level was identified.
+/// - A wrench has no result.
+///
+/// Cost: 8 T products per pulse length, and a fit of each shape of each cause at a joint.
 std::vector<StandingContact> standing_contacts(const DiagnosisSignals& signals,
                                                const Explanation& explanation,
                                                const Eigen::MatrixXd& measured, const Eigen::MatrixXd& rest);

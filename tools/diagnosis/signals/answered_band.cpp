@@ -15,13 +15,13 @@ namespace {
 constexpr Eigen::Index bins_of_band = 6;
 constexpr double sure_deviations = 3;
 
-/// A joint's torque by the rigid body and its slope, as coefficients: bins x frames.
+/// Spectral coefficients (bins x frames) of a joint's rigid-body torque and of its time derivative.
 struct RigidTorque {
     Eigen::MatrixXd value, slope;
 };
 
-/// How large an output's answer to the torque is in a band of frequencies, whatever its delay, by least
-/// squares on the torque and, a quarter of a period apart from it, its slope.
+/// Magnitude of an output's response to the rigid-body torque in a frequency band, for any delay. Least
+/// squares on the torque and on its derivative, which is a quarter of a period out of phase.
 struct Answer {
     double size = 0, deviation = 0;
 
@@ -42,8 +42,8 @@ struct Answer {
     }
 };
 
-/// Bins up to the last band that surely answers, if one above it surely does not: by less than half as much
-/// as all together.
+/// Returns the number of bins up to the last band with a significant response. The response is limited only
+/// if a higher band has significantly less than half of the overall response; otherwise all bins count.
 Eigen::Index answered_bins(const SpectralRows& rows, const RigidTorque& torque,
                            const Eigen::MatrixXd& output) {
     const double half = torque.value.cwiseProduct(output).sum() / torque.value.squaredNorm() / 2;

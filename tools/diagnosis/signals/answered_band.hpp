@@ -5,11 +5,11 @@
 
 namespace dfdyn::tools {
 
-/// m, Hz: up to which frequency a joint's output answers to the motion of its positions. What the positions
-/// show above, the rigid body's torque of which is not in the output, is none of the motor's: a link that
-/// swings on its gear, positions that were read at other instants than their stamps say. An output that lags
-/// does answer. Twice the highest frequency that is analysed where nothing speaks against it; for a wrench
-/// everywhere. Cost: three transforms per output.
+/// Returns the highest frequency (Hz, m) at which each measured torque is coherent with the rigid-body torque
+/// computed from the encoder. Above it, the encoder measures motion that the motor does not cause, such as
+/// vibration of the gear or the link, or position samples with wrong time stamps. A delayed response counts
+/// as a response. The result is twice the highest analysed frequency if no limit is found, and always for a
+/// wrench. Cost: three transforms per output.
 Eigen::VectorXd answered_hz(const DiagnosisSignals& signals);
 
 } // namespace dfdyn::tools

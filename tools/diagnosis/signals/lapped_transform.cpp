@@ -23,7 +23,7 @@ LappedTransform::LappedTransform(Eigen::Index hop, Eigen::Index bins)
 
 Eigen::MatrixXd LappedTransform::analyse(const Eigen::Ref<const Eigen::VectorXd>& signal) const {
     const Eigen::Index count = frames(signal.size());
-    // frame i starts at i hop: a matrix whose columns overlap by half
+    // frame i starts at sample i · hop: a matrix whose columns overlap by half
     const Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>> overlapping(
         signal.data(), 2 * hop_, count, Eigen::OuterStride<>(hop_));
     return basis_ * overlapping;

@@ -5,12 +5,14 @@
 
 namespace dfdyn::tools {
 
-/// The modified discrete cosine transform: an orthonormal lapped transform (H. S. Malvar, "Signal Processing
-/// with Lapped Transforms", 1992), of which only the lowest frequencies are kept. The window is the
-/// power-complementary sine of a squared sine of Vorbis I, which leaks little. Its coefficients of coloured
-/// stationary noise are nearly independent, with the noise's spectral density as variance: so that least
-/// squares over them, weighed per frequency, know the noise's colour, and blocks of them are blocks of time.
-/// Frames of 2 `hop` samples, one every `hop`. Cost of a signal of T samples: 4 T bins.
+/// Modified discrete cosine transform (MDCT): an orthonormal lapped transform (H. S. Malvar, "Signal
+/// Processing with Lapped Transforms", 1992), limited to the lowest frequencies. The window is the
+/// power-complementary window of Vorbis I, which has little leakage.
+///
+/// The coefficients of coloured stationary noise are nearly independent, and their variance is the spectral
+/// density. Least squares with a weight per frequency therefore accounts for coloured noise, and blocks of
+/// coefficients correspond to blocks of time. A frame has 2 `hop` samples and starts every `hop` samples.
+/// Cost for a signal of T samples: 4 T bins.
 class LappedTransform {
   public:
     /// `hop`: samples; 1 <= bins <= hop.
@@ -18,19 +20,20 @@ class LappedTransform {
 
     Eigen::Index hop() const noexcept { return hop_; }
     Eigen::Index bins() const noexcept { return basis_.rows(); }
-    /// Of a stretch of this many samples; 0 when it is shorter than a frame.
+    /// Returns the number of frames in a segment of `samples`; 0 if it is shorter than one frame.
     Eigen::Index frames(Eigen::Index samples) const noexcept {
         return samples < 2 * hop_ ? 0 : samples / hop_ - 1;
     }
 
-    /// 2 hop: how much of a white noise's energy in a frame each sample of it has; they add to one.
+    /// Returns, for each of the 2 hop samples, its share of the energy of white noise in a frame. The shares
+    /// add up to one.
     const Eigen::VectorXd& window_squares() const noexcept { return window_squares_; }
 
-    /// bins x frames coefficients of `signal`, a stretch without gaps; samples behind the last whole frame do
-    /// not count.
+    /// Returns the coefficients (bins x frames) of `signal`, a segment without gaps. Samples after the last
+    /// complete frame are ignored.
     Eigen::MatrixXd analyse(const Eigen::Ref<const Eigen::VectorXd>& signal) const;
 
-    /// The transpose of `analyse`: a signal of `samples`.
+    /// Applies the transpose of `analyse`. Returns a signal of `samples`.
     Eigen::VectorXd synthesise(const Eigen::Ref<const Eigen::MatrixXd>& coefficients,
                                Eigen::Index samples) const;
 

@@ -5,16 +5,17 @@
 
 namespace dfdyn::tools {
 
-/// A symmetric low pass, weights that add to one: sinc under a Blackman window over four periods of `cutoff`
-/// (cycles per sample, above 0 and below 1/2), -6 dB there, flat below and -70 dB above it by 1.4 `cutoff`.
+/// Returns a symmetric low-pass kernel whose weights add up to one: a sinc with a Blackman window over four
+/// periods of `cutoff` (cycles per sample, between 0 and 1/2). Attenuation: 6 dB at `cutoff`, 70 dB from 1.4
+/// `cutoff` on.
 Eigen::VectorXd low_pass_kernel(double cutoff);
 
-/// Every `step`-th sample of `signal` convolved with `kernel`. Beyond its ends the signal goes on mirrored in
-/// the end point, so that offset and slope are kept.
+/// Returns every `step`-th sample of `signal` convolved with `kernel`. The signal is extended by point
+/// reflection at its ends, which preserves offset and slope.
 Eigen::VectorXd filtered(const Eigen::Ref<const Eigen::VectorXd>& signal, const Eigen::VectorXd& kernel,
                          Eigen::Index step = 1);
 
-/// Derivative by the central difference of fourth order (second at the ends), per sample.
+/// Returns the derivative per sample by central differences of fourth order (second order at the ends).
 Eigen::VectorXd differentiated(const Eigen::Ref<const Eigen::VectorXd>& signal);
 
 } // namespace dfdyn::tools

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double highest_rate_hz = 130;
 
-/// Weights of the four samples from `first` on, of the cubic (Lagrange) through them, at `time_s`.
+/// Weights of the four samples from `first` on for cubic (Lagrange) interpolation at `time_s`.
 Eigen::Vector4d cubic_weights(const Recording& recording, std::size_t first, double time_s) {
     Eigen::Vector4d weights = Eigen::Vector4d::Ones();
     for (std::size_t i = 0; i < 4; ++i) {
@@ -34,7 +34,7 @@ Eigen::Vector4d cubic_weights(const Recording& recording, std::size_t first, dou
     return weights;
 }
 
-/// All signals of a stretch on a uniform clock.
+/// All signals of a segment on a uniform clock.
 struct Resampled {
     Eigen::VectorXd time_s;
     Eigen::MatrixXd position, output;
@@ -66,9 +66,9 @@ Resampled resampled(const Recording& recording, const Stretch& stretch, double s
     return result;
 }
 
-/// Power of the positions per bin (column: joint), mean over the frames of all stretches. Of their second
-/// differences, because the motion itself would leak into all bins; divided by what differencing does to each
-/// frequency.
+/// Power of the positions per bin (one column per joint), averaged over the frames of all segments. It is
+/// computed from second differences, because the motion itself would leak into all bins, and divided by the
+/// frequency response of the differences.
 Eigen::MatrixXd position_power(const std::vector<Resampled>& stretches, const LappedTransform& transform) {
     Eigen::MatrixXd power = Eigen::MatrixXd::Zero(transform.bins(), stretches.front().position.cols());
     Eigen::Index frames = 0;
@@ -91,12 +91,13 @@ Eigen::MatrixXd position_power(const std::vector<Resampled>& stretches, const La
 }
 
 struct PositionNoise {
-    Eigen::VectorXd power;      ///< per joint and bin, i.e. the variance of white noise
+    Eigen::VectorXd power;      ///< per joint and bin: the variance of white noise
     Eigen::VectorXd trusted_hz; ///< per joint
 };
 
-/// The noise is white: what is at the top of the spectrum. A position is trusted while it is well above it:
-/// further up, accelerations would be noise, and look like inertia that is not there.
+/// The noise is assumed white, with the level of the top of the spectrum. A position is trusted up to the
+/// frequency where it is well above this level. Accelerations at higher frequencies would be noise and would
+/// resemble an additional inertia.
 PositionNoise position_noise(const std::vector<Resampled>& stretches, double rate_hz) {
     const auto hop = std::max<Eigen::Index>(16, std::llround(rate_hz));
     const LappedTransform transform(hop, hop);

@@ -11,19 +11,19 @@
 
 namespace dfdyn::tools {
 
-/// The rigid body's outputs along a motion: joint torques (N·m; also where currents were measured) or the
-/// wrench at the sensor. T x m. Cost: T times one recursive Newton-Euler pass.
+/// Returns the rigid body's outputs (T x m) along a motion: joint torques (N·m, also where currents were
+/// measured) or the wrench at the sensor. Cost: T recursive Newton-Euler passes.
 Eigen::MatrixXd rigid_outputs(const Robot& robot, OutputKind outputs, const RobotMotion& motion);
 
-/// T x n, kg·m² (kg): the diagonal of the mass matrix along a motion.
+/// Returns the diagonal of the mass matrix along a motion: T x n, kg·m² (kg).
 Eigen::MatrixXd joint_inertias(const Robot& robot, const RobotMotion& motion);
 
-/// How the outputs answer to small changes of the motion, joint by joint (T x m each; central differences).
+/// Derivatives of the outputs with respect to the motion of each joint (T x m each), by central differences.
 struct MotionSensitivity {
     std::vector<Eigen::MatrixXd> position, velocity, acceleration; ///< per joint
 
-    /// The change of the outputs when the position of `joint` were `change` (per row) larger, and its
-    /// derivatives too.
+    /// Returns the change of the outputs if the position of `joint` is increased by `change` (per row), and
+    /// its derivatives by the two other changes.
     Eigen::MatrixXd of(std::size_t joint, const Eigen::VectorXd& change,
                        const Eigen::VectorXd& change_velocity,
                        const Eigen::VectorXd& change_acceleration) const;

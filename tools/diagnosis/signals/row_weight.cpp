@@ -10,12 +10,12 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr double presliding_travel = 3e-3; ///< rad (m)
-constexpr double standing_s = 0.3;         ///< at least
-constexpr double fade_s = 0.1;             ///< from rows that tell nothing to such that tell all
-constexpr double longest_end_s = 2;        ///< over which rows at a stretch's end come to count in full
-constexpr double end_share = 1.0 / 6;      ///< of a stretch, at the most
-constexpr double least_straying = 0.1;     ///< of the output's deviation
-constexpr double least_moving = 0.1;       ///< of the rows, of a joint that moves
+constexpr double standing_s = 0.3;         ///< shortest standstill
+constexpr double fade_s = 0.1;             ///< ramp between weights 0 and 1
+constexpr double longest_end_s = 2;        ///< longest ramp at the ends of a segment
+constexpr double end_share = 1.0 / 6;      ///< largest share of a segment that a ramp covers
+constexpr double least_straying = 0.1;     ///< of the output's standard deviation
+constexpr double least_moving = 0.1; ///< of the rows: a joint that moves in fewer rows keeps all weights
 
 double faded(double share) {
     const double sine = std::sin(std::numbers::pi / 2 * std::clamp(share, 0.0, 1.0));
@@ -26,7 +26,7 @@ Eigen::Index rows_of(const MeasuredMotion& measured, double time_s) {
     return std::max<Eigen::Index>(1, std::llround(time_s * measured.rate_hz));
 }
 
-/// Rows where a joint travels less than `presliding_travel` in some `standing_s` around.
+/// Marks the rows within any window of `standing_s` in which the joint travels less than `presliding_travel`.
 std::vector<bool> standing_rows(const MeasuredMotion& measured, Eigen::Index joint) {
     const Eigen::Index window = rows_of(measured, standing_s);
     std::vector<bool> standing(static_cast<std::size_t>(measured.time_s.size()), false);
@@ -42,8 +42,8 @@ std::vector<bool> standing_rows(const MeasuredMotion& measured, Eigen::Index joi
     return standing;
 }
 
-/// By how much the output of a joint strays, while it stands, from where it is in the mean of each stand and
-/// the rigid body's torque, over its own deviation.
+/// Standard deviation of a joint's output within its standstills, after subtraction of the fitted rigid-body
+/// torque and of the mean of each standstill. Relative to the standard deviation of the output.
 double straying(const std::vector<bool>& standing, const Eigen::VectorXd& output,
                 const Eigen::VectorXd& torque) {
     const Eigen::VectorXd error = output - output.dot(torque) / torque.squaredNorm() * torque;
@@ -65,7 +65,7 @@ double straying(const std::vector<bool>& standing, const Eigen::VectorXd& output
     return rows > 0 && variance > 0 ? std::sqrt(squares / rows / variance) : 0;
 }
 
-/// How many rows before each one the last that is `off` was; `most` where it was longer ago.
+/// Number of rows since the last row that is `off`, at most `most`.
 Eigen::VectorXd rows_since(const std::vector<bool>& off, Eigen::Index most) {
     Eigen::VectorXd result(std::ssize(off));
     Eigen::Index since = most;
@@ -76,7 +76,7 @@ Eigen::VectorXd rows_since(const std::vector<bool>& off, Eigen::Index most) {
     return result;
 }
 
-/// Rising from 0 where `off`, over `fade` rows.
+/// Weights that rise from 0 at the rows that are `off` to 1 over `fade` rows.
 Eigen::VectorXd weight_beside(const std::vector<bool>& off, Eigen::Index fade) {
     const Eigen::VectorXd until = rows_since({off.rbegin(), off.rend()}, fade).reverse();
     return (rows_since(off, fade).cwiseMin(until) / static_cast<double>(fade)).unaryExpr(&faded);

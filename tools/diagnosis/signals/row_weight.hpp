@@ -5,16 +5,21 @@
 
 namespace dfdyn::tools {
 
-/// T x n, 0 to 1: how much a joint's torque tells at each row of what moves it. Nothing where the joint
-/// stands (it travels less than friction takes to build up, for 0.3 s or more) and its output strays:
-/// there friction is anything below the breakaway, and no function of the motion. A joint that hardly ever
-/// moves is left alone, for what it says of the arm's weight is all it says; so is one whose output keeps to
-/// the rigid body's torques (T x n) while it stands, for then it tells of their noise. Cost: T times the rows
-/// of 0.3 s.
+/// Returns the weight (T x n, 0 to 1) of each row of a joint's torque in the regression. The weight is 0
+/// during standstill (less travel than the presliding distance, for 0.3 s or more) if the output deviates
+/// from the rigid-body torque there. Static friction then takes any value up to the breakaway torque and is
+/// not a function of the motion.
+///
+/// All rows keep their weight in two cases:
+/// - the joint moves in less than a tenth of the rows: its standstills are the only information on the arm's
+///   weight;
+/// - its output follows the rigid-body torque (`torques`, T x n) during standstill.
+///
+/// The weights include those of `end_row_weight`. Cost: T times the rows of 0.3 s.
 Eigen::MatrixXd joint_row_weight(const MeasuredMotion& measured, const Eigen::MatrixXd& torques);
 
-/// T: less towards the ends of stretches, of which smoothing knows one side only, and slowly, for where a
-/// noise of low frequencies begins at once, all frequencies are full of it. `joint_row_weight` has it in.
+/// Returns weights (T) that taper towards the ends of each segment. Smoothing is one-sided there, and an
+/// abrupt start would leak low-frequency noise into all bins. `joint_row_weight` includes this taper.
 Eigen::VectorXd end_row_weight(const MeasuredMotion& measured);
 
 } // namespace dfdyn::tools

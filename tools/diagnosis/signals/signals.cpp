@@ -50,7 +50,7 @@ Eigen::VectorXd DiagnosisSignals::per_delay(const Eigen::VectorXd& series, doubl
             const double at = std::max(0.0, static_cast<double>(row - stretch.first) - delay_s / step_s);
             const auto before = stretch.first + std::min(static_cast<Eigen::Index>(at), stretch.count - 2);
             const double part = at - static_cast<double>(before - stretch.first);
-            // Hermite's cubic between two rows, by their derivatives
+            // cubic Hermite interpolation between two rows, from their values and derivatives
             const double rise = series[before + 1] - series[before];
             const double bend =
                 part * (1 - part) *

@@ -7,8 +7,8 @@
 
 namespace dfdyn::tools {
 
-/// Sines and cosines of an input over its range, two per order: the first pair turns by half a circle from
-/// one end of the range to the other.
+/// Returns sines and cosines of an input over its range, one pair per order. The first pair covers half a
+/// period over the range.
 std::vector<Eigen::VectorXd> harmonics(const Eigen::VectorXd& input, int orders);
 
 } // namespace dfdyn::tools

@@ -14,7 +14,7 @@ LappedTransform transform_at(double rate_hz) {
     return {hop, std::llround(2 * SpectralRows::hop_s * highest)};
 }
 
-/// How many of the upper ones hold nothing.
+/// Number of the uppermost bins that are zero in all frames.
 Eigen::Index zero_bins(const Eigen::MatrixXd& coefficients) {
     Eigen::Index zero = 0;
     while (zero < coefficients.rows() && coefficients.row(coefficients.rows() - 1 - zero).isZero(0)) {
@@ -25,7 +25,8 @@ Eigen::Index zero_bins(const Eigen::MatrixXd& coefficients) {
 
 constexpr Eigen::Index slow_bins = 4;
 
-/// How many neighbouring frames tell as much as one independent one, of a noise that outlasts a frame.
+/// Number of neighbouring frames that carry the information of one independent frame, for noise that is
+/// correlated over several frames.
 double persistence(const Eigen::RowVectorXd& series) {
     const Eigen::Index last = series.size() - 1;
     if (last < 4) {
@@ -121,7 +122,8 @@ Eigen::RowVectorXd SpectralRows::filled_by(const Eigen::VectorXd& weight) const 
 
 Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
                                const Eigen::VectorXd& spent) {
-    constexpr double least_left = 0.1; // of the frames: an exact fit tells nothing of the noise
+    // of the frames: after an exact fit the residual carries no information on the noise
+    constexpr double least_left = 0.1;
     const Eigen::Index bins = coefficients.rows() - zero_bins(coefficients);
     const double frames = std::max(filled.sum(), 1e-9);
     const Eigen::VectorXd left = (frames - spent.head(bins).array()).max(least_left * frames);
@@ -140,7 +142,7 @@ Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen:
 
 Eigen::MatrixXd noise_unrest(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
                              const Eigen::VectorXd& spectrum) {
-    constexpr double usual = 8; // degrees of freedom: what counts as usual unless the frame says otherwise
+    constexpr double usual = 8; // degrees of freedom of the prior scale 1
     const Eigen::MatrixXd power = spectrum.cwiseInverse().asDiagonal() * coefficients.cwiseAbs2();
     Eigen::MatrixXd unrest(power.rows(), power.cols());
     const Eigen::Index holding = coefficients.rows() - zero_bins(coefficients);

@@ -10,12 +10,12 @@
 
 namespace dfdyn::tools {
 
-/// A series of a recording as lapped-transform coefficients: bins x frames, all stretches one after the
-/// other, each with nothing before and behind it, so that all its rows count. Rows of output and columns go
-/// through the same filter, and their noise is independent with a variance per bin.
+/// Lapped-transform coefficients of a recording's series: bins x frames, with all segments in sequence. Each
+/// segment is padded with zeros on both sides, so that all its rows are used. The output and the columns pass
+/// through the same transform. Their noise is independent, with one variance per bin.
 class SpectralRows {
   public:
-    static constexpr double hop_s = 2; ///< blocks of time; frequencies are 1 / (2 hop_s) apart
+    static constexpr double hop_s = 2; ///< length of a block of time; frequencies are 1 / (2 hop_s) apart
     static constexpr double highest_hz = 20;
 
     explicit SpectralRows(const MeasuredMotion& measured);
@@ -27,20 +27,20 @@ class SpectralRows {
     double frequency_hz(Eigen::Index bin) const noexcept {
         return (static_cast<double>(bin) + 0.5) / (2 * hop_s);
     }
-    /// How many frames see nothing of what comes behind this share of the rows; at least one.
+    /// Returns the number of frames that do not overlap the rows after this share of the rows; at least one.
     Eigen::Index frames_within(double share) const;
 
     Eigen::MatrixXd analyse(const Eigen::VectorXd& series) const;
-    /// Of what acts on `output`: its rows count as much as `MeasuredMotion::weight` says, and frequencies
-    /// above its `answered_hz` not at all: zeros.
+    /// Analyses a series that acts on `output`. Its rows have the weights `MeasuredMotion::weight`, and bins
+    /// above the output's `answered_hz` are zero.
     Eigen::MatrixXd analyse(const Eigen::VectorXd& series, Eigen::Index output) const;
-    /// The transpose of `analyse` for `output`: T.
+    /// Applies the transpose of `analyse` for `output`. Returns T values.
     Eigen::VectorXd synthesise(const Eigen::MatrixXd& coefficients, Eigen::Index output) const;
-    /// Per frame, the share of it that rows of `output` fill, by the squares of their weights.
+    /// Returns the share of each frame that rows of `output` fill, by the squares of their weights.
     auto filled(Eigen::Index output) const { return filled_.row(output); }
 
   private:
-    /// A stretch with a hop of nothing before it and at least one behind; where its frames are.
+    /// A segment with one hop of zeros before it and at least one after it, and the position of its frames.
     struct PaddedStretch {
         Stretch rows;
         Eigen::Index first_frame, frames;
@@ -51,20 +51,22 @@ class SpectralRows {
     LappedTransform transform_;
     std::vector<PaddedStretch> stretches_;
     Eigen::Index frames_ = 0;
-    Eigen::MatrixXd weight_;                                      ///< T x m
-    Eigen::MatrixXd filled_;                                      ///< m x frames
-    Eigen::Vector<Eigen::Index, Eigen::Dynamic> unanswered_bins_; ///< m: of the uppermost
+    Eigen::MatrixXd weight_; ///< T x m
+    Eigen::MatrixXd filled_; ///< m x frames
+    /// m: number of the uppermost bins that are set to zero
+    Eigen::Vector<Eigen::Index, Eigen::Dynamic> unanswered_bins_;
 };
 
-/// Variance of the coefficients of a noise per bin, from its coefficients (bins x frames): the mean square
-/// over all frames, as far as they are `filled`, and neighbouring bins. `spent`: per bin, how many of them a
-/// fit has used up. Of the upper bins that are zero: that of the others' mean.
+/// Returns the noise variance per bin from its coefficients (bins x frames): the mean square over all frames,
+/// weighted by `filled`, and over neighbouring bins. `spent`: degrees of freedom per bin that a fit has used.
+/// Upper bins that are all zero get the mean of the others.
 Eigen::VectorXd noise_spectrum(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
                                const Eigen::VectorXd& spent);
 
-/// How much larger than its spectrum a noise is in each frame and frequency band (bins x frames; 1 where it
-/// is as usual): the scale of Student's t with few degrees of freedom, so that no short disturbance weighs
-/// much. What is not `filled`, or zero, counts as usual.
+/// Returns the local noise scale (bins x frames): the ratio of the noise in each frame and frequency band to
+/// its spectrum, 1 on average. The scale is that of Student's t-distribution with few degrees of freedom,
+/// which limits the influence of short disturbances. Rows that are not `filled` and bins that are zero count
+/// with the average scale.
 Eigen::MatrixXd noise_unrest(const Eigen::MatrixXd& coefficients, const Eigen::RowVectorXd& filled,
                              const Eigen::VectorXd& spectrum);
 

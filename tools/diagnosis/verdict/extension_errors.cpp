@@ -14,15 +14,15 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double fitted_share = 2.0 / 3; ///< of the time, for the figures on held-out time
+constexpr double fitted_share = 2.0 / 3; ///< of the time; the rest is held out
 
-constexpr Eigen::Index fewest_moving = 50; ///< rows: of fewer no error is told
+constexpr Eigen::Index fewest_moving = 50; ///< minimum number of rows for an error during motion
 
 double standard_deviation(const Eigen::VectorXd& values) {
     return root_mean_square((values.array() - values.mean()).matrix());
 }
 
-/// `moving`: per output, the rows that count where only those do in which its joint moves.
+/// `moving`: per output, the rows for the error during motion.
 ErrorMeasure error_measure(const Eigen::MatrixXd& error, const Eigen::MatrixXd& measured,
                            const std::vector<std::vector<Eigen::Index>>& moving) {
     ErrorMeasure result{Eigen::VectorXd(error.cols()), Eigen::VectorXd(error.cols()),
@@ -39,7 +39,8 @@ ErrorMeasure error_measure(const Eigen::MatrixXd& error, const Eigen::MatrixXd& 
     return result;
 }
 
-/// Per output, the last `count` rows in which it tells of more than what friction holds.
+/// Returns, per output, the rows among the last `count` in which static friction does not determine the
+/// torque.
 std::vector<std::vector<Eigen::Index>> moving_rows(const DiagnosisSignals& signals, Eigen::Index count) {
     std::vector<std::vector<Eigen::Index>> result;
     const auto weight = signals.measured.weight.bottomRows(count);
@@ -54,7 +55,8 @@ std::vector<std::vector<Eigen::Index>> moving_rows(const DiagnosisSignals& signa
     return result;
 }
 
-/// Why an extended model may err more at an output than the nominal one; empty: for no reason of the joint's.
+/// Returns a reason at the joint why the extended model can have a larger error at an output than the nominal
+/// one; empty if there is none.
 std::string reason_of_harm(const Diagnosis& diagnosis, Eigen::Index output) {
     constexpr double clear_fall = 0.9;
     const double nominal = diagnosis.nominal.moving_nrmse[output];
@@ -69,7 +71,7 @@ std::string reason_of_harm(const Diagnosis& diagnosis, Eigen::Index output) {
     return "";
 }
 
-/// Said where causes that were chosen on the first part of a recording do harm on the last.
+/// Adds a suspicion if causes from the first part of a recording increase the error on the last part.
 void suspect_poor_extension(Diagnosis& diagnosis) {
     const std::string lead = "on held-out time the extended model errs more than the nominal one at ";
     std::string worse;

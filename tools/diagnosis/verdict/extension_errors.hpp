@@ -5,12 +5,12 @@
 
 namespace dfdyn::tools {
 
-/// Errors from row `first` on (below the number of rows), without the causes of an explanation and with them:
-/// `nominal`, `extended` and `standing_share` of the diagnosis.
+/// Measures the errors from row `first` on (less than the number of rows), without and with the effects of an
+/// explanation. Sets `nominal`, `extended` and `standing_share` of the diagnosis.
 void measure_from(DiagnosisWork& work, Eigen::Index first, const Explanation& explanation);
 
-/// Errors on the last third, of a model that is chosen and fitted without it; and a suspicion where they are
-/// larger with the causes than without. Cost: that of a diagnosis.
+/// Measures the errors on the last third, for a model that is chosen and fitted on the first two thirds. Adds
+/// a suspicion if the effects increase the errors. Cost: that of a diagnosis.
 void measure_on_held_out(DiagnosisWork& work, ExplanationOptions options);
 
 } // namespace dfdyn::tools

@@ -17,7 +17,8 @@ Eigen::MatrixXd slow_part(const DiagnosisSignals& signals, const Eigen::MatrixXd
     return result;
 }
 
-/// The output on which the effect is largest against the noise there, and the errors with and without it.
+/// Determines the output with the largest effect relative to its noise, and the errors with and without the
+/// effect.
 void measure_gain(Finding& finding, const Eigen::MatrixXd& contribution, const Eigen::MatrixXd& rest) {
     double largest = -1;
     for (Eigen::Index output = 0; output < rest.cols(); ++output) {

@@ -5,22 +5,22 @@
 
 namespace dfdyn::tools {
 
-/// What findings bring, in figures and in words. `signals` and `output_names` must outlive it.
+/// Error reduction of findings, as figures and as text. `signals` and `output_names` must outlive it.
 class Gains {
   public:
-    /// `rest`: what no cause explains, T x m.
+    /// `rest`: T x m, the residual after all causes.
     Gains(const DiagnosisSignals& signals, const Eigen::MatrixXd& rest,
           const std::vector<std::string>& output_names);
 
-    /// Of a finding that adds `contribution` (T x m): among errors below `gains_below_hz`, or where it shows
-    /// above only, among all. Whether it brings anything.
+    /// Measures the gain of a finding that adds `contribution` (T x m): below `gains_below_hz`, or at all
+    /// frequencies if the effect is visible above only. Returns whether the error decreases.
     bool tell(Finding& finding, const Eigen::MatrixXd& contribution) const;
 
   private:
     const DiagnosisSignals& signals_;
     const std::vector<std::string>& output_names_;
-    /// Above those that are slow arms hardly move, and what no cause explains there may hide that one
-    /// explains what is below.
+    /// Arms have little motion above `gains_below_hz`. Unexplained errors at high frequencies could mask a
+    /// cause that explains the low ones.
     Eigen::MatrixXd rest_, slow_rest_;
 };
 

@@ -18,13 +18,13 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double tie = 3; ///< odds of 20 to 1: closer than this the data cannot tell two causes apart
-constexpr double price_of_shapes = 6; ///< what the three coefficients of a centre of mass cost
-constexpr double same_body_share =
-    0.02; ///< of the evidence: closer, payload and last link differ by less than models are wrong
-constexpr std::size_t listed = 3; ///< alternatives that a finding tells of
+constexpr double tie = 3; ///< log-odds of 20 to 1: causes with a smaller margin are indistinguishable
+constexpr double price_of_shapes = 6; ///< Occam factor of the three coefficients of a centre of mass
+/// of the evidence: below it, the difference between payload and last link is within model errors
+constexpr double same_body_share = 0.02;
+constexpr std::size_t listed = 3; ///< maximum number of alternatives of a finding
 
-/// What else could stand in the place of a chosen effect, and how much less likely that is.
+/// Determines the alternatives to a chosen effect, and their odds.
 void weigh_alternatives(Finding& finding, const Explanation& explanation, const Neighbours& near,
                         std::size_t index) {
     const double own = explanation.fit.score;
@@ -55,12 +55,12 @@ void weigh_alternatives(Finding& finding, const Explanation& explanation, const 
     }
 }
 
-/// The experiment that would settle whether it is there.
+/// Returns the experiment that would decide whether the effect is present.
 std::string confirmation(const Finding& finding) {
     return finding.where + ": " + effect_named(finding.effect).experiment;
 }
 
-/// A chosen effect with a name, without its gain.
+/// Returns a chosen named effect as a finding, without its gain.
 Finding of_cause(const Explanation& explanation, const Neighbours& near, const Neighbours& near_named,
                  std::size_t index, double duration_s) {
     const Candidate& candidate = explanation.candidates[explanation.chosen[index].candidate];
@@ -70,7 +70,7 @@ Finding of_cause(const Explanation& explanation, const Neighbours& near, const N
     finding.detail = candidate.detail;
     finding.parameters = found_parameters(explanation, index);
     weigh_alternatives(finding, explanation, near, index);
-    // what stands only against something unnamed that takes most of it away again is hardly there
+    // confidence is low if an effect is significant only together with an unnamed one that cancels most of it
     finding.margin_to_nothing =
         std::min(finding.margin_to_nothing, explanation.named.score - near_named.score_without(index));
     finding.confidence = calibrated_confidence(finding, duration_s);
@@ -79,13 +79,14 @@ Finding of_cause(const Explanation& explanation, const Neighbours& near, const N
 }
 
 Finding of_push(const StandingContact& push) {
-    constexpr double surest = 0.95; // on simulated arms all are right; real ones know more ways to surprise
+    // upper limit for real arms: on simulated arms all such findings are correct
+    constexpr double surest = 0.95;
     Finding finding;
     finding.effect = effects::external_contact().name;
     finding.where = numbered("joint", push.joint);
     finding.detail = start_words(push.pulse);
-    // As a rule friction gives way before the motor has to: it takes up nothing to all that it can change by.
-    // The pulse that is fitted has a flat top: one as round as a sine's is up to 0.3 higher (simulated).
+    // Friction usually yields before the motor compensates: it balances between zero and its full range. The
+    // pulse that is fitted has a flat top. The peak of a sinusoidal contact is up to 30 % higher (simulated).
     constexpr double rounder = 0.15;
     const double more = push.held / 2 + rounder * std::abs(push.change);
     const double peak = -(push.change + std::copysign(more, push.change));
@@ -111,12 +112,13 @@ std::string held_words(const StandingContact& push) {
            interval(std::abs(push.change), push.change_deviation) + "; ";
 }
 
-/// Those of the chosen effects with a name that bring something.
+/// Returns the chosen named effects that reduce the error.
 std::vector<Finding> of_causes(const DiagnosisSignals& signals, const Explanation& explanation,
                                const Gains& gains) {
     const double duration_s = static_cast<double>(signals.rows()) / signals.measured.rate_hz;
     const Neighbours near(explanation.problem, explanation.chosen);
-    const std::vector<ChosenShape> named = explanation.named_effects(); // the first of those chosen
+    // named effects are the first of those chosen
+    const std::vector<ChosenShape> named = explanation.named_effects();
     const Neighbours near_named(explanation.problem, named);
     std::vector<Finding> findings;
     for (std::size_t i = 0; i < named.size(); ++i) {
@@ -158,7 +160,7 @@ void sort_by_gain(std::vector<Finding>& findings) {
                       [](const Finding& finding) { return finding.rms_before / finding.rms_after; });
 }
 
-/// A contact shows on several axes, and by more than one pulse: the strongest of them tells of it.
+/// A contact appears on several axes and in several pulses. Keeps the one with the largest gain.
 std::vector<Finding> without_repeated_contacts(std::vector<Finding> findings) {
     sort_by_gain(findings);
     std::vector<Finding> kept;
@@ -171,7 +173,8 @@ std::vector<Finding> without_repeated_contacts(std::vector<Finding> findings) {
     return kept;
 }
 
-/// In the place of what the search found of it, unless that is surer.
+/// Adds a contact during standstill. It replaces the same contact from the search unless that one has a
+/// higher confidence.
 void add_push(std::vector<Finding>& findings, Finding push) {
     const auto same =
         std::ranges::find_if(findings, [&](const Finding& finding) { return same_contact(finding, push); });
@@ -185,9 +188,9 @@ void add_push(std::vector<Finding>& findings, Finding push) {
 } // namespace
 
 double calibrated_confidence(const Finding& finding, double duration_s) {
-    // Logistic regression on what was right and wrong in simulated recordings of 50 and of 200 s:
-    // docs/results/diagnosis-panel.md. How far the next cause is behind did not tell more. What the model has wrong
-    // grows with the time as a true cause does.
+    // Logistic regression on correct and wrong findings in simulated recordings of 50 s and of 200 s:
+    // docs/diagnosis-panel.md. The margin to the next cause did not improve it. The evidence of model errors
+    // increases with the recording's length like that of a real cause; the time term compensates this.
     const double to_nothing = std::log(std::max(finding.margin_to_nothing, 0.1));
     const double time = std::log(std::clamp(duration_s, 50.0, 200.0) / 50);
     const Effect* const effect = find_effect(finding.effect);

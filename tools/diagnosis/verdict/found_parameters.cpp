@@ -8,7 +8,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// A shape's parameters and their variances, by the gradient of each with respect to the coefficients.
+/// Parameters of a shape and their variances, from the gradient of each with respect to the coefficients.
 struct ShapeParameters {
     std::vector<EffectParameter> values;
     Eigen::VectorXd variance;
@@ -34,8 +34,8 @@ struct ShapeParameters {
     }
 };
 
-/// Of a chosen effect's parameters: their variance while the shape is the chosen one, and what it grows by
-/// because other shapes are nearly as likely.
+/// Parameters of a chosen effect, their variance for the chosen shape, and the additional variance from other
+/// shapes with almost the same evidence.
 ShapeParameters parameters_over_shapes(const Explanation& explanation, std::size_t index) {
     const std::size_t number = explanation.chosen[index].candidate;
     const Candidate& candidate = explanation.candidates[number];
@@ -88,8 +88,8 @@ std::vector<FoundParameter> found_parameters(const Explanation& explanation, std
 
 double reach_of_95(double deviation, double effect) {
     constexpr double coloured =
-        1.7; // how much wider than their formula says: measured, docs/results/diagnosis-panel.md
-    constexpr double model_error = 0.04; // what no noise explains, where effects are large; measured, too
+        1.7; // measured ratio of interval widths to their formula: docs/diagnosis-panel.md
+    constexpr double model_error = 0.04; // relative model error of large effects, measured as well
     return deviations_of_95 * std::hypot(coloured * deviation, model_error * effect);
 }
 

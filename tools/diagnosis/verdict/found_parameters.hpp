@@ -7,15 +7,15 @@ namespace dfdyn::tools {
 
 inline constexpr double deviations_of_95 = 1.96; ///< on either side
 
-/// The parameters of a chosen candidate with a name, with intervals that have what other shapes of it that
-/// are nearly as likely would say.
+/// Returns the parameters of a chosen named candidate. Their intervals include other shapes with almost the
+/// same evidence.
 std::vector<FoundParameter> found_parameters(const Explanation& explanation, std::size_t chosen_index);
 
-/// Half the width of a parameter's 95 % interval: its standard deviation by the regression, were the noise
-/// just as weighed, and how far it is from the value that means nothing.
+/// Returns half the width of a parameter's 95 % interval, from its standard deviation in the regression (for
+/// noise with the assumed weights) and the difference `effect` from its null value.
 double reach_of_95(double deviation, double effect);
 
-/// The standard deviation that a 95 % interval stands for.
+/// Standard deviation that corresponds to a 95 % interval.
 double deviation_of(const FoundParameter& parameter);
 
 } // namespace dfdyn::tools

@@ -13,7 +13,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Half of a factor's interval.
+/// Half the width of a factor's interval.
 double factor_reach(const EffectFit& fit, Eigen::Index number) {
     return reach_of_95(std::sqrt(fit.covariance(number, number)), fit.coefficients[number]);
 }
@@ -22,7 +22,8 @@ FoundParameter mass_parameter(double nominal, double factor, double reach) {
     return {"mass", "kg", nominal * factor, nominal * (factor - reach), nominal * (factor + reach)};
 }
 
-/// Ampere per N·m are `gain` times the factor; where that may be none, the constant has no upper end.
+/// A joint has `gain` times the factor in A per N·m. If the factor's interval includes zero, the torque
+/// constant has no upper limit.
 FoundParameter constant_parameter(double gain, double factor, double reach) {
     constexpr double endless = std::numeric_limits<double>::infinity();
     return {"torque_constant", "N·m/A", 1 / (gain * factor), 1 / (gain * (factor + reach)),

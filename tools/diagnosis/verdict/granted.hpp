@@ -5,9 +5,9 @@
 
 namespace dfdyn::tools {
 
-/// What an explanation takes as it fits best without calling it a finding: every joint's torque constant
-/// where it was not given, every link's mass where they are uncertain. `torque_gains`: ampere per N·m that
-/// the explanation's own torques were made with.
+/// Returns the estimated nuisance parameters of an explanation: every joint's torque constant if it was not
+/// given, and every link's mass if masses are uncertain. `torque_gains`: A per N·m with which the
+/// explanation's torques were computed.
 std::vector<GrantedQuantity> granted_quantities(const DiagnosisSignals& signals,
                                                 const Explanation& explanation,
                                                 const Eigen::VectorXd& torque_gains);

@@ -11,7 +11,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double least_travel = 0.05; ///< rad (m): a joint that moves less stands
+constexpr double least_travel = 0.05; ///< rad (m): a joint with less travel counts as stationary
 constexpr double least_duration_s = 10;
 
 std::string joint_list(const std::vector<std::size_t>& joints) {
@@ -22,7 +22,7 @@ std::string joint_list(const std::vector<std::size_t>& joints) {
     return text;
 }
 
-/// The diagnosis filters at a few Hz, and cannot below that.
+/// The diagnosis filters at a few Hz and needs a sufficient sampling rate.
 void suspect_rate(const Recording& recording, Suspicions& result) {
     constexpr double longest_step_s = 0.2;
     constexpr double shortest_step_s = 2e-5;
@@ -67,8 +67,8 @@ void suspect_standstill(const DiagnosisSignals& signals, Suspicions& result) {
     }
 }
 
-/// Share of the outputs' variance that is left when each may be a sum of the rigid body's, of a friction and
-/// of a spring.
+/// Share of the outputs' variance that remains after a fit of the rigid body, a friction and a spring per
+/// output.
 double foreign_share(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured) {
     double share = 0;
     for (Eigen::Index output = 0; output < measured.cols(); ++output) {

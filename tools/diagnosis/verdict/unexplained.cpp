@@ -18,7 +18,7 @@ namespace {
 constexpr Eigen::Index blocks = 8;
 constexpr std::size_t most_inputs = 6;
 
-/// Smooth functions of one input: rows of spectral coefficients per function.
+/// Smooth functions of one input: a matrix of spectral coefficients per function.
 struct InputFunctions {
     std::vector<std::string> inputs;
     std::vector<Eigen::MatrixXd> rows; ///< bins x frames each
@@ -85,7 +85,7 @@ BlockSums block_sums(const std::vector<const Eigen::MatrixXd*>& columns, const E
     return sums;
 }
 
-/// Per block, how much of its energy the fit to all other blocks explains.
+/// Returns, per block, the energy that the fit to all other blocks explains.
 Eigen::VectorXd held_out_gains(const BlockSums& sums) {
     Eigen::MatrixXd gram = sums.gram.front();
     Eigen::VectorXd moment = sums.moment.front();
@@ -96,7 +96,7 @@ Eigen::VectorXd held_out_gains(const BlockSums& sums) {
     Eigen::VectorXd gains(blocks);
     for (std::size_t block = 0; block < sums.gram.size(); ++block) {
         Eigen::MatrixXd others = gram - sums.gram[block];
-        others.diagonal().array() *= 1.001; // functions of a narrow range are nearly the same
+        others.diagonal().array() *= 1.001; // functions over a narrow range are almost dependent
         others.diagonal().array() += 1;
         const Eigen::VectorXd fit = others.ldlt().solve(moment - sums.moment[block]);
         gains[static_cast<Eigen::Index>(block)] =
@@ -105,9 +105,9 @@ Eigen::VectorXd held_out_gains(const BlockSums& sums) {
     return gains;
 }
 
-/// Whether the gains are above zero by more than their scatter explains.
+/// Returns whether the mean gain is significantly above zero.
 bool certain(const Eigen::VectorXd& gains) {
-    constexpr double quantile = 4; // of Student's t with 7 degrees of freedom: 0.3 % by chance, one side
+    constexpr double quantile = 4; // of Student's t-distribution with 7 degrees of freedom: 0.3 % one-sided
     const double mean = gains.mean();
     const double scatter =
         (gains.array() - mean).matrix().norm() / std::sqrt(static_cast<double>(blocks - 1));

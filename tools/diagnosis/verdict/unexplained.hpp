@@ -5,16 +5,16 @@
 
 namespace dfdyn::tools {
 
-/// What an explanation has no name for, though it is there.
+/// Returns the dependences that the explanation contains without a name.
 std::vector<Unexplained> unnamed_dependences(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
                                              const Explanation& explanation);
 
-/// Joins what is told of the same output.
+/// Merges the entries of the same output.
 void add_rest(std::vector<Unexplained>& unexplained, const std::vector<Unexplained>& rest);
 
-/// What is still predictable of the outputs once all findings are taken off, and from which inputs: smooth
-/// functions of each joint's position, velocity and acceleration, added one at a time while they lower the
-/// error of blocks of time that fitted nothing. Empty when what is left is noise.
+/// Returns the predictable part of the residual after all findings, and its inputs: smooth functions of each
+/// joint's position, velocity and acceleration. Functions are added one at a time while they reduce the error
+/// of held-out blocks of time. Empty if the residual is noise.
 std::vector<Unexplained> unexplained_rest(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
                                           const Eigen::MatrixXd& rest, const Eigen::MatrixXd& noise);
 
