@@ -40,13 +40,13 @@ const LinkFaults& ClosedLoop::faults_at(double motion_time_s) {
     return faults_.now().link;
 }
 
-/// When the next tick begins: no tick begins before the one before it.
+/// Returns the start time of the next tick. A tick never starts before the previous one.
 std::int64_t ClosedLoop::begin_ns() {
     begun_ns_ = std::max(begun_ns_, pace_ns(tick_) + faults_at(motion_time(tick_)).late_ns);
     return begun_ns_;
 }
 
-/// The next cycle of the devices: one reading of every sensor.
+/// Runs the next cycle of the devices: one reading of every sensor.
 void ClosedLoop::measure() {
     const std::int64_t now_ns = pace_ns(cycle_);
     const double time_s = motion_time(cycle_);
@@ -62,7 +62,7 @@ void ClosedLoop::measure() {
     link_->loop_end.set_time(now_ns + bus_set_ns_);
     link_->plant_end.set_time(now_ns);
     link_->devices.set_faults(faults);
-    if (cycle_ > tick_) { // the loop is late: drives let go of a command that is too old
+    if (cycle_ > tick_) { // the loop is late: drives drop a command that is too old
         plant_.apply(link_->plant.torque(now_ns));
     }
     link_->plant.send(link_->devices, plant_);

@@ -14,39 +14,40 @@
 
 namespace dfdyn::tools {
 
-/// One instant of a closed loop, as it was at a tick.
+/// State of a closed loop at one tick.
 struct ClosedLoopInstant {
-    double time_s = 0;   ///< for which it was due
-    LoopInput measured;  ///< refers to what lives until the command goes out
-    JointVector error;   ///< reference minus true position at that time, rad
+    double time_s = 0;   ///< due time
+    LoopInput measured;  ///< valid until the command is sent
+    JointVector error;   ///< reference minus true position at this time, rad
     JointVector command; ///< N·m
 };
 
-/// A loop and the arm of a scenario in one thread, in simulated time: the same inputs give the same bits.
+/// A loop and the arm of a scenario in one thread, in simulated time. Equal inputs give bit-identical
+/// results.
 ///
-/// The devices measure and send once per period of the loop, whatever the loop does; a tick comes after the
-/// cycle that is due with it. A tick that begins late finds what has come meanwhile, and those that have
-/// become due follow at once, as in `run_loop`. What goes wrong between the two (LinkFaults) does so from
-/// when the loop moves the arm.
+/// The devices measure and send once per period of the loop, independently of the loop. A tick follows the
+/// cycle that is due at the same time. A late tick receives everything that has arrived meanwhile, and
+/// overdue ticks follow immediately, as in `run_loop`. Faults of the link (LinkFaults) begin when the loop
+/// moves the arm.
 class ClosedLoop {
   public:
-    /// `bus`: none, or the devices whose frames go between the two; it must fit the scenario (see
-    /// check_bus).
+    /// `bus`: the devices whose frames connect the two; null for a direct connection. It must match the
+    /// scenario (see check_bus).
     ClosedLoop(const Robot& robot, const Scenario& scenario, const std::string& source,
                const LoopModel* learned, const BusDescription* bus = nullptr, const LoopLimits& limits = {});
 
-    /// Runs from where it is to `time_s`, which counts from where the motion began: until then the arm
-    /// stands. Ends early when the loop has stopped. `on_tick` sees every tick since, before its command goes
-    /// out. Throws InputError as SimulatedPlant does, and when the loop gets no positions.
+    /// Runs to `time_s`, counted from the beginning of the motion; the arm is at rest before it. Ends early
+    /// if the loop has stopped. `on_tick` is called at every tick of the motion, before its command is sent.
+    /// Throws InputError as SimulatedPlant does, and if the loop receives no positions.
     void run_to(double time_s, const std::function<void(const ClosedLoopInstant&)>& on_tick);
 
     const ControlLoop& loop() const noexcept { return *loop_; }
-    /// Uses what is learned, or leaves it out; see FeedForward.
+    /// Enables or disables the learned torque; see FeedForward.
     void enable_learned(bool on) noexcept { loop_->enable_learned(on); }
     SimulatedPlant& plant() noexcept { return plant_; }
 
   private:
-    /// The wire and its two ends.
+    /// The simulated wire and its two ends.
     struct Link {
         Link(const BusDescription& bus, const Scenario& scenario);
 
@@ -55,16 +56,16 @@ class ClosedLoop {
         LoopPort loop;
         PlantPort plant;
     };
-    /// What passes directly, where there is no bus.
+    /// Readings of a direct connection without a bus.
     struct Readings {
         std::int64_t time_ns = 0;
-        bool fresh = false; ///< has not been used yet
+        bool fresh = false; ///< not used yet
         JointVector position, torque;
     };
 
-    /// Of the motion: 0 until it begins.
+    /// Time of the motion, s; 0 until it begins.
     double motion_time(std::int64_t tick) const { return static_cast<double>(tick - waited_) * period_s_; }
-    /// Of the clock that keeps the pace.
+    /// Time of the clock that schedules the ticks.
     std::int64_t pace_ns(std::int64_t tick) const;
     const LinkFaults& faults_at(double motion_time_s);
     std::int64_t begin_ns();
@@ -74,17 +75,17 @@ class ClosedLoop {
     void check_waiting() const;
 
     double period_s_;
-    std::unique_ptr<Link> link_; ///< none: readings and torques pass directly
+    std::unique_ptr<Link> link_; ///< null: readings and torques pass directly
     std::unique_ptr<ControlLoop> loop_;
     SimulatedPlant plant_;
     FaultSchedule faults_;
-    Losses losses_; ///< where there is no bus
+    Losses losses_; ///< used without a bus
     Readings readings_;
-    std::int64_t bus_set_ns_ = 0;               ///< what the loop's clock shows beyond that of the pace
+    std::int64_t bus_set_ns_ = 0; ///< offset of the loop's clock from the clock that schedules the ticks
     std::int64_t tick_ = 0, waited_ = 0;        ///< all ticks, and those before the motion
-    std::int64_t cycle_ = 0;                    ///< of the devices
-    std::int64_t begun_ns_ = 0;                 ///< the last tick
-    std::deque<JointVector> position_when_due_; ///< true, rad; of the ticks from this one on
+    std::int64_t cycle_ = 0;                    ///< of the devices' next reading
+    std::int64_t begun_ns_ = 0;                 ///< start of the last tick
+    std::deque<JointVector> position_when_due_; ///< true position, rad, of the ticks from the next one on
 };
 
 } // namespace dfdyn::tools

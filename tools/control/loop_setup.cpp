@@ -36,7 +36,7 @@ JointVector torque_limit(const Robot& robot, const Scenario& scenario, const std
     return limit;
 }
 
-/// One value per joint of `given`, which has one or as many.
+/// Returns one value per joint from `given`, which has one value or one per joint.
 JointVector per_joint(const std::vector<double>& given, const Robot& robot, const std::string& option) {
     const std::size_t joints = robot.joints.size();
     if (given.size() != 1 && given.size() != joints) {
@@ -59,7 +59,7 @@ int knot_ticks(double period_s, double knot_s, const std::string& source) {
     return static_cast<int>(std::lround(ratio));
 }
 
-/// Share of the bit rate that the devices' frames and the commands to them take at worst.
+/// Worst-case share of the bit rate for the devices' frames and the commands to them.
 double bus_load(const BusDescription& bus) {
     BusDescription joints = bus;
     joints.sensor.reset();
@@ -77,7 +77,8 @@ double bus_load(const BusDescription& bus) {
     }
     hal::Frame longest;
     longest.length = 8;
-    bits += bus.sensor ? 2 * frame_bits(longest) * bus.output.rate_hz : 0; // a wrench is two frames
+    // a wrench consists of two frames
+    bits += bus.sensor ? 2 * frame_bits(longest) * bus.output.rate_hz : 0;
     return bits / bus.bit_rate;
 }
 
@@ -116,7 +117,7 @@ SafeStopConfig default_limits(const Robot& robot, const Scenario& scenario, cons
     return config;
 }
 
-/// The filter of the velocity with a window as long as the scenario's, in readings of the loop.
+/// Returns the velocity filter with a window as long as the scenario's, in readings of the loop.
 DerivativeModel loop_filter(const Scenario& scenario) {
     DerivativeModel filter = scenario.derivatives;
     const double readings = filter.velocity_window * scenario.controller.rate_hz / filter.rate_hz;

@@ -16,7 +16,7 @@ namespace dfdyn::tools {
 namespace {
 
 /// Calls `tick(bus, due_ns, missed, over)` once per period, at absolute times, until it returns false;
-/// `over`: whether the run is to end.
+/// `over`: whether the run must end.
 template <class Tick>
 PaceOutcome keep_pace(const RealTimeRun& run, const Tick& tick) try {
     hal::SocketCanBus bus({.interface = run.interface});
@@ -72,7 +72,7 @@ PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, 
 }
 
 PaceOutcome run_plant(SimulatedPlant& plant, PlantPort& port, const RealTimeRun& run, std::uint64_t seed) {
-    std::optional<std::int64_t> start_ns; // until the first command its brakes hold it
+    std::optional<std::int64_t> start_ns; // the brakes hold the arm until the first command
     std::optional<LossyBus<hal::SocketCanBus>> devices;
     return keep_pace(run, [&](hal::SocketCanBus& bus, std::int64_t /*due_ns*/, bool /*missed*/, bool over) {
         if (!devices) {
@@ -81,7 +81,7 @@ PaceOutcome run_plant(SimulatedPlant& plant, PlantPort& port, const RealTimeRun&
         port.receive(*devices);
         if (port.commands() > 0) {
             start_ns = start_ns.value_or(bus.now_ns());
-            // where it really is now, also when this tick is late: the stamps of its frames are to be true
+            // simulates to the present time also in a late tick, so that the stamps of its frames are correct
             plant.advance_to(1e-9 * static_cast<double>(bus.now_ns() - *start_ns));
             devices->set_faults(plant.link_faults());
         }

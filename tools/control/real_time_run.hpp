@@ -13,37 +13,37 @@
 
 namespace dfdyn::tools {
 
-/// Where, how fast and for how long a program runs.
+/// Interface, period and duration of a run.
 struct RealTimeRun {
     std::string interface;
     double period_s = 0.001;
     double duration_s = 0;         ///< 0: until `stop`
     const std::atomic<bool>& stop; ///< becomes true at a signal
     const std::atomic<bool>* learned_off =
-        nullptr; ///< of a loop: while it is true what is learned is not used
+        nullptr; ///< of a loop: while it is true, the learned torque is disabled
 };
 
 struct PaceOutcome {
     PaceCounters counters;
-    std::string not_real_time; ///< why the timing is that of an ordinary program; empty: it is not
+    std::string not_real_time; ///< why the program has no real-time scheduling; empty: it has
 };
 
-/// What is kept of a loop's motion.
+/// Log of a loop's motion.
 struct LoopLog {
-    Tracking tracking; ///< by measured positions
+    Tracking tracking; ///< from measured positions
     LoopRecording recording;
     LoopPeaks peaks{}; ///< of the commands
 };
 
-/// Runs `loop` on a CAN interface, a tick per period, each at an absolute time, until it is done; a stop is
-/// requested when the time is over or `stop` becomes true. A loop that has stopped by itself holds the arm
-/// until then, and says so on standard error when it requests the brakes. A tick that begins late is run at
-/// once. `log` gets every tick of the motion. Throws InputError where the interface cannot be opened.
+/// Runs `loop` on a CAN interface until it is finished, with one tick per period at absolute times. Requests
+/// a stop at the end of the duration or when `stop` becomes true. A loop that has stopped by itself holds the
+/// arm until then, and reports it on standard error when it requests the brakes. A late tick runs
+/// immediately. `log` receives every tick of the motion. Throws InputError if the interface cannot be opened.
 PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, LoopLog& log);
 
-/// Runs a simulated arm on a CAN interface likewise: it stands until the first command comes, and goes on
-/// until the time is over or `stop` becomes true. Frames are lost as the faults of its scenario say, whose
-/// seed is `seed`.
+/// Runs a simulated arm on a CAN interface. The arm is at rest until the first command arrives, and runs
+/// until the end of the duration or until `stop` becomes true. Frames are lost according to the scenario's
+/// faults, with the random seed `seed`.
 PaceOutcome run_plant(SimulatedPlant& plant, PlantPort& port, const RealTimeRun& run, std::uint64_t seed);
 
 } // namespace dfdyn::tools

@@ -13,7 +13,7 @@ namespace {
 
 int delay_of(const BusDescription& description, double loop_period_s) {
     switch (description.trigger) {
-    case BusTrigger::sync: // a sample is complete at the SYNC after its own
+    case BusTrigger::sync: // a sample is complete at the SYNC after its own one
         return static_cast<int>(std::lround(1 / (description.joints.rate_hz * loop_period_s)));
     case BusTrigger::timer:
         return static_cast<int>(
@@ -97,7 +97,7 @@ void LoopPort::follow_ticks(std::int64_t tick_ns) noexcept {
     ticks_across_ = std::max(ticks_across_ - 1, 0);
     if (2 * std::abs(jump_ns) > period_ns_) {
         set_ns_ += jump_ns;
-        // readings have to overtake those from before
+        // after a step back, readings must become newer than those before it
         const std::int64_t back = std::clamp<std::int64_t>(-jump_ns / period_ns_, 0, longest_wait);
         ticks_across_ = delay_ticks_ + static_cast<int>(back);
         ++counters_.clock_jumps;
@@ -145,7 +145,7 @@ LoopInput LoopPort::sense(std::int64_t tick_ns, std::int64_t now_ns) {
     const BusSample& sample = arm_->assemble(*instant, now_ns);
     const std::int64_t correction_ns = clock_.correction_ns();
     follow_clock(sample, now_ns);
-    // or the instant was a wrong one
+    // or the requested sample time was wrong
     const bool corrected = ticks_across_ > 0 || (timer_ && clock_.correction_ns() != correction_ns);
     const bool usable = sample.valid() || lacks_single_joints(sample);
     if (!usable) {

@@ -13,21 +13,21 @@
 
 namespace dfdyn::tools {
 
-/// Compares a bus' stamps with the ticks in which its readings arrive: a reading that the drain before did
-/// not find cannot have been measured long before that drain, nor later than now. A stamp more than half a
-/// period beyond that shows that its clock has jumped, by as much as the reading's age has changed.
+/// Compares a bus' time stamps with the ticks in which its readings arrive. A reading that the previous drain
+/// did not find was measured at most `latency_ns` before that drain, and not in the future. A stamp more than
+/// half a period outside these bounds indicates a jump of the bus' clock, by the change of the reading's age.
 class ArrivalClock {
   public:
     explicit ArrivalClock(std::int64_t period_ns) noexcept : period_ns_(period_ns) {}
 
-    /// Takes the stamp of the newest reading, after a drain at `now_ns`. `latency_ns`: from measurement to
-    /// stamp, at most. O(1).
+    /// Evaluates the stamp of the newest reading, after a drain at `now_ns`. `latency_ns`: longest time from
+    /// measurement to stamp. O(1).
     void drained(std::int64_t newest_ns, std::int64_t now_ns, std::int64_t latency_ns) noexcept;
 
-    /// A drain at `now_ns` after which no sample was assembled.
+    /// Registers a drain at `now_ns` after which no sample was assembled.
     void drained(std::int64_t now_ns) noexcept { drained_ns_ = now_ns; }
 
-    /// What is to be added to stamps so that they are on the clock of the ticks, a multiple of the period.
+    /// Correction of the stamps to the clock of the ticks; a multiple of the period.
     std::int64_t correction_ns() const noexcept { return correction_ns_; }
 
   private:
@@ -36,29 +36,31 @@ class ArrivalClock {
     bool started_ = false;
 };
 
-/// What a port did so far.
+/// Statistics of a port since its construction.
 struct PortCounters {
     std::uint64_t received = 0;                ///< frames
-    std::size_t most_in_tick = 0;              ///< frames of one tick
-    std::uint64_t overfull_ticks = 0;          ///< that left frames for the next
-    std::uint64_t refused = 0;                 ///< frames of ours that were not sent
-    std::uint64_t incomplete = 0;              ///< ticks for which no sample had become complete
-    std::uint64_t invalid = 0;                 ///< ticks whose sample's positions could not be believed
-    std::uint64_t held = 0;                    ///< ticks with a joint whose frame was missing
-    std::uint64_t clock_jumps = 0;             ///< corrections of the bus' clock that were begun
-    hal::Reason last_reason = hal::Reason::ok; ///< of those
-    int last_joint = hal::unused_joint;        ///< that it is about
+    std::size_t most_in_tick = 0;              ///< frames in one tick, maximum
+    std::uint64_t overfull_ticks = 0;          ///< ticks that left frames for the next one
+    std::uint64_t refused = 0;                 ///< own frames that were not sent
+    std::uint64_t incomplete = 0;              ///< ticks for which no sample was complete
+    std::uint64_t invalid = 0;                 ///< ticks with a sample whose positions were invalid
+    std::uint64_t held = 0;                    ///< ticks with at least one joint whose frame was missing
+    std::uint64_t clock_jumps = 0;             ///< corrections of the bus' clock
+    hal::Reason last_reason = hal::Reason::ok; ///< of the last invalid sample
+    int last_joint = hal::unused_joint;        ///< joint of the last invalid sample
 };
 
-/// The loop's side of a bus: frames in, the sample of a tick; torques out, as frames.
+/// The loop's interface to a bus: receives frames and provides one sample per tick; sends torques as frames.
 class LoopPort {
   public:
-    /// Frames that one tick reads, at most: a full bus of 1 Mbit/s carries some 20 in a millisecond.
+    /// Maximum number of frames read in one tick. A full bus of 1 Mbit/s carries about 20 frames in a
+    /// millisecond.
     static constexpr std::size_t frames_per_tick = 256;
 
     LoopPort(const BusDescription& description, double loop_period_s);
 
-    /// Takes what has arrived, up to that bound; asks the sensor for what it has to tell before it is of use.
+    /// Receives the frames that have arrived, up to `frames_per_tick`. Requests from the sensor the data that
+    /// it must send before it can be used.
     template <hal::Bus B>
     void receive(B& bus) {
         moment_.reset();
@@ -77,21 +79,23 @@ class LoopPort {
         }
     }
 
-    /// The measurements for the tick that was due at `tick_ns`; refers to this port. Call it once per tick: a
-    /// `tick_ns` that is off by more than half a period from the one before shows that the clock of both was
-    /// set, and the measurements go on in the time from before. A joint is missing in it whose value is held
-    /// from the reading that the sample before had. Devices are returning while they qualify, or while their
-    /// clock is not believed or corrected (hal::Reason).
+    /// Returns the measurements for the tick that was due at `tick_ns`. The result refers to this port. Call
+    /// it once per tick.
+    ///
+    /// If `tick_ns` differs from the expected time by more than half a period, the clock was set. The
+    /// measurements then continue on the previous time scale. A joint is `missing` if its value is held from
+    /// the previous sample's reading. Devices are `returning` while they qualify, or while their clock is
+    /// invalid or being corrected (hal::Reason).
     LoopInput sense(std::int64_t tick_ns, std::int64_t now_ns);
 
-    /// Sends a command, which is kept as the torque of the next tick where the bus has no measured one.
+    /// Sends a command. It also serves as the torque of the next tick if the bus does not measure torques.
     template <hal::Bus B>
     void send(B& bus, const JointVector& torque) {
         command_ = torque;
         offer(bus, commands_.encode({torque.data(), static_cast<std::size_t>(torque.size())}));
     }
 
-    /// Ticks between a measurement and the tick that gets it.
+    /// Number of ticks from a measurement to the tick that receives it.
     int delay_ticks() const noexcept { return delay_ticks_; }
     const PortCounters& counters() const noexcept { return counters_; }
 
@@ -114,18 +118,18 @@ class LoopPort {
     int delay_ticks_;
     std::int64_t period_ns_, latency_ns_;
     std::optional<std::int64_t> next_tick_ns_;
-    std::int64_t set_ns_ = 0; ///< by how much the ticks' clock was set since the first
-    int ticks_across_ = 0;    ///< to come, whose instant is not clearly after that
+    std::int64_t set_ns_ = 0; ///< sum of all steps of the ticks' clock
+    int ticks_across_ = 0;    ///< remaining ticks whose sample time may precede the clock's step
     ArrivalClock clock_;
     std::unique_ptr<BusArm> arm_;
     TorqueFrames commands_;
     std::array<hal::Frame, frames_per_tick> room_{};
     std::optional<std::int64_t> moment_;
-    bool arrived_ = false; ///< frames, in the last drain
+    bool arrived_ = false; ///< whether the last drain received frames
     bool bus_lost_ = false;
     JointVector position_, torque_, command_;
     std::vector<bool> missing_;
-    std::vector<std::int64_t> newest_ns_; ///< reading of each joint at the sample before
+    std::vector<std::int64_t> newest_ns_; ///< reading of each joint at the previous sample
     std::int64_t next_request_ns_;
     PortCounters counters_;
 };

@@ -9,7 +9,7 @@
 
 namespace dfdyn::tools {
 
-/// Who decides which frames are lost: the same seed decides alike.
+/// Decides at random which frames are lost, reproducibly for one seed.
 class Losses {
   public:
     explicit Losses(std::uint64_t seed) {
@@ -18,7 +18,8 @@ class Losses {
         engine_.seed(sequence);
     }
 
-    /// Whether the next one is lost, of which `share` are. Draws a number only where both can be.
+    /// Returns true if the next frame is lost, with probability `share`. Draws a random number only if 0 <
+    /// share < 1.
     bool next(double share) noexcept {
         constexpr double step = 0x1p-53;
         return share > 0 && step * static_cast<double>(engine_() >> 11U) < share;
@@ -28,8 +29,8 @@ class Losses {
     std::mt19937_64 engine_;
 };
 
-/// The devices' end of a bus that loses frames, of both directions, as a scenario's faults say (hal::Bus).
-/// Who sends a frame that is lost does not know.
+/// The devices' end of a bus that loses frames in both directions, according to a scenario's faults
+/// (hal::Bus). The sender of a lost frame does not notice the loss.
 template <hal::Bus B>
 class LossyBus {
   public:

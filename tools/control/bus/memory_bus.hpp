@@ -9,12 +9,12 @@
 
 namespace dfdyn::tools {
 
-/// One end of a wire within the program, on a clock that is told the time (hal::Bus). What is sent on one
-/// end waits at the other, stamped by the other's wall clock; when it is read, its stamp moves onto the clock
-/// of `now_ns`, as those of hal::SocketCanBus do.
+/// One end of a simulated wire within the program, with a simulated clock (hal::Bus). A frame sent at one end
+/// waits at the other, with a stamp of that end's wall clock. When it is read, its stamp is converted to the
+/// clock of `now_ns`, as in hal::SocketCanBus.
 class MemoryBus {
   public:
-    /// Joins two ends; both must outlive their use.
+    /// Connects two ends. Both must outlive their use.
     static void join(MemoryBus& one, MemoryBus& other) noexcept {
         one.other_ = &other;
         other.other_ = &one;
@@ -22,7 +22,7 @@ class MemoryBus {
 
     void set_time(std::int64_t now_ns) noexcept { now_ns_ = now_ns; }
 
-    /// By how much the wall clock is ahead of that time.
+    /// Sets the lead of the wall clock over the simulated clock.
     void set_wall_clock(std::int64_t ahead_ns) noexcept { ahead_ns_ = ahead_ns; }
 
     std::span<const hal::Frame> drain(std::span<hal::Frame> into) noexcept {

@@ -10,16 +10,16 @@
 
 namespace dfdyn::tools {
 
-/// The devices' side of a bus: readings out, as the frames of the description's devices; torque commands in.
-/// A joint drive does not keep a command for longer than `command_timeout_ns`: then its torque is zero.
+/// The devices' end of a bus: sends readings as the frames of the description's devices and receives torque
+/// commands. A joint drive sets its torque to zero if no command arrives for `command_timeout_ns`.
 class PlantPort {
   public:
     static constexpr std::int64_t command_timeout_ns = 20'000'000;
 
-    /// `torque_sensor`: what a current is, for drives that measure currents.
+    /// `torque_sensor`: conversion from torque to current, for drives that measure currents.
     PlantPort(const BusDescription& description, TorqueSensorModel torque_sensor);
 
-    /// Takes the commands that have arrived, and answers requests; at most `room_.size()` frames.
+    /// Receives commands and answers requests; at most `room_.size()` frames.
     template <hal::Bus B>
     void receive(B& bus) {
         for (const hal::Frame& frame : bus.drain(room_)) {
@@ -30,7 +30,8 @@ class PlantPort {
         }
     }
 
-    /// Sends one reading of every sensor; a SYNC first where drives wait for it, heartbeats when due.
+    /// Sends one reading of every sensor. Sends a SYNC before it if drives wait for one, and heartbeats when
+    /// they are due.
     template <hal::Bus B>
     void send(B& bus, SimulatedPlant& plant) {
         if (const std::optional<hal::Frame> sync = devices_.sync()) {
@@ -48,11 +49,11 @@ class PlantPort {
         }
     }
 
-    /// What the drives do now, N·m.
+    /// Returns the current torque of the drives, N·m.
     const JointVector& torque(std::int64_t now_ns);
 
-    std::uint64_t commands() const noexcept { return commands_; } ///< frames taken
-    std::uint64_t timeouts() const noexcept { return timeouts_; } ///< times the torque went to zero
+    std::uint64_t commands() const noexcept { return commands_; } ///< frames received
+    std::uint64_t timeouts() const noexcept { return timeouts_; } ///< times a torque was set to zero
     std::uint64_t refused() const noexcept { return refused_; }   ///< frames not sent
 
   private:
@@ -75,7 +76,7 @@ class PlantPort {
     DeviceFrames devices_;
     TorqueFrames torques_;
     bool has_sensor_;
-    bool currents_; ///< are what the drives measure
+    bool currents_; ///< whether the drives measure currents
     TorqueSensorModel torque_sensor_;
     std::array<hal::Frame, 256> room_{};
     JointVector torque_;

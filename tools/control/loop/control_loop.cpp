@@ -11,11 +11,11 @@ namespace {
 
 constexpr std::size_t most_actions = 64;
 
-/// A position that is no number is none.
+/// A position with a value that is not finite counts as missing.
 bool has_position(const LoopInput& input) { return input.position != nullptr && input.position->allFinite(); }
 
-/// Whether what the feedback and the observer gave last is not to be trusted: something held the arm, or a
-/// reading was wrong.
+/// Returns whether the last output of feedback and observer is unreliable because something blocked the arm
+/// or a reading was wrong.
 bool opposed(StopCause cause, const std::vector<TakenAction>& actions) {
     const bool pushed = cause == StopCause::finding && !actions.empty() &&
                         (actions.back().cause == Cause::contact || actions.back().cause == Cause::frozen);
@@ -49,7 +49,7 @@ ControlLoop::ControlLoop(LoopConfig config, FeedForward feed_forward, std::uniqu
     references_.resize(std::size_t{1} + static_cast<std::size_t>(config_.delay_ticks) + SampleClock::max_age);
     references_.front() = task_->next();
     commands_.resize(static_cast<std::size_t>(config_.delay_ticks) + 1);
-    actions_.reserve(most_actions + 1); // and the one that stops the loop
+    actions_.reserve(most_actions + 1); // including the one that stops the loop
 }
 
 const Reference& ControlLoop::measured_reference(int ago) const noexcept {
@@ -61,7 +61,7 @@ const JointVector& ControlLoop::tick(const LoopInput& input) {
     ++counters_.ticks;
     told_ = told_ || input.stop_requested;
     position_tick_ = has_position(input) ? counters_.ticks : position_tick_;
-    if (state() == LoopState::running) { // the reference goes on with the time
+    if (state() == LoopState::running) { // the reference advances with time, not with measurements
         ++tick_;
         references_[tick_ % references_.size()] = task_->next();
     }
@@ -131,7 +131,8 @@ void ControlLoop::follow() {
     limit();
     excess_ = forward + wanted - command_;
     feedback_torque_ = command_ - forward;
-    const bool full = excess_.isZero(0) && feedback_.regular(); // what the motion takes
+    // the command equals the torque of the motion
+    const bool full = excess_.isZero(0) && feedback_.regular();
     if (full) {
         feed_forward_.commanded(command_);
     }
@@ -167,7 +168,8 @@ void ControlLoop::act() {
 }
 
 const JointVector* ControlLoop::command_then() const noexcept {
-    const std::size_t ago = static_cast<std::size_t>(config_.delay_ticks) + 1; // held until the reading
+    // the command was held until the reading
+    const std::size_t ago = static_cast<std::size_t>(config_.delay_ticks) + 1;
     const JointVector* const then = tick_ >= ago ? &commands_[(tick_ - ago) % commands_.size()] : nullptr;
     return then != nullptr && then->size() > 0 ? then : nullptr;
 }
@@ -216,7 +218,7 @@ void ControlLoop::brake() {
     }
     for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
         const auto j = static_cast<std::size_t>(joint);
-        if (blind_[j] && damped(joint)) { // from where it is, after all
+        if (blind_[j] && damped(joint)) { // brakes from the present position because readings have returned
             begin_braking(joint);
         }
         blind_[j] = !damped(joint);
@@ -233,7 +235,7 @@ void ControlLoop::brake() {
 
 JointVector ControlLoop::holding_torque() {
     brake();
-    Reference where = braking_; // measured, where it is
+    Reference where = braking_; // reference at the measured position
     for (Eigen::Index joint = 0; joint < zero_.size(); ++joint) {
         where.position[joint] = damped(joint) ? feedback_.position()[joint] : where.position[joint];
     }
@@ -287,8 +289,7 @@ bool ControlLoop::done() const noexcept {
 void ControlLoop::limit() {
     const JointVector& most = config_.torque_limit;
     counters_.limited += (command_.array().abs() > most.array()).any() ? 1 : 0;
-    for (Eigen::Index joint = 0; joint < command_.size();
-         ++joint) { // a value that is no number moves nothing
+    for (Eigen::Index joint = 0; joint < command_.size(); ++joint) { // a command that is not finite becomes 0
         command_[joint] =
             std::isfinite(command_[joint]) ? std::clamp(command_[joint], -most[joint], most[joint]) : 0;
     }

@@ -12,59 +12,59 @@
 
 namespace dfdyn::tools {
 
-/// The torque that the reference takes: of the nominal rigid body, and of a learned model beside it, as
-/// dfdyn::FeedForward puts them together. What is learned changes by the torque limit in 0.05 s at most.
+/// Torque for the reference: that of the nominal rigid body plus that of a learned model, combined as in
+/// dfdyn::FeedForward. The learned part changes by at most the torque limit in 0.05 s.
 class FeedForward {
   public:
-    /// `learned`: none, or a model; `knot_ticks`: ticks of its sample period. `limit`: of each joint's
-    /// torque, N·m; `learned_limit`: of what is learned beside the nominal rigid body.
+    /// `learned`: an optional model; `knot_ticks`: ticks of its sample period. `limit`: of each joint's
+    /// torque, N·m; `learned_limit`: of the learned torque in addition to the nominal rigid body.
     FeedForward(const Robot& nominal, const JointVector& rotor_inertia,
                 std::optional<LearnedFeedForward> learned, double period_s, int knot_ticks,
                 const JointVector& limit, const JointVector& learned_limit);
 
-    /// Uses what is learned, or leaves it out; without a step in either case. It is learned in both.
+    /// Enables or disables the learned torque, without a step. Learning continues in both states.
     void enable_learned(bool on) noexcept;
 
-    /// The motion begins at `start`, at rest.
+    /// Begins the motion at `start`, at rest.
     void begin(std::int64_t time_ns, const Reference& start);
 
-    /// N·m, of this tick's reference; once per tick.
+    /// Computes the torque (N·m) of this tick's reference; once per tick.
     JointVector update(const Reference& reference);
 
-    /// What was commanded in this tick, N·m; after `update`.
+    /// Registers the command (N·m) of this tick; after `update`.
     void commanded(const JointVector& torque);
 
-    /// The newest measured position, and the torque that was in effect then; null for what is not known. Once
-    /// per tick.
+    /// Registers the newest measured position and the torque in effect at its time; null if unknown. Once per
+    /// tick.
     void measured(std::int64_t time_ns, const JointVector* position, const JointVector* torque);
 
-    /// The joints' own inertias in the posture of the last knot, kg·m²: diagonal of the nominal mass matrix.
+    /// Diagonal of the nominal mass matrix at the last knot's position, kg·m².
     const JointVector& inertia() const noexcept { return inertia_; }
 
-    /// What gravity takes at `position`, by the nominal rigid body.
+    /// Gravity torque at `position`, by the nominal rigid body.
     JointVector gravity(const JointVector& position);
 
-    /// What brakes the arm along `reference`, or holds it there, N·m: by the nominal rigid body, and of the
-    /// learned model's prediction at rest the share that it had when the motion ended. For a motion that has
-    /// ended: call it once per tick. The learned part is renewed every few calls, each of which does one
-    /// evaluation of the model at most; until the first it is that of the motion.
+    /// Computes the torque (N·m) that brakes the arm along `reference` or holds it there: the nominal rigid
+    /// body, plus the learned model's prediction at rest with its share at the end of the motion. Only after
+    /// a motion has ended; call it once per tick. The learned part is updated every few calls, with at most
+    /// one evaluation of the model per call. Until the first update it is that of the motion.
     JointVector holding(const Reference& reference);
 
-    /// The monitor's last verdict, once; null: none.
+    /// Returns the monitor's last verdict, once; null if there is none.
     const Verdict* take_verdict() { return learned_ ? learned_->take_verdict() : nullptr; }
 
-    /// What has been learned is to follow what is measured from now on.
+    /// Resets the learner's covariance, so that it quickly follows new measurements.
     void relearn() {
         if (learned_) {
             learned_->relearn();
         }
     }
 
-    /// Adds `torque` to the nominal torque for good, gradually (time constant `compensation_s`); at most as
-    /// much as what is learned may add. N·m, a value per joint.
+    /// Adds `torque` (N·m, one value per joint) to the nominal torque permanently, with time constant
+    /// `compensation_s`. Its limit is that of the learned torque.
     void compensate(std::span<const double> torque);
 
-    /// Share of the learned model in each joint's torque, 0 … 1.
+    /// Share of the learned model in each joint's torque, 0 to 1.
     JointVector learned_share() const;
     const LearnedFeedForward* learned() const { return learned_.get(); }
 
@@ -78,15 +78,15 @@ class FeedForward {
     ArmDynamics dynamics_;
     ArmDynamics::Configuration configuration_;
     int knot_ticks_;
-    JointVector cap_; ///< of what is learned, N·m
+    JointVector cap_; ///< limit of the learned torque, N·m
     double period_s_;
-    JointVector compensation_, wanted_compensation_; ///< N·m: present, in the end
+    JointVector compensation_, wanted_compensation_; ///< N·m: present and final value
     long tick_ = 0;
-    std::unique_ptr<LearnedFeedForward> learned_; ///< stays where it is: the core refers to it
+    std::unique_ptr<LearnedFeedForward> learned_; ///< on the heap, because the core refers to it
     std::optional<Core> core_;
     dfdyn::Reference<double, dynamic> reference_;
     JointVector inertia_;
-    JointVector held_learned_; ///< of `holding`: learned part, as of the last evaluation; empty before
+    JointVector held_learned_; ///< learned part of `holding` at the last evaluation; empty before
 };
 
 } // namespace dfdyn::tools

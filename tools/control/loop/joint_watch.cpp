@@ -33,7 +33,7 @@ bool JointWatch::must_have_moved(Eigen::Index joint) const noexcept {
     constexpr double braking_share = 0.125; // of that acceleration: a quarter of the torque limit
     const double acceleration = braking_share * config_.acceleration[joint];
     const double time_s = std::min(period_s_ * same_[static_cast<std::size_t>(joint)],
-                                   speed_[joint] / acceleration); // by then it may have stopped
+                                   speed_[joint] / acceleration); // it may have stopped after this time
     return time_s * (speed_[joint] - acceleration * time_s / 2) > 2 * quantum_[joint] + 4 * noise_bound_;
 }
 

@@ -8,33 +8,36 @@
 
 namespace dfdyn::tools {
 
-/// Looks for joints that do what they must not, from their readings, the reference and the commands:
-/// - overspeed: the speed of more than `speed_patience` readings in a row is beyond the limit.
-/// - torque_limit: the command was at its limit for more than `pressing_ticks`, within which the joint moved
-///   by less than a tenth of the following error.
-/// - frozen_encoder: the same reading, to the last bit, more than `frozen_patience` times in a row after the
-///   joint must have moved. It must have where it was too fast before to have stopped within two
-///   quantisation steps (the smallest step seen so far) and four noise bounds of the velocity's filter, at
-///   an eighth of `acceleration`. It also must have where the reference has since covered a sixteenth of the
-///   following error and eight quantisation steps. Where the speed shows it, the repeated readings are not
-///   used: see `repeated`.
+/// Detects abnormal behaviour of joints from their readings, the reference and the commands:
+/// - overspeed: the speed exceeds the limit in more than `speed_patience` successive readings.
+/// - torque_limit: the command is at its limit for more than `pressing_ticks`, while the joint moves by less
+///   than a tenth of the following error.
+/// - frozen_encoder: more than `frozen_patience` successive readings are bit-identical although the joint
+///   must have moved.
+///
+/// Two conditions show that a joint must have moved. First, its previous speed was too high to stop at an
+/// eighth of `acceleration` within two quantization steps (the smallest step so far) and four noise bounds of
+/// the velocity's filter. Second, the reference has since covered a sixteenth of the following error and
+/// eight quantization steps. If the speed is the evidence, the repeated readings are not used: see
+/// `repeated`.
+///
 /// O(joints) per tick; no heap after construction.
 class JointWatch {
   public:
     JointWatch(SafeStopConfig config, double period_s, double noise_bound);
 
-    /// Looks at a new reading, before the feedback takes it; `reference`: position at the same instant.
-    /// `missing`: joints without a reading, which are left out.
+    /// Evaluates a new reading before the feedback uses it; `reference`: position at the same time.
+    /// `missing`: joints without a reading, which are skipped.
     void read(const JointVector& position, const JointVector& reference, const PositionFeedback& feedback,
               const std::vector<bool>& missing);
 
-    /// Looks at the speed after the feedback took the reading, and at the command of the tick before.
+    /// Evaluates the speed after the feedback has used the reading, and the previous tick's command.
     void move(const PositionFeedback& feedback, const JointVector& command);
 
-    /// Joints whose last reading repeats where it cannot.
+    /// Joints whose last reading repeats although the joint must have moved.
     const std::vector<bool>& repeated() const noexcept { return repeated_; }
 
-    /// What was found, none where all is well. For the joint's number, from 0: see `joint`.
+    /// The detected cause, or none. For the joint's number (from 0) see `joint`.
     StopCause cause() const noexcept { return cause_; }
     Eigen::Index joint() const noexcept { return joint_; }
 
@@ -46,11 +49,11 @@ class JointWatch {
     SafeStopConfig config_;
     double period_s_, noise_bound_;
     bool started_ = false;
-    JointVector reading_, speed_;                     ///< where the reading last changed
-    JointVector lowest_, highest_;                    ///< reference since then
-    JointVector quantum_;                             ///< smallest step seen; 0 before the first
-    JointVector pressing_position_;                   ///< where the joint began to press
-    std::vector<int> same_, stuck_, fast_, pressing_; ///< readings or ticks in a row, per joint
+    JointVector reading_, speed_;                     ///< at the last change of the reading
+    JointVector lowest_, highest_;                    ///< range of the reference since then
+    JointVector quantum_;                             ///< smallest step so far; 0 before the first
+    JointVector pressing_position_;                   ///< position when the command reached its limit
+    std::vector<int> same_, stuck_, fast_, pressing_; ///< successive readings or ticks, per joint
     std::vector<bool> repeated_;
     StopCause cause_ = StopCause::none;
     Eigen::Index joint_ = 0;

@@ -26,8 +26,8 @@ void check_model(const TrainedModel& model, int joints, const std::string& sourc
     }
 }
 
-/// The model with less patience: an arm that has changed is to be learned at once. The share of what is
-/// learned is judged each second anyway, so that learning a push of half a second costs little.
+/// Returns the model with a shorter patience, so that a changed arm is learned quickly. The share of the
+/// learned torque is evaluated every second, so learning a contact of half a second has little influence.
 TrainedModel impatient(TrainedModel model) {
     constexpr double patience_s = 0.5;
     const int samples = static_cast<int>(std::ceil(patience_s / model.sample_period_s));
@@ -35,8 +35,8 @@ TrainedModel impatient(TrainedModel model) {
     return model;
 }
 
-/// What suffices to learn a sample in `ticks` slices, in each of which as much may be left over as a slice
-/// cannot use.
+/// Budget of one slice that suffices to learn a sample in `ticks` slices. Each slice may leave up to its
+/// largest indivisible step unused.
 Budget share_of(const Cost& cost, int ticks) {
     return {(cost.learn + cost.forget + ticks - 1) / ticks + cost.largest_step};
 }
@@ -100,7 +100,7 @@ void LearnedFeedForward::go_on() {
 }
 
 void LearnedFeedForward::take_over() {
-    if (learner_->advance(Budget::predict_only())) { // nothing is left to do
+    if (learner_->advance(Budget::predict_only())) { // no work is left
         learner_->copy_weights(weights_);
         in_progress_ = false;
     }

@@ -14,85 +14,86 @@
 
 namespace dfdyn::tools {
 
-/// What the learner did so far.
+/// Statistics of the learner.
 struct LearningCounters {
     std::uint64_t samples = 0; ///< offered
     std::uint64_t learned = 0;
-    std::uint64_t faults = 0;            ///< refused as faulty (dfdyn::is_fault)
-    Reason last_fault = Reason::ok;      ///< of them
-    std::uint64_t reference_unknown = 0; ///< references for which nothing was predicted
+    std::uint64_t faults = 0;            ///< rejected as faulty (dfdyn::is_fault)
+    Reason last_fault = Reason::ok;      ///< of the last rejected sample
+    std::uint64_t reference_unknown = 0; ///< references without a prediction
 };
 
-/// A learned model of the joints' torques as feed-forward. It learns from windows of measured positions, and
-/// is evaluated on a window of the reference's: two estimators of the same model, one that learns and one
-/// whose weights are always the first one's. So the command follows from what the arm is to do, free of the
-/// encoders' noise and lag, and what is learned from what it did.
+/// A learned model of the joint torques as feed-forward. It learns from windows of measured positions and is
+/// evaluated on a window of the reference. Two estimators of the same model are used: one learns, and the
+/// other always has the first one's weights. The command therefore depends on the reference, without the
+/// encoders' noise and delay, and the weights depend on the measured motion.
 ///
-/// Learning a sample is spread over the control ticks until the next one: each does at most its share. The
-/// host's counterpart of dfdyn::LearnedTorque (a dfdyn::TorqueLearner), for models of any size.
+/// The work for one sample is distributed over the control ticks until the next sample, with a bounded share
+/// per tick. This is the host's counterpart of dfdyn::LearnedTorque (a dfdyn::TorqueLearner), for models of
+/// any size.
 class LearnedFeedForward {
   public:
     using Scalar = double;
     static constexpr int outputs = dynamic;
 
-    /// `from_prior`: without the start that training computed. `ticks`: of control per sample. Throws
-    /// InputError, naming `source`, for a model that is not of `joints` joints and their torques, or needs
-    /// measured derivatives.
-    /// `monitor`: watches the learner; none without.
+    /// `from_prior`: ignores the initial weights from training. `ticks`: control ticks per sample. `monitor`:
+    /// monitors the learner; null for none. Throws InputError, naming `source`, for a model that does not
+    /// describe the torques of `joints` joints, or that needs measured derivatives.
     LearnedFeedForward(const TrainedModel& model, bool from_prior, int joints, int ticks,
                        const std::string& source, const MonitorSetup* monitor = nullptr);
 
     Extent<dynamic> output_count() const noexcept { return {static_cast<int>(prediction_.size())}; }
 
-    /// The arm rests at `position` (a value per joint, rad), and has long since; `time_ns`: of now. Restarts
-    /// both windows.
+    /// Restarts both windows for an arm that has been at rest at `position` (one value per joint, rad) for a
+    /// long time; `time_ns`: the present time.
     void begin(std::int64_t time_ns, const double* position);
 
-    /// Begins to learn what was measured at one instant; `torque`: null where only the position was.
+    /// Begins to learn the measurement at one time; `torque`: null if only the position was measured.
     void learn(std::int64_t time_ns, const double* position, const double* torque);
 
-    /// Goes on learning it; once in each control tick.
+    /// Continues the learning; once in each control tick.
     void go_on();
 
-    /// What torque the reference takes at `time_ns`, a sample period after the last: true and N·m, or false
-    /// where the model does not know.
+    /// Predicts the torque (N·m) of the reference at `time_ns`, one sample period after the previous call.
+    /// Returns false if the model has no valid prediction.
     bool predict(std::int64_t time_ns, const double* reference, double* torque);
 
-    /// What torque holds the arm at rest at `position`, once the motion has ended: each call takes one of the
-    /// window's samples; the call that completes it writes `torque`, N·m, of the position at the first of
-    /// these calls, and returns true where the model knows it. Then the next window begins.
+    /// Predicts the torque (N·m) that holds the arm at rest at `position`, after the motion has ended. Each
+    /// call adds one sample to the window. The call that completes the window writes `torque` for the
+    /// position of the first of these calls, and returns true if the prediction is valid. Then the next
+    /// window begins.
     bool rest(const JointVector& position, JointVector& torque);
 
-    /// What has been learned, to go on from at another start, in the firmware's format.
+    /// Returns the learned state in the firmware's format, to continue after a restart.
     std::vector<std::byte> snapshot() const { return learner_->snapshot(); }
-    /// Back to that; false, and nothing changed, when it is not one of this model.
+    /// Restores a snapshot. Returns false, without any change, if it does not match this model.
     bool restore(std::span<const std::byte> snapshot);
 
-    /// Multiply-adds of a control tick, at most.
+    /// Maximum number of multiply-adds in a control tick.
     std::int64_t tick_cost() const;
     const LearningCounters& counters() const noexcept { return counters_; }
-    /// The monitor's last verdict, once; null: none.
+    /// Returns the monitor's last verdict, once; null if there is none.
     const Verdict* take_verdict() { return monitor_ != nullptr ? monitor_->take_verdict() : nullptr; }
-    /// The arm has changed: see HostEstimator::relearn.
+    /// Resets the covariance after a change of the arm: see HostEstimator::relearn.
     void relearn() { learner_->relearn(); }
-    /// What the monitor found so far, with times since `begin`.
+    /// Returns the monitor's findings so far, with times since `begin`.
     RecordedChanges changes() const;
 
   private:
     void take_over();
-    /// Of the follower's columns; false where it is beyond the model's bounds.
+    /// Predicts from the second estimator's columns; false if they exceed the model's bounds.
     bool take_prediction(double* torque);
     std::span<const double> of_joints(const double* values) const { return {values, prediction_.size()}; }
 
     std::int64_t sample_period_ns_;
     int lags_;
     std::unique_ptr<HostEstimator> learner_, follower_;
-    MonitoredEstimator* monitor_ = nullptr; ///< the learner, if it is watched
-    Budget share_;                          ///< of a control tick
+    MonitoredEstimator* monitor_ = nullptr; ///< the learner, if it is monitored
+    Budget share_;                          ///< budget of a control tick
     std::int64_t begin_ns_ = 0;
-    bool in_progress_ = false; ///< the learner knows more than `weights_`
+    bool in_progress_ = false; ///< the learner has weights that are newer than `weights_`
     std::vector<float> weights_, prediction_;
-    int rest_lag_ = 0; ///< samples of the window that `rest` fills
+    int rest_lag_ = 0; ///< samples already added to the window by `rest`
     JointVector rest_position_;
     LearningCounters counters_;
 };

@@ -78,7 +78,7 @@ void PositionFeedback::observe(int ticks_ago, const JointVector& position, const
         const bool next = held_[j] == 0 || tick == newest_tick_[j] + 1;
         const bool believed = plausible(joint, tick, position[joint], reference);
         regular_[j] = next && believed;
-        held_[j] = believed ? held_[j] : 0; // the velocity goes on until there are two readings
+        held_[j] = believed ? held_[j] : 0; // the velocity is kept until there are two readings
         push(joint, tick, position[joint], reference.position[joint]);
         observed_tick_[j] = tick_;
         reading_error_[joint] = reference.position[joint] - position[joint];

@@ -14,25 +14,26 @@ struct FeedbackGains {
     JointVector velocity; ///< N·m·s/rad
 };
 
-/// What a joint can do; a reading beyond it is not that of a regular tick. Empty: not known.
+/// Physical bounds of a joint. A reading beyond them does not belong to a regular tick. Empty: unknown.
 struct MotionBounds {
     JointVector speed;        ///< rad/s, per joint
     JointVector acceleration; ///< rad/s², per joint
 };
 
-/// Proportional and derivative feedback of the joints' positions, tick by tick. Every reading has its own
-/// tick. The velocity is that of the same readings at their own instants, by the adaptive window
-/// (dfdyn::AdaptiveWindow: the longest line, of at most `velocity_window` readings, that misses none of them
-/// by more than `noise_bound`), so the velocity over a gap is that over the gap. The reference's velocity is
-/// taken over the same window: compared with that of now, the readings' delay would act as an inertia.
+/// Proportional and derivative feedback of the joint positions, tick by tick. Every reading belongs to a
+/// tick. The velocity is estimated by the adaptive window (dfdyn::AdaptiveWindow: the longest line through at
+/// most `velocity_window` readings that deviates from none by more than `noise_bound`), with the readings'
+/// own times. The velocity across a gap is therefore the mean velocity over the gap. The reference's velocity
+/// is computed over the same window; with the present reference velocity, the readings' delay would act as an
+/// inertia.
 ///
-/// A joint without a reading of this tick coasts on its tracking error: the arm goes on along the reference
-/// with the error that it had, and the error's rate, bounded by the joint's speed, falls linearly to 0
-/// within `fade_ticks`. A reading of an earlier tick is extrapolated in the same way. So the feedback's
-/// torque stays where it was, and does not follow from the age of a reading. A reading where no acceleration
-/// within the bounds can have brought the joint restarts its window; the velocity is kept until the next.
+/// A joint without a reading in this tick is extrapolated by its tracking error: it follows the reference
+/// with its last error. The error's rate, limited to the joint's speed, decreases linearly to 0 within
+/// `fade_ticks`. A reading of an earlier tick is extrapolated in the same way. The feedback's torque
+/// therefore stays continuous and does not depend on a reading's age. A reading that requires an acceleration
+/// beyond the bounds restarts the joint's window; the velocity is kept until the next reading.
 ///
-/// No heap after construction; O(velocity_window²) per joint and reading at most.
+/// No heap after construction; at most O(velocity_window²) per joint and reading.
 class PositionFeedback {
   public:
     static constexpr int fade_ticks = 10;
@@ -40,35 +41,35 @@ class PositionFeedback {
     PositionFeedback(FeedbackGains gains, const DerivativeModel& filter, double period_s,
                      MotionBounds bounds = {});
 
-    /// The next tick begins.
+    /// Begins the next tick.
     void advance() noexcept { ++tick_; }
 
-    /// Takes the reading of `ticks_ago` ticks before this one, at least 0, and the reference of that tick.
-    /// `missing`: joints without a reading; null for none. A joint's reading that is not later than its last
-    /// one changes nothing.
+    /// Adds the reading of the tick `ticks_ago` (at least 0) before this one, and the reference of that tick.
+    /// `missing`: joints without a reading; null for none. A reading that is not later than the joint's last
+    /// one is ignored.
     void observe(int ticks_ago, const JointVector& position, const Reference& reference,
                  const std::vector<bool>* missing = nullptr);
 
-    /// N·m.
+    /// Returns the feedback torque, N·m.
     JointVector torque() const;
 
-    /// Reference minus position at this tick, rad: measured, or coasted on.
+    /// Reference minus position at this tick, rad: measured or extrapolated.
     JointVector error() const;
-    /// How fast that changes, rad/s.
+    /// Rate of the error, rad/s.
     JointVector error_rate() const;
 
-    /// Last readings; empty before the first of all joints.
+    /// Last readings; empty until every joint has one.
     const JointVector& position() const noexcept { return position_; }
-    /// At the last readings, rad/s.
+    /// Velocity at the last readings, rad/s.
     const JointVector& velocity() const noexcept { return velocity_; }
     /// Ticks since the last reading of `joint`.
     std::int64_t age(Eigen::Index joint) const noexcept {
         return tick_ - newest_tick_[static_cast<std::size_t>(joint)];
     }
-    /// Whether this tick brought a reading of every joint.
+    /// Returns whether every joint has a reading of this tick.
     bool complete() const noexcept;
-    /// Whether it did, each of the tick after the joint's last one, and where the joint's acceleration can
-    /// have brought it.
+    /// Returns whether the tick is complete, each reading follows its joint's previous one by one tick, and
+    /// all accelerations are within the bounds.
     bool regular() const noexcept;
 
     const FeedbackGains& gains() const noexcept { return gains_; }
@@ -77,10 +78,10 @@ class PositionFeedback {
     void push(Eigen::Index joint, std::int64_t tick, double position, double reference);
     bool plausible(Eigen::Index joint, std::int64_t tick, double position,
                    const Reference& reference) const noexcept;
-    /// Error and its rate at `tick`, from the last reading of a joint.
+    /// Error and its rate at `tick`, extrapolated from a joint's last reading.
     double error_at(Eigen::Index joint, std::int64_t tick) const noexcept;
     double rate_at(Eigen::Index joint, std::int64_t tick) const noexcept;
-    /// At the last reading, at most the joint's speed.
+    /// Error rate at the last reading, limited to the joint's speed.
     double bounded_rate(Eigen::Index joint) const noexcept;
 
     FeedbackGains gains_;
@@ -89,16 +90,17 @@ class PositionFeedback {
     MotionBounds bounds_;
     std::int64_t tick_ = 0;
     int window_;
-    std::vector<std::int64_t> reading_tick_;   ///< window_ per joint, newest first
-    std::vector<double> reading_;              ///< likewise
-    std::vector<double> reference_;            ///< of the same instants
-    std::vector<double> time_;                 ///< of one joint's readings, relative to the newest
-    std::vector<int> held_;                    ///< readings, per joint
-    std::vector<std::int64_t> newest_tick_;    ///< of the last reading, per joint
-    std::vector<std::int64_t> observed_tick_;  ///< that brought it
-    std::vector<bool> regular_;                ///< whether the last reading followed on the one before
+    std::vector<std::int64_t> reading_tick_;  ///< window_ per joint, newest first
+    std::vector<double> reading_;             ///< window_ per joint, newest first
+    std::vector<double> reference_;           ///< at the times of the readings
+    std::vector<double> time_;                ///< of one joint's readings, relative to the newest
+    std::vector<int> held_;                   ///< number of readings, per joint
+    std::vector<std::int64_t> newest_tick_;   ///< of the last reading, per joint
+    std::vector<std::int64_t> observed_tick_; ///< tick in which it was added
+    std::vector<bool> regular_;               ///< whether the last reading directly followed the previous one
     JointVector newest_, position_, velocity_; ///< at the last readings
-    JointVector reading_error_, reading_rate_; ///< reference minus reading, and its rate, at them
+    /// reference minus reading and its rate, at the last readings
+    JointVector reading_error_, reading_rate_;
 };
 
 } // namespace dfdyn::tools

@@ -79,7 +79,7 @@ StopCause SafeStop::judge(const TickHealth& health, const JointVector& error) co
 LoopState SafeStop::tick(const TickHealth& health, const JointVector& error) {
     count(health);
     if (state_ == LoopState::waiting && !health.position_valid && !health.stop_requested) {
-        return state_; // a bus that is not up yet is waited for
+        return state_; // waits for a bus that is not up yet
     }
     if (state_ == LoopState::stopping) {
         state_ = ++ramped_ < config_.ramp_ticks ? state_ : LoopState::stopped;
@@ -89,7 +89,7 @@ LoopState SafeStop::tick(const TickHealth& health, const JointVector& error) {
         if (cause_ == StopCause::none) {
             state_ = LoopState::running;
         } else {
-            // who has not moved anything yet has nothing to ramp down
+            // a loop that has not moved the arm has no torque to ramp down
             state_ = state_ == LoopState::waiting ? LoopState::stopped : LoopState::stopping;
         }
     }

@@ -7,71 +7,70 @@
 
 namespace dfdyn::tools {
 
-/// What the loop is doing; it only ever goes down this list.
+/// State of the loop. Transitions go down this list only.
 enum class LoopState : std::uint8_t {
-    waiting,  ///< for the first positions; no torque
+    waiting,  ///< waits for the first positions; no torque
     running,  ///< follows the reference
-    stopping, ///< damps the arm; its torque goes over to that which holds the arm against gravity
-    stopped,  ///< holds and damps
+    stopping, ///< damps the arm; the torque changes to the one that holds the arm against gravity
+    stopped,  ///< holds and damps the arm
 };
 
-/// Why it stopped, or is stopping.
+/// Reason for the stop.
 enum class StopCause : std::uint8_t {
     none,
-    requested,        ///< a signal, or the motion's end
-    no_position,      ///< none that can be believed, for longer than the patience
-    missed_deadlines, ///< as many in a row as the patience
-    following_error,  ///< a joint is further from its reference than allowed: blocked, or not ours to move
-    bus_lost,         ///< the bus is off, or its interface down
+    requested,        ///< a signal, or the end of the motion
+    no_position,      ///< no valid position for longer than the patience
+    missed_deadlines, ///< more successive missed deadlines than the patience
+    following_error,  ///< a joint is too far from its reference: blocked, or controlled by something else
+    bus_lost,         ///< the bus is off, or its interface is down
     overspeed,        ///< a joint is faster than allowed
-    torque_limit,     ///< a joint pressed at its torque limit, and did not move
-    frozen_encoder,   ///< a joint's reading repeats while the joint must have moved
-    finding,          ///< the learner's monitor named a change whose action is to stop
+    torque_limit,     ///< a joint was at its torque limit and did not move
+    frozen_encoder,   ///< a joint's reading repeats although the joint must have moved
+    finding,          ///< the learner's monitor identified a change whose action is `stop`
 };
 
 const char* name(LoopState state) noexcept;
 const char* name(StopCause cause) noexcept;
 
-/// What holds an arm that has stopped.
+/// What holds the arm after a stop.
 enum class StopMode : std::uint8_t {
     hold, ///< torque, until the program ends
     limp, ///< torque until the brakes had time to close, then none
 };
 
-/// Limits and patience; see StopCause. An empty vector is no limit. Ticks are those of the loop.
+/// Limits and patience; see StopCause. An empty vector means no limit. Ticks are those of the loop.
 struct SafeStopConfig {
-    int position_patience = 5;   ///< lost cycles in a row that are coasted over, at most
-    int return_patience = 20;    ///< beyond these, ticks in a row whose devices send, and still qualify
-    int deadline_patience = 10;  ///< deadlines missed in a row, at most
-    int speed_patience = 2;      ///< readings in a row beyond the speed limit, at most
-    int frozen_patience = 4;     ///< readings in a row that repeat where they cannot, at most
-    int pressing_ticks = 250;    ///< at the torque limit without moving, at most
-    JointVector following_error; ///< rad (prismatic: m); largest while running, and where the loop starts
+    int position_patience = 5;   ///< most successive lost cycles that are bridged
+    int return_patience = 20;    ///< additional successive ticks while devices send and still qualify
+    int deadline_patience = 10;  ///< most successive missed deadlines
+    int speed_patience = 2;      ///< most successive readings above the speed limit
+    int frozen_patience = 4;     ///< most successive identical readings of a joint that must have moved
+    int pressing_ticks = 250;    ///< most ticks at the torque limit without motion
+    JointVector following_error; ///< rad (prismatic: m); largest value while running and at the start
     JointVector speed_limit;     ///< rad/s, m/s
     JointVector torque_limit;    ///< N·m, N
-    JointVector acceleration;    ///< rad/s², m/s²: twice what the torque limit causes
-    int ramp_ticks = 200;        ///< of `stopping`
+    JointVector acceleration;    ///< rad/s², m/s²: acceleration at twice the torque limit
+    int ramp_ticks = 200;        ///< duration of `stopping`
     int brake_ticks = 200;       ///< from the request of the brakes until they have closed
     StopMode mode = StopMode::hold;
 };
 
-/// What one tick knows about the loop's health.
+/// Health of the loop at one tick.
 struct TickHealth {
     bool position_valid = false;
     bool deadline_missed = false;
     bool bus_lost = false;
     bool stop_requested = false;
-    bool returning = false;            ///< no position, from devices that send and still qualify
-    StopCause joint = StopCause::none; ///< what a joint does that it must not: see JointWatch
+    bool returning = false;            ///< no position yet, from devices that send and still qualify
+    StopCause joint = StopCause::none; ///< abnormal behaviour of a joint: see JointWatch
 };
 
-/// The state machine of a loop that must end well. The first cause wins; nothing but a new loop leaves
-/// `stopped`.
+/// State machine for a safe stop. The first cause is kept. A stopped loop cannot be restarted.
 class SafeStop {
   public:
     explicit SafeStop(SafeStopConfig config);
 
-    /// One tick; `error`: reference minus position, rad (looked at only where there has been a position).
+    /// Evaluates one tick; `error`: reference minus position, rad (ignored until there has been a position).
     LoopState tick(const TickHealth& health, const JointVector& error);
 
     LoopState state() const noexcept { return state_; }
@@ -84,7 +83,7 @@ class SafeStop {
     SafeStopConfig config_;
     LoopState state_ = LoopState::waiting;
     StopCause cause_ = StopCause::none;
-    int lost_ = 0, returning_ = 0, missed_ = 0; ///< ticks in a row
+    int lost_ = 0, returning_ = 0, missed_ = 0; ///< successive ticks
     int ramped_ = 0;
 };
 

@@ -8,7 +8,7 @@ namespace dfdyn::tools {
 
 int SampleClock::ticks_from_expected(std::int64_t stamp_ns) const noexcept {
     constexpr double same_tick = 0.6;
-    constexpr double farthest = 1e9; // more ticks than any clock's jump makes a difference for
+    constexpr double farthest = 1e9; // ticks; beyond any relevant jump of a clock
     const double exact = (static_cast<double>(stamp_ns) - static_cast<double>(expected_ns())) /
                          static_cast<double>(period_ns_);
     if (std::abs(exact - lateness_) <= same_tick) {
@@ -19,7 +19,8 @@ int SampleClock::ticks_from_expected(std::int64_t stamp_ns) const noexcept {
 
 bool SampleClock::follows(int lateness) const noexcept {
     const bool no_older = lateness >= lateness_;
-    const bool explained = lateness_ - lateness <= silent_; // the silent ticks had to wait for it
+    // the late sample explains the ticks without a sample
+    const bool explained = lateness_ - lateness <= silent_;
     return lateness <= 0 && lateness >= -max_age && (no_older || explained);
 }
 
@@ -37,7 +38,7 @@ std::optional<int> SampleClock::contradiction(std::int64_t stamp_ns, int latenes
 }
 
 std::optional<int> SampleClock::place(std::int64_t stamp_ns) noexcept {
-    silent_ = std::max(0, silent_ - 1); // this tick is not silent
+    silent_ = std::max(0, silent_ - 1); // this tick has a sample
     if (!started_) {
         started_ = true;
         base_ns_ = stamp_ns - tick_ * period_ns_;

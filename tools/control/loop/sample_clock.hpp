@@ -6,16 +6,17 @@
 
 namespace dfdyn::tools {
 
-/// Places stamped samples on the grid of a loop's ticks. The first sample fixes the phase; from then on one
-/// sample is expected per tick, and the tick count decides, not the stamps:
-/// - The stamp of the expected tick: the sample is used.
-/// - An older stamp, by at most as many ticks as brought no sample since the last one, and by at most
-///   `max_age`: the sample is used as a measurement of its own, earlier instant. So are the samples that
-///   follow with the same age, and those with which the age falls again.
-/// - A later stamp, by at most `max_age`: the sample of a tick to come, which a late tick finds.
-/// - Any other stamp contradicts the count: the sample is not used. After `adopt_after` samples in a row
-///   with the same contradiction the clock has jumped: from then on theirs are the expected stamps.
-/// Stamps within 0.6 of a period of the last placed one count as the same tick (hysteresis against jitter).
+/// Assigns stamped samples to the ticks of a loop. The first sample determines the phase. After it one sample
+/// per tick is expected, and the tick count decides:
+/// - A sample with the stamp of the expected tick is used.
+/// - A sample with an older stamp is used as a measurement of its own, earlier time. Its age is limited to
+///   `max_age` and to the number of ticks without a sample since the previous one. Following samples with the
+///   same or a decreasing age are used in the same way.
+/// - A sample with a later stamp, by at most `max_age`, belongs to a future tick, and a late tick finds it.
+/// - Any other stamp contradicts the count, and the sample is not used. After `adopt_after` successive
+///   samples with the same contradiction, the clock has jumped, and their stamps become the expected ones.
+///
+/// Stamps within 0.6 of a period of the last assigned one count as the same tick (hysteresis against jitter).
 class SampleClock {
   public:
     static constexpr int max_age = 10;    ///< ticks
@@ -23,18 +24,18 @@ class SampleClock {
 
     explicit SampleClock(std::int64_t period_ns) noexcept : period_ns_(period_ns) {}
 
-    /// The next tick begins.
+    /// Begins the next tick.
     void advance() noexcept {
         ++tick_;
         ++silent_;
     }
 
-    /// Ticks from the expected instant to the sample's (0: expected, negative: older, positive: of a tick
-    /// to come), or nothing for a stamp that is not believed. Call at most once per tick. O(1).
+    /// Returns the number of ticks from the expected time to the sample's (0: expected, negative: older,
+    /// positive: of a future tick), or nothing for an invalid stamp. Call at most once per tick. O(1).
     std::optional<int> place(std::int64_t stamp_ns) noexcept;
 
-    /// Instant at which the sample of this tick should have been measured, on the clock of the stamps; of
-    /// no meaning before the first sample.
+    /// Expected measurement time of this tick's sample, on the clock of the stamps; undefined before the
+    /// first sample.
     std::int64_t expected_ns() const noexcept { return base_ns_ + tick_ * period_ns_; }
 
   private:
@@ -46,9 +47,9 @@ class SampleClock {
     std::int64_t tick_ = 0;
     std::int64_t base_ns_ = 0; ///< expected stamp of tick 0
     bool started_ = false;
-    int lateness_ = 0;  ///< of the last sample that was used; at most 0
-    int silent_ = 0;    ///< ticks without any sample since that one
-    int candidate_ = 0; ///< lateness of the last `run_` samples, which contradict
+    int lateness_ = 0;  ///< of the last sample that was used; not positive
+    int silent_ = 0;    ///< ticks without a sample since that one
+    int candidate_ = 0; ///< lateness of the last `run_` contradicting samples
     int run_ = 0;
 };
 

@@ -8,7 +8,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Takes the larger of both where there already is one.
+/// Raises each peak to `value` if that is larger.
 void raise(JointVector& peak, const JointVector& value) {
     peak = peak.size() == 0 ? value : JointVector(peak.cwiseMax(value));
 }

@@ -7,24 +7,24 @@
 
 namespace dfdyn::tools {
 
-/// The hardest that an arm was treated, joint by joint.
+/// Largest torque steps and speeds of a run, per joint.
 class LoopPeaks {
   public:
-    /// The command of one tick, N·m.
+    /// Adds the command of one tick, N·m.
     void add(const JointVector& command);
-    /// The same, and the true velocity (rad/s) when the tick began.
+    /// Adds the command of one tick and the true velocity (rad/s) at its start.
     void add(const JointVector& command, const JointVector& velocity);
 
-    /// N·m, from one tick's command to the next one's; empty before the second.
+    /// Largest change of the command between successive ticks, N·m; empty before the second tick.
     const JointVector& torque_step() const noexcept { return torque_step_; }
-    /// rad/s; empty where none was known.
+    /// Largest speed, rad/s; empty if unknown.
     const JointVector& speed() const noexcept { return speed_; }
 
   private:
     JointVector last_command_, torque_step_, speed_;
 };
 
-/// One line; none before the second tick.
+/// Prints the peaks on one line; nothing before the second tick.
 void print_peaks(std::ostream& out, const LoopPeaks& peaks);
 
 } // namespace dfdyn::tools

@@ -8,17 +8,17 @@
 
 namespace dfdyn::tools {
 
-/// A loop's measured positions and torques as a recording that `dfdyn train` reads. Kept in memory, whose
-/// size is fixed at construction, until it is written: a tick does not wait for a disk.
+/// Records a loop's measured positions and torques in the format that `dfdyn train` reads. The data stays in
+/// memory of fixed size until `write`, so that a tick never waits for a disk.
 class LoopRecording {
   public:
-    /// `every`: ticks of a row. `duration_s`: what is longer is left out.
+    /// `every`: ticks per row. Rows after `duration_s` are left out.
     LoopRecording(int joints, int every, double period_s, double duration_s);
 
-    /// One tick; it gives no row if something was not measured.
+    /// Adds one tick, unless a measurement is missing.
     void add(const LoopInput& input);
 
-    /// Times count from the first row. The file appears whole or not at all.
+    /// Writes the recording, with times counted from the first row. The file is replaced atomically.
     void write(const std::filesystem::path& path) const;
 
   private:

@@ -20,7 +20,7 @@ void print_learning(std::ostream& out, const LearnedFeedForward& learned) {
     out << "; at most " << learned.tick_cost() << " multiply-adds per tick\n";
 }
 
-/// As "friction_changed at joint 3".
+/// Returns text like "friction_changed at joint 3".
 std::string described(const TakenAction& taken) {
     const std::string at = taken.joint < 0 ? "" : " at joint " + std::to_string(taken.joint + 1);
     return dfdyn::name(taken.cause) + at;

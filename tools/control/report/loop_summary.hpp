@@ -9,13 +9,14 @@
 
 namespace dfdyn::tools {
 
-/// What a loop did, why it stopped, and what it learned: one or two lines, and one per action on a finding.
+/// Prints what a loop did, why it stopped, and what it learned: one or two lines, and one per reaction to a
+/// finding.
 void print_loop(std::ostream& out, const ControlLoop& loop);
 
-/// What came over the bus, and what was wrong with it: one line.
+/// Prints the traffic of the bus and its errors: one line.
 void print_port(std::ostream& out, const PortCounters& counters);
 
-/// How the time was kept: one line, and before it one that says if nothing kept it.
+/// Prints the timing statistics: one line, after a line with the reason if scheduling was not real-time.
 void print_pace(std::ostream& out, const PaceOutcome& pace);
 
 } // namespace dfdyn::tools

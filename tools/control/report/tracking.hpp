@@ -7,7 +7,7 @@
 
 namespace dfdyn::tools {
 
-/// Root mean square of the tracking error over one stretch of time.
+/// Root mean square of the tracking error over one time window.
 struct TrackingWindow {
     double start_s = 0, end_s = 0;
     JointVector rms;     ///< per joint, rad
@@ -15,12 +15,12 @@ struct TrackingWindow {
     JointVector learned; ///< mean share of the learned model in the feed-forward
 };
 
-/// Collects tracking errors, window by window; the last, unfinished one is left out.
+/// Collects tracking errors window by window; the last, incomplete one is left out.
 class Tracking {
   public:
     explicit Tracking(double window_s = 5) : window_s_(window_s) {}
 
-    /// `error`: reference minus true position, rad; of times that rise, from 0 on.
+    /// `error`: reference minus true position, rad. Times must increase, starting at 0.
     void add(double time_s, const JointVector& error, const JointVector& learned_share);
 
     const std::vector<TrackingWindow>& windows() const noexcept { return windows_; }

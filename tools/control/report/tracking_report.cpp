@@ -27,7 +27,7 @@ std::string fixed(double value, int width) {
     return text.data();
 }
 
-/// The first run's error over the last's.
+/// Ratio of the first run's error to the last run's.
 double ratio(const std::vector<TrackingRun>& runs, std::size_t window) {
     return runs.front().windows.at(window).all / runs.back().windows.at(window).all;
 }

@@ -10,19 +10,20 @@
 
 namespace dfdyn::tools {
 
-/// The windows of one run, with its name: "nominal", "learned".
+/// The windows of one run, and its name: "nominal", "learned".
 struct TrackingRun {
     std::string name;
     std::vector<TrackingWindow> windows;
 };
 
-/// A line per window: the error of each run over all joints (mrad), and the first run's over the last's.
-/// Nothing for runs without a whole window. `runs`: at least one, all of as many windows.
+/// Prints a line per window: each run's error over all joints (mrad), and the ratio of the first run's to the
+/// last run's. Prints nothing for runs without a complete window. `runs`: at least one, all with the same
+/// number of windows.
 void print_tracking(std::ostream& out, const std::vector<TrackingRun>& runs);
 
-/// Writes into `folder` tracking.csv (per run and window: over all joints and of each, mrad; share of the
-/// learned model), tracking.svg, and tracking.html with both; nothing for runs without a whole window. Each
-/// file appears whole or not at all.
+/// Writes tracking.csv (per run and window: error over all joints and of each joint, mrad; share of the
+/// learned model), tracking.svg, and tracking.html with both into `folder`. Writes nothing for runs without a
+/// complete window. Each file is replaced atomically.
 void write_tracking(const std::filesystem::path& folder, const std::string& title,
                     const std::vector<TrackingRun>& runs);
 
