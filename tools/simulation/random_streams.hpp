@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-/// Who draws from which stream of a scenario's seed: independent of each other, so that another noise level
-/// of one sensor leaves the rest of a simulation as it is.
+/// Random streams of a scenario's seed. They are independent, so that a change of one sensor's noise level
+/// leaves the rest of a simulation unchanged.
 namespace dfdyn::tools::stream {
 
 inline constexpr std::uint32_t wrench_noise = 1;

@@ -7,27 +7,29 @@
 
 namespace dfdyn::tools {
 
-/// The arm of a scenario without its controller: torques go in, readings of the sensors come out.
+/// The arm of a scenario without its controller: its input is the torque, its outputs are the sensors'
+/// readings.
 class SimulatedPlant {
   public:
-    /// At rest at `position`. Throws InputError as SimulatedArm does.
+    /// Starts at rest at `position`. Throws InputError as SimulatedArm does.
     SimulatedPlant(const Robot& robot, const Scenario& scenario, const JointVector& position);
 
-    /// Holds this torque from now on, within the actuators' limit.
+    /// Sets the torque, subject to the actuators' limit.
     void apply(const JointVector& torque) { arm_.apply(torque); }
 
-    /// Goes on to `time_s`, in steps of the scenario's integration. Throws InputError, with the time, when
-    /// the arm runs away.
+    /// Advances to `time_s`, in steps of the scenario's integration. Throws InputError with the time if the
+    /// simulation diverges.
     void advance_to(double time_s);
 
     double time_s() const noexcept { return static_cast<double>(step_) * period_s_; }
-    const JointVector& position() const noexcept { return encoders_.reading(); } ///< as the encoders show it
-    /// As the torque sensors show it now: another noise in every call.
+    /// reading of the encoders
+    const JointVector& position() const noexcept { return encoders_.reading(); }
+    /// Reading of the torque sensors. Each call draws new noise.
     JointVector torque() { return torque_sensor_.read(arm_.state().torque); }
-    /// As the F/T sensor shows it; the scenario must have one.
+    /// Reading of the F/T sensor; the scenario must have one.
     const Wrench& wrench() const { return wrench_sensor_->reading(); }
     const SimulatedArm::State& truth() const noexcept { return arm_.state(); }
-    /// What is wrong with its link now.
+    /// Active faults of the connection.
     const LinkFaults& link_faults() const noexcept { return faults_.now().link; }
 
   private:

@@ -57,7 +57,7 @@ void Simulation::control() {
     reference_ = task_->next();
 }
 
-/// What happens at the instant of the state at hand.
+/// Updates payloads and sensors for the current state.
 void Simulation::observe() {
     const double time_s = static_cast<double>(step_) * period_s_;
     payloads_.update(time_s, arm_);

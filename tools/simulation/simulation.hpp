@@ -7,36 +7,36 @@
 
 namespace dfdyn::tools {
 
-/// What is so when a sample is taken, whatever the sensors show.
+/// True quantities at a sample, independent of the sensors.
 struct SimulatedTruth {
     double time_s = 0;
     JointVector position, velocity, acceleration;
     JointVector torque;   ///< of the actuators at the joint: inverse dynamics + rotor + friction
-    JointVector friction; ///< what opposes the motion
+    JointVector friction; ///< opposes the motion
     Wrench wrench = Wrench::Zero();
-    /// Of the motors, where the encoders sit: the joints' but where a joint is soft.
+    /// Motion of the motors, where the encoders are. It equals the joints' motion except at soft joints.
     JointVector motor_position, motor_velocity, motor_acceleration;
     Eigen::Vector3d tip = Eigen::Vector3d::Zero(); ///< m, in the base's frame
 };
 
 /// One row of the recording.
 struct SimulatedSample {
-    double time_s = 0;                            ///< as its stamp says
-    JointVector position, velocity, acceleration; ///< encoders, and the robot's own estimates
+    double time_s = 0;                            ///< the sample's stamp
+    JointVector position, velocity, acceleration; ///< from the encoders, and the robot's own estimates
     JointVector torque;
     Wrench wrench = Wrench::Zero();
     SimulatedTruth truth;
 };
 
-/// An arm, its task, controller, actuators and sensors, from rest at the task's first point. Everything is
-/// determined by robot and scenario, its seed included.
+/// An arm with its task, controller, actuators and sensors, starting at rest at the task's first point. Robot
+/// and scenario, including its seed, determine the result completely.
 class Simulation {
   public:
-    /// Throws InputError when the task cannot be done: see make_task.
+    /// Throws InputError if the task is impossible: see make_task.
     Simulation(const Robot& robot, const Scenario& scenario);
 
-    /// The next row. Throws InputError, with the time, when the reference leaves the joints' limits or the
-    /// simulation is no longer finite.
+    /// Returns the next row. Throws InputError with the time if the reference exceeds the joints' limits or
+    /// the simulation diverges.
     SimulatedSample next();
 
   private:
@@ -56,13 +56,13 @@ class Simulation {
     FaultSchedule faults_;
     Controller controller_;
     Encoders encoders_;
-    DerivativeEstimator control_derivatives_; ///< the controller's own, at the encoders' rate
+    DerivativeEstimator control_derivatives_; ///< used by the controller, at the encoders' rate
     DerivativeEstimator derivatives_;         ///< recorded
     std::optional<WrenchSensor> wrench_sensor_;
     TorqueSensor torque_sensor_;
     std::optional<OutputNoise> output_noise_;
     NormalSource jitter_;
-    std::int64_t step_ = 0; ///< of the state at hand
+    std::int64_t step_ = 0; ///< of the current state
     std::size_t taken_ = 0;
 };
 

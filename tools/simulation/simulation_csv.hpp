@@ -8,8 +8,7 @@
 
 namespace dfdyn::tools {
 
-/// Writes what the sensors showed: `t` and the scenario's columns, in the order t, q, qd, qdd, tau, i,
-/// wrench.
+/// Writes the sensors' readings: `t` and the scenario's columns, in the order t, q, qd, qdd, tau, i, wrench.
 class SimulatedRecordingCsv {
   public:
     SimulatedRecordingCsv(std::ostream& out, const Scenario& scenario, std::size_t joint_count);
@@ -22,7 +21,7 @@ class SimulatedRecordingCsv {
     CsvWriter csv_;
 };
 
-/// Writes what was so: t, q, qd, qdd, tau, friction1.., wrench where the robot has a sensor, tip_x tip_y
+/// Writes the true quantities: t, q, qd, qdd, tau, friction1.., wrench if the robot has a sensor, tip_x tip_y
 /// tip_z.
 class SimulatedTruthCsv {
   public:

@@ -5,16 +5,17 @@
 
 namespace dfdyn::tools {
 
-/// What couples a joint's motor to its link, per joint. Joints whose stiffness is 0 are rigid.
+/// Elasticity and backlash between a joint's motor and its link, per joint. Joints with stiffness 0 are
+/// rigid.
 struct GearModel {
     JointVector stiffness; ///< N·m/rad, of the parts in contact
-    JointVector damping;   ///< N·m·s/rad, likewise
-    JointVector gap;       ///< rad, the whole play between two contacts; 0: always in contact
+    JointVector damping;   ///< N·m·s/rad, of the parts in contact
+    JointVector gap;       ///< rad, total backlash between the two contacts; 0: always in contact
 
     bool soft(Eigen::Index joint) const { return stiffness.size() > 0 && stiffness[joint] > 0; }
 
-    /// What the motor exerts on the link when it is `twist` (rad) ahead, and that grows by `rate` (rad/s).
-    /// Parts with play push, they never pull.
+    /// Returns the torque of the motor on the link if the motor leads by `twist` (rad) and `twist` grows by
+    /// `rate` (rad/s). Parts with backlash push but never pull.
     double torque(Eigen::Index joint, double twist, double rate) const;
 };
 

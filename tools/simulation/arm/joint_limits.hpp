@@ -8,11 +8,11 @@
 
 namespace dfdyn::tools {
 
-/// Throws InputError `WHERE joint NAME: ...` when a joint of `position` is beyond one of the robot's limits:
-/// which, where the limit is and by how much it is exceeded.
+/// Throws InputError `WHERE joint NAME: ...` if a joint of `position` is beyond a limit of the robot: which
+/// limit, its value, and the excess.
 void check_limits(const Robot& robot, const JointVector& position, const std::string& where);
 
-/// `upper limit 1.85 rad`.
+/// Returns text like `upper limit 1.85 rad`.
 std::string limit_text(const RobotJoint& joint, const std::string& name, double limit);
 
 } // namespace dfdyn::tools

@@ -12,7 +12,7 @@ void LuGreFriction::set_conditions(double time_s, double load) noexcept {
 }
 
 double LuGreFriction::level(double velocity) const noexcept {
-    constexpr double least = 1e-9; // N·m: bristles of no level at all would divide by it
+    constexpr double least = 1e-9; // N·m; avoids a division by a level of zero
     const double ratio = velocity / parameters_.stribeck_velocity;
     const double unloaded = parameters_.coulomb +
                             (parameters_.breakaway - parameters_.coulomb) * std::exp(-ratio * ratio) +

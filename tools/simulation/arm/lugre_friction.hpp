@@ -13,30 +13,34 @@ struct LuGreParameters {
     double coulomb = 0;           ///< kinetic friction, N·m
     double breakaway = 0;         ///< static friction, N·m; at least `coulomb`
     double stribeck_velocity = 1; ///< rad/s, positive
-    double negative_excess = 0;   ///< N·m: how much higher the level is while the joint moves backwards
-    double load_coefficient = 0;  ///< N·m of level per N·m of load, either sign of load alike; only without
-                                  ///< damping, which would blow up where the load vanishes
-    double drift_per_s = 0;       ///< 1/s: relative change of level and viscous friction since t = 0
+    double negative_excess = 0;   ///< N·m: additional level while the joint moves backwards
+    /// N·m of level per N·m of load, for either sign of the load; only without damping, which would become
+    /// unbounded at zero load
+    double load_coefficient = 0;
+    double drift_per_s = 0; ///< 1/s: relative change of level and viscous friction since t = 0
 };
 
-/// The friction's own state: the mean deflection of the bristles. Equations, with v the joint's velocity:
+/// LuGre friction; its state is the mean deflection z of the bristles. Equations, with v the joint's
+/// velocity:
 /// z' = v - σ0 |v| z / g(v),  g(v) = coulomb + (breakaway - coulomb) exp(-(v / stribeck_velocity)²),
-/// friction = σ0 z + σ1 z' + σ2 v. The level g has additions: an excess for negative v, a share of the load's
-/// magnitude; without the latter it drifts in time, and with it σ2.
+/// friction = σ0 z + σ1 z' + σ2 v.
+///
+/// The level g has additional terms: an excess for negative v and a share of the load's magnitude. Level
+/// (without the load term) and σ2 drift with time.
 class LuGreFriction {
   public:
     explicit LuGreFriction(const LuGreParameters& parameters) noexcept : parameters_(parameters) {}
 
-    /// From now on: the time, and the torque that the joint's gear passes on.
+    /// Sets the time and the torque that the joint's gear transmits.
     void set_conditions(double time_s, double load) noexcept;
 
-    /// From now on levels and viscous friction are `factor` times what the parameters say.
+    /// Multiplies the levels and the viscous friction of the parameters by `factor`.
     void set_factor(double factor) noexcept { factor_ = factor; }
 
-    /// What opposes the motion at `velocity`.
+    /// Returns the friction torque, which opposes the motion at `velocity`.
     double torque(double velocity) const noexcept;
 
-    /// Moves the bristles on by `duration` (s) of constant velocity: the exact solution, stable for any
+    /// Advances the bristles by `duration` (s) at constant velocity. The solution is exact and stable for any
     /// stiffness.
     void advance(double velocity, double duration) noexcept;
 
@@ -48,7 +52,7 @@ class LuGreFriction {
 
     LuGreParameters parameters_;
     double deflection_ = 0;
-    double drifted_ = 1; ///< times what it was at t = 0, never negative
+    double drifted_ = 1; ///< factor relative to t = 0, never negative
     double load_ = 0;    ///< N·m, magnitude
     double factor_ = 1;
 };

@@ -12,7 +12,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Mass-less but for its inertia about the joint's axis.
+/// Returns a body without mass, with inertia about the joint's axis only.
 InertialParameters rotor_body(const Eigen::Vector3d& axis, double inertia) {
     return body_parameters(0, Eigen::Vector3d::Zero(), inertia * axis * axis.transpose());
 }
@@ -25,7 +25,7 @@ void check_soft(const RobotJoint& joint, double rotor_inertia) {
     }
 }
 
-/// Soft joints become two: rotor, and link against it.
+/// Replaces each soft joint by two joints: the rotor, and the link relative to the rotor.
 Robot split(const Robot& robot, const ActuatorModel& actuators) {
     Robot result = robot;
     result.joints.clear();
@@ -48,7 +48,7 @@ Robot split(const Robot& robot, const ActuatorModel& actuators) {
     return result;
 }
 
-/// Rotors that are only inertia about their joint; the others are bodies.
+/// Returns the inertias of rotors that have inertia about their joint only. Other rotors are bodies.
 JointVector rotors(const ActuatorModel& actuators) {
     JointVector result(actuators.rotor_inertia.size());
     Eigen::Index count = 0;
@@ -83,7 +83,7 @@ SimulatedArm::SimulatedArm(const Robot& robot, const ActuatorModel& actuators, c
     complete();
 }
 
-/// Links hang in their gears as their weight at this position asks.
+/// Deflects the gears by the weight of the links at this position.
 void SimulatedArm::rest_on_gears() {
     dynamics_.configure(position_, configuration_);
     const JointVector at_rest = JointVector::Zero(position_.size());
@@ -141,7 +141,7 @@ void SimulatedArm::apply(const JointVector& command) {
                        .cwiseMax(-faults_->actuator_limit);
     }
     if (actuators_.bandwidth_hz > 0 && commanded_) {
-        return; // the torque follows
+        return; // the torque is computed later
     }
     commanded_ = true;
     state_.torque = command_;
@@ -229,7 +229,7 @@ void SimulatedArm::add_faults(const ArmDynamics::Configuration& configuration, J
     }
 }
 
-/// On the coordinates.
+/// Returns the generalized forces, one per coordinate.
 JointVector SimulatedArm::forces(const ArmDynamics::Configuration& configuration, const JointVector& position,
                                  const JointVector& velocity, const Instant& instant) const {
     const JointVector drive = instant.torque - friction_at(velocity);

@@ -3,7 +3,8 @@
 
 namespace dfdyn::tools {
 
-/// The actuators' torque is `factor` times the command: a wrong torque constant, a hot or weak magnet.
+/// The actuators' torque is `factor` times the command, as with a wrong torque constant or a hot or weak
+/// magnet.
 FaultKind fault_kinds::actuator_gain() {
     return {"actuator_gain", {"joint", "factor", "from_s", "for_s"}, [](const FaultReader& reader) {
                 Fault fault = reader.lasting();

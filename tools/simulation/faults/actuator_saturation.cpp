@@ -5,7 +5,7 @@
 
 namespace dfdyn::tools {
 
-/// The actuators' torque ends at ± `limit_nm`, whatever is commanded: a drive that is derated.
+/// The actuators' torque is limited to ± `limit_nm`, as in a derated drive.
 FaultKind fault_kinds::actuator_saturation() {
     return {"actuator_saturation", {"joint", "limit_nm", "from_s", "for_s"}, [](const FaultReader& reader) {
                 Fault fault = reader.lasting();

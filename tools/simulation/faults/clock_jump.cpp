@@ -6,13 +6,13 @@
 
 namespace dfdyn::tools {
 
-/// A clock of the loop's computer is set by `by_s`. Ticks keep their pace: that of real time is kept by a
-/// clock that nobody sets (CLOCK_MONOTONIC).
+/// A clock of the loop's computer is set by `by_s`. The ticks keep their schedule, because in real
+/// time they follow a clock that cannot be set (CLOCK_MONOTONIC).
 ///
-/// `clock` `wall`: the one by which a kernel stamps frames (CLOCK_REALTIME), while those of a cycle wait to
-/// be read. hal::SocketCanBus moves their stamps onto the clock of the pace (hal::WallClock); so does
-/// MemoryBus. `clock` `bus`: the only clock of a bus that has one, between two cycles: the stamps of frames,
-/// the time of reading and that for which a tick is due jump together.
+/// `clock` `wall`: the clock with which a kernel stamps frames (CLOCK_REALTIME), set while a cycle's frames
+/// wait to be read. hal::SocketCanBus converts their stamps to the clock of the schedule (hal::WallClock),
+/// and so does MemoryBus. `clock` `bus`: the only clock of a bus with a clock of its own, set between two
+/// cycles. The stamps of frames, the time of reading and the due times of ticks jump together.
 FaultKind fault_kinds::clock_jump() {
     return {"clock_jump", {"by_s", "clock", "at_s"}, [](const FaultReader& reader) {
                 const std::string clock = reader.json().has("clock") ? reader.json().text("clock") : "wall";

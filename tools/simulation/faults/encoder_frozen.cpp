@@ -3,7 +3,7 @@
 
 namespace dfdyn::tools {
 
-/// The encoder goes on to show what it last showed.
+/// The encoder repeats its last reading.
 FaultKind fault_kinds::encoder_frozen() {
     return {"encoder_frozen", {"joint", "from_s", "for_s"}, [](const FaultReader& reader) {
                 Fault fault = reader.lasting();

@@ -3,8 +3,8 @@
 
 namespace dfdyn::tools {
 
-/// The encoder's reading is `rad` too large from one reading to the next: counts that were lost, a coupling
-/// that slipped; with `for_s` a glitch.
+/// The encoder's reading jumps by `rad`, as after lost counts or a slip of the coupling; with `for_s`, a
+/// temporary error.
 FaultKind fault_kinds::encoder_jump() {
     return {"encoder_jump", {"joint", "rad", "at_s", "for_s"}, [](const FaultReader& reader) {
                 Fault fault = reader.since();

@@ -14,31 +14,31 @@ namespace dfdyn::tools {
 
 /// A constant force on a point that moves with the arm.
 struct Push {
-    std::optional<Eigen::Index> link;                ///< the joint that moves it, from 0; none: the tip
-    Eigen::Vector3d point = Eigen::Vector3d::Zero(); ///< m, in the link's frame; the tip has its own
+    std::optional<Eigen::Index> link; ///< index of the joint that moves it, from 0; empty: the tip
+    Eigen::Vector3d point = Eigen::Vector3d::Zero(); ///< m, in the link's frame; not used for the tip
     Eigen::Vector3d force = Eigen::Vector3d::Zero(); ///< N, in the base's frame
 };
 
-/// What is wrong with an arm and its actuators.
+/// Faults of an arm and its actuators.
 struct ArmFaults {
     explicit ArmFaults(Eigen::Index joints);
 
-    JointVector friction_factor; ///< times the friction that the scenario describes
-    JointVector actuator_gain;   ///< torque over command
-    JointVector actuator_limit;  ///< N·m; of the torque, beside the actuators' own limit
-    JointVector load;            ///< N·m, of the surroundings on the joints
+    JointVector friction_factor; ///< factor on the friction of the scenario
+    JointVector actuator_gain;   ///< ratio of torque to command
+    JointVector actuator_limit;  ///< N·m; limit of the torque in addition to the actuators' own one
+    JointVector load;            ///< N·m, external torque on the joints
     std::vector<Push> pushes;
 };
 
-/// What is wrong with the encoders.
+/// Faults of the encoders.
 struct EncoderFaults {
     explicit EncoderFaults(Eigen::Index joints);
 
-    std::array<bool, largest_simulated_chain> frozen{}; ///< shows what it last showed
+    std::array<bool, largest_simulated_chain> frozen{}; ///< repeats its last reading
     JointVector jump;                                   ///< rad, added to the reading
 };
 
-/// What is wrong with the torque sensors: reading · factor + bias.
+/// Faults of the torque sensors: reading · factor + bias.
 struct TorqueSensorFaults {
     explicit TorqueSensorFaults(Eigen::Index joints);
 
@@ -46,16 +46,16 @@ struct TorqueSensorFaults {
     JointVector bias; ///< N·m
 };
 
-/// What is wrong between the devices and the loop, and with the loop's time.
+/// Faults of the connection between devices and loop, and of the loop's timing.
 struct LinkFaults {
-    double share_lost = 0;        ///< of the frames, either way, each by itself
-    bool devices_silent = false;  ///< no frame of theirs arrives
-    std::int64_t late_ns = 0;     ///< from when the loop's tick is due until it begins
-    std::int64_t wall_set_ns = 0; ///< by how much the wall clock has been set since the motion began
-    std::int64_t bus_set_ns = 0;  ///< likewise the clock of the bus: frames' stamps and `now` alike
+    double share_lost = 0;        ///< share of frames lost, independently, in both directions
+    bool devices_silent = false;  ///< no frame of the devices arrives
+    std::int64_t late_ns = 0;     ///< delay from the due time of the loop's tick to its start
+    std::int64_t wall_set_ns = 0; ///< sum of the wall clock's steps since the motion began
+    std::int64_t bus_set_ns = 0;  ///< sum of the bus clock's steps: it affects frames' stamps and `now`
 };
 
-/// All that is wrong at one time.
+/// All faults that are active at one time.
 struct Faults {
     explicit Faults(Eigen::Index joints) : arm(joints), encoders(joints), torque_sensor(joints) {}
 
@@ -65,11 +65,11 @@ struct Faults {
     LinkFaults link;
 };
 
-/// Something that goes wrong at a time of its own, which counts from where the motion begins.
+/// A fault with its period of activity, counted from the beginning of the motion.
 struct Fault {
     std::int64_t from_ns = 0;
-    std::int64_t until_ns = std::numeric_limits<std::int64_t>::max(); ///< the first time without it
-    std::function<void(Faults& faults)> act;                          ///< adds this one to those there are
+    std::int64_t until_ns = std::numeric_limits<std::int64_t>::max(); ///< first time after the fault
+    std::function<void(Faults& faults)> act;                          ///< adds this fault to `faults`
 };
 
 } // namespace dfdyn::tools

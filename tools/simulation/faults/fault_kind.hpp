@@ -10,39 +10,40 @@
 
 namespace dfdyn::tools {
 
-/// One entry of a scenario's `faults`: ScenarioReader's fields, and those that several kinds have. Every
+/// One entry of a scenario's `faults`: ScenarioReader's fields, and fields that several kinds share. Every
 /// method throws InputError as JsonReader does.
 class FaultReader : public ScenarioReader {
   public:
-    /// `loop_period_s`: of the loop's ticks, and of the devices' cycles.
+    /// `loop_period_s`: period of the loop's ticks and of the devices' cycles.
     FaultReader(const ScenarioReader& entry, double loop_period_s)
         : ScenarioReader(entry), loop_period_s_(loop_period_s) {}
 
     double loop_period_s() const noexcept { return loop_period_s_; }
 
-    /// `from_s` (0) and `for_s` (to the end): when the fault acts.
+    /// Reads `from_s` (default 0) and `for_s` (default: to the end), the period of activity.
     Fault lasting() const;
-    /// `at_s`: when it begins; it acts for `for_s`, or to the end.
+    /// Reads `at_s`, the beginning, and `for_s` (default: to the end).
     Fault since() const;
     Fault since(double for_s) const;
 
-    /// `joint`: a number or a list of numbers from 1, as indices from 0; left out: all joints.
+    /// Reads `joint`: a number or a list of numbers from 1, returned as indices from 0. Default: all joints.
     std::vector<Eigen::Index> joints() const;
-    /// The same, but not left out.
+    /// Reads `joint`, which is required.
     std::vector<Eigen::Index> named_joints() const;
 
   private:
     double loop_period_s_;
 };
 
-/// A kind of fault: its name in a scenario, the fields that it has, and how they become a fault.
+/// A kind of fault: its name and fields in a scenario, and the function that makes a fault from them.
 struct FaultKind {
     std::string_view name;
-    std::vector<std::string_view> fields; ///< beside `kind`
+    std::vector<std::string_view> fields; ///< in addition to `kind`
     Fault (*read)(const FaultReader& reader);
 };
 
-/// In the order of the documentation. A new kind is one file, with one line here and in the catalogue.
+/// In the order of the documentation. To add a kind, write one file, declare it here, and add a line to the
+/// catalogue.
 namespace fault_kinds {
 
 FaultKind friction_step();
@@ -60,10 +61,10 @@ FaultKind clock_jump();
 
 } // namespace fault_kinds
 
-/// All kinds.
+/// Returns all kinds.
 const std::vector<FaultKind>& fault_catalogue();
 
-/// Their names, separated by commas; before the last one `conjunction`.
+/// Returns the names of all kinds, separated by commas, with `conjunction` before the last one.
 std::string fault_kind_names(const std::string& conjunction);
 
 } // namespace dfdyn::tools

@@ -8,17 +8,18 @@
 
 namespace dfdyn::tools {
 
-/// Which of a scenario's faults act at a time. Times are compared as whole nanoseconds: those of steps and of
-/// ticks are not exact as seconds.
+/// Determines the faults of a scenario that are active at a time. Times are compared as whole nanoseconds,
+/// because times of steps and ticks are inexact in seconds.
 class FaultSchedule {
   public:
     FaultSchedule(std::vector<Fault> faults, std::size_t joints);
 
-    /// Goes to `time_s` (s, since the motion began), earlier or later; returns whether other faults act than
-    /// before. No heap unless so. O(1) unless a fault begins or ends in between.
+    /// Moves to `time_s` (s, since the motion began), forwards or backwards. Returns whether the active
+    /// faults differ from those before. Allocates heap memory only in that case. O(1) unless a fault begins
+    /// or ends in between.
     bool go_to(double time_s);
 
-    /// All that is wrong now; nothing before the first `go_to`.
+    /// Returns the active faults; none before the first `go_to`.
     const Faults& now() const noexcept { return now_; }
 
   private:
@@ -30,7 +31,7 @@ class FaultSchedule {
     std::vector<Fault> faults_;
     Faults now_;
     std::vector<bool> acting_;
-    std::int64_t valid_from_ns_ = 0, valid_until_ns_ = 0; ///< of `acting_`; empty at first
+    std::int64_t valid_from_ns_ = 0, valid_until_ns_ = 0; ///< validity of `acting_`; initially empty
 };
 
 } // namespace dfdyn::tools

@@ -3,8 +3,8 @@
 
 namespace dfdyn::tools {
 
-/// Each frame is lost with probability `share`, by itself: those of the devices and the loop's commands
-/// alike. Without a bus a cycle's readings are one frame, and a command another.
+/// Each frame is lost independently with probability `share`: frames of the devices and commands of the loop.
+/// Without a bus, a cycle's readings are one frame, and a command is another.
 FaultKind fault_kinds::frames_lost() {
     return {"frames_lost", {"share", "from_s", "for_s"}, [](const FaultReader& reader) {
                 Fault fault = reader.lasting();

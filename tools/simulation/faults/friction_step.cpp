@@ -3,7 +3,7 @@
 
 namespace dfdyn::tools {
 
-/// Levels and viscous friction are `factor` times what they were: grease that is cold, a brake that drags.
+/// Multiplies levels and viscous friction by `factor`, as cold grease or a dragging brake does.
 FaultKind fault_kinds::friction_step() {
     return {"friction_step", {"joint", "factor", "from_s", "for_s"}, [](const FaultReader& reader) {
                 Fault fault = reader.lasting();

@@ -6,8 +6,8 @@
 
 namespace dfdyn::tools {
 
-/// Each of `ticks` consecutive ticks of the loop begins `late_s` after it is due; devices and arm go on
-/// meanwhile. Those that have become due until then follow at once.
+/// Each of `ticks` consecutive ticks of the loop starts `late_s` after its due time, while devices and arm
+/// continue. Ticks that became due in the meantime follow immediately.
 FaultKind fault_kinds::late_ticks() {
     return {"late_ticks", {"late_s", "ticks", "at_s"}, [](const FaultReader& reader) {
                 const int ticks = reader.json().whole_or("ticks", 1, 1, 1'000'000);

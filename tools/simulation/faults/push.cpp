@@ -54,8 +54,8 @@ Fault read_push_fault(const FaultReader& reader) {
 
 } // namespace
 
-/// The surroundings push at once, and evenly: a force on a point of a link or on the tip, or a torque on
-/// joints. For pulses that rise and fall smoothly see Contact.
+/// A constant external force on a point of a link or on the tip, or a constant torque on joints, with an
+/// abrupt start and end. For smooth pulses see Contact.
 FaultKind fault_kinds::push() {
     return {"push", {"force_n", "link", "point_m", "joint", "torque_nm", "from_s", "for_s"}, read_push_fault};
 }

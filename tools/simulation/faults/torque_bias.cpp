@@ -3,7 +3,7 @@
 
 namespace dfdyn::tools {
 
-/// The torque sensor's reading is `nm` too large.
+/// The torque sensor's reading is too large by `nm`.
 FaultKind fault_kinds::torque_bias() {
     return {"torque_bias", {"joint", "nm", "from_s", "for_s"}, [](const FaultReader& reader) {
                 Fault fault = reader.lasting();

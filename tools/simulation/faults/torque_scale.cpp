@@ -3,7 +3,7 @@
 
 namespace dfdyn::tools {
 
-/// The torque sensor's reading is `factor` times what it was, its noise included.
+/// Multiplies the torque sensor's reading, including its noise, by `factor`.
 FaultKind fault_kinds::torque_scale() {
     return {"torque_scale", {"joint", "factor", "from_s", "for_s"}, [](const FaultReader& reader) {
                 Fault fault = reader.lasting();

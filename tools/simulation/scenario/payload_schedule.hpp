@@ -8,22 +8,22 @@
 
 namespace dfdyn::tools {
 
-/// A body that is fixed to the tip at some time, as a gripper takes a part, and maybe taken off again: not in
-/// the robot's URDF, and no controller knows of it.
+/// A body that is attached to the tip at a given time, like a part in a gripper, and optionally removed
+/// again. It is not in the robot's URDF, and no controller models it.
 struct Payload {
     double attached_s = 0;
-    double mass = 0;                                            ///< kg, in one point
+    double mass = 0;                                            ///< kg, point mass
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();           ///< m, in the tip frame
     double removed_s = std::numeric_limits<double>::infinity(); ///< after `attached_s`
 };
 
-/// Attaches payloads to an arm when their time comes, and takes them off.
+/// Attaches payloads to an arm and removes them at their times.
 class PayloadSchedule {
   public:
-    /// `payloads`: in the order in which they are attached.
+    /// `payloads`: in the order of their attachment.
     PayloadSchedule(std::vector<Payload> payloads, const Robot& robot);
 
-    /// Does all that is due by `time_s`, which rises from call to call.
+    /// Attaches and removes the payloads that are due by `time_s`, which must not decrease.
     void update(double time_s, SimulatedArm& arm);
 
   private:
@@ -34,7 +34,7 @@ class PayloadSchedule {
 
     std::vector<Payload> payloads_;
     Eigen::Isometry3d tip_;
-    double last_s_ = -1; ///< of the last call
+    double last_s_ = -1; ///< time of the last call
 };
 
 } // namespace dfdyn::tools

@@ -39,7 +39,7 @@ RecordingModel read_recording_model(const ScenarioReader& reader) {
     model.rate_hz = reader.json().number_within("rate_hz", 1e-3, 1e5);
     model.first_at_s = reader.within("first_at_s", 0, 1e6, model.first_at_s);
     model.samples = static_cast<std::size_t>(reader.json().whole_number("samples", 1, 100'000'000));
-    // at four standard deviations two neighbours must not meet
+    // neighbouring samples must not overlap at four standard deviations
     const double most = 0.05 / model.rate_hz;
     model.instant_jitter_s = reader.within("instant_jitter_s", 0, most, 0);
     model.stamp_jitter_s = reader.within("stamp_jitter_s", 0, most, 0);
@@ -118,7 +118,7 @@ WrenchSensorModel read_force_torque(const ScenarioReader& reader, const Robot& r
     return model;
 }
 
-/// `of`: the name of the rate `whole_hz`, which must be a multiple of `rate_hz`.
+/// Checks that the rate `whole_hz`, named `of`, is a multiple of `rate_hz`.
 void check_rate(const JsonReader& reader, const std::string& name, double rate_hz, const std::string& of,
                 double whole_hz) {
     const double ratio = whole_hz / rate_hz;

@@ -21,28 +21,29 @@
 
 namespace dfdyn::tools {
 
-/// When samples are taken, and what is written.
+/// Sampling times and columns of the recording.
 struct RecordingModel {
     double rate_hz = 100;
-    double first_at_s = 0; ///< of the simulation's time
+    double first_at_s = 0; ///< in simulated time
     std::size_t samples = 1000;
-    double instant_jitter_s = 0;      ///< standard deviation of when a sample is taken; its stamp tells
+    /// standard deviation of the sampling time; the stamp includes the deviation
+    double instant_jitter_s = 0;
     double stamp_jitter_s = 0;        ///< standard deviation of the stamp's error
-    std::vector<std::string> columns; ///< of q, qd, qdd, tau, i, wrench
+    std::vector<std::string> columns; ///< some of q, qd, qdd, tau, i, wrench
 };
 
-/// All that a simulation needs beside the robot. Its file: docs/reference/scenario.md.
+/// All inputs of a simulation except the robot. File format: docs/scenario.md.
 struct Scenario {
     std::uint64_t seed = 1;
     double integration_rate_hz = 8000; ///< a multiple of every sensor's and the controller's rate
     RecordingModel recording;
     TaskModel task;
     ControllerModel controller;
-    RobotErrors robot_errors; ///< which no controller knows
-    JointLoads loads;         ///< likewise
+    RobotErrors robot_errors; ///< unknown to the controller
+    JointLoads loads;         ///< unknown to the controller
     ActuatorModel actuators;
-    std::vector<Payload> payloads; ///< in order of time
-    std::vector<Fault> faults;     ///< that begin when their time comes
+    std::vector<Payload> payloads; ///< in chronological order
+    std::vector<Fault> faults;     ///< each with its own start time
     TorqueSensorModel torque_sensor;
     std::optional<OutputNoiseModel> output_noise;
     EncoderModel encoders;
@@ -50,21 +51,23 @@ struct Scenario {
     std::optional<WrenchSensorModel> force_torque;
 };
 
-/// Which part of the robot's URDF a scenario is about.
+/// The part of the robot's URDF that a scenario uses.
 struct ScenarioChain {
-    std::string tip;                                     ///< link
-    Eigen::Vector3d tip_point = Eigen::Vector3d::Zero(); ///< m, in that link's frame: what tasks move
-    std::string base;                                    ///< link; empty: the root
-    std::string ft_joint;                                ///< empty: found by itself
-    std::string wrench_direction; ///< child_to_parent, parent_to_child; empty: the robot's own
+    std::string tip; ///< link
+    /// m, in that link's frame: the point that tasks move
+    Eigen::Vector3d tip_point = Eigen::Vector3d::Zero();
+    std::string base;             ///< link; empty: the root
+    std::string ft_joint;         ///< empty: determined automatically
+    std::string wrench_direction; ///< child_to_parent, parent_to_child; empty: that of the robot's file
     std::vector<double> gravity;  ///< m/s², in the frame of the robot's root; empty: 9.81 along -z
 };
 
-/// Reads the chain only: the robot must be known before the rest can be.
+/// Reads the chain only, because the robot is needed to read the rest.
 ScenarioChain read_scenario_chain(const std::filesystem::path& path);
 
-/// Reads a scenario for `robot`. Throws InputError with file and path of the field: unknown, missing, of
-/// another type, out of range, not one number per joint, or in contradiction to another.
+/// Reads a scenario for `robot`. Throws InputError with the file and the path of the field if a field is
+/// unknown, missing, out of range, of another type, without one number per joint, or inconsistent with
+/// another.
 Scenario read_scenario(const std::filesystem::path& path, const Robot& robot);
 
 } // namespace dfdyn::tools

@@ -11,7 +11,7 @@
 
 namespace dfdyn::tools {
 
-/// A section of a scenario: JsonReader's fields, and those with a default or with one value per joint. The
+/// A section of a scenario: JsonReader's fields, and fields with a default or with one value per joint. The
 /// joints are those of the robot. Every method throws InputError as JsonReader does.
 class ScenarioReader {
   public:
@@ -21,21 +21,21 @@ class ScenarioReader {
     int joint_count() const noexcept { return joint_count_; }
     ScenarioReader object(const std::string& name) const { return {json_.object(name), joint_count_}; }
 
-    /// Refuses every field but these.
+    /// Rejects all fields that are not in `names`.
     void allow_only(std::initializer_list<std::string_view> names) const;
 
-    /// A number from `low` to `high`, or `fallback` where the field is missing.
+    /// Returns a number from `low` to `high`, or `fallback` if the field is missing.
     double within(const std::string& name, double low, double high, double fallback) const;
 
     std::string text_or_empty(const std::string& name) const;
 
-    /// One number per joint, or one number for all of them.
+    /// Returns one number per joint; a single number applies to all joints.
     JointVector per_joint(const std::string& name) const;
     JointVector per_joint(const std::string& name, double fallback) const;
     JointVector positive_per_joint(const std::string& name) const;
     std::optional<JointVector> optional_per_joint(const std::string& name) const;
 
-    /// Six numbers; zeros where the field is missing.
+    /// Returns six numbers; zeros if the field is missing.
     Wrench six(const std::string& name) const;
 
   private:
@@ -43,23 +43,23 @@ class ScenarioReader {
     int joint_count_;
 };
 
-/// The section `task`.
+/// Reads the section `task`.
 TaskModel read_task(const ScenarioReader& reader);
 
-/// The section `actuators`: what moves the joints, and what shows their torques.
+/// The section `actuators`: actuator model and torque sensor.
 ActuatorModel read_actuators(const ScenarioReader& reader);
 TorqueSensorModel read_torque_sensor(const ScenarioReader& reader);
 
-/// Of the whole scenario: how the arm differs from its description, and what else acts on it.
+/// Sections of the whole scenario: deviations of the arm from its description, and external loads.
 RobotErrors read_robot_errors(const ScenarioReader& reader);
 JointLoads read_joint_loads(const ScenarioReader& reader);
 std::vector<Payload> read_payloads(const JsonReader& reader);
 
-/// The entries of `faults`, each of a kind of the catalogue (see FaultKind). `loop_period_s`: of the loop's
-/// ticks.
+/// Reads the entries of `faults`, each of a kind of the catalogue (see FaultKind). `loop_period_s`: period of
+/// the loop's ticks.
 std::vector<Fault> read_faults(const ScenarioReader& reader, double loop_period_s);
 
-/// The section `recording.noise`.
+/// Reads the section `recording.noise`.
 OutputNoiseModel read_output_noise(const ScenarioReader& reader);
 
 } // namespace dfdyn::tools

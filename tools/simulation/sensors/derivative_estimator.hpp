@@ -7,16 +7,17 @@
 
 namespace dfdyn::tools {
 
-/// How the robot estimates velocity and acceleration from its encoders: see dfdyn::AdaptiveWindow.
+/// Parameters of the robot's estimation of velocity and acceleration from its encoders: see
+/// dfdyn::AdaptiveWindow.
 struct DerivativeModel {
-    double rate_hz = 1000;        ///< of the readings that it looks at
-    int velocity_window = 16;     ///< readings, at most
-    int acceleration_window = 25; ///< readings, at most
-    double noise_bound = 0;       ///< rad: how far a fit may miss a reading
+    double rate_hz = 1000;        ///< rate of the readings in use
+    int velocity_window = 16;     ///< readings, maximum
+    int acceleration_window = 25; ///< readings, maximum
+    double noise_bound = 0;       ///< rad: largest deviation of a fit from a reading
 };
 
-/// Velocity and acceleration of every joint from the last readings of its encoder. Fewer readings than a
-/// window holds: from those there are; with fewer than the fit needs, 0.
+/// Estimates velocity and acceleration of every joint from the last readings of its encoder. While a window
+/// is not full, it uses the available readings; it returns 0 if they are too few for a fit.
 class DerivativeEstimator {
   public:
     DerivativeEstimator(const DerivativeModel& model, int joint_count, double period_s);
@@ -30,7 +31,7 @@ class DerivativeEstimator {
     int joint_count_;
     int longest_;
     int held_ = 0;
-    std::vector<double> time_;  ///< of the readings, newest (0) first
+    std::vector<double> time_;  ///< of the readings, newest first
     std::vector<double> value_; ///< longest_ per joint, newest first
 };
 

@@ -5,14 +5,14 @@
 
 namespace dfdyn::tools {
 
-/// Six channels through a first-order or a second-order Butterworth low pass: its bilinear transform, whose
-/// -3 dB point is exactly the bandwidth asked for.
+/// First-order or second-order Butterworth low-pass filter for six channels, by the bilinear transform with
+/// prewarping: its -3 dB frequency equals the requested bandwidth exactly.
 class LowPass {
   public:
     /// `order`: 1 or 2. `bandwidth_hz`: below half of 1 / `period_s`.
     LowPass(int order, double bandwidth_hz, double period_s) noexcept;
 
-    /// One step. The first call starts settled at `input`.
+    /// Filters one sample. The first call starts in the steady state for `input`.
     Wrench filter(const Wrench& input) noexcept;
 
   private:

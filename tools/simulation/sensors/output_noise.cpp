@@ -57,7 +57,7 @@ UnitNoise::UnitNoise(const OutputNoiseModel& model, std::uint64_t seed, std::uin
 
 std::size_t UnitNoise::start_of_piece() { return engine_() % (series_.size() - piece_rows_); }
 
-/// Pieces that overlap fade into each other with constant power.
+/// Cross-fades overlapping pieces with constant power.
 double UnitNoise::resampled() {
     const std::size_t stride = piece_rows_ - overlap_rows_;
     if (row_ == stride) {

@@ -11,19 +11,19 @@
 
 namespace dfdyn::tools {
 
-/// Noise that is added to every row of a recording, whose neighbours may resemble each other.
+/// Noise added to every row of a recording, optionally correlated between rows.
 struct OutputNoiseModel {
     JointVector torque;             ///< N·m, standard deviation; empty: none
     Wrench wrench = Wrench::Zero(); ///< standard deviation
-    double coefficient = 0;         ///< 0: white; below 1: first-order autoregression, from row to row
-    std::vector<double> series; ///< when given: this signal in random pieces, scaled to standard deviation 1
+    double coefficient = 0;         ///< 0: white; below 1: first-order autoregression between rows
+    std::vector<double> series;   ///< if given: random pieces of this signal, scaled to standard deviation 1
     std::size_t piece_rows = 256; ///< length of a piece
 };
 
-/// One signal of standard deviation 1 and mean 0.
+/// One noise signal with standard deviation 1 and mean 0.
 class UnitNoise {
   public:
-    /// Different `channel`s of a seed are independent.
+    /// Different channels of a seed are independent.
     UnitNoise(const OutputNoiseModel& model, std::uint64_t seed, std::uint32_t channel);
 
     double next();
@@ -41,12 +41,12 @@ class UnitNoise {
     std::size_t row_ = 0, piece_ = 0, past_piece_ = 0;
 };
 
-/// All outputs of a recording.
+/// The noise of all outputs of a recording.
 class OutputNoise {
   public:
     OutputNoise(const OutputNoiseModel& model, std::uint64_t seed);
 
-    /// To be called once per row.
+    /// Returns the torque noise of one row. Call each function once per row.
     JointVector torque();
     Wrench wrench();
 

@@ -18,7 +18,7 @@ void TorqueSensor::observe(const JointVector& torque) {
     if (!model_.delay_s) {
         return;
     }
-    if (past_.empty()) { // as if it had been there for ever
+    if (past_.empty()) { // as if the torque had always had this value
         past_.assign(static_cast<std::size_t>(delay_steps_.maxCoeff()) + 2, torque);
     }
     newest_ = (newest_ + 1) % past_.size();

@@ -10,30 +10,31 @@
 
 namespace dfdyn::tools {
 
-/// What stands between the actuators' torques and their readings, and what a current is.
+/// Errors of the torque readings relative to the actuators' torques, and the conversion to currents.
 struct TorqueSensorModel {
     JointVector noise;                          ///< N·m, standard deviation
-    std::optional<JointVector> torque_constant; ///< N·m/A, at the joint, as the scenario believes it
-    std::optional<JointVector> gain;            ///< true over assumed torque: a reading is the torque over it
-    std::optional<JointVector> offset;          ///< N·m, added to the reading
-    std::optional<JointVector> delay_s;         ///< how far a reading lags
+    std::optional<JointVector> torque_constant; ///< N·m/A, at the joint, as assumed by the scenario
+    std::optional<JointVector> gain;    ///< true over assumed torque: a reading is the torque divided by it
+    std::optional<JointVector> offset;  ///< N·m, added to the reading
+    std::optional<JointVector> delay_s; ///< delay of a reading
 
-    /// A; only where there are torque constants.
+    /// Returns the current (A) for a torque; requires torque constants.
     JointVector current(const JointVector& torque) const { return torque.cwiseQuotient(*torque_constant); }
 };
 
-/// Delay (fractions of a step by linear interpolation), gain, offset, noise, faults.
+/// Applies delay (fractions of a step by linear interpolation), gain, offset, noise and faults.
 class TorqueSensor {
   public:
-    /// `period_s`: of the simulation's steps.
+    /// `period_s`: step of the simulation.
     TorqueSensor(const TorqueSensorModel& model, double period_s, std::uint64_t seed);
 
-    /// One step of the simulation.
+    /// Adds the torque of one simulation step.
     void observe(const JointVector& torque);
 
     void set_faults(const TorqueSensorFaults& faults) { faults_ = faults; }
 
-    /// Of the torque at hand, `torque`, or of an earlier one: another noise in every call.
+    /// Returns a reading for the current torque or, with a delay, for an earlier one. Each call draws new
+    /// noise.
     JointVector read(const JointVector& torque);
 
   private:

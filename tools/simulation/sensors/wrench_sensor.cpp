@@ -40,7 +40,7 @@ WrenchSensor::WrenchSensor(const WrenchSensorModel& model, double period_s, std:
       noise_(seed, stream::wrench_noise) {}
 
 Wrench WrenchSensor::delayed(const Wrench& wrench) {
-    if (past_.empty()) { // as if it had been there for ever
+    if (past_.empty()) { // as if the wrench had always had this value
         past_.assign(static_cast<std::size_t>(delay_steps_) + 2, wrench);
     }
     newest_ = (newest_ + 1) % past_.size();

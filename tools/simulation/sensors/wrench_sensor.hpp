@@ -8,43 +8,44 @@
 
 namespace dfdyn::tools {
 
-/// What stands between the wrench and the reading. Six numbers: force in N, then torque in N·m.
+/// Errors of the F/T sensor. Six numbers: force in N, then torque in N·m.
 struct WrenchSensorModel {
     double rate_hz = 1000;
-    Wrench range = Wrench::Zero(); ///< full scale to both sides; beyond it the reading saturates
-    int bits = 16;                 ///< of the whole range, both signs
-    Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  ///< rad: roll, pitch, yaw that turn the true wrench
-    WrenchMatrix calibration = WrenchMatrix::Identity(); ///< times the true wrench: gains and crosstalk
-    Wrench noise = Wrench::Zero();                       ///< standard deviation of a reading
-    double bandwidth_hz = 0;                             ///< -3 dB; 0: no filter
-    int order = 2;                                       ///< of the filter
-    Wrench bias = Wrench::Zero();                        ///< at t = 0
-    Wrench drift_per_s = Wrench::Zero();                 ///< of the bias
-    double delay_s = 0;                                  ///< on top of the filter's
+    Wrench range = Wrench::Zero(); ///< full scale in both directions; readings saturate there
+    int bits = 16;                 ///< for the whole range, both signs
+    Eigen::Vector3d rotation = Eigen::Vector3d::Zero(); ///< rad: roll, pitch, yaw that turn the true wrench
+    /// multiplies the true wrench: gains and crosstalk
+    WrenchMatrix calibration = WrenchMatrix::Identity();
+    Wrench noise = Wrench::Zero();       ///< standard deviation of a reading
+    double bandwidth_hz = 0;             ///< -3 dB; 0: no filter
+    int order = 2;                       ///< of the filter
+    Wrench bias = Wrench::Zero();        ///< at t = 0
+    Wrench drift_per_s = Wrench::Zero(); ///< of the bias
+    double delay_s = 0;                  ///< in addition to that of the filter
 };
 
-/// The chain of a six-axis sensor: low pass, delay (fractions of a step by linear interpolation), wrong
-/// mounting, error of calibration, bias and drift, noise, saturation, quantiser (to the nearest of 2^bits
-/// steps of the range), hold until the next reading.
+/// Model of a six-axis sensor: low-pass filter, delay (fractions of a step by linear interpolation), wrong
+/// mounting, calibration error, bias and drift, noise, saturation, quantization (to the nearest of 2^bits
+/// steps of the range), and hold until the next reading.
 class WrenchSensor {
   public:
-    /// `period_s`: of the simulation's steps, of which the sensor's period must be a multiple.
+    /// `period_s`: step of the simulation; the sensor's period must be a multiple of it.
     WrenchSensor(const WrenchSensorModel& model, double period_s, std::uint64_t seed);
 
-    /// One step of the simulation, at `time_s`.
+    /// Adds the wrench of one simulation step, at `time_s`.
     void observe(double time_s, const Wrench& wrench);
 
-    /// The last reading.
+    /// Returns the last reading.
     const Wrench& reading() const noexcept { return reading_; }
 
-    /// The size of one step of the quantiser.
+    /// Returns the size of one quantization step.
     Wrench step() const;
 
   private:
     Wrench delayed(const Wrench& wrench);
 
     WrenchSensorModel model_;
-    WrenchMatrix response_; ///< calibration after mounting
+    WrenchMatrix response_; ///< product of calibration and mounting rotation
     std::int64_t steps_per_reading_;
     std::int64_t next_ = 0; ///< steps until the next reading
     LowPass filter_;

@@ -10,8 +10,8 @@
 
 namespace dfdyn::tools {
 
-/// Follows the circle as a Cartesian controller does: joint velocities from the inverse kinematics at the
-/// posture at hand, with feedback of the tip's error, integrated.
+/// Follows the circle as a Cartesian controller does: integrates joint velocities from the inverse kinematics
+/// at the current posture, with feedback of the tip's error.
 class Circle final : public Task {
   public:
     Circle(const CircleTask& model, const Robot& robot, double period_s, std::uint64_t seed);

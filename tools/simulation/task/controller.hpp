@@ -19,17 +19,19 @@ struct ControllerModel {
     double rate_hz = 1000;
     JointVector position_gain; ///< computed torque: 1/s²; else N·m/rad
     JointVector velocity_gain; ///< computed torque: 1/s; else N·m·s/rad
-    double mass_error = 0;     ///< standard deviation of each link's relative error of mass (and, with it, of
-                               ///< first moment and inertia) in the controller's model of the arm
+    /// standard deviation of each link's relative mass error in the controller's model of the arm; first
+    /// moment and inertia change in proportion
+    double mass_error = 0;
 };
 
-/// Torques that make the arm follow a reference. It knows neither friction nor the true masses.
+/// Computes torques that make the arm follow a reference. Its model contains neither friction nor the true
+/// masses.
 class Controller {
   public:
     Controller(const Robot& robot, const JointVector& rotor_inertia, const ControllerModel& model,
                std::uint64_t seed);
 
-    /// From what the robot measures.
+    /// Returns the torque from the measured state.
     JointVector torque(const Reference& reference, const JointVector& position, const JointVector& velocity);
 
   private:

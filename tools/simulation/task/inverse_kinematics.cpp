@@ -15,7 +15,7 @@ namespace {
 constexpr double before_limit = 0.01; // rad or m
 constexpr double moves_freely = std::numeric_limits<double>::quiet_NaN();
 
-/// The joint that is furthest out of its bounds; -1: none.
+/// Returns the joint with the largest violation of its bounds; -1 if there is none.
 Eigen::Index worst(const JointVector& motion, const JointVector& low, const JointVector& high) {
     Eigen::Index result = -1;
     double most = 1e-12;
@@ -46,10 +46,10 @@ Eigen::Vector3d InverseKinematics::tip(const JointVector& position) {
     return dynamics_.tip(configuration_);
 }
 
-/// `held`: the motion of the joints that are at their bounds, NaN for the others.
+/// `held`: the motion of joints at their bounds, NaN for the others.
 JointVector InverseKinematics::solve(const Eigen::Vector3d& tip_motion, const JointVector& pull,
                                      const JointVector& held) const {
-    constexpr double damping = 1e-3; // m per rad: far below the Jacobian's singular values in use
+    constexpr double damping = 1e-3; // m per rad: far below the relevant singular values of the Jacobian
     JointVector fixed = pull;
     PointJacobian free = jacobian_;
     for (Eigen::Index i = 0; i < held.size(); ++i) {
@@ -82,7 +82,7 @@ JointVector InverseKinematics::move(const JointVector& position, const Eigen::Ve
 JointVector InverseKinematics::reach(JointVector position, const Eigen::Vector3d& target,
                                      const JointVector& rest) {
     constexpr int iterations = 200;
-    constexpr double largest_step = 0.2; // rad, per joint: keeps a far target from being overshot
+    constexpr double largest_step = 0.2; // rad, per joint: prevents overshoot for a distant target
     for (int i = 0; i < iterations; ++i) {
         JointVector step = move(position, target - tip(position), 0.1 * (rest - position), 0.5);
         const double largest = step.cwiseAbs().maxCoeff();

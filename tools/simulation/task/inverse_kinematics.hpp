@@ -8,26 +8,26 @@
 namespace dfdyn::tools {
 
 /// Joint motion that moves the tip (position only) of a chain within the joints' limits, by damped least
-/// squares; what the tip leaves free pulls towards a rest posture. A joint slows down as it comes near a
-/// limit, as through a damper, and stops a little before it; the others then take over its part.
+/// squares. The remaining degrees of freedom move towards a rest posture. A joint slows down near a limit and
+/// stops shortly before it; other joints then compensate for it.
 class InverseKinematics {
   public:
     explicit InverseKinematics(const Robot& robot);
 
-    /// The smallest joint motion that moves the tip by `tip_motion`, plus `pull` projected so that it moves
-    /// the tip as little as possible; no joint moves by more than `approach` times its way to a limit. All
-    /// per second, or all for one step.
+    /// Returns the smallest joint motion that moves the tip by `tip_motion`, plus `pull`, projected so that
+    /// it moves the tip as little as possible. No joint moves by more than `approach` times its distance to a
+    /// limit. All quantities are per second, or all for one step.
     JointVector move(const JointVector& position, const Eigen::Vector3d& tip_motion, const JointVector& pull,
                      double approach);
 
-    /// The posture within the limits, near `position` and close to `rest`, whose tip is nearest to `target`:
-    /// iterations until it settles.
+    /// Returns a posture within the limits whose tip is nearest to `target`, starting from `position` and
+    /// close to `rest`. Iterates until convergence.
     JointVector reach(JointVector position, const Eigen::Vector3d& target, const JointVector& rest);
 
     Eigen::Vector3d tip(const JointVector& position);
 
-    /// The joints that are at a limit, for a message: `r_elbow at its upper limit 1.85 rad`; or `no joint at
-    /// a limit`.
+    /// Returns the joints that are at a limit, for a message: `r_elbow at its upper limit 1.85 rad`, or `no
+    /// joint at a limit`.
     std::string joints_at_limits(const JointVector& position) const;
 
   private:

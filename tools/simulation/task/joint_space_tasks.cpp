@@ -11,7 +11,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// One number per joint, without heap: a control loop asks for every instant of the reference.
+/// One number per joint without heap memory, because a control loop evaluates the reference in every tick.
 using JointArray = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, largest_simulated_chain, 1>;
 
 } // namespace

@@ -5,13 +5,13 @@
 
 namespace dfdyn::tools {
 
-/// A random signal that wanders slowly and smoothly: white noise through two equal low passes, so that it has
-/// a continuous rate. Starts at 0; after a few times its time constant its standard deviation is `size`.
+/// A slow and smooth random signal: white noise through two equal low-pass filters, so that its rate is
+/// continuous. It starts at 0; after a few time constants its standard deviation is `size`.
 class SlowVariation {
   public:
     SlowVariation(double size, double time_constant_s, double period_s);
 
-    /// One step of `period_s`.
+    /// Advances by one step of `period_s`.
     void advance(NormalSource& source);
 
     double value() const noexcept { return value_; }
@@ -19,7 +19,7 @@ class SlowVariation {
 
   private:
     double size_;
-    double left_; ///< of a low pass's state after one step
+    double left_; ///< decay factor of a low-pass filter's state per step
     double period_s_;
     double first_ = 0, second_ = 0;
     double value_ = 0, rate_ = 0;
