@@ -24,7 +24,7 @@ ChainModel::Frame frame_of(const Eigen::Isometry3d& placement) {
     return frame;
 }
 
-/// The outputs that an effect can act on.
+/// Returns the number of outputs on which an effect can act.
 int rows_of(const EffectKind& kind, const ChainModel& chain) {
     const auto joints = static_cast<int>(chain.joints.size());
     const EffectKind& offset = offset_kind(chain);

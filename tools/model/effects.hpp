@@ -11,13 +11,13 @@ namespace dfdyn::tools {
 
 /// A constant of an effect's column.
 struct EffectConstant {
-    const char* name; ///< in a model file, and of the member of the firmware type's constants
+    const char* name; ///< name in a model file, and of the member of the firmware type's constants
     double EffectModel::*value;
     bool positive;
-    bool always_stored; ///< in the model files' entries of all effects, 0 where an effect does not have it
+    bool always_stored; ///< stored for every effect in a model file, as 0 if the effect does not have it
 };
 
-/// What bounds the magnitude of an effect's parameter.
+/// The quantity that bounds the magnitude of an effect's parameter.
 enum class ParameterSize {
     effort,              ///< of the joint (N·m, N)
     effort_per_velocity, ///< of the joint (N·m·s/rad, N·s/m)
@@ -25,25 +25,25 @@ enum class ParameterSize {
     weight,              ///< of the robot, on an axis of the wrench (N, N·m)
 };
 
-/// An effect that can be a column of the physics: the firmware's type and its parameter.
+/// An effect that can be a column of the physics: the firmware's type and the parameter.
 struct EffectKind {
     const char* name;          ///< as in a model file and a diagnosis
     const char* firmware_type; ///< template over the number of columns
-    int identity;              ///< of the firmware's type
-    const char* parameter;     ///< its name; its unit
+    int identity;              ///< identity of the firmware's type
+    const char* parameter;     ///< name and unit of the parameter
     const char* unit;
-    bool at_joint = true; ///< acts on a joint: the outputs must be torques
+    bool at_joint = true; ///< acts on a joint, so that the outputs must be torques
     ParameterSize size = ParameterSize::effort;
     std::span<const EffectConstant> constants = {};
-    /// The function that the parameter multiplies, for an effect whose constants only a diagnosis finds. Null
-    /// for others, which training can have at every joint.
+    /// Returns the function that the parameter multiplies, for an effect whose constants only a diagnosis can
+    /// identify. Null for effects that training can add at every joint.
     std::string (*found_shape)(const EffectModel& effect) = nullptr;
 
     bool has(double EffectModel::*constant) const;
     bool needs_diagnosis() const { return found_shape != nullptr; }
 };
 
-/// All kinds. A new one is an entry in effects.cpp and a line here.
+/// All kinds. To add one, add an entry in effects.cpp and a declaration here.
 namespace effect_kinds {
 
 extern const EffectKind viscous_friction;
@@ -57,22 +57,22 @@ extern const EffectKind ft_bias;
 
 } // namespace effect_kinds
 
-/// The names of all of them, in the order of the columns, for a message.
+/// Returns the names of all kinds, in the order of the columns, for a message.
 std::string effect_names();
 
-/// Of those that training can have.
+/// Returns the names of the kinds that training can add.
 std::string trainable_effect_names();
 
-/// Null for a name that is none of them.
+/// Returns the kind with this name, or null for an unknown name.
 const EffectKind* find_effect_kind(const std::string& name);
 
-/// Throws InputError for a name that is none of them.
+/// Returns the kind with this name. Throws InputError for an unknown name.
 const EffectKind& effect_kind(const std::string& name);
 
-/// An offset of the chain's outputs: `ft_bias` of a wrench, `torque_offset` otherwise.
+/// Returns the kind of an offset of the chain's outputs: `ft_bias` for a wrench, `torque_offset` otherwise.
 const EffectKind& offset_kind(const ChainModel& chain);
 
-/// `effects` in the order of the physics' columns.
+/// Returns `effects` in the order of the physics' columns.
 std::vector<EffectModel> in_column_order(std::vector<EffectModel> effects);
 
 } // namespace dfdyn::tools

@@ -27,7 +27,7 @@ Derivatives read_derivatives(const JsonReader& reader) {
     return text == "measured" ? Derivatives::measured : Derivatives::estimated;
 }
 
-/// Whether an input of that kind can have so many lags and rows per joint.
+/// Returns whether an input of its kind can have this number of lags and rows per joint.
 bool fits(const InputModel& input) {
     const int rows = input.rows_per_joint;
     switch (input.kind) {
@@ -63,7 +63,7 @@ InputKind parse_input_kind(const std::string& name) {
     throw InputError("input: expected STD, DF, DFW, DFR or DFSR, found " + in_quotes(name));
 }
 
-/// The double whose shortest decimal text is that of `value` in single precision.
+/// Returns the double with the shortest decimal text that represents `value` in single precision.
 double single(double value) {
     std::array<char, 32> text{};
     const auto end = std::to_chars(text.data(), text.data() + text.size(), static_cast<float>(value)).ptr;

@@ -24,7 +24,7 @@ using nlohmann::ordered_json;
 
 constexpr const char* schema = "dfdyn.model/1";
 
-/// Sizes that no arm exceeds: a hostile file must not make the program ask for terabytes.
+/// Upper limits of sizes, above those of any arm: a malicious file must not cause excessive allocations.
 constexpr int largest_joint_count = 64;
 constexpr int largest_feature_count = 5000;
 constexpr int largest_output_count = 64;
@@ -84,7 +84,7 @@ ordered_json model_json(const TrainedModel& model) {
                       {"output", singles(model.limits.output)},
                       {"innovation", single(model.limits.innovation)},
                       {"innovation_patience", model.limits.innovation_patience}};
-    if (!model.limits.prediction.empty()) { // absent from older files: their identity stays
+    if (!model.limits.prediction.empty()) { // absent from older files, which keep their identity
         json["limits"]["prediction"] = singles(model.limits.prediction);
     }
     if (model.extrapolation) {

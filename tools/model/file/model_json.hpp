@@ -10,10 +10,10 @@
 
 namespace dfdyn::tools {
 
-// The parts of a model.json. Writing gives the numbers of single precision, which is what the firmware runs
-// with; reading throws InputError as JsonReader does.
+// Parts of a model.json. Numbers are written in single precision, as in the firmware. Reading throws
+// InputError as JsonReader does.
 
-/// The double whose shortest decimal text is that of `value` in single precision.
+/// Returns the double with the shortest decimal text that represents `value` in single precision.
 double single(double value);
 nlohmann::ordered_json singles(std::span<const double> values);
 
@@ -25,7 +25,7 @@ StartModel read_start(const JsonReader& reader, int columns, int outputs);
 
 nlohmann::ordered_json physics_to_json(const PhysicsModel& physics);
 
-/// The physics of `model`, of which structure, joints, outputs and features have been read.
+/// Reads the physics of `model`, whose structure, joints, outputs and features have been read before.
 PhysicsModel read_physics(const JsonReader& reader, const TrainedModel& model);
 
 } // namespace dfdyn::tools

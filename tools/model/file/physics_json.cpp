@@ -18,7 +18,7 @@ using nlohmann::ordered_json;
 constexpr int largest_effect_count = 1000;
 constexpr double largest_axis_error = 1e-4;
 
-// Geometry stays in double: training and reports compute with it.
+// Geometry is stored in double precision, because training and reports use it.
 
 ordered_json frame_to_json(const ChainModel::Frame& frame) {
     return {{"rotation", frame.rotation}, {"translation_m", frame.translation}};
@@ -150,7 +150,7 @@ std::vector<int> read_selected(const JsonReader& reader, int count) {
     return selected;
 }
 
-// Coefficients of least squares may cancel each other: in double.
+// In double precision, because large terms of the least-squares fit can cancel each other.
 
 ordered_json rigid_body_to_json(const RigidBodyFit& fit) {
     return {{"identified", fit.identified},

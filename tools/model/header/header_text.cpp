@@ -9,7 +9,7 @@
 
 namespace dfdyn::tools {
 
-/// A float literal that compiles to exactly `value` in single precision.
+/// Returns a float literal that compiles to exactly `value` in single precision.
 std::string literal(double value) {
     std::array<char, 32> text{};
     const auto end = std::to_chars(text.data(), text.data() + text.size(), static_cast<float>(value)).ptr;
@@ -20,7 +20,7 @@ std::string literal(double value) {
     return result + "F";
 }
 
-/// `{{1.0F, 2.0F}}`, wrapped.
+/// Returns `{{1.0F, 2.0F}}`, with line breaks.
 std::string braced(std::span<const double> values) {
     constexpr std::size_t width = 100;
     std::string result = "{{";
@@ -55,7 +55,7 @@ std::string integers(std::span<const int> values) {
     return "{{" + joined(texts, ", ") + "}}";
 }
 
-/// `Name<a, b>` in the library's namespace.
+/// Returns `Name<a, b>` in the library's namespace.
 std::string type(const std::string& name, const std::vector<std::string>& arguments) {
     return "dfdyn::" + name + "<" + joined(arguments, ", ") + ">";
 }

@@ -9,21 +9,21 @@
 
 namespace dfdyn::tools {
 
-// Pieces of C++ that the generated headers are made of.
+// Parts of the generated C++ headers.
 
-/// A float literal that compiles to exactly `value` in single precision.
+/// Returns a float literal that compiles to exactly `value` in single precision.
 std::string literal(double value);
 
-/// `{{1.0F, 2.0F}}`, wrapped.
+/// Returns `{{1.0F, 2.0F}}`, with line breaks.
 std::string braced(std::span<const double> values);
 std::string integers(std::span<const int> values);
 
 std::string joined(std::span<const std::string> texts, const char* separator);
 
-/// `dfdyn::name<a, b>`.
+/// Returns `dfdyn::name<a, b>`.
 std::string type(const std::string& name, const std::vector<std::string>& arguments);
 
-/// An input map's type, and its constants.
+/// The type of an input map, and its constants.
 std::string input_type(const InputModel& input);
 std::string input_constants(const InputModel& input);
 

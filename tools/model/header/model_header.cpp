@@ -18,7 +18,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Text for a comment: whatever a file may be called, it stays one line of printable characters.
+/// Returns `text` as one line of printable characters for a comment, for any file name.
 std::string comment(std::string_view text) {
     std::string result;
     for (const char c : text) {
@@ -60,7 +60,7 @@ std::string feature_constants(const TrainedModel& model) {
            "}";
 }
 
-/// A constant with the start of a learner of so many outputs.
+/// Returns the definition of a constant with the initial state of a learner with `outputs` outputs.
 std::string start_constant(const char* name, const StartModel& start, const std::vector<double>& weights,
                            std::size_t outputs) {
     return "inline constexpr " +
@@ -105,7 +105,7 @@ std::string learner_constants(const TrainedModel& model) {
                                   : "{.features = " + features() + ", .common = " + parameters + "}";
 }
 
-/// Nothing where the model has none.
+/// Returns the initializer of the prediction limits; empty if the model has none.
 std::string prediction_limit(const LimitModel& limits) {
     return limits.prediction.empty() ? "" : ",\n    .prediction_limit = " + braced(limits.prediction);
 }

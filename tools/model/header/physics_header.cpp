@@ -8,7 +8,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// `{a, b}`.
+/// Returns `{a, b}`.
 std::string in_braces(const std::vector<std::string>& items) {
     std::string result("{");
     result += joined(items, ", ");
@@ -16,7 +16,7 @@ std::string in_braces(const std::vector<std::string>& items) {
     return result;
 }
 
-/// `{1.0F, 2.0F}`: a plain array.
+/// Returns a plain array: `{1.0F, 2.0F}`.
 std::string array(std::span<const double> values) {
     const std::string text = braced(values);
     return text.substr(1, text.size() - 2);
@@ -54,7 +54,7 @@ struct EffectColumns {
         }
         return result;
     }
-    /// `, .NAME = {{…}}`.
+    /// Returns `, .NAME = {{…}}`.
     std::string field(const char* name, double EffectModel::*member) const {
         std::vector<double> values;
         for (const EffectModel& column : columns) {

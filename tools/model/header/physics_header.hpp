@@ -7,7 +7,7 @@
 
 namespace dfdyn::tools {
 
-/// The type of a model's physics, and its constants, as C++.
+/// The C++ type of a model's physics, and its constants.
 std::string physics_type(const PhysicsModel& physics);
 std::string physics_constants(const PhysicsModel& physics);
 

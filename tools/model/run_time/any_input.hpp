@@ -10,8 +10,8 @@
 
 namespace dfdyn::tools {
 
-/// An input map of the firmware, whichever: the kind is chosen at run time, the arithmetic is the kind's own.
-/// DFW runs as DF (its weights are part of the scale), DFSR as DFR (its rows are).
+/// An input map of the firmware whose kind is chosen at run time. The arithmetic is that of the kind. DFW
+/// runs as DF (its weights are part of the scale), and DFSR as DFR (with its rows).
 template <int k>
 struct AnyInput {
     static constexpr int lags = dynamic;
@@ -25,7 +25,7 @@ struct AnyInput {
                                    typename DerivativeFree<dynamic>::template Constants<Scalar, n>,
                                    typename DerivativeFreeReduced<dynamic, k>::template Constants<Scalar, n>>;
 
-    /// That of the kind that runs.
+    /// Identity of the active kind.
     template <class AnyConstants>
     static constexpr int identity_of(const AnyConstants& constants) noexcept {
         constexpr int identities[] = {Standard<dynamic>::identity, StandardMeasured::identity,
@@ -55,13 +55,13 @@ struct AnyInput {
             apply([&](const auto& map) { map.evaluate(xi); }, map_);
         }
 
-        /// Not known before the kind is: `cost_of_input` has it.
+        /// Unknown before the kind is chosen: see `cost_of_input`.
         [[nodiscard]] static constexpr std::int64_t cost(int /*joints*/, int /*lags*/, int /*rows*/) {
             return 0;
         }
 
       private:
-        /// std::visit without its exception: a variant of these types always has a value.
+        /// Like std::visit, without its exception: a variant of these types always has a value.
         template <class Visitor, class Variant>
         static auto apply(const Visitor& visitor, Variant& variant) noexcept {
             if (auto* const first = std::get_if<0>(&variant)) {

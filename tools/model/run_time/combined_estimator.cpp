@@ -18,7 +18,7 @@ namespace {
 using Members = std::vector<CombinationMember>;
 using Combination = ForecastCombination<float, dynamic, dynamic>;
 
-/// Deviations of the members' noise, member by member.
+/// Noise standard deviations of all members, in their order.
 std::vector<float> noise_of(const Members& members) {
     std::vector<float> noise;
     for (const CombinationMember& member : members) {
@@ -28,7 +28,8 @@ std::vector<float> noise_of(const Members& members) {
     return noise;
 }
 
-/// That of the paper's deviations if any member has them.
+/// Returns the variance factor before any error is known: that of the paper's deviations unless all members
+/// are calibrated.
 float unjudged_factor_of(const Members& members) {
     return std::ranges::all_of(members, &CombinationMember::calibrated)
                ? Combination::calibrated_variance_factor
@@ -85,7 +86,7 @@ class CombinedEstimator final : public HostEstimator {
         return idle;
     }
 
-    /// False if every member was beyond a bound, as in `tick`.
+    /// Returns false if every member exceeded a bound, as in `tick`.
     bool predict_with(std::span<const float> weights, std::span<float> prediction) const override {
         bool within = false;
         std::span<const float> rest = weights.subspan(predictions_.size());
@@ -102,7 +103,7 @@ class CombinedEstimator final : public HostEstimator {
         return within;
     }
 
-    /// The combination's mean square errors, then the weights of each member.
+    /// Number of the combination's mean square errors plus the members' weights.
     std::size_t weight_count() const override {
         return sum_over_members([](const HostEstimator& member) { return member.weight_count(); },
                                 predictions_.size());
@@ -124,10 +125,10 @@ class CombinedEstimator final : public HostEstimator {
     void begin_recording() override {
         std::ranges::for_each(members_,
                               [](CombinationMember& member) { member.estimator->begin_recording(); });
-        hold_all(); // nobody knows how long ago the last recording was
+        hold_all(); // the time since the last recording is unknown
     }
 
-    /// That of the combination, then those of each member.
+    /// Returns the combination's snapshot, followed by those of the members.
     std::vector<std::byte> snapshot() const override {
         std::vector<std::byte> bytes(combination_.snapshot_bytes());
         if (combination_.snapshot(bytes) != SnapshotResult::ok) {
@@ -157,7 +158,7 @@ class CombinedEstimator final : public HostEstimator {
                                 combination_.snapshot_bytes());
     }
 
-    /// With what the members predict by held weights.
+    /// Includes the members' predictions with held weights.
     Cost cost() const override {
         Cost cost = Combination::cost(Extent<dynamic>{static_cast<int>(members_.size())},
                                       Extent<dynamic>{static_cast<int>(outputs_)});
@@ -174,8 +175,8 @@ class CombinedEstimator final : public HostEstimator {
     }
 
   private:
-    /// The members' ticks, their predictions put into the tables; without prediction of the combination. And
-    /// whether every member refused the sample.
+    /// Runs the members' ticks and stores their predictions in the tables, without the combination's
+    /// prediction. Returns the tick, and whether every member rejected the sample.
     std::pair<Tick, bool> tick_members(const MeasuredSample& sample, Budget budget) {
         Tick all;
         bool refused_by_all = true;
@@ -192,7 +193,7 @@ class CombinedEstimator final : public HostEstimator {
             all.duration += one.duration;
             refused_by_all = refused_by_all && refused(one.status.learning);
             if (all.status.estimated() && (j == 0 || one.status.prediction != Reason::prediction_bounded)) {
-                all.status.prediction = one.status.prediction; // bounded: if all are
+                all.status.prediction = one.status.prediction; // within the bounds only if all members are
             }
             if (all.status.learning == Reason::ok) {
                 all.status.learning = one.status.learning;
@@ -201,7 +202,7 @@ class CombinedEstimator final : public HostEstimator {
         return {all, refused_by_all};
     }
 
-    /// Learns how the members predicted the sample that they have just ticked.
+    /// Updates the combination with the members' predictions of the sample of the last tick.
     void learn(std::span<const double> output) {
         std::ranges::transform(output, measured_.begin(), [](double y) { return static_cast<float>(y); });
         for (std::size_t j = 0; j < members_.size(); ++j) {
@@ -212,7 +213,7 @@ class CombinedEstimator final : public HostEstimator {
         combination_.learn(predictions_.data(), ahead_.data(), measured_.data());
     }
 
-    /// Both copies become what the members have learned now.
+    /// Sets both copies to the members' present weights.
     void hold_all() {
         for (int copy = 0; copy < 2; ++copy) {
             hold();
@@ -227,7 +228,7 @@ class CombinedEstimator final : public HostEstimator {
         }
     }
 
-    /// Once a period, as soon as no member has anything left to learn.
+    /// Copies the weights once per period, as soon as no member has work left.
     void hold_when_due() {
         const auto idle = [](CombinationMember& member) {
             return member.estimator->advance(Budget::predict_only());
@@ -261,7 +262,7 @@ class CombinedEstimator final : public HostEstimator {
     Members members_;
     std::size_t outputs_;
     Combination combination_;
-    long period_;         ///< of the held weights, samples
+    long period_;         ///< between two copies of the weights, samples
     long since_held_ = 0; ///< samples
     std::vector<HeldWeights<float, dynamic>> held_;
     std::vector<float> predictions_, ahead_, deviations_; ///< members × outputs

@@ -8,27 +8,33 @@
 
 namespace dfdyn::tools {
 
-/// How long the combination remembers the members' errors (s).
+/// Memory of the combination for the members' errors (s).
 inline constexpr double combination_memory_s = 0.8;
-/// Between two copies of the members' weights (s): errors ahead are those of weights one to two periods old.
+/// Time between two copies of the members' weights (s). Errors ahead use weights that are one to two periods
+/// old.
 inline constexpr double held_weights_period_s = 0.2;
 
 struct CombinationMember {
     std::unique_ptr<HostEstimator> estimator;
-    double innovation_limit;       ///< of its model
+    double innovation_limit;       ///< limit of its model
     std::vector<double> noise_std; ///< of its model, m values
-    bool calibrated = false;       ///< its model has measured what it knows away from its data
+    bool calibrated = false;       ///< its model has measured uncertainties away from its data
 };
 
-/// Estimators of the same arm and outputs as one: each ticks, and their predictions are combined as
-/// dfdyn::ForecastCombination does, by errors one step and 0.2 to 0.4 s ahead and by the members' variances
-/// at each input, which count as calibrated ones while no error is known, if all members are. It predicts
-/// where all members do; the status is that of the first that does not, or has not learned. The normalised
-/// innovation squared is that of the member which it contradicts least, in proportion to their limits, and on
-/// the scale of the first member's. A budget is each member's own. The combination learns from every measured
-/// sample that at least one member did not refuse, whatever a budget > 0 suffices for; with
-/// Budget::predict_only() its weights follow the variances alone. `members`: at least one. `sample_period_s`
-/// > 0.
+/// Returns an estimator that combines several estimators of the same arm and outputs as
+/// dfdyn::ForecastCombination does. The weights depend on the members' errors one step ahead and 0.2 to 0.4 s
+/// ahead, and on their variances at each input. While no error is known, the variances count as calibrated if
+/// all members are calibrated.
+///
+/// - Prediction: requires the predictions of all members. The status is that of the first member without a
+///   prediction, or without learning.
+/// - Normalised innovation squared: that of the member with the smallest value relative to its limit, scaled
+///   to the first member's limit.
+/// - Budget: each member has the complete budget. The combination learns from every measured sample that at
+///   least one member accepted, for any budget > 0. With Budget::predict_only() its weights follow the
+///   variances alone.
+///
+/// `members`: at least one. `sample_period_s` > 0.
 std::unique_ptr<HostEstimator> combine(std::vector<CombinationMember> members, std::size_t outputs,
                                        double sample_period_s);
 

@@ -8,7 +8,7 @@
 namespace dfdyn::tools {
 
 /// Returns `estimator` with every budget replaced by Budget::predict_only(): it predicts and reports
-/// innovations, and learns nothing. No measured output changes any later prediction.
+/// innovations without learning. No measured output changes a later prediction.
 std::unique_ptr<HostEstimator> frozen(std::unique_ptr<HostEstimator> estimator);
 
 } // namespace dfdyn::tools

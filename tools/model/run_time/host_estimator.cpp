@@ -22,7 +22,7 @@ Storage<float, count> zeros(int size) {
     return Storage<float, count>::zeros(extent<count>(size));
 }
 
-/// The sample of a model with no need of derivatives, or with.
+/// Returns an empty sample of a model, with derivatives if the model uses them.
 template <class Host>
 typename Host::Sample empty_sample(int joints, int outputs) {
     typename Host::Sample sample{};
@@ -108,7 +108,8 @@ class EstimatorOf final : public HostEstimator {
   private:
     using Embedded = Estimator<Host>;
 
-    /// Of the maps whose kind is chosen at run time: the embedded estimator does not know them.
+    /// Cost of the input maps whose kind is chosen at run time, which the embedded estimator's cost does not
+    /// include.
     static std::int64_t cost_of_inputs(const TrainedModel& model) {
         return (model.features.count > 0 ? cost_of_input(model.input, model.joints) : 0) +
                (model.physics ? cost_of_input(model.physics->motion, model.joints) : 0);

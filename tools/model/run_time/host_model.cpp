@@ -52,7 +52,7 @@ typename AnyInput<k>::template Constants<Scalar, dynamic> host_input(const Input
     }
 }
 
-/// The columns of one of the firmware's types of effects.
+/// Returns the columns of one of the firmware's effect types.
 std::vector<EffectModel> columns_of(const PhysicsModel& physics, int identity) {
     std::vector<EffectModel> columns;
     for (const EffectModel& effect : physics.effects) {
@@ -118,7 +118,7 @@ LearnerStart<float, dynamic, 1> parameter_start(const PhysicsModel& physics) {
             converted<float>(physics.start.diagonal)};
 }
 
-/// Prior and start of one of a model's learners.
+/// Sets the prior and the initial state of one of a model's learners.
 template <class Constants>
 void set_learner(Constants& learner, double prior_variance, double forgetting_factor,
                  decltype(Constants::start) start) {
@@ -173,7 +173,7 @@ void set_columns(typename Model::Constants& constants, const TrainedModel& model
     }
 }
 
-/// Zeros where the model has none: the firmware then does as the paper.
+/// Sets the extrapolation constants; zeros if the model has none, for the paper's predictions.
 template <class Model>
 void set_extrapolation(typename Model::Constants& constants, const TrainedModel& model) {
     const std::vector<double> zeros(model.outputs.names.size(), 0);

@@ -9,7 +9,7 @@
 
 namespace dfdyn::tools {
 
-/// The physics of the firmware with sizes that are known at run time, in every effect.
+/// The firmware's physics with all effects and with sizes known at run time.
 using HostPhysics = Physics<AnyInput<3>, dynamic, ViscousFriction<dynamic>, CoulombFriction<dynamic>,
                             StribeckFriction<dynamic>, RotorInertia<dynamic>, JointSpring<dynamic>,
                             TorqueRipple<dynamic>, OutputOffset<dynamic>>;
@@ -17,7 +17,7 @@ using HostPhysics = Physics<AnyInput<3>, dynamic, ViscousFriction<dynamic>, Coul
 using TorqueArm = Chain<dynamic, JointTorques>;
 using WrenchArm = Chain<dynamic, WrenchAtSensor<dynamic>>;
 
-/// The firmware's models with such sizes: the same estimator, the same arithmetic, on the heap.
+/// The firmware's models with sizes known at run time: the same estimator and arithmetic, in heap memory.
 using HostNonparametric =
     Model<float, Joints<dynamic, dynamic>, AnyInput<dynamic>, RandomFourier<dynamic>, Nonparametric<>>;
 template <class Arm>
@@ -29,11 +29,11 @@ template <class Arm>
 using HostKernel =
     Model<float, Arm, AnyInput<dynamic>, RandomFourier<dynamic>, SemiparametricKernel<HostPhysics>>;
 
-/// The constants of a host model, and the starts that they point to. Stays where it was made.
+/// The constants of a host model and the initial states to which they point. Not movable.
 template <class Model>
 struct HostConstants {
     typename Model::Constants constants;
-    /// SPK's features learn the columns of the physics too, so many outputs as there are at run time.
+    /// SPK: the features also learn the physics' columns, so the number of outputs is known at run time only.
     static constexpr int feature_outputs = requires(typename Model::StructureConstants c) { c.common; }
     ? dynamic : Model::outputs;
     LearnerStart<float, dynamic, feature_outputs> features;
@@ -44,41 +44,43 @@ struct HostConstants {
     HostConstants& operator=(const HostConstants&) = delete;
 };
 
-/// Converts a trained model of that structure to the constants of a host model. `from_prior`: without the
-/// start that training computed.
+/// Converts a trained model of this structure to the constants of a host model. `from_prior`: without the
+/// initial state from training.
 template <class Model>
 std::unique_ptr<HostConstants<Model>> make_host_constants(const TrainedModel& model, bool from_prior);
 
-/// The step that is a gap for an estimator that does not know its sample period (ns): one and a half periods.
+/// Returns the time step (ns) that an estimator without a known sample period treats as a gap: 1.5 periods.
 std::int64_t gap_ns(const TrainedModel& model);
 
-/// |prediction| of each output at most; 0 where the model has no bound.
+/// Returns the largest |prediction| of each output; 0 without a bound.
 std::vector<double> prediction_limits(const TrainedModel& model);
 
-/// The factor of each element of ξ that the firmware applies: for DFW it includes the weight of the lag.
+/// Returns the factor that the firmware applies to each element of ξ. For DFW it includes the weight of the
+/// lag.
 std::vector<double> firmware_scale(const InputModel& input);
 
-/// R in the firmware's difference form (see `to_difference_form`); k × (M+1).
+/// Returns R in the firmware's difference form (see `to_difference_form`); k × (M+1).
 std::vector<double> firmware_rows(const InputModel& input);
 
-/// ω / ℓ by inputs: element (input a, feature b) at a·d + b.
+/// Returns ω / ℓ ordered by inputs: element (input a, feature b) at a·d + b.
 std::vector<double> firmware_frequencies(const FeatureModel& features, int inputs);
 
-/// Start weights as the firmware's learner holds them: for SPK those of each output, then of its columns ψ.
+/// Returns the initial weights in the order of the firmware's learner. For SPK: those of each output, then
+/// those of its columns ψ.
 std::vector<double> firmware_weights(const TrainedModel& model);
 
-/// Bodies whose parameters the outputs depend on.
+/// Returns the number of bodies whose parameters influence the outputs.
 int body_count(const ChainModel& chain);
 
-/// Multiply-adds of the input map.
+/// Returns the number of multiply-adds of the input map.
 std::int64_t cost_of_input(const InputModel& input, int joints);
 
-/// The geometry of a stored chain, as the firmware has it.
+/// Returns the geometry of a stored chain in the firmware's form.
 template <class Scalar, class Arm>
 typename Arm::template Constants<Scalar> host_chain(const ChainModel& chain);
 
-/// The constants of the physics in any scalar, in every effect: the firmware's and the tools' columns are the
-/// same code.
+/// Returns the constants of the physics with all effects, in any scalar type. The firmware and the tools
+/// compute the columns with the same code.
 template <class Scalar, class Arm>
 typename HostPhysics::template Constants<Scalar, Arm> host_physics(const PhysicsModel& physics);
 
