@@ -13,10 +13,10 @@ namespace {
 constexpr double merged_below_s = 0.25;
 constexpr double margin = 3;
 constexpr double ordinary_share = 0.999;
-constexpr double patience_s = 1.5; // a push of 1 s, and what else contradicted shortly before
+constexpr double patience_s = 1.5; // a contact of 1 s, and other contradictions shortly before
 constexpr double no_limit = 1e30;
 
-/// Learns the rows from `first` to `last` of all recordings, counted through, and returns their innovations.
+/// Learns the rows from `first` to `last`, counted over all recordings, and returns their innovations.
 std::vector<double> learn_rows(HostEstimator& estimator, std::span<const Recording> recordings,
                                std::size_t first, std::size_t last) {
     std::vector<double> innovations;
@@ -40,8 +40,8 @@ std::vector<double> learn_rows(HostEstimator& estimator, std::span<const Recordi
     return innovations;
 }
 
-/// The rows of all recordings in two halves, and the innovations of each by an estimator that has learned the
-/// other.
+/// Splits the rows of all recordings into two halves, and returns the innovations of each half for an
+/// estimator that has learned the other half.
 std::array<std::vector<double>, 2>
 innovations_of_halves(const TrainedModel& model, std::span<const Recording> recordings, bool from_prior) {
     std::size_t rows = 0;
@@ -77,7 +77,7 @@ std::vector<Contradiction> find_contradictions(const ReplayedRecording& replayed
 }
 
 void calibrate_innovation_limit(TrainedModel& model, std::span<const Recording> recordings, bool from_prior) {
-    model.limits.innovation = no_limit; // while it is measured
+    model.limits.innovation = no_limit; // while the innovations are measured
     model.limits.innovation_patience = static_cast<int>(std::ceil(patience_s / model.sample_period_s));
     double ordinary = 0;
     for (const std::vector<double>& half : innovations_of_halves(model, recordings, from_prior)) {

@@ -10,21 +10,22 @@
 
 namespace dfdyn::tools {
 
-/// A stretch in which the measurement contradicted the model: a contact, a collision, a sensor fault.
+/// A time interval in which the measurement contradicted the model: a contact, a collision, a sensor fault.
 struct Contradiction {
-    double start_s, end_s; ///< of the recording's own time
+    double start_s, end_s; ///< time of the recording
     double peak;           ///< the largest normalised innovation squared
 };
 
-/// The stretches of `replayed` whose normalised innovation squared exceeds `limit`; less than a quarter of a
-/// second apart counts as one, less than two ticks as none.
+/// Returns the intervals of `replayed` in which the normalised innovation squared exceeds `limit`. Intervals
+/// with less than a quarter of a second between them are merged; intervals of less than two ticks are
+/// ignored.
 std::vector<Contradiction> find_contradictions(const ReplayedRecording& replayed, double limit);
 
-/// Sets the model's limit of the normalised innovation squared from its training rows, each half by an
-/// estimator that has learned the other half, from nothing or (`from_prior` false) from the model's own
-/// start: three times the value that 99.9 % of the innovations of a half do not exceed, of the half in which
-/// it is larger. Residuals of a real arm are neither white nor Gaussian, so a chi-square bound would refuse
-/// good samples. The patience becomes one and a half seconds. Cost: two ticks a row.
+/// Sets the model's limit of the normalised innovation squared from its training rows. Each half of the rows
+/// is evaluated by an estimator that has learned the other half, from the prior or (`from_prior` false) from
+/// the model's initial state. The limit is three times the 99.9 % quantile of a half's innovations, for the
+/// half with the larger quantile. A chi-square bound would reject good samples, because residuals of a real
+/// arm are neither white nor Gaussian. The patience is set to 1.5 s. Cost: two ticks per row.
 void calibrate_innovation_limit(TrainedModel& model, std::span<const Recording> recordings,
                                 bool from_prior = true);
 

@@ -10,11 +10,11 @@
 
 namespace dfdyn::tools {
 
-/// The paper's index ε of one time t: per output, Σ (y(t+s) - ŷ(t+s|t))² / Σ y(t+s)², s = 1 … T.
+/// The paper's index ε at one time t: per output, Σ (y(t+s) - ŷ(t+s|t))² / Σ y(t+s)², s = 1 … T.
 struct HorizonIndex {
-    std::size_t tick;                 ///< t, counted by `HorizonError::add` from 0
-    std::vector<double> epsilon;      ///< m values; infinite where the output was 0 all along
-    std::vector<double> error_square; ///< m values: Σ (y(t+s) - ŷ(t+s|t))², ε's numerator
+    std::size_t tick;            ///< t, as the number of previous calls of `HorizonError::add` and `skip`
+    std::vector<double> epsilon; ///< m values; infinite if the output was 0 throughout
+    std::vector<double> error_square; ///< m values: Σ (y(t+s) - ŷ(t+s|t))², the numerator of ε
 };
 
 /// Computes ε over a horizon of T samples (eq. pred_error): how the model learned up to t predicts the T
@@ -24,13 +24,13 @@ class HorizonError {
     /// `horizon` T ≥ 1, `outputs` m, `weights` the number of weights of all outputs.
     HorizonError(std::size_t horizon, std::size_t outputs, std::size_t weights);
 
-    /// Adds the sample that `estimator` has just ticked. Cost T predictions and a copy of the weights.
+    /// Adds the sample of the last tick of `estimator`. Cost: T predictions and a copy of the weights.
     void add(const HostEstimator& estimator, std::span<const double> measured);
 
-    /// Adds a tick without a prediction: no horizon reaches across it.
+    /// Adds a tick without a prediction: no horizon extends across it.
     void skip();
 
-    /// Forgets the indices of ticks before `tick`.
+    /// Removes the indices of ticks before `tick`.
     void forget_before(std::size_t tick);
 
     const std::vector<HorizonIndex>& indices() const noexcept { return indices_; }

@@ -62,7 +62,8 @@ Replayer::Replayer(HostEstimator& estimator, std::string source, std::size_t out
       errors_(std::max<std::size_t>(horizon, 1), outputs, estimator.weight_count()), memory_(memory) {
     replayed_.source = std::move(source);
     for_each_column(
-        [&](auto& column, std::size_t width) { // writes to it: only so the system gives the memory
+        // writes to the vectors, because the system provides memory at the first write
+        [&](auto& column, std::size_t width) {
             column.resize(2 * memory.kept_ticks * width);
             column.clear();
         });
@@ -93,7 +94,7 @@ void Replayer::tick(double time_s, const MeasuredSample& sample, hal::Reason out
 
 void Replayer::skip(double time_s, hal::Reason position) {
     Tick tick;
-    tick.status.prediction = Reason::gap; // what the estimator will make of it
+    tick.status.prediction = Reason::gap; // the estimator will report the same reason
     replayed_.time_s.push_back(time_s);
     append(tick, {});
     replayed_.bus_reason.push_back(position);
@@ -121,7 +122,8 @@ void Replayer::estimate(double time_s, const MeasuredSample& sample) {
     }
 }
 
-/// Counts the last tick, hands it on, and forgets the oldest ones where there are too many.
+/// Updates the totals with the last tick, passes it to the sink, and removes the oldest ticks if there are
+/// too many.
 void Replayer::complete_tick() {
     const std::size_t last = replayed_.time_s.size() - 1;
     ReplayTotals& totals = replayed_.totals;

@@ -11,24 +11,24 @@
 
 namespace dfdyn::tools {
 
-/// What was on a bus, beside the samples.
+/// Statistics of the bus traffic, in addition to the samples.
 struct BusFigures {
     std::uint64_t frames = 0;
     hal::BusCounters counters;
-    hal::Offenders unknown;  ///< on identifiers that no device of the description has
-    hal::Offenders rejected; ///< on known ones, and not what is sent there
+    hal::Offenders unknown;  ///< frames with identifiers that no device of the description has
+    hal::Offenders rejected; ///< frames with known identifiers and invalid content
 };
 
 struct ReplayedBus {
-    ReplayedRecording replayed; ///< `time_s` counts from the first frame
+    ReplayedRecording replayed; ///< `time_s`: since the first frame
     BusFigures bus;
 };
 
-/// Runs an estimator over the samples that a stream of frames gives.
+/// Runs an estimator over the samples from a stream of frames.
 class CanReplayer {
   public:
-    /// Throws InputError where joints, outputs or rate of the description are not those of the models, or a
-    /// model needs measured derivatives. Keeps references to the estimator.
+    /// Throws InputError if joints, outputs or rate of the description differ from those of the models, or if
+    /// a model needs measured derivatives. Keeps references to the estimator.
     CanReplayer(HostEstimator& estimator, std::span<const TrainedModel> models,
                 const BusDescription& description, std::string source, std::size_t horizon,
                 const ReplayMemory& memory = {});
@@ -37,7 +37,7 @@ class CanReplayer {
 
     BusSampler& sampler() noexcept { return sampler_; }
 
-    /// All of it; call once, last.
+    /// Returns all results; call once, at the end.
     ReplayedBus finish(const hal::BusCounters& counters);
 
   private:
@@ -47,14 +47,14 @@ class CanReplayer {
     BusSampler sampler_;
 };
 
-/// Runs `estimator` over a candump log, on the log's own clock. `log_interface`: the one whose frames to
-/// take, where the log has several. Throws InputError for a log that is malformed, or without frames; and as
-/// CanReplayer.
+/// Runs `estimator` over a candump log, with the log's time stamps. `log_interface`: the interface whose
+/// frames are used if the log has several. Throws InputError for a log that is malformed or without frames,
+/// and as CanReplayer.
 ReplayedBus replay_log(HostEstimator& estimator, std::span<const TrainedModel> models,
                        const BusDescription& description, const std::filesystem::path& log,
                        const std::string& log_interface, std::size_t horizon);
 
-/// Writes the figures of the bus, after those of the replay.
+/// Prints the statistics of the bus, after those of the replay.
 void print_bus(std::ostream& out, const BusFigures& figures);
 
 } // namespace dfdyn::tools

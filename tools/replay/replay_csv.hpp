@@ -13,13 +13,13 @@
 namespace dfdyn::tools {
 
 /// Writes one row per tick: `t`, then for each output its measured value, prediction and standard deviation
-/// (`tau1`, `tau1_pred`, `tau1_std`), `nis`, `learned` (0 or 1), `status`. nan where nothing was predicted.
-/// Recordings follow one another; where one begins, t starts again.
+/// (`tau1`, `tau1_pred`, `tau1_std`), `nis`, `learned` (0 or 1), `status`. Values without a prediction are
+/// nan. Recordings follow each other, and t restarts at the beginning of each.
 void write_replay_csv(std::ostream& out, const TrainedModel& model,
                       std::span<const ReplayedRecording> recordings);
 
-/// Writes such a table as the ticks come: the file appears with the first one, and what was flushed stays
-/// whatever ends the program. Keeps a reference to `model`.
+/// Writes such a table tick by tick. The file is created with the first tick; flushed rows remain even if the
+/// program is aborted. Keeps a reference to `model`.
 class ReplayCsvFile final : public TickSink {
   public:
     ReplayCsvFile(std::filesystem::path path, const TrainedModel& model);

@@ -15,7 +15,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Hands what an interface receives to a sampler and a recorder, with the same stamps.
+/// Passes frames from an interface to a sampler and a recorder, with the same stamps.
 class Reception {
   public:
     Reception(const InterfaceOptions& options, BusSampler& sampler)
@@ -36,15 +36,15 @@ class Reception {
     const hal::BusCounters& counters() const { return bus_.counters(); }
 
   private:
-    /// A frame reaches us within this after its stamp, nearly always.
+    /// Longest usual delay from a frame's stamp to its reception.
     static constexpr std::int64_t delivery_ns = 5'000'000;
     static constexpr std::int64_t request_period_ns = 100'000'000;
     static constexpr std::int64_t flush_period_ns = 250'000'000;
-    /// While samples become due without frames, and without any.
+    /// Waiting times while samples become due without frames, and otherwise.
     static constexpr std::int64_t short_wait_ns = 5'000'000;
     static constexpr std::int64_t long_wait_ns = 100'000'000;
 
-    /// One frame at a time, so that the bus' state is that at this frame, as in a recording.
+    /// Reads one frame, so that the bus' state is that of this frame, as in a recording.
     bool take_one() {
         const std::span<const hal::Frame> frames = bus_.drain(room_);
         for (hal::Frame frame : frames) {
@@ -57,7 +57,7 @@ class Reception {
         return !frames.empty();
     }
 
-    /// The log is made once there is something for it.
+    /// The log is created with its first frame.
     void record(const hal::Frame& frame) {
         if (options_.record.empty()) {
             return;
@@ -69,7 +69,8 @@ class Reception {
         writer_->write(frame, bus_.counters().dropped - dropped_);
     }
 
-    /// What the passing time alone makes due. A frame that is even later is given a later stamp.
+    /// Processes samples that become due without a frame. A frame that arrives even later receives a later
+    /// stamp.
     void nothing_came() {
         const std::int64_t now_ns = bus_.now_ns();
         if (sampler_.started()) {
@@ -112,7 +113,7 @@ class Reception {
     std::array<hal::Frame, 1> room_{};
     std::uint64_t dropped_ = 0;
     std::int64_t passed_ns_ = std::numeric_limits<std::int64_t>::min();
-    std::int64_t silent_from_ns_ = 0; ///< no sample becomes due after it without a frame
+    std::int64_t silent_from_ns_ = 0; ///< after it, no sample becomes due without a frame
     std::int64_t next_request_ns_ = 0;
     std::int64_t next_flush_ns_ = 0;
 };

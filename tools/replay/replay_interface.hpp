@@ -10,15 +10,15 @@ namespace dfdyn::tools {
 struct InterfaceOptions {
     std::string interface;
     double duration_s = 0;        ///< 0: until stopped
-    std::filesystem::path record; ///< a log of what was received; empty: none
+    std::filesystem::path record; ///< log of the received frames; empty: none
     ReplayMemory memory = {};
 };
 
-/// Runs `estimator` over what a CAN interface receives, in real time, until `stop` becomes true. The log, and
-/// what `options.memory.sink` writes, are written as frames come, and flushed four times a second. Sleeps
-/// while no frame comes. Asks sensors for their full scales while those are missing or in doubt. `replay_log`
-/// of the recorded log gives the same ticks, bit for bit, up to the last frame. Throws InputError where the
-/// interface cannot be opened or nothing was received; and as CanReplayer.
+/// Runs `estimator` over the frames of a CAN interface in real time, until `stop` becomes true. The log and
+/// the output of `options.memory.sink` are written continuously and flushed four times a second. The function
+/// sleeps while no frame arrives. It requests the sensors' full scales while these are missing or uncertain.
+/// `replay_log` of the recorded log gives identical ticks, bit for bit, up to the last frame. Throws
+/// InputError if the interface cannot be opened or no frame was received, and as CanReplayer.
 ReplayedBus replay_interface(HostEstimator& estimator, std::span<const TrainedModel> models,
                              const BusDescription& description, const InterfaceOptions& options,
                              std::size_t horizon, const std::atomic<bool>& stop);

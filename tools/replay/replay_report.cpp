@@ -11,7 +11,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Between recordings the plot's time leaves a gap, so that they do not run into each other (s).
+/// Gap between recordings on the time axis (s), which separates their curves.
 constexpr double pause_between_recordings_s = 1;
 
 std::string unit_of(const std::string& output) {
@@ -106,8 +106,8 @@ ReportInnovation innovation_of(const TrainedModel& model, std::span<const Replay
     return innovation;
 }
 
-/// "17154 ticks, every prediction made before its sample was learned. The measurement contradicts the model
-/// in 4 stretches."
+/// Returns a sentence like "17154 ticks, every prediction made before its sample was learned. The measurement
+/// contradicts the model in 4 stretches."
 std::string summary_sentence(const ReplaySummary& summary) {
     std::size_t ticks = 0;
     std::size_t stretches = 0;

@@ -8,7 +8,7 @@
 
 namespace dfdyn::tools {
 
-/// The page of a replay: figures, then curves of every output over all recordings.
+/// Returns the report of a replay: tables, then curves of every output over all recordings.
 Report make_replay_report(const TrainedModel& model, std::span<const ReplayedRecording> replayed,
                           const ReplaySummary& summary);
 

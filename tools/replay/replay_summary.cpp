@@ -56,7 +56,7 @@ std::string describe_model(const TrainedModel& model) {
            (model.features.orthogonal ? "orthogonal " : "") + "Fourier columns";
 }
 
-/// The durations of the ticks that learned, or else of those that predicted (µs).
+/// Durations of the ticks with learning, or otherwise of those with a prediction (µs).
 std::vector<double> durations_of(std::span<const ReplayedRecording> replayed, bool learned) {
     std::vector<double> durations;
     for (const ReplayedRecording& recording : replayed) {
@@ -70,7 +70,7 @@ std::vector<double> durations_of(std::span<const ReplayedRecording> replayed, bo
     return durations;
 }
 
-/// Why no recording was compared with a rigid body; empty if one was.
+/// Returns the reason why no recording was compared with a rigid body; empty if one was.
 std::string reason_without_rigid_body(std::span<const TrainedModel> models,
                                       std::span<const ReplayedRecording> replayed) {
     if (std::ranges::any_of(replayed, [](const ReplayedRecording& one) { return !one.rigid_body.empty(); })) {
@@ -81,7 +81,7 @@ std::string reason_without_rigid_body(std::span<const TrainedModel> models,
                : "only CSV recordings are compared with it";
 }
 
-/// As `formatted`; a dash for what there is none of.
+/// As `formatted`, with a dash for NaN.
 std::string formatted_or_dash(const char* format, double value) {
     return std::isnan(value) ? "-" : formatted(format, value);
 }
@@ -120,7 +120,7 @@ ReplaySummary summarise(std::span<const TrainedModel> models, const HostEstimato
     }
     summary.no_rigid_body = reason_without_rigid_body(models, replayed);
     std::vector<double> durations = durations_of(replayed, summary.learned);
-    if (durations.empty()) { // it has learned, but none of the last ticks
+    if (durations.empty()) { // ticks with learning exist, but none among those kept
         durations = durations_of(replayed, false);
     }
     if (!durations.empty()) {

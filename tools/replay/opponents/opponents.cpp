@@ -12,7 +12,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// nRMSE of one output's forecasts over the ticks that the model predicted and that were measured.
+/// nRMSE of one output's forecasts over the measured ticks with a model prediction.
 double normalised_error_of(const Forecasts& forecasts, const ReplayedRecording& replayed, std::size_t outputs,
                            std::size_t output) {
     OutputError error;

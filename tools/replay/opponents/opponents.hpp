@@ -9,8 +9,8 @@
 
 namespace dfdyn::tools {
 
-/// One-step forecasts of the measured outputs that a model is compared with: ticks × m, row by row. Each uses
-/// measurements before its own tick only; where nothing was measured before, it is 0.
+/// One-step forecasts of the measured outputs for comparison with a model: ticks × m, row by row. Each uses
+/// only measurements before its own tick; without any earlier measurement it is 0.
 using Forecasts = std::vector<double>;
 
 /// Persistence: the last measurement of the output.
@@ -21,19 +21,19 @@ Forecasts persistence(const ReplayedRecording& replayed, std::size_t outputs);
 /// measurement.
 Forecasts autoregression(const ReplayedRecording& replayed, std::size_t outputs);
 
-/// The model itself with the firmware's residual state (dfdyn::ColouredResidual) of a memory of
+/// The model with the firmware's residual state (dfdyn::ColouredResidual) and a memory of
 /// `residual_memory_s`, learned online over the recording. `noise_std`: m values of the model.
 Forecasts with_residual_state(const ReplayedRecording& replayed, const TrainedModel& model);
 
-/// The state's memory (s). On UR5 No5 and No6 and XL330 00, 02, 03, 04 and 06, whose figures were seen when
-/// it was chosen, memories of 0.16 s to 8 s all beat persistence and AR(2), shorter ones by more. This one
-/// keeps enough samples for four coefficients at 50 Hz.
+/// Memory of the state (s). On UR5 No5 and No6 and XL330 00, 02, 03, 04 and 06, whose results were known when
+/// it was chosen, all memories from 0.16 s to 8 s are better than persistence and AR(2), shorter ones by a
+/// larger margin. This value provides enough samples for four coefficients at 50 Hz.
 inline constexpr double residual_memory_s = 0.8;
 
-/// The errors of one output's forecasts, gathered value by value.
+/// Accumulates the errors of one output's forecasts.
 class OutputError {
   public:
-    /// Pairs with a value that is not finite do not count.
+    /// Adds a pair; pairs with a value that is not finite are ignored.
     void add(double measured, double forecast);
     /// rms(measured - forecast) / std(measured); NaN without values.
     double normalised() const;
@@ -45,18 +45,19 @@ class OutputError {
     double error_square_ = 0; ///< sum
 };
 
-/// What stands beside a model's own one-step errors: a label and the nRMSE of each output, over exactly the
-/// ticks that the model predicted and that were measured; NaN if there are none.
+/// Errors of an alternative to a model: a label and the nRMSE of each output, over the measured ticks with a
+/// model prediction; NaN if there are none.
 struct OpponentErrors {
     std::string label;
     std::vector<double> normalised_error;
 };
 
-/// What the two rigid bodies with friction are called: with the robot file's inertia, or an identified one.
+/// Returns the label of a rigid body with friction: with the robot file's inertia, or with an identified one.
 const char* rigid_body_label(bool identified);
 
-/// The errors of the model with its residual state, then of each opponent: persistence, AR(2), and two rigid
-/// bodies with friction (NaN where the replay has none; where they have no forecast a tick does not count).
+/// Returns the errors of the model with its residual state, then of each alternative: persistence, AR(2), and
+/// two rigid bodies with friction. NaN for bodies that the replay does not have; ticks without their forecast
+/// are ignored.
 std::vector<OpponentErrors> opponent_errors(const ReplayedRecording& replayed, const TrainedModel& model);
 
 } // namespace dfdyn::tools

@@ -29,9 +29,9 @@ using Eigen::VectorXd;
 
 constexpr double column_threshold = 1e-3; ///< of select_columns(), as in training
 constexpr std::size_t most_fitted_rows = 20000;
-constexpr Index friction_terms = 3; ///< of each output: viscous, dry, constant
+constexpr Index friction_terms = 3; ///< per output: viscous, dry, constant
 
-/// The columns of one output at a time: those of the rigid body in N·m (N), then the friction terms.
+/// Columns of one output: those of the rigid body in N·m (N), then the friction terms.
 class MotionColumns {
   public:
     MotionColumns(const ChainModel& chain, double sign_velocity)
@@ -64,8 +64,8 @@ class MotionColumns {
     MatrixXd psi_;
 };
 
-/// The triangular factor of the QR decomposition of rows that are added one by one: the same least-squares
-/// problem in as many rows as columns.
+/// Triangular factor of the QR decomposition of rows that are added one by one: an equivalent least-squares
+/// problem with as many rows as columns.
 class TriangularFactor {
   public:
     explicit TriangularFactor(Index columns) : rows_(block + columns, columns) {}
@@ -95,7 +95,7 @@ class TriangularFactor {
     Index filled_ = 0;
 };
 
-/// The training, output by output: the triangular factor of [columns of MotionColumns, measured].
+/// The training rows, output by output: the triangular factor of [columns of MotionColumns, measured].
 struct ReducedRows {
     std::vector<MatrixXd> of_output;
     double count = 0; ///< rows of each output
@@ -133,8 +133,8 @@ ReducedRows reduce_rows(MotionColumns& columns, std::span<const Recording> recor
     return result;
 }
 
-/// Least squares of `right` on those of the columns that are independent; 0 for the others. `scale` brings
-/// rows to units of the outputs' deviations, for `sizes` as of select_columns().
+/// Solves the least-squares problem for `right` with the independent columns; returns 0 for the others.
+/// `scale` converts rows to units of the outputs' standard deviations, for `sizes` as in select_columns().
 VectorXd solve(const MatrixXd& columns, const VectorXd& right, double scale, const VectorXd& sizes) {
     const std::vector<Index> chosen = select_columns(scale * columns, column_threshold, sizes).columns;
     const VectorXd found = least_squares(columns(Eigen::all, chosen), right);
@@ -145,7 +145,7 @@ VectorXd solve(const MatrixXd& columns, const VectorXd& right, double scale, con
     return solution;
 }
 
-/// The robot file's inertia: each output on its nominal torque and its friction terms.
+/// Fits the robot file's inertia: each output to its nominal torque and its friction terms.
 RigidBodyFit fit_nominal(const ReducedRows& rows, const VectorXd& nominal, double sign_velocity) {
     RigidBodyFit fit{false, sign_velocity, {}, to_vector(nominal), {}};
     for (const MatrixXd& factor : rows.of_output) {
@@ -159,14 +159,14 @@ RigidBodyFit fit_nominal(const ReducedRows& rows, const VectorXd& nominal, doubl
     return fit;
 }
 
-/// Every output's parameters together: the inertia, then the friction terms of each output.
+/// All outputs' parameters in one problem: the inertia, then the friction terms of each output.
 class JointProblem {
   public:
     JointProblem(const ReducedRows& rows, const std::vector<double>& output_gain, Index inertial)
         : rows_(rows), gain_(output_gain), inertial_(inertial),
           width_(inertial + friction_terms * static_cast<Index>(output_gain.size())) {}
 
-    /// `deviation`: m, by which the outputs are divided.
+    /// `deviation`: m, divisors of the outputs.
     VectorXd solution(const VectorXd& deviation, const VectorXd& sizes) const {
         MatrixXd columns(0, width_);
         VectorXd right(0);
@@ -182,7 +182,7 @@ class JointProblem {
         return solve(columns, right, std::sqrt(static_cast<double>(right.size()) / all), sizes);
     }
 
-    /// Root mean square of what `parameters` leave of each output; not 0 for one that is met exactly.
+    /// Root mean square of each output's residual for `parameters`; positive even for an exact fit.
     VectorXd errors(const VectorXd& parameters) const {
         VectorXd result(static_cast<Index>(gain_.size()));
         for (Index k = 0; k < result.size(); ++k) {
@@ -211,7 +211,7 @@ class JointProblem {
     Index inertial_, width_;
 };
 
-/// The largest magnitudes of JointProblem's parameters in a machine of the robot's size.
+/// Returns the largest plausible magnitudes of JointProblem's parameters for the robot's size.
 VectorXd sizes_of(const Robot& robot, const ChainModel& chain, const std::vector<double>& output_gain,
                   double sign_velocity) {
     const std::vector<std::string> names =
