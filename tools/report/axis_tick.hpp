@@ -5,7 +5,7 @@
 
 namespace dfdyn::tools {
 
-/// A line of an axis.
+/// A grid line of an axis, with an optional label.
 struct AxisTick {
     double value;
     std::string label; ///< SVG text; empty: a line only

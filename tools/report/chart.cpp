@@ -43,7 +43,7 @@ std::string line_path(const ChartCurve& curve, const LogAxis& x, const LogAxis& 
     return path;
 }
 
-/// The band of points first … last - 1: forth along the upper edge, back along the lower.
+/// Band of the points first … last - 1: forward along the upper edge, back along the lower edge.
 std::string band_stretch(const ChartCurve& curve, std::size_t first, std::size_t last, const LogAxis& x,
                          const LogAxis& y) {
     std::string path;
@@ -95,7 +95,7 @@ std::vector<double> drawn_values(const std::vector<ChartCurve>& curves, bool of_
     return values;
 }
 
-/// Box, whiskers, median and mean about the height `middle`.
+/// Box, whiskers, median and mean at the height `middle`.
 std::string box_marks(const ChartBox& box, const LogAxis& x, double middle) {
     const double left = x.pixel(box.lower_quartile);
     const double width = std::max(x.pixel(box.upper_quartile) - left, 0.5);

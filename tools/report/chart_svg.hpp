@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-/// What the charts are drawn with.
+/// Elements of the charts.
 namespace dfdyn::tools::svg {
 
 constexpr double plot_width = 520;
@@ -18,29 +18,29 @@ constexpr double curve_height = 330;
 constexpr double top = 34;
 constexpr double axis_height = 46;
 constexpr double value_axis_width = 66;
-constexpr double letter_width = 7.4; ///< of the chart's font, on the safe side
+constexpr double letter_width = 7.4; ///< of the chart's font, with a margin
 constexpr double legend_line = 34;
 constexpr double legend_height = 20;
 
-/// One decimal: a tenth of a pixel.
+/// Formats with one decimal: a tenth of a pixel.
 std::string number(double value);
 
-/// The parts behind each other. (GCC 12 warns falsely about a literal + a string.)
+/// Concatenates the parts. (GCC 12 warns falsely about a literal + a string.)
 std::string joined(std::initializer_list<std::string_view> parts);
 
 std::string attribute(std::string_view name, double value);
 std::string line(std::string_view kind, double x1, double y1, double x2, double y2);
 
-/// `content`: escaped already.
+/// `content`: already escaped.
 std::string text(std::string_view kind, double x, double y, std::string_view content);
 
-/// The start of a chart with its title, which is plain text.
+/// Returns the beginning of a chart with its title, which is plain text.
 std::string opening(const std::string& title, double width, double height);
 
-/// Colour and, beyond the first four, dashes: `index` counts the curves or boxes of a chart.
+/// Returns colour and, beyond the first four, dashes; `index`: number of the curve or box in a chart.
 std::string appearance(std::size_t index);
 
-/// Letters, not bytes.
+/// Number of characters, not bytes.
 std::size_t length_of(const std::string& utf8);
 
 template <class Named>
@@ -55,7 +55,7 @@ double width_of_names(const std::vector<Named>& named) {
 std::string x_label(double middle, double y_bottom, const std::string& label);
 std::string y_label(double middle, const std::string& label);
 
-/// Lines and labels of a horizontal axis, whose ticks are `ticks_of(x)`.
+/// Returns lines and labels of a horizontal axis, at `ticks_of(x)`.
 template <class Axis>
 std::string vertical_grid(const Axis& x, double y_top, double y_bottom, const std::string& label) {
     std::string all;
@@ -67,7 +67,7 @@ std::string vertical_grid(const Axis& x, double y_top, double y_bottom, const st
     return all + x_label((x.low_pixel + x.high_pixel) / 2, y_bottom, label);
 }
 
-/// Of a vertical axis.
+/// Returns lines and labels of a vertical axis.
 template <class Axis>
 std::string horizontal_grid(const Axis& y, double x_left, double x_right, const std::string& label) {
     std::string all;

@@ -8,14 +8,14 @@
 
 namespace dfdyn::tools {
 
-/// A chart, as `curve_chart` or `box_chart` gives it.
+/// A chart from `curve_chart` or `box_chart`.
 struct PageChart {
-    std::string name;  ///< of its file, without ending: letters, digits, '-' and '_'
-    std::string title; ///< read out where the picture is not seen
+    std::string name;  ///< name of its file, without extension: letters, digits, '-' and '_'
+    std::string title; ///< alternative text for readers who do not see the picture
     std::string svg;
 };
 
-/// A part of a page: a heading, paragraphs, charts side by side, tables.
+/// A section of a page: a heading, paragraphs, charts side by side, tables.
 struct PageSection {
     std::string heading;
     std::vector<std::string> paragraphs;
@@ -23,19 +23,19 @@ struct PageSection {
     std::vector<ReportTable> tables;
 };
 
-/// A page without ticks: charts that do not change, tables and facts. Every string but the charts is plain
-/// UTF-8 text; what renders the page escapes it.
+/// A page with static charts, tables and facts. Every string except the charts is plain UTF-8 text and is
+/// escaped when the page is rendered.
 struct FigurePage {
     std::string title, summary;
     std::vector<PageSection> sections;
     std::vector<ReportFact> facts;
 };
 
-/// The page as one HTML file that needs no other file, no network and no script.
+/// Returns the page as one HTML file without external files, network access or scripts.
 std::string render_figure_page(const FigurePage& page);
 
-/// The same page as a chapter in Markdown, its title a heading of level two. The charts are files NAME.svg in
-/// the folder `pictures` beside it.
+/// Returns the page as a chapter in Markdown, with its title as a heading of level two. The charts are files
+/// NAME.svg in the folder `pictures` next to it.
 std::string figure_page_markdown(const FigurePage& page);
 
 } // namespace dfdyn::tools

@@ -14,14 +14,14 @@ namespace {
 constexpr double room = 0.03; ///< of the range, at either end
 constexpr double most_steps = 10;
 
-/// The smallest 1, 2 or 5 times a power of ten that is not below `value`.
+/// Returns the smallest 1, 2 or 5 times a power of ten that is at least `value`.
 double round_step(double value) {
     const double power = std::pow(10, std::floor(std::log10(value)));
     const double digit = value / power * (1 - 1e-9);
     return power * (digit <= 1 ? 1 : digit <= 2 ? 2 : digit <= 5 ? 5 : 10);
 }
 
-/// `value` is a multiple of `step`: what rounding left of zero is zero.
+/// `value` is a multiple of `step`, so that rounding errors near zero become zero.
 std::string label_of(double value, double step) {
     std::array<char, 32> text{};
     const double clean = std::abs(value) < 1e-6 * step ? 0 : value;

@@ -11,9 +11,9 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double nearly = 1e-9; ///< of a decade: what rounding may shift
+constexpr double nearly = 1e-9; ///< of a decade: tolerance for rounding errors
 
-/// The largest 1, 2 or 5 times a power of ten that is not above `value`.
+/// Returns the largest 1, 2 or 5 times a power of ten that is at most `value`.
 double rounded_down(double value) {
     const double power = std::pow(10, std::floor(std::log10(value) + nearly));
     const double digit = value / power * (1 + nearly);

@@ -7,22 +7,22 @@
 
 namespace dfdyn::tools {
 
-/// A logarithmic axis: values in [low, high] stand between two pixels.
+/// A logarithmic axis that maps values in [low, high] to the interval between two pixels.
 struct LogAxis {
     double low, high; ///< > 0, low < high
     double low_pixel = 0, high_pixel = 1;
 
-    /// Where `value` stands; values beyond the ends stand at them, as do those that are not positive.
+    /// Returns the pixel of `value`; values beyond the ends, and values that are not positive, are clamped.
     double pixel(double value) const;
 };
 
-/// An axis that holds the positive, finite ones of `values`, with ends at 1, 2 or 5 times a power of ten; of
+/// Returns an axis for the positive, finite ones of `values`, with ends at 1, 2 or 5 times a power of ten;
 /// 0.1 … 1 if there are none.
 LogAxis log_axis(const std::vector<double>& values, double low_pixel, double high_pixel);
 
-/// The multiples 1 … 9 of the powers of ten within the axis, those of 1 labelled; those of 2 and 5 too where
-/// the axis has less than two decades; where it has more than eight, only every other power, and no
-/// multiples.
+/// Returns the multiples 1 … 9 of the powers of ten within the axis, with labels at the powers. Axes of less
+/// than two decades also have labels at 2 and 5. Axes of more than eight decades have every other power only,
+/// without multiples.
 std::vector<AxisTick> ticks_of(const LogAxis& axis);
 
 } // namespace dfdyn::tools

@@ -117,7 +117,7 @@ void add_annotations(json& data, const Report& report) {
     }
 }
 
-/// What the page's script reads; the arrays in base64: see base64_floats and, for time_s, base64_doubles.
+/// Data for the page's script; arrays in base64: see base64_floats and, for time_s, base64_doubles.
 json page_data(const Report& report) {
     json data = {{"time_s", base64_doubles(report.time_s)},
                  {"series", json::array()},

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-/// The files of assets/, built into the program by embed_assets.cmake.
+/// The files of assets/, compiled into the program by embed_assets.cmake.
 namespace dfdyn::tools::assets {
 
 extern const std::string_view report_html;

@@ -19,7 +19,7 @@ constexpr double widest_fixed_ratio = 1e5;
 constexpr double largest_fixed = 1e15;
 constexpr int most_decimals = 9;
 
-/// The sizes of a column's numbers that are finite and not zero.
+/// Range of the magnitudes of a column's numbers that are finite and not zero.
 struct Magnitudes {
     double smallest = std::numeric_limits<double>::infinity();
     double largest = 0.0;
@@ -95,7 +95,7 @@ std::string body_row_html(const std::vector<Column>& columns, std::size_t row) {
     return html + "</tr>\n";
 }
 
-/// `text` with each word in an element of its own, so that a line breaks at spaces and not inside `-O3`.
+/// Returns `text` with each word in a separate element, so that lines break at spaces and not inside `-O3`.
 std::string words_html(const std::string& text) {
     std::istringstream stream{text};
     std::string html;

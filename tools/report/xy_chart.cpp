@@ -21,7 +21,7 @@ std::string at(std::string_view command, const LinearAxis& x, const LinearAxis& 
     return joined({command, number(x.pixel(x_value)), " ", number(y.pixel(y_value))});
 }
 
-/// Each a line of no length, which round caps make a dot.
+/// Each dot is a line of length zero with round caps.
 std::string dots(const XyPoints& points, const LinearAxis& x, const LinearAxis& y) {
     std::string path;
     for (std::size_t i = 0; i < points.x.size(); ++i) {
@@ -80,7 +80,7 @@ std::vector<double> all_y(const XyChart& chart) {
     return values;
 }
 
-/// One thing that is drawn: its marks, and those that stand for it in the legend.
+/// One element of the chart: its marks, and those in the legend.
 struct Layer {
     std::string name, look, marks;
     bool is_line = false;

@@ -12,36 +12,36 @@ struct XyLine {
     std::vector<double> x, y;
 };
 
-/// Means of what lies in neighbouring bins of x, each with the spread about it.
+/// Means of the values in neighbouring bins of x, each with its spread.
 struct XyBins {
     std::string name;
     std::vector<double> x, mean, deviation;
 };
 
-/// A cloud of dots.
+/// A set of dots.
 struct XyPoints {
     std::string name;
     std::vector<double> x, y;
 };
 
-/// What a chart over two linear axes shows, the first below the next. Those
-/// without an x are left out.
+/// Content of a chart over two linear axes, each layer above the previous one. Layers without an x are left
+/// out.
 struct XyChart {
     std::string title, x_label, y_label;
-    XyLine reference{}; ///< wide and grey below the others: what was measured
+    XyLine reference{}; ///< wide and grey below the others, for the measurement
     XyPoints points{};
     XyBins bins{};
     std::vector<XyLine> lines{};
     double height = 330; ///< of the plot, in pixels
 };
 
-/// The chart with a legend beside it, as one <svg> element in the style of the other charts. Lines come in
-/// the first colours; dots and bins are grey. All texts are plain UTF-8. Dots that are not finite are left
-/// out.
+/// Returns the chart with a legend at the side, as one <svg> element in the style of the other charts. Lines
+/// have the first colours; dots and bins are grey. All texts are plain UTF-8. Dots that are not finite are
+/// left out.
 std::string xy_chart(const XyChart& chart);
 
-/// Means and deviations of `y` in `count` bins of equally many points each over x. Points that are not finite
-/// are left out; bins whose x are all the same are one.
+/// Returns means and standard deviations of `y` in `count` bins over x with equally many points each. Points
+/// that are not finite are left out; bins with identical x are merged.
 XyBins binned(std::string name, const std::vector<double>& x, const std::vector<double>& y,
               std::size_t count);
 
