@@ -9,8 +9,8 @@
 
 namespace dfdyn {
 
-/// The storage of a size that is known at run time only: the host's tools run models of any size with the
-/// firmware's code.
+/// Storage of a size that is known at run time only. With it, the host's tools run models of any size with
+/// the firmware's code.
 template <class T>
 struct Storage<T, dynamic> {
     std::vector<T, Eigen::aligned_allocator<T>> values;

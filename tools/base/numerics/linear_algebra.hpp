@@ -5,10 +5,11 @@
 
 namespace dfdyn::tools {
 
-// Eigen's decompositions of dense matrices, each of which takes seconds to compile: here they are compiled
-// once. Matrices may be of any size; none is checked for NaN.
+// Eigen's decompositions of dense matrices. Each takes seconds to compile, so they are compiled once, here.
+// Matrices of any size are accepted; none is checked for NaN.
 
-/// R of rows = Q R, min(n, p) x p, upper triangular. `rows` is n x p. By Householder reflections, O(n p^2).
+/// Returns R of rows = Q R: min(n, p) x p, upper triangular. `rows` is n x p. Householder reflections, O(n
+/// p^2).
 Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& rows);
 
 struct OrthogonalFactors {
@@ -16,30 +17,33 @@ struct OrthogonalFactors {
     Eigen::MatrixXd r; ///< min(n, p) x p, upper triangular; the signs of its diagonal are not fixed
 };
 
-/// matrix = Q R by Householder reflections, O(n p^2).
+/// Returns the QR decomposition matrix = Q R by Householder reflections, O(n p^2).
 OrthogonalFactors orthogonal_factors(const Eigen::MatrixXd& matrix);
 
 struct PivotedFactor {
-    Eigen::MatrixXd r;     ///< min(n, p) x p, upper triangular, with a diagonal that does not grow
-    Eigen::VectorXi order; ///< which column stands at each place of R
+    Eigen::MatrixXd r;     ///< min(n, p) x p, upper triangular, with a non-increasing diagonal
+    Eigen::VectorXi order; ///< index of the column at each place of R
 };
 
-/// R of the columns in the order in which each adds most to those before it. O(n p^2).
+/// Returns R of the QR decomposition with column pivoting: each column is the one with the largest component
+/// independent of the previous ones. O(n p^2).
 PivotedFactor pivoted_factor(const Eigen::MatrixXd& columns);
 
-/// X that makes |columns X - right| least, p x outputs; 0 for what depends on other columns within rounding.
+/// Returns X that minimizes |columns X - right|, p x outputs; 0 for columns that depend on others within
+/// rounding errors.
 Eigen::MatrixXd least_squares(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& right);
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& right);
 
-/// X of square X = right, for a symmetric matrix that is positive semidefinite. Only the lower triangle is
-/// read. By L D L', O(n^3).
+/// Solves square X = right for a symmetric, positive semidefinite matrix. Only the lower triangle is read. L
+/// D L' decomposition, O(n^3).
 Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& square, const Eigen::MatrixXd& right);
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& square, const Eigen::VectorXd& right);
 
-/// Of a square matrix of full rank, by L U with partial pivoting; has Inf or NaN where the rank is less.
+/// Returns the inverse of a square matrix of full rank, by LU decomposition with partial pivoting. For a
+/// lower rank the result contains Inf or NaN.
 Eigen::MatrixXd inverse_matrix(const Eigen::MatrixXd& square);
 
-/// Moore and Penrose's, p x n.
+/// Returns the Moore–Penrose pseudoinverse, p x n.
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
 
 struct SingularValues {
@@ -48,7 +52,7 @@ struct SingularValues {
     Eigen::MatrixXd v;      ///< p x min(n, p)
 };
 
-/// matrix = U diag(values) V'.
+/// Returns the singular value decomposition matrix = U diag(values) V'.
 SingularValues singular_values(const Eigen::MatrixXd& matrix);
 
 } // namespace dfdyn::tools

@@ -11,7 +11,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Also between neighbours of which one or both are infinite.
+/// Interpolates between neighbours, one or both of which may be infinite.
 double between(double below, double above, double part) {
     return part == 0 || below == above ? below : std::lerp(below, above, part);
 }

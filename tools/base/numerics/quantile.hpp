@@ -6,18 +6,18 @@
 
 namespace dfdyn::tools {
 
-/// The quantile of a sample by linear interpolation between neighbours: of `ascending` values the one at
-/// place share (count - 1), counted from 0. 0 <= share <= 1: 0 gives the least, 1 the largest, 0.5 the
-/// median. NaN for no values at all.
+/// Returns a quantile of a sample by linear interpolation between neighbours: the value at position share
+/// (count - 1), counted from 0, of `ascending`. 0 <= share <= 1: 0 gives the minimum, 1 the maximum, 0.5 the
+/// median. NaN for an empty sample.
 double quantile_of_sorted(std::span<const double> ascending, double share);
 
-/// The same of values in any order, none of them NaN. O(count).
+/// Returns the quantile of values in any order, without NaN. O(count).
 double quantile(std::vector<double> values, double share);
 
-/// quantile(values, 0.5).
+/// Returns quantile(values, 0.5).
 double median(std::vector<double> values);
 
-/// Standard deviation of a Gaussian over the median of its magnitude.
+/// Ratio of a Gaussian's standard deviation to the median of its magnitude.
 inline constexpr double median_to_deviation = 1.4826;
 
 } // namespace dfdyn::tools

@@ -8,16 +8,17 @@
 
 namespace dfdyn::tools {
 
-/// Standard normal numbers that are the same with every standard library: the 64-bit Mersenne twister is
-/// specified exactly, std::normal_distribution is not, so the transform (Box and Muller's) is our own.
+/// Standard normal numbers that are equal with every standard library. The 64-bit Mersenne twister is
+/// specified exactly, but std::normal_distribution is not; therefore this class implements the Box–Muller
+/// transform.
 class NormalSource {
   public:
-    /// Different `stream`s of one seed are independent.
+    /// Different streams of one seed are independent.
     explicit NormalSource(std::uint64_t seed, std::uint32_t stream = 0);
 
     double next();
 
-    /// Filled row by row.
+    /// Returns a matrix that is filled row by row.
     Eigen::MatrixXd matrix(Eigen::Index rows, Eigen::Index columns);
 
   private:

@@ -7,7 +7,7 @@
 
 namespace dfdyn::tools {
 
-/// Of at least one value.
+/// Returns the root mean square of at least one value.
 inline double root_mean_square(const Eigen::Ref<const Eigen::VectorXd>& values) {
     return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
 }

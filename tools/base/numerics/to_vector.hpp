@@ -7,7 +7,7 @@
 
 namespace dfdyn::tools {
 
-/// The entries in the order in which `matrix` stores them.
+/// Returns the entries in the storage order of `matrix`.
 template <class Derived>
 std::vector<double> to_vector(const Eigen::PlainObjectBase<Derived>& matrix) {
     return {matrix.data(), matrix.data() + matrix.size()};

@@ -9,23 +9,23 @@
 
 namespace dfdyn::tools {
 
-/// Writes a table that `read_recording`, pandas and PlotJuggler read: a header, then rows, separated by
-/// commas. Numbers are written so that they read back as the same double.
+/// Writes a table that `read_recording`, pandas and PlotJuggler can read: a header, then rows, separated by
+/// commas. Numbers are written so that reading restores the same double.
 class CsvWriter {
   public:
     /// Writes the header. `out` must outlive the writer. Throws std::logic_error for a name that is empty or
     /// needs quotes.
     CsvWriter(std::ostream& out, std::span<const std::string> columns);
 
-    /// Appends one field to the row at hand. Not finite: `nan`, `inf`, which pandas reads and
-    /// `read_recording` refuses.
+    /// Appends one field to the current row. Values that are not finite become `nan` or `inf`, which pandas
+    /// reads and `read_recording` rejects.
     CsvWriter& field(double value);
-    /// Appends a field per value.
+    /// Appends one field per value.
     CsvWriter& fields(std::span<const double> values);
     /// Appends a name: a text without comma, quote or line end; throws std::logic_error otherwise.
     CsvWriter& name(std::string_view text);
 
-    /// Ends the row. Throws std::logic_error when it does not have one field per column.
+    /// Ends the row. Throws std::logic_error unless it has one field per column.
     void end_row();
 
   private:
@@ -33,7 +33,7 @@ class CsvWriter {
 
     std::ostream& out_;
     std::size_t column_count_;
-    std::size_t field_count_ = 0; ///< of the row at hand
+    std::size_t field_count_ = 0; ///< in the current row
 };
 
 } // namespace dfdyn::tools

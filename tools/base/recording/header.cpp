@@ -36,7 +36,7 @@ void require_text(std::string_view line, const std::string& where) {
     }
 }
 
-/// A name as the header has it, without the double quotes that some programs write around names.
+/// Returns a name from the header, without the double quotes that some programs write around names.
 std::string plain_name(std::string_view field, const std::string& where) {
     std::string_view name = trimmed(field);
     if (name.size() >= 2 && name.starts_with('"') && name.ends_with('"')) {
@@ -72,8 +72,8 @@ void require_commas(const Names& columns, const std::string& where) {
     }
 }
 
-/// Where each named column is. Unnamed ones are left out: programs write them for an index, or a comma at the
-/// end.
+/// Returns the index of each named column. Unnamed columns are left out: programs write them for an index, or
+/// after a comma at the end.
 std::unordered_map<std::string, std::size_t> index_columns(const Names& columns, const std::string& where) {
     std::unordered_map<std::string, std::size_t> index;
     for (std::size_t column = 0; column < columns.size(); ++column) {
@@ -85,7 +85,7 @@ std::unordered_map<std::string, std::size_t> index_columns(const Names& columns,
     return index;
 }
 
-/// K when `name` is `qK`.
+/// Returns K if `name` is `qK`.
 std::optional<std::size_t> joint_number(const std::string& name) {
     std::size_t number = 0;
     const char* const end = name.data() + name.size();
@@ -96,7 +96,7 @@ std::optional<std::size_t> joint_number(const std::string& name) {
     return stop == end && fault == std::errc{} ? std::optional(number) : std::nullopt;
 }
 
-/// N, when the joint positions are q1..qN; 0 when there are none.
+/// Returns N if the joint positions are q1..qN; 0 if there are none.
 std::size_t count_joints(const Names& columns, const std::string& where) {
     std::set<std::size_t> numbers;
     for (const std::string& name : columns) {
@@ -121,7 +121,7 @@ class Builder {
     Builder(Header& header, std::string where, std::unordered_map<std::string, std::size_t> index)
         : header_(header), where_(std::move(where)), index_(std::move(index)) {}
 
-    /// Gives the columns `names` the next places, in their order.
+    /// Assigns the next places to the columns `names`, in their order.
     Names place(Names names) {
         for (const std::string& name : names) {
             header_.slot[index_.at(name)] = next_++;
@@ -129,7 +129,7 @@ class Builder {
         return names;
     }
 
-    /// As `place` when the header has any of them; then it must have all.
+    /// Assigns places if the header has any of the columns; it must then have all of them.
     Names place_if_any(Names names) {
         const auto has = [this](const std::string& name) { return index_.contains(name); };
         if (std::none_of(names.begin(), names.end(), has)) {

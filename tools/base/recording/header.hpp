@@ -11,23 +11,23 @@
 
 namespace dfdyn::tools {
 
-/// Which field of a row is what.
+/// Meaning of the fields of a row.
 struct Header {
-    std::vector<std::string> columns; ///< every column of the file, in its order
+    std::vector<std::string> columns; ///< every column of the file, in order
     std::vector<std::optional<std::size_t>>
-        slot; ///< per column: its place among the values read, none when ignored
-    /// Names of the values read, in the order of their places after the time, which is at place 0.
+        slot; ///< per column: its place among the values read; empty if ignored
+    /// Names of the values read, in the order of their places. The time is at place 0.
     std::vector<std::string> position, velocity, acceleration, output;
 
     std::size_t value_count() const noexcept {
         return 1 + position.size() + velocity.size() + acceleration.size() + output.size();
     }
-    /// Columns without a place, for a message.
+    /// Returns the columns without a place, for a message.
     std::vector<std::string> ignored_columns() const;
 };
 
-/// Reads the first line of a recording. Throws InputError, starting with `where` (file and line), when the
-/// line is no header, a name is twice in it, or a column that `options` needs is not.
+/// Reads the first line of a recording. Throws InputError, starting with `where` (file and line), if the line
+/// is no header, a name occurs twice, or a column required by `options` is missing.
 Header parse_header(std::string_view line, const std::string& where, const ReadOptions& options);
 
 } // namespace dfdyn::tools

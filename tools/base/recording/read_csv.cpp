@@ -12,7 +12,7 @@
 namespace dfdyn::tools {
 namespace {
 
-/// Why a row cannot be used: which counter it belongs to, and the message behind `FILE:LINE: `.
+/// Reason to reject a row: its counter, and the message after `FILE:LINE: `.
 struct RowFault {
     std::size_t SkippedRows::*counter;
     std::string message;
@@ -51,7 +51,7 @@ class Reader {
     }
 
     void read_rows() {
-        std::size_t empty_lines = 0; // held back, because those at the end of the file are no rows
+        std::size_t empty_lines = 0; // delayed, because empty lines at the end of the file are no rows
         while (!options_.rows.last || row_ < *options_.rows.last) {
             const auto line = lines_.next();
             if (!line) {
@@ -180,9 +180,9 @@ class Reader {
     LineReader lines_;
     Header header_;
     Recording recording_;
-    std::vector<double> values_; ///< of the row at hand, in the places that the header gives
-    std::int64_t time_ns_ = 0;   ///< of the row at hand
-    std::size_t row_ = 0;        ///< rows met, bad and unwanted ones too
+    std::vector<double> values_; ///< of the current row, in the places of the header
+    std::int64_t time_ns_ = 0;   ///< of the current row
+    std::size_t row_ = 0;        ///< rows so far, including bad and unwanted ones
     bool gap_ = true;
 };
 

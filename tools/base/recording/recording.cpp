@@ -13,7 +13,7 @@ InputError bad_range(std::string_view text, const std::string& expected) {
     return InputError("--rows: expected " + expected + ", found " + in_quotes(text));
 }
 
-/// None when `bound` is empty. `text` is the whole option, for the message.
+/// Returns nothing if `bound` is empty. `text` is the whole option, for the message.
 std::optional<std::size_t> parse_bound(std::string_view bound, std::string_view text) {
     if (bound.empty()) {
         return std::nullopt;

@@ -19,7 +19,7 @@ std::int64_t step_ns(const Recording& recording, std::size_t row) {
     return recording.time_ns[row] - recording.time_ns[row - 1];
 }
 
-/// Of the steps without a loss in between, with that nominal period; `period_s` where there is none.
+/// Mean of the steps without a loss, for this nominal period; `period_s` if there are none.
 double mean_step_s(std::span<const Recording> recordings, double period_s) {
     double total_s = 0;
     double count = 0;

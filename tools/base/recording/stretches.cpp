@@ -24,7 +24,7 @@ double median_step_s(const Recording& recording) {
 }
 
 std::vector<Stretch> recorded_stretches(const Recording& recording) {
-    const double longest = 3 * median_step_s(recording); // not used where there is no step
+    const double longest = 3 * median_step_s(recording); // unused if there is no step
     std::vector<Stretch> result;
     for (std::size_t row = 0; row < recording.row_count(); ++row) {
         if (row == 0 || recording.gap_before[row] != 0 || step_s(recording, row) > longest) {

@@ -9,15 +9,16 @@
 
 namespace dfdyn::tools {
 
-/// Rows that follow each other without a gap.
+/// Consecutive rows without a gap.
 struct Stretch {
     Eigen::Index first = 0, count = 0;
 };
 
-/// Of the steps between rows, by their stamps; NaN for less than two rows.
+/// Returns the median of the time steps between rows; NaN for less than two rows.
 double median_step_s(const Recording& recording);
 
-/// The rows of a recording, parted at gaps: those that it marks, and steps above three times the median.
+/// Returns the rows of a recording, divided at gaps: those marked by the recording, and steps longer than
+/// three times the median.
 std::vector<Stretch> recorded_stretches(const Recording& recording);
 
 } // namespace dfdyn::tools

@@ -13,7 +13,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Per row the first row of the stretch that it belongs to.
+/// Returns, for each row, the first row of its segment.
 std::vector<Eigen::Index> beginnings(const Recording& recording) {
     std::vector<Eigen::Index> first;
     for (const Stretch& stretch : recorded_stretches(recording)) {

@@ -21,7 +21,7 @@ namespace dfdyn::tools {
 
 namespace fs = std::filesystem;
 
-/// Buffers into a file descriptor; throws InputError about `path` when the system refuses.
+/// Buffer for a file descriptor. Throws InputError about `path` if the system rejects a write.
 class DescriptorBuffer : public std::streambuf {
   public:
     explicit DescriptorBuffer(fs::path path) : path_(std::move(path)) { reset(); }
@@ -65,7 +65,7 @@ class DescriptorBuffer : public std::streambuf {
 
 namespace {
 
-/// Without this the kernel ends the program when a file reaches `ulimit -f`; with it, the write fails with a
+/// Without this, the kernel ends the program when a file reaches `ulimit -f`; with it, the write fails with a
 /// reason.
 void ignore_file_size_signal() {
     struct sigaction action {};
@@ -75,7 +75,7 @@ void ignore_file_size_signal() {
     }
 }
 
-/// The file that `path` names in the end, when symbolic links lead to it.
+/// Returns the final target of `path`, following symbolic links.
 fs::path link_target(fs::path path) {
     constexpr int most_links = 40; // the kernel's own limit
     std::error_code ignored;
@@ -153,12 +153,12 @@ class AtomicFile::Implementation {
         }
     }
 
-    /// Skips names that a killed run has left behind.
+    /// Skips names that remain from an aborted run.
     void create_temporary() {
         const std::string prefix = target_.string() + ".tmp." + std::to_string(::getpid()) + ".";
         for (int attempt = 0; descriptor_ < 0; ++attempt) {
             temporary_ = prefix + std::to_string(attempt);
-            guard_.emplace(temporary_); // before the file exists, so that no signal finds it unguarded
+            guard_.emplace(temporary_); // before the file exists, so that a signal always removes it
             descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
             check(errno == EEXIST ? 0 : descriptor_, "cannot create a file beside it");
         }
@@ -170,9 +170,9 @@ class AtomicFile::Implementation {
         }
     }
 
-    fs::path shown_target_; ///< as the user named it
-    fs::path target_;       ///< what is replaced: absolute, links followed; empty when written directly
-    std::string temporary_; ///< empty when there is no temporary file
+    fs::path shown_target_; ///< as named by the user
+    fs::path target_;       ///< file to replace: absolute, links followed; empty if written directly
+    std::string temporary_; ///< empty if there is no temporary file
     std::optional<RemoveOnSignal> guard_;
     int descriptor_ = -1;
     DescriptorBuffer buffer_;
@@ -203,7 +203,7 @@ class GrowingFile::Implementation {
     ~Implementation() {
         try {
             stream_.flush();
-        } catch (const std::exception& error) { // whoever has to know flushes before
+        } catch (const std::exception& error) { // callers that need the error call flush before
             static_cast<void>(error);
         }
         ::close(descriptor_);
@@ -230,7 +230,7 @@ std::ostream& GrowingFile::stream() noexcept { return implementation_->stream();
 void check_writable(const fs::path& target) {
     struct stat status {};
     if (::stat(target.c_str(), &status) != 0 || S_ISREG(status.st_mode)) {
-        const AtomicFile file(target); // not committed: its temporary file is removed
+        const AtomicFile file(target); // not committed: the temporary file is removed
         return;
     }
     const int reason = S_ISDIR(status.st_mode) ? EISDIR : ::access(target.c_str(), W_OK) == 0 ? 0 : errno;

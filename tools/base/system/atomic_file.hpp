@@ -8,26 +8,26 @@
 
 namespace dfdyn::tools {
 
-/// A file that appears whole or not at all: written under a temporary name (`TARGET.tmp.PID.N`) beside its
-/// target, and renamed onto it by `commit`. Until then an existing target is untouched; without `commit` (an
-/// exception, Ctrl-C, a full disk) the temporary file is removed. A symbolic link stays, its file is
-/// replaced; an existing file keeps its permissions. A target that is no ordinary file (`/dev/stdout`, a
-/// pipe) is written directly.
+/// A file that is replaced atomically. It is written under a temporary name (`TARGET.tmp.PID.N`) in the
+/// folder of its target, and `commit` renames it. Until then an existing target is unchanged. Without
+/// `commit` (an exception, Ctrl-C, a full disk) the temporary file is removed. A symbolic link remains, and
+/// its file is replaced. An existing file keeps its permissions. A target that is no ordinary file
+/// (`/dev/stdout`, a pipe) is written directly.
 class AtomicFile {
   public:
-    /// Creates the temporary file. Throws InputError with path and the system's reason when it cannot, or
-    /// when the target exists and may not be written.
+    /// Creates the temporary file. Throws InputError with the path and the system's reason if this fails, or
+    /// if the target exists and is not writable.
     explicit AtomicFile(const std::filesystem::path& target);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
-    /// Where to write; buffered, classic locale. A write that the system refuses throws InputError with path
-    /// and reason out of the `<<` or `write` that met it.
+    /// Returns the stream to write to; buffered, with the classic locale. If the system rejects a write, the
+    /// `<<` or `write` throws InputError with path and reason.
     std::ostream& stream() noexcept;
 
-    /// Flushes to the disk, closes and renames. Call once, last. Throws InputError when any step, or an
-    /// earlier write, failed; the target is then untouched.
+    /// Flushes to the disk, closes and renames. Call once, at the end. Throws InputError if any step, or an
+    /// earlier write, failed; the target is then unchanged.
     void commit();
 
   private:
@@ -35,17 +35,17 @@ class AtomicFile {
     std::unique_ptr<Implementation> implementation_;
 };
 
-/// A file that is written as the work goes on, for work that a person ends or that runs for days: what was
-/// flushed is there, whatever ends the program.
+/// A file that is written continuously, for work that a user ends or that runs for days. Flushed data remains
+/// even if the program is aborted.
 class GrowingFile {
   public:
-    /// Makes the file, or empties it. Throws InputError with path and the system's reason.
+    /// Creates the file, or empties it. Throws InputError with the path and the system's reason.
     explicit GrowingFile(const std::filesystem::path& target);
     ~GrowingFile();
     GrowingFile(const GrowingFile&) = delete;
     GrowingFile& operator=(const GrowingFile&) = delete;
 
-    /// As of AtomicFile.
+    /// As in AtomicFile.
     std::ostream& stream() noexcept;
 
   private:
@@ -53,14 +53,14 @@ class GrowingFile {
     std::unique_ptr<Implementation> implementation_;
 };
 
-/// Throws InputError as the constructor of AtomicFile for `target` does, so that a long work fails before it
-/// begins. Leaves nothing behind; pipes and devices are not opened.
+/// Throws InputError under the same conditions as the constructor of AtomicFile for `target`, so that long
+/// work fails before it begins. Leaves no file behind, and does not open pipes and devices.
 void check_writable(const std::filesystem::path& target);
 
-/// Makes `folder`, and those that it lies in, unless they are there. Throws InputError with path and reason.
+/// Creates `folder` and its parents if they do not exist. Throws InputError with path and reason.
 void make_folder(const std::filesystem::path& folder);
 
-/// Writes `content` as the whole of the file `target`, with the promises of AtomicFile.
+/// Writes `content` as the whole of the file `target`, with the guarantees of AtomicFile.
 void write_file(const std::filesystem::path& target, std::string_view content);
 
 } // namespace dfdyn::tools

@@ -6,16 +6,16 @@
 
 namespace dfdyn::tools {
 
-/// How well a program kept its time.
+/// Timing statistics of a periodic program.
 struct PaceCounters {
     std::uint64_t ticks = 0;
-    std::uint64_t missed = 0;       ///< deadlines: ticks that began after the next one was due
-    std::int64_t worst_late_ns = 0; ///< from when a tick was due until it began
-    std::int64_t longest_ns = 0;    ///< tick, from its begin to its end
+    std::uint64_t missed = 0;       ///< ticks that began after the due time of the next one
+    std::int64_t worst_late_ns = 0; ///< largest delay from a tick's due time to its start
+    std::int64_t longest_ns = 0;    ///< longest tick, from start to end
 };
 
-/// The times of periodic ticks, each due at an absolute time: one that is late makes no later one late. Knows
-/// no clock: it is told the time.
+/// Due times of periodic ticks. All are absolute, so that a late tick does not delay later ones. The caller
+/// provides the time.
 class Pace {
   public:
     Pace(std::int64_t start_ns, std::int64_t period_ns)
@@ -23,7 +23,7 @@ class Pace {
 
     std::int64_t due_ns() const noexcept { return due_ns_; }
 
-    /// The tick that is due begins; whether it missed its deadline.
+    /// Begins the due tick. Returns whether it missed its deadline.
     bool begin(std::int64_t now_ns) noexcept {
         const std::int64_t late_ns = now_ns - due_ns_;
         const bool missed = late_ns > period_ns_;
@@ -34,7 +34,7 @@ class Pace {
         return missed;
     }
 
-    /// It has ended: the next one is what is due.
+    /// Ends the tick; the next one becomes due.
     void end(std::int64_t now_ns) noexcept {
         counters_.longest_ns = std::max(counters_.longest_ns, now_ns - begun_ns_);
         due_ns_ += period_ns_;

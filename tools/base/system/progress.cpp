@@ -16,7 +16,7 @@ constexpr std::chrono::milliseconds period{100};
 constexpr const char* erase_line = "\r\x1b[K";
 constexpr int bar_width = 20;
 
-/// When the last plain line was written, or the first Progress began.
+/// Time of the last plain line, or of the construction of the first Progress.
 std::atomic<Clock::time_point>& last_plain_line() {
     static std::atomic<Clock::time_point> last{Clock::now()};
     return last;
@@ -82,7 +82,7 @@ void Progress::show(const std::string& shown, double done) {
     last_plain_line() = Clock::now();
 }
 
-/// A terminal that does not take the line loses nothing that matters.
+/// Errors are ignored, because progress lines are not essential.
 void Progress::write(const std::string& text) const {
     [[maybe_unused]] const ssize_t count = ::write(descriptor_, text.data(), text.size());
 }

@@ -11,29 +11,29 @@
 
 namespace dfdyn::tools {
 
-/// Shows on standard error how far a long work is.
+/// Shows the progress of long work on standard error.
 ///
-/// On a terminal: one line with a bar, at most ten times a second, that is erased in the end. Elsewhere (a
-/// pipe, a log file): plain lines, at most one every `plain_period` over all objects of the program, so that
-/// work of a few seconds writes nothing. One thread.
+/// On a terminal: one line with a bar, updated at most ten times a second, and erased at the end. Elsewhere
+/// (a pipe, a log file): plain lines, at most one every `plain_period` over all objects of the program, so
+/// that work of a few seconds writes nothing. For use by one thread.
 class Progress {
   public:
     static constexpr std::chrono::milliseconds plain_period{10'000};
 
-    /// `total`: what `done` ends at; 0 when nobody knows. `plain`: the period of plain lines, for tests.
+    /// `total`: final value of `done`; 0 if unknown. `plain`: the period of plain lines, for tests.
     explicit Progress(std::string label, std::size_t total, int descriptor = STDERR_FILENO,
                       std::chrono::milliseconds plain = plain_period);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// Cheap enough for every row: reads a clock.
+    /// Updates the count. Cheap enough for every row: it reads a clock.
     void update(std::size_t done);
 
-    /// The same where parts of one count; shows tenths.
+    /// Updates a fractional count; shows tenths.
     void update_part(double done);
 
-    /// Shows `text` in place of a count.
+    /// Shows `text` instead of a count.
     void update_text(const std::string& text);
 
   private:
@@ -50,8 +50,8 @@ class Progress {
     std::chrono::steady_clock::time_point next_;
 };
 
-/// Shows that a work goes on which does not report how far it is: its label and the seconds since it began,
-/// as a Progress does. A thread of its own writes; it ends with the object.
+/// Shows the activity of work without a progress count: its label and the elapsed seconds, like a Progress. A
+/// thread of its own writes them until the object is destroyed.
 class Activity {
   public:
     explicit Activity(std::string label, int descriptor = STDERR_FILENO,
@@ -66,7 +66,7 @@ class Activity {
     std::mutex mutex_;
     std::condition_variable changed_;
     bool ended_ = false;
-    std::thread thread_; // last: begins when the rest is there
+    std::thread thread_; // last: starts after the other members exist
 };
 
 } // namespace dfdyn::tools

@@ -7,8 +7,8 @@
 
 namespace dfdyn::tools {
 
-/// All bytes of a file. Throws InputError "PATH: CANNOT: the system's reason" when it cannot be read or is
-/// empty; `cannot`: e.g. "cannot be read as a model".
+/// Returns all bytes of a file. Throws InputError "PATH: CANNOT: the system's reason" if it cannot be read or
+/// is empty; `cannot`: e.g. "cannot be read as a model".
 std::string read_file(const std::filesystem::path& path, std::string_view cannot = "cannot read");
 
 } // namespace dfdyn::tools

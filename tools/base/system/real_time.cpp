@@ -19,7 +19,8 @@ std::string become_real_time() {
         }
     };
     sched_param priority{};
-    priority.sched_priority = 50; // the kernel's interrupt threads have 50: not above them
+    // the priority of the kernel's interrupt threads, which must not be exceeded
+    priority.sched_priority = 50;
     ask("real-time priority", ::sched_setscheduler(0, SCHED_FIFO, &priority));
     ask("memory locked", ::mlockall(MCL_CURRENT | MCL_FUTURE));
     return refused;

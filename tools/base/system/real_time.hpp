@@ -6,10 +6,10 @@
 
 namespace dfdyn::tools {
 
-/// Asks for a real-time priority and for memory that stays; returns what was not granted, and why.
+/// Requests a real-time priority and locked memory. Returns what the system refused, and why.
 std::string become_real_time();
 
-/// Sleeps until the monotonic clock shows `due_ns`, or a signal comes.
+/// Sleeps until the monotonic clock reaches `due_ns` or a signal arrives.
 void sleep_until(std::int64_t due_ns);
 
 } // namespace dfdyn::tools

@@ -29,7 +29,8 @@ extern "C" void remove_files_and_end(int signal_number) {
             ::unlink(slot.path.data());
         }
     }
-    std::raise(signal_number); // SA_RESETHAND has restored the default: delivered when this handler returns
+    // SA_RESETHAND has restored the default action; delivered when this handler returns
+    std::raise(signal_number);
 }
 
 void handle_unless_taken(int signal_number) {

@@ -6,13 +6,13 @@
 
 namespace dfdyn::tools {
 
-/// While it lives, a signal that would end the program (SIGINT, SIGTERM, SIGHUP, SIGPIPE) removes the file
-/// `path` first; the program then ends by that signal as it would have. A signal that the program handles
-/// itself, or ignores, is left alone: the program then removes the file by ordinary means.
+/// Removes the file `path` if a signal ends the program (SIGINT, SIGTERM, SIGHUP, SIGPIPE) during the
+/// object's lifetime. The program then ends by that signal. Signals that the program handles or ignores are
+/// unaffected; the program must then remove the file itself.
 class RemoveOnSignal {
   public:
-    /// `path`: absolute. The file need not exist yet. A path longer than the system allows is not kept: no
-    /// file can have it. Throws InputError when 16 files are kept already.
+    /// `path`: absolute. The file need not exist yet. A path longer than the system allows is ignored,
+    /// because no file can have it. Throws InputError if 16 files are registered already.
     explicit RemoveOnSignal(const std::string& path);
     ~RemoveOnSignal();
     RemoveOnSignal(const RemoveOnSignal&) = delete;

@@ -13,19 +13,19 @@
 
 namespace dfdyn::tools {
 
-/// The JSON in `text`; throws InputError with source and position in one line.
+/// Parses the JSON in `text`. Throws InputError with source and position in one line.
 nlohmann::json parse_json(const std::string& text, const std::string& source);
 
 /// Reads the fields of one JSON object. Every method throws InputError `SOURCE: path.to.field: expected …,
-/// found …` when the field is missing, of another type, of another size or out of its range; all numbers must
-/// be finite, and finite in single precision. Refers to `json`.
+/// found …` if the field is missing, has another type or size, or is out of range. All numbers must be
+/// finite, also in single precision. Refers to `json`.
 class JsonReader {
   public:
     JsonReader(const nlohmann::json& json, std::string source);
 
     bool has(const std::string& name) const { return json_->contains(name); }
 
-    /// Refuses every field but these.
+    /// Rejects all fields that are not in `names`.
     void allow_only(std::span<const std::string_view> names) const;
 
     JsonReader object(const std::string& name) const;
@@ -42,7 +42,7 @@ class JsonReader {
     double number(const std::string& name) const;
     double positive_number(const std::string& name) const;
     double number_within(const std::string& name, double low, double high) const;
-    /// `absent` where there is no such field.
+    /// Returns `absent` if the field is missing.
     int whole_or(const std::string& name, int absent, int low, int high) const {
         return has(name) ? whole_number(name, low, high) : absent;
     }

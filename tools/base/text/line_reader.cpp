@@ -55,7 +55,7 @@ InputError LineReader::too_long(std::size_t line_number) const {
                       std::to_string(longest_line) + " bytes, found a longer one");
 }
 
-/// Reads one chunk behind the unread bytes; false at the end of the file.
+/// Appends one chunk to the unread bytes. Returns false at the end of the file.
 bool LineReader::fill() {
     std::copy(buffer_.data() + begin_, buffer_.data() + end_, buffer_.data());
     end_ -= begin_;
@@ -71,7 +71,7 @@ bool LineReader::fill() {
     return count > 0;
 }
 
-/// The first `length` unread bytes as a line; they and the `terminator` bytes behind them are then read.
+/// Returns the first `length` unread bytes as a line, and consumes them and the following `terminator` bytes.
 std::string_view LineReader::take(std::size_t length, std::size_t terminator) {
     std::string_view line(buffer_.data() + begin_, length);
     begin_ += length + terminator;

@@ -11,27 +11,29 @@
 
 namespace dfdyn::tools {
 
-/// Reads a text file, pipe or device line by line in bounded memory. Lines end with LF or CRLF; the last one
-/// may lack its end. A UTF-8 byte order mark at the start is dropped. The bytes of a line may be anything but
-/// LF.
+/// Reads a text file, pipe or device line by line with bounded memory. Lines end with LF or CRLF; the last
+/// line may have no line end. A UTF-8 byte order mark at the start is removed. A line may contain any bytes
+/// except LF.
 class LineReader {
   public:
     static constexpr std::size_t longest_line = std::size_t{1} << 20U; ///< bytes
 
-    /// Opens `path`. Throws InputError with the system's reason when it cannot be opened.
+    /// Opens `path`. Throws InputError with the system's reason if it cannot be opened.
     explicit LineReader(const std::filesystem::path& path);
     ~LineReader();
     LineReader(const LineReader&) = delete;
     LineReader& operator=(const LineReader&) = delete;
 
-    /// The next line without its end, or nothing at the end of the file. Valid until the next call. Throws
-    /// InputError when the system refuses to read (a directory, say) or a line is longer than `longest_line`.
+    /// Returns the next line without its end, or nothing at the end of the file. Valid until the next call.
+    /// Throws InputError if the system cannot read (a directory, for example) or a line is longer than
+    /// `longest_line`.
     std::optional<std::string_view> next();
 
-    /// Number of the line that `next` returned last, from 1; 0 before the first.
+    /// Number of the last line returned by `next`, from 1; 0 before the first.
     std::size_t line_number() const noexcept { return line_number_; }
 
-    /// Whether the line that `next` returned last has an end: only the last one of a file may lack it.
+    /// Returns whether the last line returned by `next` has a line end. Only the last line of a file can lack
+    /// it.
     bool terminated() const noexcept { return terminated_; }
 
   private:

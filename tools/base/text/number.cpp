@@ -11,7 +11,7 @@ namespace dfdyn::tools {
 
 ParsedNumber parse_number(std::string_view text) noexcept {
     if (text.starts_with('+') && !text.starts_with("+-")) {
-        text.remove_prefix(1); // std::from_chars takes no plus, but printf("%+f") writes one
+        text.remove_prefix(1); // std::from_chars accepts no plus, but printf("%+f") writes one
     }
     double value = 0.0;
     const char* const end = text.data() + text.size();
@@ -26,7 +26,7 @@ ParsedNumber parse_number(std::string_view text) noexcept {
 }
 
 std::string number_text(double value) {
-    std::array<char, 32> buffer{}; // the longest shortest form, -2.2250738585072014e-308, has 24 characters
+    std::array<char, 32> buffer{}; // the longest result, -2.2250738585072014e-308, has 24 characters
     const auto [end, fault] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
     static_cast<void>(fault);
     return {buffer.data(), end};

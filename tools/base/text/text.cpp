@@ -12,7 +12,8 @@ constexpr std::size_t longest_list = 30;
 
 enum class Letters { ascii, any };
 
-/// `text` with control characters, and where only ASCII is wanted every other byte beyond it, as \xNN.
+/// Returns `text` with control characters as \xNN. If only ASCII is allowed, all bytes outside it are
+/// converted as well.
 std::string escaped(std::string_view text, Letters letters) {
     constexpr std::string_view digits = "0123456789abcdef";
     std::string out;
