@@ -17,19 +17,19 @@ namespace dfdyn::tools {
 
 struct BenchOptions {
     std::vector<int> columns = contender_columns();
-    int largest_peer = 1000; ///< sizes beyond are measured without peers
+    int largest_peer = 1000; ///< larger sizes are measured without peers
     RepetitionOptions repetitions;
-    int dense_ticks = 5;                  ///< of SPK's dense form, whose ticks are long
-    bool small_models = false;            ///< few columns in the part about SPK
-    std::int64_t stretch_ticks = 200'000; ///< a tenth of a learner's life in the part about endurance
-    std::size_t replay_rows = 0;          ///< 0: nothing is replayed
-    double loop_s = 0;                    ///< of the periodic loop; 0: none
+    int dense_ticks = 5;                  ///< of SPK's dense form, which takes long per tick
+    bool small_models = false;            ///< few columns in the SPK part
+    std::int64_t stretch_ticks = 200'000; ///< a tenth of a learner's life in the endurance part
+    std::size_t replay_rows = 0;          ///< 0: no replay
+    double loop_s = 0;                    ///< duration of the periodic loop; 0: none
 };
 
-/// All that a run of `dfdyn bench` found.
+/// All results of a run of `dfdyn bench`.
 struct BenchResults {
     MachineFacts machine;
-    double vectors_per_ns = 0; ///< multiply-adds of the probe at its best
+    double vectors_per_ns = 0; ///< best multiply-add rate of the probe
     TickBench ticks;
     ModelBench models;
     EnduranceBench endurance;
@@ -39,20 +39,21 @@ struct BenchResults {
 
 BenchResults run_bench(const BenchOptions& options, const std::function<void(double)>& on_share_done);
 
-/// What is wanted of a figure.
+/// Target value of a measured quantity.
 struct BenchTarget {
     std::string name;
     double measured = 0;
     double limit = 0;
-    bool at_most = true; ///< otherwise at least
+    bool at_most = true; ///< upper limit; otherwise lower limit
 
     bool met() const { return at_most ? measured <= limit : measured >= limit; }
 };
 
-/// Of what was measured.
+/// Returns the targets for the measured parts.
 std::vector<BenchTarget> bench_targets(const BenchResults& results);
 
-/// The exponent of our time in float over the sizes of 200 columns and more; 0 if these are fewer than two.
+/// Returns the exponent of the float learner's time over the sizes of 200 columns and more; 0 if there are
+/// fewer than two.
 double growth_exponent(const TickBench& bench);
 
 } // namespace dfdyn::tools

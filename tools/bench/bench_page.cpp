@@ -31,7 +31,7 @@ std::vector<std::string> with_times(std::vector<std::string> columns) {
     return columns;
 }
 
-/// Three digits, whatever the sizes of its column's others.
+/// Formats with three digits, independent of the other values in its column.
 std::string as_text(double value) { return value < 1000 ? rounded_text(value) : formatted("%.0f", value); }
 
 ReportTable target_table(const std::vector<BenchTarget>& targets) {
@@ -44,7 +44,7 @@ ReportTable target_table(const std::vector<BenchTarget>& targets) {
     return table;
 }
 
-/// Medians: one row per contender, one column per size.
+/// Table of medians: one row per learner, one column per size.
 ReportTable overview(const BenchResults& results, const std::string& scalar) {
     ReportTable table{"One tick in " + scalar + ", median in µs", {"learner"}, {}, ""};
     std::vector<int> sizes;
@@ -123,7 +123,7 @@ ReportTable model_table(const ModelBench& models, const EnduranceBench& enduranc
     return table;
 }
 
-/// From each size to the next.
+/// Growth of the time from each size to the next, as text.
 std::string growth_words(const TickBench& bench) {
     std::string words;
     const TickResult* before = nullptr;
@@ -203,7 +203,7 @@ ReportTable memory_table() {
     return table;
 }
 
-/// Time in float against size, the floor with it.
+/// Chart of the float times over size, with the machine's lower bound.
 PageChart time_chart(const TickBench& bench) {
     std::vector<ChartCurve> curves;
     const auto add = [&](const std::string& name, double x, double y) {

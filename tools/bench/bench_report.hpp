@@ -10,13 +10,13 @@
 
 namespace dfdyn::tools {
 
-/// The results as tables, with a chart of time against size.
+/// Returns the results as tables, with a chart of time over size.
 FigurePage bench_page(const BenchResults& results);
 
-/// The same as numbers, schema `dfdyn.bench/1`.
+/// Returns the results as numbers, schema `dfdyn.bench/1`.
 nlohmann::json bench_json(const BenchResults& results);
 
-/// Writes bench.json, bench.md (the page), and pictures/tick-time.svg into `folder`, which is made.
+/// Writes bench.json, bench.md (the page), and pictures/tick-time.svg into `folder`, which is created.
 void write_bench(const std::filesystem::path& folder, const BenchResults& results);
 
 } // namespace dfdyn::tools

@@ -8,7 +8,7 @@
 
 namespace dfdyn::tools {
 
-/// What the firmware's estimator of model NP takes: six joints, six outputs, input DFR of eleven positions.
+/// Memory of the firmware's estimator of model NP: six joints, six outputs, input DFR with eleven positions.
 struct MemoryRow {
     std::string scalar;
     int columns;

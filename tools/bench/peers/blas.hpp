@@ -13,7 +13,7 @@ void spotrs_(const char* uplo, const int* n, const int* nrhs, const float* a, co
              const int* ldb, int* info);
 void dpotrs_(const char* uplo, const int* n, const int* nrhs, const double* a, const int* lda, double* b,
              const int* ldb, int* info);
-// Null where BLAS is another.
+// Null if another BLAS is linked.
 [[gnu::weak]] void openblas_set_num_threads(int count);
 [[gnu::weak]] char* openblas_get_config();
 }

@@ -10,8 +10,8 @@
 
 namespace dfdyn::tools {
 
-/// A learner of six outputs over the same columns. One tick: predict all outputs for the next row, fold the
-/// row in, and have the weights with which the one after it will be predicted.
+/// A learner of six outputs with common columns. One tick predicts all outputs for the next row, updates the
+/// learner with the row, and computes the weights for the prediction of the following row.
 class Contender : public Ticking {
   public:
     enum class Kind { ours, covariance, cholesky, gurls, other };
@@ -23,7 +23,7 @@ class Contender : public Ticking {
     const std::string& scalar() const noexcept { return scalar_; } ///< float or double
     Kind kind() const noexcept { return kind_; }
 
-    /// Predictions for all distinct rows with the present weights.
+    /// Predictions for all distinct rows with the current weights.
     virtual RegressionTask::Matrix predictions() = 0;
 
   private:
@@ -33,27 +33,27 @@ class Contender : public Ticking {
 
 using Contenders = std::vector<std::unique_ptr<Contender>>;
 
-/// The firmware's learner of a size known at compile time: 100, 200, 500, 1000 in float and double, 2000 in
-/// float.
+/// Returns the firmware's learner with sizes known at compile time: 100, 200, 500, 1000 in float and double,
+/// 2000 in float.
 Contenders our_contenders(const RegressionTask& task);
 
-/// What a user could take instead; those that were there when this program was built.
+/// Returns the alternative learners that were available when this program was built.
 Contenders peers(const RegressionTask& task);
 
-/// One line about each peer that is missing, and why.
+/// Returns one line about each peer that is missing, and the reason.
 std::vector<std::string> missing_peers();
 
-/// The sizes of `our_contenders`.
+/// Returns the sizes of `our_contenders`.
 const std::vector<int>& contender_columns();
 
-// The parts of `peers`.
+// The learners that make up `peers`.
 Contenders eigen_peers(const RegressionTask& task);
 Contenders gurls_peers(const RegressionTask& task);
 Contenders qrupdate_peers(const RegressionTask& task);
 Contenders dlib_peers(const RegressionTask& task);
 bool has_blas();
-std::string blas_name();      ///< as far as it tells
-void keep_blas_on_one_core(); ///< as all contenders, where it can be told
+std::string blas_name();      ///< as far as it can be determined
+void keep_blas_on_one_core(); ///< like all learners under test, if the BLAS supports it
 bool has_qrupdate();
 bool has_dlib();
 

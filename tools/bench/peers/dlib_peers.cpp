@@ -10,7 +10,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// It has one output: six of them, as a user would have to.
+/// It has one output; six instances are used, as in an application.
 class DlibRls final : public TypedContender<double> {
   public:
     explicit DlibRls(const RegressionTask& task)
@@ -42,7 +42,7 @@ bool has_dlib() { return true; }
 
 Contenders dlib_peers(const RegressionTask& task) {
     Contenders one;
-    if (task.columns() <= 500) { // beyond, its one tick takes many milliseconds
+    if (task.columns() <= 500) { // larger sizes take many milliseconds per tick
         one.push_back(std::make_unique<DlibRls>(task));
     }
     return one;

@@ -7,7 +7,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// The textbook's recursion over the covariance, one triangle of it.
+/// Textbook recursive least squares with the covariance matrix, of which one triangle is stored.
 template <class Scalar>
 class EigenCovariance final : public EigenContender<Scalar> {
     using Base = EigenContender<Scalar>;
@@ -33,8 +33,8 @@ class EigenCovariance final : public EigenContender<Scalar> {
     typename Base::Vector gain_;
 };
 
-/// The paper's route with Eigen: rank-one update of the Cholesky factor of the information matrix, then two
-/// triangular solves for the weights. It gives no variance: that would be one more solve.
+/// The paper's method with Eigen: a rank-one update of the Cholesky factor of the information matrix, then
+/// two triangular solves for the weights. It computes no variance, which would need another solve.
 template <class Scalar>
 class EigenCholesky final : public EigenContender<Scalar> {
     using Base = EigenContender<Scalar>;

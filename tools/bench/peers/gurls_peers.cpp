@@ -14,10 +14,10 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// One Givens rotation per row of the upper factor of the information, then two triangular solves: the same
-/// calls of BLAS in the same order in memory, and the same copies of the factor, which is updated in a new
-/// one that goes through another. What else GURLS does for a sample (its list of options, copies of weights
-/// and right sides) is left out, so that GURLS cannot be faster.
+/// One Givens rotation per row of the upper factor of the information matrix, then two triangular solves. It
+/// makes the same BLAS calls in the same memory order as GURLS, and the same copies of the factor, which goes
+/// through a second buffer. The remaining work of GURLS per sample (its list of options, copies of weights
+/// and right-hand sides) is left out, so that this is a lower bound of its time.
 class RecursiveCholesky final : public EigenContender<double> {
   public:
     explicit RecursiveCholesky(const RegressionTask& task)
@@ -39,7 +39,7 @@ class RecursiveCholesky final : public EigenContender<double> {
         solve("N");
     }
 
-    /// Folds the row in.
+    /// Updates the factor with a row.
     void rotate(Matrix& factor, const Row& row) {
         row_ = row;
         const int one = 1;

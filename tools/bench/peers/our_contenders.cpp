@@ -58,7 +58,7 @@ Contenders our_contenders(const RegressionTask& task) {
     case 1000:
         return of_size<1000, float, double>(task);
     case 2000:
-        return of_size<2000, float>(task); // in double it would not stay in the caches
+        return of_size<2000, float>(task); // in double it would not fit into the caches
     default:
         throw std::logic_error("a size of benchmark that was not compiled");
     }

@@ -10,7 +10,7 @@
 
 namespace dfdyn::tools {
 
-/// A contender in one scalar: the task in it, and the row in turn.
+/// A learner in one scalar type: the task converted to it, and the rows in turn.
 template <class Scalar>
 class TypedContender : public Contender {
   public:
@@ -41,7 +41,7 @@ class TypedContender : public Contender {
   protected:
     int columns() const { return static_cast<int>(rows_.rows()); }
 
-    /// One tick with this row and its targets.
+    /// Runs one tick with this row and its targets.
     virtual void learn(const Scalar* row, const Scalar* targets) = 0;
     virtual void predict(const Scalar* row, Scalar* means) = 0;
 
@@ -50,7 +50,7 @@ class TypedContender : public Contender {
     Eigen::Index next_ = 0;
 };
 
-/// A contender that has its weights, zero at first, in a matrix of Eigen's, one column for each output.
+/// A learner whose weights, initially zero, are in an Eigen matrix with one column per output.
 template <class Scalar>
 class EigenContender : public TypedContender<Scalar> {
   public:
@@ -64,7 +64,7 @@ class EigenContender : public TypedContender<Scalar> {
           weights_(Matrix::Zero(task.columns(), RegressionTask::outputs)) {}
 
   protected:
-    /// Folds in a row and the outputs at it, whose predictions were `means`.
+    /// Updates the learner with a row and its outputs, whose predictions were `means`.
     virtual void fold(const Row& row, const Outputs& targets, const Outputs& means) = 0;
 
     Matrix weights_;

@@ -8,14 +8,14 @@
 
 namespace dfdyn::tools {
 
-/// An arm at 1 kHz for whole programs to be timed with: six joints that move smoothly, and torques that
-/// depend on it.
+/// An arm at 1 kHz for timing complete programs: six joints that move smoothly, and torques that depend on
+/// the motion.
 class BenchArm {
   public:
     static constexpr int joints = 6;
     static constexpr double period_s = 0.001;
 
-    /// Model NP with input DFR and 2d = 200 columns, of random numbers.
+    /// Returns model NP with input DFR and 2d = 200 columns, with random numbers.
     static TrainedModel model();
 
     void move_to(std::size_t row);

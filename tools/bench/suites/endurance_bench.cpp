@@ -16,7 +16,7 @@ constexpr int outputs = RegressionTask::outputs;
 using Learner = UdCovariance<float, columns, outputs>;
 constexpr Learner::Constants constants{100, 0.9995F, nullptr};
 
-/// The columns and targets of an arm that moves, or stands where it was.
+/// Columns and targets of an arm that moves or remains stationary.
 struct Motion {
     using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     Matrix rows, targets;
@@ -32,7 +32,7 @@ void tick(Learner& learner, const Motion& motion, Eigen::Index row) {
     whole_tick(learner, motion.targets.row(row).data(), motion.rows.row(row).data());
 }
 
-/// A tenth of the time in motion, then standing.
+/// Runs a tenth of the ticks in motion and the others at standstill.
 void live(Learner& learner, const Motion& motion, std::int64_t ticks) {
     for (std::int64_t t = 0; t < ticks; ++t) {
         tick(learner, motion, 10 * t < ticks ? static_cast<Eigen::Index>(t % motion.rows.rows()) : 0);
@@ -55,7 +55,7 @@ class Going final : public Ticking {
     Eigen::Index row_ = 0;
 };
 
-/// Looks at a learner's state.
+/// Counts the denormal numbers of a learner's state.
 struct DenormalCounter {
     std::int64_t count = 0;
     template <class T>

@@ -33,7 +33,7 @@ void write_recording(const std::filesystem::path& path, std::size_t rows) {
     file.commit();
 }
 
-/// Removes the file when it goes, or when the program is ended.
+/// Removes the file on destruction, or when the program is aborted.
 struct TemporaryFile {
     std::filesystem::path path =
         std::filesystem::temp_directory_path() / ("dfdyn-bench-" + std::to_string(::getpid()) + ".csv");
@@ -47,7 +47,7 @@ struct TemporaryFile {
     TemporaryFile& operator=(const TemporaryFile&) = delete;
 };
 
-/// Of this thread on its core, s: what others do on a shared machine is left out.
+/// CPU time of this thread, s: excludes other processes on a shared machine.
 double core_time() {
     timespec time{};
     ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);

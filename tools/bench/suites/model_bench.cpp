@@ -30,7 +30,7 @@ void fill(Storage& storage, std::mt19937_64& engine, double deviation) {
     }
 }
 
-/// One instant of SPK: φ, the rows ψ, the targets.
+/// One sample of SPK: φ, the rows ψ, the targets.
 template <int columns, int p>
 struct Instant {
     Storage<float, columns> phi;
@@ -120,8 +120,8 @@ class Kernel final : public Ticking {
     std::size_t next_ = 0;
 };
 
-/// One Cholesky factor of the information about all weights and parameters: six rows per tick, then the
-/// weights.
+/// Least squares for all weights and parameters with one Cholesky factor of the information matrix: six rows
+/// per tick, then the weights.
 template <class Scalar, int columns, int p>
 class Dense final : public Ticking {
   public:
@@ -165,7 +165,7 @@ class Dense final : public Ticking {
     std::size_t next_ = 0;
 };
 
-/// Largest difference of the predictions for all instants after a few ticks of both, over their rms.
+/// Largest difference of the predictions for all samples after a few ticks of both, relative to their rms.
 template <int columns, int p>
 double kernel_error(const std::vector<Instant<columns, p>>& instants, int ticks) {
     Kernel<columns, p> kernel(instants);

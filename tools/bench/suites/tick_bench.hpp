@@ -8,14 +8,14 @@
 
 namespace dfdyn::tools {
 
-/// What one contender did at one size.
+/// Result of one learner at one size.
 struct TickResult {
     std::string contender, scalar;
     Contender::Kind kind = Contender::Kind::other;
     int columns = 0;
-    double error = 0; ///< of its predictions after some ticks, against the batch solution, over their rms
+    double error = 0; ///< of its predictions after some ticks, relative to the batch solution and its rms
     bool right = false;
-    TickTimes times; ///< none of one that is wrong
+    TickTimes times; ///< empty for a wrong learner
 };
 
 struct FloorResult {
@@ -29,19 +29,21 @@ struct TickBench {
     std::vector<FloorResult> floors;
 };
 
-/// A learner that is off by more than this after `verified_ticks` is wrong, however fast it is.
+/// Largest error after `verified_ticks`. A learner with a larger error counts as wrong, independently of its
+/// speed.
 double tolerated_error(const std::string& scalar);
 constexpr int verified_ticks = 300;
 
-/// All contenders of these sizes, and the floors, in turn; peers of the sizes up to `largest_peer`.
+/// Measures all learners of these sizes and the machine's lower bounds in alternation; peers up to the size
+/// `largest_peer`.
 TickBench run_tick_bench(const std::vector<int>& columns, int largest_peer, const RepetitionOptions& options,
                          MultiplyAddProbe& probe, const std::function<void(double)>& on_share_done);
 
-/// Our result of that size; nullptr if there is none.
+/// Returns the result of dfdyn's learner of this size; nullptr if there is none.
 const TickResult* find_ours(const TickBench& bench, const std::string& scalar, int columns);
 const FloorResult* find_floor(const TickBench& bench, const std::string& scalar, int columns);
 
-/// The fastest right one of that size: of a kind, or of all peers.
+/// Returns the fastest correct peer of this size: of one kind, or of all.
 const TickResult* fastest_peer(const TickBench& bench, const std::string& scalar, int columns);
 const TickResult* fastest_of(const TickBench& bench, Contender::Kind kind, const std::string& scalar,
                              int columns);

@@ -14,7 +14,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr std::size_t load_values = std::size_t{8} << 20; // 64 MiB: more than caches hold
+constexpr std::size_t load_values = std::size_t{8} << 20; // 64 MiB: more than the caches hold
 constexpr double longest_s = 3600;
 constexpr double us_per_ns = 1e-3;
 
@@ -38,7 +38,7 @@ void keep_this_thread_on(int core) {
     ::sched_setaffinity(0, sizeof set, &set);
 }
 
-/// Reads and writes more than the caches hold until it is to stop.
+/// Reads and writes more memory than the caches hold, until `stop` is requested.
 void work(const std::stop_token& stop, int core) {
     keep_this_thread_on(core);
     std::vector<double> values(load_values, 1.0);
@@ -90,7 +90,7 @@ TimedLoop time_loop(const TimedLoopOptions& options, const std::function<void(st
     if (options.load) {
         load = std::jthread([core = cores.front()](const std::stop_token& stop) { work(stop, core); });
     }
-    // A thread of its own: its priority and its core end with it.
+    // A separate thread, so that its priority and its core assignment end with it.
     std::thread loop([&, core = cores.back()] {
         keep_this_thread_on(core);
         run(options, tick, timed);

@@ -12,22 +12,22 @@ namespace dfdyn::tools {
 struct TimedLoopOptions {
     double period_s = 0.001;
     double duration_s = 600;
-    bool load = true; ///< another thread works on memory all the while, on another core where there is one
+    bool load = true; ///< another thread uses memory all the time, on another core if there is one
 };
 
-/// How well a periodic loop kept its time.
+/// Timing of a periodic loop.
 struct TimedLoop {
     PaceCounters pace;
-    std::vector<double> late_us;     ///< of each tick: from when it was due until it began
-    std::vector<double> duration_us; ///< of each tick: from its begin to its end
-    std::string not_real_time;       ///< what the kernel did not grant, and why; empty: all of it
-    int cores = 0;                   ///< that the process may use; with one, the load shares it
+    std::vector<double> late_us;     ///< per tick: from its due time to its start
+    std::vector<double> duration_us; ///< per tick: from its start to its end
+    std::string not_real_time;       ///< what the system refused, and why; empty: nothing
+    int cores = 0;                   ///< available to the process; with one core, the load shares it
 };
 
-/// Calls `tick` once per period, at absolute times, with its number; a tick that begins late is run at once.
-/// Asks for a real-time priority and locked memory, on a thread of its own, on the last core that the process
-/// may use; the load is on the first. Memory stays locked. Throws InputError unless
-/// 0 < period <= duration <= one hour.
+/// Calls `tick` with its number once per period, at absolute times; a late tick runs immediately. Requests a
+/// real-time priority and locked memory, in a separate thread on the last core that the process may use; the
+/// load runs on the first one. Memory remains locked. Throws InputError unless 0 < period <= duration <= one
+/// hour.
 TimedLoop time_loop(const TimedLoopOptions& options, const std::function<void(std::size_t)>& tick);
 
 } // namespace dfdyn::tools

@@ -8,17 +8,17 @@
 
 namespace dfdyn::tools {
 
-/// What no sweep over a factor of p columns can be faster than on this machine, µs.
+/// Lower bounds of the time (µs) of one sweep over a factor with p columns on this machine.
 struct Floor {
-    double arithmetic = 0; ///< 1.5 p² multiply-adds, as many at a time as the processor takes
-    double memory = 0;     ///< one read and one write of the packed triangle, as it was measured
+    double arithmetic = 0; ///< 1.5 p² multiply-adds at the processor's full vector width
+    double memory = 0;     ///< one measured read and write of the packed triangle
     double total() const noexcept { return arithmetic > memory ? arithmetic : memory; }
 };
 
-/// 1.5 p² multiply-adds in µs; `vectors_per_ns` as the probe gives it.
+/// Returns the time of 1.5 p² multiply-adds in µs; `vectors_per_ns` from the probe.
 double arithmetic_floor_us(int columns, const std::string& scalar, double vectors_per_ns);
 
-/// One read and one write of p(p+1)/2 numbers, in place, by whole vectors.
+/// Returns a subject that reads and writes p(p+1)/2 numbers in place, by whole vectors.
 std::unique_ptr<Ticking> make_triangle_pass(int columns, const std::string& scalar);
 
 } // namespace dfdyn::tools

@@ -15,14 +15,14 @@ double microseconds(Clock::duration duration) {
     return std::chrono::duration<double, std::micro>(duration).count();
 }
 
-/// How often the core was taken from this thread.
+/// Number of involuntary context switches of this thread.
 long switches_so_far() {
     rusage usage{};
     ::getrusage(RUSAGE_THREAD, &usage);
     return usage.ru_nivcsw;
 }
 
-/// Two untimed ticks bring the subject back into the caches.
+/// Measures a repetition. Two untimed ticks first bring the subject back into the caches.
 std::vector<double> timed_ticks(Ticking& subject, const RepetitionOptions& options, double clock_cost_ns) {
     std::vector<double> times;
     subject.tick();

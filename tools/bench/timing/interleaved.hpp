@@ -10,7 +10,7 @@
 
 namespace dfdyn::tools {
 
-/// Something whose ticks are timed.
+/// A subject whose ticks are timed.
 class Ticking {
   public:
     virtual ~Ticking() = default;
@@ -18,29 +18,29 @@ class Ticking {
 };
 
 struct RepetitionOptions {
-    int passes = 60;              ///< over all that is compared
-    double repetition_us = 400;   ///< how long one of them ticks before the next has its turn
-    std::size_t fewest_ticks = 4; ///< in a repetition, however long they take
-    double undisturbed = 0.97;    ///< of the best probe: below it, a repetition does not count
+    int passes = 60;              ///< number of passes over all subjects
+    double repetition_us = 400;   ///< duration of one subject's repetition before the next subject follows
+    std::size_t fewest_ticks = 4; ///< minimum per repetition
+    double undisturbed = 0.97;    ///< minimum probe rate for a valid repetition, relative to the best one
 };
 
-/// Times the ticks of all `subjects`, one repetition of each in turn, so that what else the machine does hits
-/// all alike. Before and after each repetition the probe runs; only those between two probes near the best
-/// count, because then the core was free and at its full clock, and of these only such during which the
-/// system did not give the core to somebody else. If these are fewer than a tenth, all count. `clock_cost_ns`
-/// is taken off every tick. `on_pass` is told the number of passes done.
+/// Measures the ticks of all `subjects` with one repetition of each in turn, so that disturbances of the
+/// machine affect all equally. The probe runs before and after each repetition. A repetition is valid if both
+/// probes are near the best rate (the core was free and at its full clock) and the system did not interrupt
+/// the thread. If less than a tenth is valid, all repetitions are used. `clock_cost_ns` is subtracted from
+/// every tick. `on_pass` receives the number of completed passes.
 std::vector<TickTimes> time_interleaved(std::span<Ticking* const> subjects, const RepetitionOptions& options,
                                         MultiplyAddProbe& probe, double clock_cost_ns,
                                         const std::function<void(int)>& on_pass);
 
-/// One repetition as it was measured.
+/// The measurements of one repetition.
 struct Repetition {
-    double probe_rate; ///< the slower of the two about it
-    bool interrupted;  ///< the core went to somebody else meanwhile
+    double probe_rate; ///< the lower rate of the probes before and after
+    bool interrupted;  ///< the system ran another thread on the core
     std::vector<double> times_us;
 };
 
-/// Of those that count, given the best rate of the probe.
+/// Summarizes the valid repetitions, for the best rate of the probe.
 TickTimes summarise_undisturbed(const std::vector<Repetition>& repetitions, double best_rate,
                                 double undisturbed);
 

@@ -3,7 +3,7 @@
 
 namespace dfdyn::tools {
 
-/// Where results go that nobody reads, so that they are computed.
+/// Marks an unused result as used, so that the compiler computes it.
 template <class Value>
 void keep(const Value& value) {
     asm volatile("" : : "r"(&value) : "memory");

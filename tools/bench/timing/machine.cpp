@@ -19,7 +19,7 @@ double nanoseconds(Clock::duration duration) {
     return std::chrono::duration<double, std::nano>(duration).count();
 }
 
-/// The first line of `file` that begins with `key`, from behind it on; "unknown" if there is none.
+/// Returns the rest of the first line of `file` that begins with `key`; "unknown" if there is none.
 std::string line_of(const char* file, const std::string& key) {
     std::ifstream stream(file);
     for (std::string line; std::getline(stream, line);) {
@@ -52,7 +52,7 @@ double MultiplyAddProbe::run() {
     }
     const double rate = chains * turns / nanoseconds(Clock::now() - begin);
     for (const auto& sum : sums) {
-        start = Lanes::total(sum) * 0 + 1; // so that no chain can be left out
+        start = Lanes::total(sum) * 0 + 1; // so that the compiler cannot remove a chain
     }
     best_ = std::max(best_, rate);
     return rate;

@@ -8,27 +8,27 @@
 
 namespace dfdyn::tools {
 
-/// Vector multiply-adds of this build, as many as the processor takes: what nothing can be faster than. A
-/// burst takes some ten microseconds and touches no memory, so that it also tells whether the machine does
-/// something else meanwhile.
+/// Measures the rate of vector multiply-adds in this build, an upper bound of the processor's speed. A burst
+/// takes about ten microseconds without memory access, so that it also detects disturbances by other
+/// programs.
 class MultiplyAddProbe {
   public:
-    /// One burst; vectors per nanosecond.
+    /// Runs one burst; returns vectors per nanosecond.
     double run();
-    /// The best burst so far.
+    /// Rate of the best burst so far.
     double best() const noexcept { return best_; }
 
   private:
     double best_ = 0;
 };
 
-/// What a time reading costs, ns: the median distance of two in a row.
+/// Returns the cost of a clock reading (ns): the median difference of two successive readings.
 double clock_cost_ns();
 
-/// False: times of this build mean nothing.
+/// Returns false if times of this build are not meaningful.
 bool is_optimised();
 
-/// What belongs to every time: processor, clock, compiler and flags.
+/// Facts that must accompany every time: processor, clock, compiler and flags.
 struct MachineFacts {
     std::string processor, clock_source, build;
     double clock_cost_ns = 0;

@@ -7,8 +7,8 @@
 
 namespace dfdyn::tools {
 
-/// What all learners of a comparison are given: rows of random Fourier features of random inputs, and targets
-/// that are a smooth function of the inputs, with noise. The rows are given again and again.
+/// The common task of all compared learners: rows of random Fourier features of random inputs, and targets
+/// that are a smooth function of the inputs, with noise. The rows repeat cyclically.
 class RegressionTask {
   public:
     using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -25,15 +25,16 @@ class RegressionTask {
     const Matrix& rows() const noexcept { return rows_; }       ///< distinct rows × columns
     const Matrix& targets() const noexcept { return targets_; } ///< distinct rows × outputs
 
-    /// The regularised least squares of the first `samples` (the rows in turn), solved at once in double:
-    /// its predictions for all distinct rows.
+    /// Solves the regularised least-squares problem of the first `samples` (the rows in turn) at once in
+    /// double. Returns the predictions for all distinct rows.
     Matrix batch_predictions(int samples) const;
 
   private:
     Matrix rows_, targets_;
 };
 
-/// The largest difference over the rms of the expected values; infinite where a prediction is not finite.
+/// Returns the largest difference divided by the rms of the expected values; infinite if a prediction is not
+/// finite.
 double relative_error(const RegressionTask::Matrix& predictions, const RegressionTask::Matrix& expected);
 
 } // namespace dfdyn::tools

@@ -7,19 +7,19 @@
 
 namespace dfdyn::tools {
 
-/// How long one kind of tick took, µs each.
+/// Durations of one kind of tick, µs each.
 struct TickTimes {
-    std::size_t ticks = 0; ///< that count
+    std::size_t ticks = 0; ///< number of valid ticks
     double median = 0, p90 = 0, p99 = 0, p999 = 0, most = 0;
-    double spread = 0;   ///< distance of the quartiles, as a share of the median
-    double accepted = 0; ///< share of the repetitions during which the machine was undisturbed
+    double spread = 0;   ///< interquartile range relative to the median
+    double accepted = 0; ///< share of valid repetitions
 };
 
-/// Of the ticks' times in µs; all zero for none.
+/// Summarizes times in µs; all zero without times.
 TickTimes summarise(std::vector<double> times_us, double accepted_share);
 
-/// The exponent e of the power law time = c · size^e with the least squared error of the logarithms. At least
-/// two sizes, all numbers positive.
+/// Returns the exponent e of the power law time = c · size^e by least squares of the logarithms. Requires at
+/// least two sizes and positive numbers.
 double fitted_exponent(std::span<const double> sizes, std::span<const double> times);
 
 } // namespace dfdyn::tools

@@ -7,8 +7,8 @@
 
 namespace dfdyn::tools {
 
-/// One tick of a learner of the firmware: predict from the `rows`, take them in with their targets, learn.
-/// The variance comes with learning, as in the estimator.
+/// One tick of a learner of the firmware: predicts from `rows`, adds them with their targets, and learns. The
+/// variance is part of the learning, as in the estimator.
 template <class Learner, class Scalar, class... Rows>
 void whole_tick(Learner& learner, const Scalar* targets, const Rows*... rows) {
     Scalar means[RegressionTask::outputs];
