@@ -59,8 +59,8 @@ void keep_freed_memory() {
 
 } // namespace
 
-/// Exit status: 0 done, 1 the work ran and its answer is negative, 2 bad usage or input, 3 a fault of the
-/// program.
+/// Exit status: 0 success, 1 the work was done and its result is negative, 2 wrong usage or input, 3 an
+/// internal error of the program.
 int main(int argc, char** argv) {
     keep_freed_memory();
     try {
