@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 
 constexpr double any_hz = 2 * SpectralRows::highest_hz;
 
-/// Joint 2 of a swinging arm shakes by `amplitude` (rad) at 10 Hz.
+/// A swinging arm whose joint 2 also vibrates with `amplitude` (rad) at 10 Hz.
 MeasuredMotion shaking(Index joints, double amplitude) {
     MeasuredMotion measured = swing(joints);
     const double omega = 2 * std::numbers::pi * 10;
@@ -29,7 +29,8 @@ MeasuredMotion shaking(Index joints, double amplitude) {
     return measured;
 }
 
-/// The torques of `motion`, and their noise.
+/// Response bandwidths (Hz) when the encoders show `shown` and the torques, with noise, are those of
+/// `motion`.
 VectorXd answered(const MeasuredMotion& shown, const RobotMotion& motion, std::mt19937_64& engine) {
     const Robot robot = ur5();
     MeasuredMotion measured = shown;
@@ -43,7 +44,7 @@ VectorXd answered(const MeasuredMotion& shown, const RobotMotion& motion, std::m
 
 } // namespace
 
-TEST_CASE("outputs of any scale that answer to all of a motion count at all frequencies") {
+TEST_CASE("the response bandwidth is unlimited if scaled outputs contain the whole motion") {
     DFDYN_SEEDED_ENGINE(engine);
     const MeasuredMotion quiet = swing(6);
     CHECK(answered(quiet, quiet.motion, engine).minCoeff() == any_hz);
@@ -51,7 +52,7 @@ TEST_CASE("outputs of any scale that answer to all of a motion count at all freq
     CHECK(answered(shaken, shaken.motion, engine).minCoeff() == any_hz);
 }
 
-TEST_CASE("outputs that lag the motion by 30 ms answer to it, too") {
+TEST_CASE("a delay of 30 ms does not reduce the response bandwidth") {
     DFDYN_SEEDED_ENGINE(engine);
     const MeasuredMotion shaken = shaking(6, 0.003);
     RobotMotion earlier = shaken.motion;
@@ -61,7 +62,7 @@ TEST_CASE("outputs that lag the motion by 30 ms answer to it, too") {
     CHECK(answered(shaken, earlier, engine).minCoeff() == any_hz);
 }
 
-TEST_CASE("where positions shake and the torques know nothing of it, they count below only") {
+TEST_CASE("the response bandwidth ends below a vibration that is in the positions but not in the torques") {
     DFDYN_SEEDED_ENGINE(engine);
     const MeasuredMotion quiet = swing(6);
     const VectorXd hz = answered(shaking(6, 0.003), quiet.motion, engine);

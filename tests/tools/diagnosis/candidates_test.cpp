@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Columns of effects against what the effect does to the rigid body, by other means.
+// Compares the columns of effects with an independent computation of each effect on the rigid body.
 #include "tools/diagnosis/candidates/candidates.hpp"
 
 #include "tests/support/catch.hpp"
@@ -23,7 +23,7 @@ using Eigen::VectorXd;
 
 } // namespace
 
-TEST_CASE("the rigid body along a motion is the firmware's regressor times the nominal parameters") {
+TEST_CASE("the nominal outputs are the firmware's regressor times the nominal parameters") {
     for (const OutputKind kind : {OutputKind::joint_torque, OutputKind::wrench}) {
         const DiagnosisSignals signals = signals_of(icub_right_arm(), kind);
         const MatrixXd expected =
@@ -32,14 +32,14 @@ TEST_CASE("the rigid body along a motion is the firmware's regressor times the n
     }
 }
 
-TEST_CASE("a tilted base is one whose gravity points elsewhere: tilt_x, then tilt_y, about the root's axes") {
+TEST_CASE("a tilted base rotates gravity about the x and y axes of the root link") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const std::vector<Candidate> candidates = lasting_candidates(signals);
     const Candidate& tilt = find(candidates, "gravity_tilt", "base");
     constexpr double angle = 1e-4;
     for (int axis = 0; axis < 2; ++axis) {
         Robot tilted = signals.robot;
-        // the base turns by +angle: seen from it, gravity turns the other way
+        // A base turned by +angle sees gravity turned by -angle.
         tilted.gravity = axis == 0 ? Eigen::Vector3d(0, -9.81 * std::sin(angle), -9.81 * std::cos(angle))
                                    : Eigen::Vector3d(9.81 * std::sin(angle), 0, -9.81 * std::cos(angle));
         const MatrixXd change =
@@ -48,7 +48,7 @@ TEST_CASE("a tilted base is one whose gravity points elsewhere: tilt_x, then til
     }
 }
 
-TEST_CASE("a payload is a point mass at the tip, and a link's error one at its centre of mass") {
+TEST_CASE("a payload is a point mass at the tip and a link's mass error one at its centre of mass") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const std::vector<Candidate> candidates = lasting_candidates(signals);
     const auto with_mass = [&](std::size_t joint, const Eigen::Vector3d& centre) {
@@ -63,11 +63,11 @@ TEST_CASE("a payload is a point mass at the tip, and a link's error one at its c
                with_mass(2, third.segment<3>(1) / third[0]), 1e-9);
 }
 
-TEST_CASE("an encoder that reads too much puts the arm where it is not") {
+TEST_CASE("the columns of encoder errors are the change of the rigid-body torques at the true positions") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const std::vector<Candidate> candidates = lasting_candidates(signals);
     constexpr double amount = 1e-4;
-    // what is measured is the swing; the true position is less by the encoder's error
+    // `swing` is what the encoder measures; the true position is that minus the encoder's error.
     const auto outputs_at = [&](const VectorXd& error, const VectorXd& error_rate,
                                 const VectorXd& error_acceleration) {
         RobotMotion truth = signals.measured.motion;
@@ -86,9 +86,9 @@ TEST_CASE("an encoder that reads too much puts the arm where it is not") {
                outputs_at(q.sin(), q.cos() * v, q.cos() * a - q.sin() * v.square()), 5e-3);
 }
 
-TEST_CASE("friction opposes the motion, keeps its direction at rest, and builds up where it is presliding") {
+TEST_CASE("Coulomb friction opposes the motion and presliding friction builds up with the travel") {
     DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
-    // joint 1: forward, stand, back
+    // Joint 1 moves forward, rests, and moves back.
     auto position = signals.measured.motion.position.col(0);
     auto velocity = signals.measured.motion.velocity.col(0);
     for (Index row = 0; row < 2000; ++row) {
@@ -112,11 +112,11 @@ TEST_CASE("friction opposes the motion, keeps its direction at rest, and builds 
     CHECK(by_travel.rightCols(5).isZero(0));
 }
 
-TEST_CASE("parameters follow the catalogue's signs and units") {
+TEST_CASE("parameters have the signs and units of the catalogue") {
     const DiagnosisSignals signals = signals_of(icub_right_arm(), OutputKind::wrench);
     const std::vector<Candidate> candidates = fitted_candidates(signals, rigid_model(signals));
     const Candidate& delay = find(candidates, "delay", "ft_sensor");
-    // a reading that lags by 1 ms
+    // A sensor that lags by 1 ms.
     const MatrixXd lagging = contribution(signals, delay, 0) * 1e-3;
     MatrixXd later(signals.rows(), 6);
     for (Index axis = 0; axis < 6; ++axis) {
@@ -129,7 +129,7 @@ TEST_CASE("parameters follow the catalogue's signs and units") {
     CHECK(gain->parameters(VectorXd::Constant(1, 0.2), gain->shapes[0])[0].value == Approx(1.2));
     const DiagnosisSignals torques = signals_of(ur5(), OutputKind::joint_torque);
     const std::vector<Candidate> actuators = fitted_candidates(torques, rigid_model(torques));
-    // true over assumed: the log has the true torque divided by it
+    // The gain is true over assumed torque: the log contains the true torque divided by it.
     CHECK(find(actuators, "actuator_gain", "actuator2")
               .parameters(VectorXd::Constant(1, 0.25), EffectShape{})[0]
               .value == Approx(0.8));
@@ -137,7 +137,7 @@ TEST_CASE("parameters follow the catalogue's signs and units") {
                                [](const Candidate& one) { return one.effect == "actuator_gain"; }));
 }
 
-TEST_CASE("an unnamed dependence is on inputs, and no larger than what the rigid body leaves") {
+TEST_CASE("an unnamed dependence is a function of inputs and at most as large as the rigid body's residual") {
     const Robot robot = ur5();
     const DiagnosisSignals signals = signals_of(robot, OutputKind::joint_torque);
     const VectorXd velocity = signals.measured.motion.velocity.col(2);
@@ -152,7 +152,7 @@ TEST_CASE("an unnamed dependence is on inputs, and no larger than what the rigid
     check_same(contribution(signals, *found, 0).col(0), velocity.cwiseAbs2(), 1e-12);
     CHECK(found->shapes[0].allowed(VectorXd::Constant(1, 0.7)));
     CHECK_FALSE(found->shapes[0].allowed(VectorXd::Constant(1, 1.4)));
-    // whatever the basis: also where its functions cancel each other
+    // The bound holds for any basis, also where the basis functions cancel each other.
     const auto of_position = std::ranges::find_if(all, [](const Candidate& one) {
         return one.where == "output1" && one.inputs == std::vector<std::string>{"q1"};
     });
@@ -168,7 +168,7 @@ TEST_CASE("an unnamed dependence is on inputs, and no larger than what the rigid
     CHECK_FALSE(widest.allowed(1.6 * coefficients));
 }
 
-TEST_CASE("what a delay adds is the series of earlier less that of now, over the delay") {
+TEST_CASE("the column of a delay is the delayed series minus the present one divided by the delay") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const Eigen::ArrayXd time = signals.measured.time_s.array();
     const VectorXd series = (7 * time).sin();
@@ -179,7 +179,7 @@ TEST_CASE("what a delay adds is the series of earlier less that of now, over the
     check_same(signals.per_delay(series, 0), -7 * (7 * time).cos(), 1e-4);
 }
 
-TEST_CASE("friction that goes by the load is that of bristles whose level is a share of it") {
+TEST_CASE("load-dependent friction is LuGre friction whose Coulomb level is a share of the load") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     constexpr Index joint = 2;
     constexpr double mu = 0.15;
@@ -208,12 +208,12 @@ TEST_CASE("friction that goes by the load is that of bristles whose level is a s
             expected(row, 0) = parameters.stiffness * friction.deflection();
         }
         const VectorXd found = mu * contribution(signals, candidate, shape.columns.front()).col(joint);
-        // where the direction changes within a row, and the bend is short, that row is between the two
+        // If the direction changes within a row and the bend is short, that row is between the two levels.
         CHECK((found - expected.col(0)).norm() < 0.05 * expected.col(0).norm());
     }
 }
 
-TEST_CASE("static friction that hardly exceeds Coulomb's is no effect of its own") {
+TEST_CASE("a Stribeck candidate requires static friction clearly above Coulomb friction") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const Candidate stribeck = find(lasting_candidates(signals), "stribeck_friction", "joint2");
     REQUIRE_FALSE(stribeck.shapes.empty());

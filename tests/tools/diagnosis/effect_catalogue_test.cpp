@@ -20,7 +20,10 @@ namespace {
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
 
-/// `amplitude (N·m), phase (rad)`: names with the same unit in front of it.
+const std::filesystem::path project = std::filesystem::path(DFDYN_TEST_DATA_DIR) / "../..";
+
+/// Parameters as documented, for example `amplitude (N·m), phase (rad)`. Names of the same unit share one
+/// unit.
 std::string listed(const std::vector<ParameterKind>& parameters) {
     std::string text;
     for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -37,10 +40,74 @@ std::string documented_row(const Effect& effect) {
            effect.remark + " | " + effect.in_extended_model + " |\n";
 }
 
+bool is_word_character(char character) {
+    return std::isalnum(static_cast<unsigned char>(character)) != 0 || character == '_';
+}
+
+/// Contents of the string literals of a C++ file, without those in comments.
+std::vector<std::string> string_literals(const std::string& code) {
+    std::vector<std::string> literals;
+    for (std::size_t i = 0; i < code.size(); ++i) {
+        if (code.compare(i, 2, "//") == 0) {
+            i = code.find('\n', i);
+        } else if (code[i] == '\'' && !is_word_character(code[i - 1])) { // not in 1'000
+            i = code.find('\'', code[i + 1] == '\\' ? i + 3 : i + 1);
+        } else if (code[i] == '"') {
+            std::string text;
+            for (++i; i < code.size() && code[i] != '"'; ++i) {
+                text += code[i] == '\\' ? code[++i] : code[i];
+            }
+            literals.push_back(text);
+        }
+        if (i == std::string::npos) {
+            break;
+        }
+    }
+    return literals;
+}
+
+/// Whether a literal contains the name of an effect. A name of one word must be the whole literal, because
+/// messages use such words too.
+bool has_name(const std::string& literal, const std::string& name) {
+    if (name.find('_') == std::string::npos) {
+        return literal == name;
+    }
+    for (std::size_t at = literal.find(name); at != std::string::npos; at = literal.find(name, at + 1)) {
+        const std::size_t end = at + name.size();
+        if ((at == 0 || !is_word_character(literal[at - 1])) &&
+            (end == literal.size() || !is_word_character(literal[end]))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Files of the product with a literal that contains an effect's name, and these names.
+std::map<std::string, std::set<std::string>> files_with_names() {
+    std::map<std::string, std::set<std::string>> files;
+    for (const char* const folder : {"tools", "hal", "firmware_lib/include"}) {
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(project / folder)) {
+            const std::string extension = entry.path().extension().string();
+            if (extension != ".cpp" && extension != ".hpp") {
+                continue;
+            }
+            for (const std::string& literal : string_literals(read_file(entry.path()))) {
+                for (const Effect& effect : effect_catalogue()) {
+                    if (has_name(literal, effect.name)) {
+                        files[std::filesystem::relative(entry.path(), project).generic_string()].insert(
+                            effect.name);
+                    }
+                }
+            }
+        }
+    }
+    return files;
+}
+
 } // namespace
 
-TEST_CASE("no name of the catalogue of effects is a literal outside its file and the catalogues") {
-    // the columns of the firmware; the monitor's changes and the simulation's faults have names of their own
+TEST_CASE("the name of an effect is a literal only in its own file and in the catalogues") {
+    // The firmware's columns, the monitor's changes and the simulation's faults have names of their own.
     const std::set<std::string> catalogues{"tools/model/effects.cpp",
                                            "firmware_lib/include/dfdyn/monitor/cause.hpp",
                                            "tools/simulation/faults/actuator_gain.cpp"};
@@ -62,8 +129,8 @@ TEST_CASE("no name of the catalogue of effects is a literal outside its file and
     CHECK(seen.size() == effect_catalogue().size());
 }
 
-TEST_CASE("the documentation's table of effects is the catalogue") {
-    const std::string text = read_file(project / "docs/guide/diagnosis.md");
+TEST_CASE("the table of effects in the documentation equals the catalogue") {
+    const std::string text = read_file(project / "docs/diagnosis.md");
     const std::string rule = "| --- | --- | --- | --- |\n";
     const std::size_t first = text.find(rule, text.find("| effect | where |")) + rule.size();
     std::string expected;
@@ -73,7 +140,7 @@ TEST_CASE("the documentation's table of effects is the catalogue") {
     CHECK(text.substr(first, text.find("\n\n", first) + 1 - first) == expected);
 }
 
-TEST_CASE("every column of the physics is an effect of the catalogue") {
+TEST_CASE("every effect column of the firmware is in the catalogue of effects") {
     for (const char* const name : {effect_kinds::viscous_friction.name, effect_kinds::coulomb_friction.name,
                                    effect_kinds::stribeck_friction.name, effect_kinds::rotor_inertia.name,
                                    effect_kinds::joint_spring.name, effect_kinds::torque_ripple.name,
@@ -83,7 +150,7 @@ TEST_CASE("every column of the physics is an effect of the catalogue") {
     }
 }
 
-TEST_CASE("candidates are where their effect can be, and have the parameters that it can have") {
+TEST_CASE("candidates have the places and parameters that the catalogue lists for their effect") {
     const DiagnosisSignals torques = signals_of(ur5(), OutputKind::joint_torque);
     const DiagnosisSignals wrench = signals_of(icub_right_arm(), OutputKind::wrench);
     std::set<std::string> seen;
@@ -111,7 +178,7 @@ TEST_CASE("candidates are where their effect can be, and have the parameters tha
         }
     }
     for (const Effect& effect : effect_catalogue()) {
-        CAPTURE(effect.name); // one drifts only where there is friction; others have to be looked for
+        CAPTURE(effect.name); // friction drift needs friction; scanned effects need a search
         CHECK((seen.contains(effect.name) || effect.scan != nullptr || effect.each == Each::torque_joint));
     }
 }

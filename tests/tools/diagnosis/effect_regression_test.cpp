@@ -24,7 +24,7 @@ MatrixXd white_noise(Index rows, Index columns, std::mt19937_64& engine) {
     return MatrixXd::NullaryExpr(rows, columns, [&] { return normal(engine); });
 }
 
-/// As slow as what depends on the positions of an arm.
+/// Columns as slow as functions of an arm's positions.
 MatrixXd slow_columns(const MeasuredMotion& measured, Index count) {
     MatrixXd columns(measured.time_s.size(), count);
     for (Index i = 0; i < count; ++i) {
@@ -44,7 +44,7 @@ void set_columns(EffectRegression& regression, const MatrixXd& columns) {
 
 } // namespace
 
-TEST_CASE("what a fit spends is the diagonal of its hat matrix, and in slow bins slow columns spend it") {
+TEST_CASE("the degrees of freedom of a fit per bin are the diagonal of its hat matrix") {
     const MeasuredMotion measured = swing(1);
     const SpectralRows rows(measured);
     const MatrixXd columns = slow_columns(measured, 6);
@@ -66,7 +66,7 @@ TEST_CASE("what a fit spends is the diagonal of its hat matrix, and in slow bins
     CHECK(spent.head(3).sum() > 4);
 }
 
-TEST_CASE("the noise where many columns were fitted is not taken for less than it is") {
+TEST_CASE("the noise estimate is unbiased in bins where many columns were fitted") {
     DFDYN_SEEDED_ENGINE(engine);
     const MeasuredMotion measured = swing(1);
     const SpectralRows rows(measured);
@@ -81,7 +81,7 @@ TEST_CASE("the noise where many columns were fitted is not taken for less than i
         const WeighedSums sums = regression.weighed_sums();
         const MatrixXd left = regression.residual(0, solve_symmetric(sums.gram, sums.moment));
         const VectorXd spent = regression.spent(0, fitted, inverse_matrix(sums.gram));
-        // bin 5: the first that no persistence is looked for in
+        // Bin 5 is the first bin above those in which persistence is estimated.
         estimated += noise_spectrum(left, rows.filled(0), spent)[5] / trials;
         naive += noise_spectrum(left, rows.filled(0), VectorXd::Zero(rows.bins()))[5] / trials;
     }

@@ -29,7 +29,7 @@ MatrixXd random_columns(Index count, std::mt19937_64& engine) {
 bool anything(const VectorXd& /*coefficients*/) { return true; }
 bool positive(const VectorXd& coefficients) { return (coefficients.array() > 0).all(); }
 
-/// One candidate per column.
+/// A search problem with one candidate per column.
 SearchProblem problem_of(const MatrixXd& columns, const VectorXd& target) {
     SearchProblem problem;
     problem.sums = {columns.transpose() * columns, columns.transpose() * target, target.squaredNorm()};
@@ -51,7 +51,7 @@ std::vector<std::size_t> found(const SearchProblem& problem) {
     return result;
 }
 
-TEST_CASE("what was planted is found, with its coefficients; noise alone yields nothing") {
+TEST_CASE("the search finds exactly the planted effects with their coefficients and nothing in noise") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int trial = 0; trial < 20; ++trial) {
         const MatrixXd columns = random_columns(60, engine);
@@ -67,7 +67,7 @@ TEST_CASE("what was planted is found, with its coefficients; noise alone yields 
     }
 }
 
-TEST_CASE("the models with one effect more, less or another one are scored as if each had been fitted") {
+TEST_CASE("the scores of neighbouring models equal those of the fitted models") {
     DFDYN_SEEDED_ENGINE(engine);
     const MatrixXd columns = random_columns(12, engine);
     const VectorXd target = 0.5 * columns.col(2) + 0.4 * columns.col(3) - 0.3 * columns.col(7) +
@@ -81,7 +81,7 @@ TEST_CASE("the models with one effect more, less or another one are scored as if
     CHECK(near.score() == Approx(fit_effects(problem, chosen).score));
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         const std::vector<ChosenShape> fewer = without(chosen, i);
-        // prices go by what each effect explains, which hardly changes with others that are independent of it
+        // Priors depend on what each effect explains; independent other effects change that very little.
         CHECK(near.score_without(i) == Approx(fit_effects(problem, fewer).score).margin(0.5));
         for (const Replacement& other : near.exchanges(i)) {
             std::vector<ChosenShape> exchanged = fewer;
@@ -96,15 +96,15 @@ TEST_CASE("the models with one effect more, less or another one are scored as if
     }
 }
 
-TEST_CASE("a column that stood in for two others goes when they come") {
+TEST_CASE("a column that resembles the sum of two others is replaced by them") {
     DFDYN_SEEDED_ENGINE(engine);
     MatrixXd columns = random_columns(10, engine);
-    columns.col(9) += 3 * columns.col(0) + 3 * columns.col(1); // explains most, but not all
+    columns.col(9) += 3 * columns.col(0) + 3 * columns.col(1); // explains most of the target, but not all
     const VectorXd target = 2 * columns.col(0) + 2 * columns.col(1) + random_columns(1, engine);
     CHECK(found(problem_of(columns, target)) == std::vector<std::size_t>{0, 1});
 }
 
-TEST_CASE("of a family one is chosen at most, and a coefficient that may not be is not") {
+TEST_CASE("the search chooses at most one effect of a family and only allowed coefficients") {
     DFDYN_SEEDED_ENGINE(engine);
     const MatrixXd columns = random_columns(4, engine);
     const VectorXd target =
@@ -115,7 +115,7 @@ TEST_CASE("of a family one is chosen at most, and a coefficient that may not be 
     CHECK(found(problem) == std::vector<std::size_t>{0});
 }
 
-TEST_CASE("a copy of a chosen column is no addition, and a near copy is the closest alternative") {
+TEST_CASE("a copy of a chosen column is not added and a near copy is the closest alternative") {
     DFDYN_SEEDED_ENGINE(engine);
     MatrixXd columns = random_columns(5, engine);
     columns.col(3) = columns.col(0);
@@ -130,7 +130,7 @@ TEST_CASE("a copy of a chosen column is no addition, and a near copy is the clos
     CHECK(instead[2].with.candidate == 4);
 }
 
-TEST_CASE("nuisance is paid for by what it was before anything was measured") {
+TEST_CASE("a nuisance parameter has a Gaussian prior with its own standard deviation") {
     DFDYN_SEEDED_ENGINE(engine);
     const MatrixXd columns = random_columns(3, engine);
     const VectorXd target = 0.05 * columns.col(0) + 0.5 * columns.col(1) + random_columns(1, engine);
@@ -145,9 +145,11 @@ TEST_CASE("nuisance is paid for by what it was before anything was measured") {
     CHECK((fit.coefficients - exact).cwiseAbs().maxCoeff() < 1e-9);
 }
 
-TEST_CASE("an effect that the nuisance could stand in for is found, and kept, where it is too large for it") {
+TEST_CASE(
+    "an effect that a nuisance parameter can imitate is found and kept where it is too large for the prior") {
     DFDYN_SEEDED_ENGINE(engine);
-    const MatrixXd nuisance = 30 * random_columns(1, engine); // leaves but a thousandth of its copy
+    // only a thousandth of its copy is not explained by it
+    const MatrixXd nuisance = 30 * random_columns(1, engine);
     const VectorXd target = 0.4 * nuisance + random_columns(1, engine);
     MatrixXd columns(rows, 2);
     columns << nuisance, nuisance;
@@ -164,7 +166,7 @@ TEST_CASE("an effect that the nuisance could stand in for is found, and kept, wh
     CHECK(held_out_score(problem, blocks, chosen) > held_out_score(problem, blocks, {}));
 }
 
-TEST_CASE("the held-out score is that of each block by the least squares of all others") {
+TEST_CASE("the held-out score predicts each block by least squares of all other blocks") {
     DFDYN_SEEDED_ENGINE(engine);
     const MatrixXd columns = random_columns(5, engine);
     VectorXd target = columns.col(0) + random_columns(1, engine);

@@ -24,7 +24,7 @@ double deviation_of_series(const VectorXd& series) {
 
 } // namespace
 
-TEST_CASE("errors are told over all rows, and over those in which a joint does not stand") {
+TEST_CASE("errors are reported over all rows and over the rows in which a joint moves") {
     DFDYN_SEEDED_ENGINE(engine);
     auto signals = std::make_shared<DiagnosisSignals>(signals_of(ur5(), OutputKind::motor_current));
     const Index rows = signals->rows();
@@ -35,7 +35,7 @@ TEST_CASE("errors are told over all rows, and over those in which a joint does n
     DiagnosisWork work;
     work.signals = signals;
     work.torque_gains = VectorXd::LinSpaced(6, 0.1, 0.2); // A/(N·m)
-    // the cause explains all of what is missed while joint 1 moves, and twice of what is while it stands
+    // The cause explains all of the residual while joint 1 moves, and twice the residual while it is at rest.
     const VectorXd cause = random_series(*signals, engine);
     VectorXd missed = 3 * cause;
     missed.tail(standing) /= 2;

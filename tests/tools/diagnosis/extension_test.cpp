@@ -22,7 +22,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// 8 s at 100 Hz: every joint swings with frequencies of its own.
+/// 8 s at 100 Hz, in which every joint swings with frequencies of its own.
 MeasuredMotion swinging(const Robot& robot, std::mt19937_64& engine) {
     constexpr Index rows = 800;
     const auto joints = static_cast<Index>(robot.joints.size());
@@ -46,7 +46,7 @@ MeasuredMotion swinging(const Robot& robot, std::mt19937_64& engine) {
     return measured;
 }
 
-/// What the extended model's columns give along the motion: the firmware's code.
+/// Outputs of the extended model along a motion, computed by the firmware's columns.
 MatrixXd outputs_of(const Extension& extension, const RobotMotion& motion) {
     std::vector<EffectModel> effects;
     VectorXd parameters(extension.bodies.size() + static_cast<Index>(extension.columns.size()));
@@ -68,7 +68,7 @@ MatrixXd outputs_of(const Extension& extension, const RobotMotion& motion) {
     return outputs;
 }
 
-/// A diagnosis that chose this candidate in this shape.
+/// A diagnosis that chose `candidate` in the given shape.
 DiagnosisWork work_with(const std::shared_ptr<const DiagnosisSignals>& signals, const Candidate& candidate,
                         std::size_t shape, const VectorXd& coefficients) {
     DiagnosisWork work;
@@ -81,7 +81,7 @@ DiagnosisWork work_with(const std::shared_ptr<const DiagnosisSignals>& signals, 
     return work;
 }
 
-/// What the diagnosis' own columns say that the candidate adds.
+/// Contribution of the candidate according to the diagnosis's own columns.
 MatrixXd added_by(const DiagnosisSignals& signals, const Candidate& candidate, const EffectShape& shape,
                   const VectorXd& coefficients) {
     MatrixXd sum = MatrixXd::Zero(signals.rows(), signals.outputs());
@@ -93,17 +93,19 @@ MatrixXd added_by(const DiagnosisSignals& signals, const Candidate& candidate, c
     return sum;
 }
 
-/// Friction that builds up over a travel is no function of the motion, and of two levels it is a level and an
-/// offset but at reversals: those columns are approximated.
+/// Returns false for effects that the extended model approximates: friction that builds up over a travel is
+/// no function of the motion, and friction of two levels becomes one level and an offset, except at
+/// reversals.
 bool carried_exactly(const Candidate& candidate, std::size_t shape) {
     const std::vector<std::size_t>& columns = candidate.shapes[shape].columns;
     if (candidate.effect == "coulomb_friction") {
         return columns == std::vector<std::size_t>{0};
     }
-    return candidate.effect != "stribeck_friction" || columns.front() == 0; // by velocity, not by travel
+    // a function of velocity, not of travel
+    return candidate.effect != "stribeck_friction" || columns.front() == 0;
 }
 
-/// Those that do not have to be looked for.
+/// Candidates that do not need a scan of the residual.
 std::vector<Candidate> all_candidates(const DiagnosisSignals& signals) {
     std::vector<Candidate> candidates = lasting_candidates(signals);
     const std::vector<Candidate> more = fitted_candidates(signals, dfdyn::tests::rigid_model(signals));
@@ -111,7 +113,8 @@ std::vector<Candidate> all_candidates(const DiagnosisSignals& signals) {
     return candidates;
 }
 
-/// Every candidate that the model carries, by a small amount: the model changes as the diagnosis says.
+/// Checks, for a small amount of each candidate, that the extended model changes as the diagnosis's columns
+/// do. Returns how many shapes of each effect were checked.
 std::map<std::string, int> check_all(const std::shared_ptr<const DiagnosisSignals>& signals,
                                      const std::vector<Candidate>& candidates, std::mt19937_64& engine) {
     std::map<std::string, int> carried;
@@ -127,7 +130,7 @@ std::map<std::string, int> check_all(const std::shared_ptr<const DiagnosisSignal
                 coefficient = uniform(engine);
             }
             if (candidate.effect == "payload" && coefficients.size() == 4) {
-                coefficients.tail<3>() *= 0.01; // a centimetre from the tip
+                coefficients.tail<3>() *= 0.01; // metres: a centimetre from the tip
             }
             const Extension extension = extension_of(work_with(signals, candidate, shape, coefficients));
             const CarriedFinding::How how = extension.carried.front().how;
@@ -139,7 +142,7 @@ std::map<std::string, int> check_all(const std::shared_ptr<const DiagnosisSignal
             const MatrixXd expected = added_by(*signals, candidate, one, coefficients);
             const MatrixXd found = outputs_of(extension, signals->measured.motion) - nominal;
             CAPTURE(candidate.key(), shape, expected.norm(), found.norm());
-            // columns are slopes, the model is exact: they differ by the square of what was changed
+            // Columns are derivatives and the model is exact: they differ by terms of second order.
             const double square =
                 10 * coefficients.squaredNorm() * std::sqrt(static_cast<double>(expected.size()));
             CHECK((found - expected).norm() <= 3e-3 * expected.norm() + square);
@@ -150,7 +153,7 @@ std::map<std::string, int> check_all(const std::shared_ptr<const DiagnosisSignal
 
 } // namespace
 
-TEST_CASE("what the extended model adds for torques is what the diagnosis' columns say") {
+TEST_CASE("the extended model of joint torques adds what the columns of the diagnosis add") {
     DFDYN_SEEDED_ENGINE(engine);
     const Robot robot = dfdyn::tests::ur5();
     const auto signals = std::make_shared<const DiagnosisSignals>(
@@ -167,7 +170,7 @@ TEST_CASE("what the extended model adds for torques is what the diagnosis' colum
     }
 }
 
-TEST_CASE("what it adds for a wrench is what they say, too") {
+TEST_CASE("the extended model of a wrench adds what the columns of the diagnosis add") {
     DFDYN_SEEDED_ENGINE(engine);
     const Robot robot = dfdyn::tests::icub_right_arm();
     const auto signals = std::make_shared<const DiagnosisSignals>(
@@ -182,7 +185,7 @@ TEST_CASE("what it adds for a wrench is what they say, too") {
     CHECK_FALSE(carried.contains("ft_crosstalk"));
 }
 
-TEST_CASE("columns of the same effect at the same place become one") {
+TEST_CASE("columns of the same effect at the same place are merged into one") {
     std::mt19937_64 engine(1);
     const Robot robot = dfdyn::tests::ur5();
     const auto signals = std::make_shared<const DiagnosisSignals>(
@@ -198,7 +201,7 @@ TEST_CASE("columns of the same effect at the same place become one") {
         }
     }
     work.explanation.named.coefficients =
-        VectorXd::LinSpaced(3, 1, 3); // stiffness and its offset, then the offset
+        VectorXd::LinSpaced(3, 1, 3); // the spring's stiffness and offset, then the torque offset
     work.explanation.named.covariance = MatrixXd::Identity(3, 3);
     const Extension extension = extension_of(work);
     REQUIRE(extension.columns.size() == 2);

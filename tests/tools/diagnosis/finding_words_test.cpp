@@ -17,7 +17,8 @@ std::string main_parameter(std::vector<FoundParameter> parameters) {
     return main_parameter_words(finding);
 }
 
-TEST_CASE("a finding is told by its main parameter, of a vector by the coordinate that is known best") {
+TEST_CASE(
+    "the main parameter of a vector is its most certain coordinate and a mass comes before a position") {
     CHECK(main_parameter({}).empty());
     CHECK(main_parameter({{"axis", "1", 2, 2, 2}}).empty());
     const FoundParameter no_mass{"delta_mass", "kg", 0, 0, 0};
@@ -25,7 +26,7 @@ TEST_CASE("a finding is told by its main parameter, of a vector by the coordinat
     const FoundParameter along_z{"delta_com_z", "m", 0.125, 0.115, 0.135};
     CHECK(main_parameter({no_mass, along_x, along_z}) == "delta_com_z 0.125 m (0.115 … 0.135)");
     CHECK(main_parameter({no_mass, along_z, along_x}) == "delta_com_z 0.125 m (0.115 … 0.135)");
-    // an uncertain mass is not hidden behind a certain place
+    // An uncertain mass comes before a certain position.
     CHECK(main_parameter({{"mass", "kg", 0.15, -0.1, 0.4}, along_z}) == "mass 0.15 kg (-0.1 … 0.4)");
     CHECK(main_parameter({{"amplitude", "rad", 0.2, 0.1, 0.3}, {"phase", "rad", 1.8, 1.7, 1.9}}) ==
           "amplitude 0.2 rad (0.1 … 0.3)");

@@ -22,7 +22,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// What is found where the first joint's torque is `unexplained` more than the rigid body's.
+/// Findings for a recording whose first torque is the rigid body's plus `unexplained`.
 std::vector<Finding> found(const DiagnosisSignals& signals, const Explanation& explanation,
                            const VectorXd& unexplained) {
     MatrixXd rest = -explanation.all(signals);
@@ -30,7 +30,7 @@ std::vector<Finding> found(const DiagnosisSignals& signals, const Explanation& e
     return findings_of(signals, explanation, {}, rest, std::vector<std::string>(6, "tau"));
 }
 
-/// One cause on the first joint, of one coefficient, that acts as either of two series; the first is chosen.
+/// One cause on the first joint with one coefficient and two possible shapes, the first of them chosen.
 Explanation of_two_shapes(const VectorXd& first, const VectorXd& second, const VectorXd& unexplained) {
     Candidate cause = of_one_column("presliding_hysteresis", "joint1", first);
     cause.columns.push_back(on_output(0, second));
@@ -38,7 +38,7 @@ Explanation of_two_shapes(const VectorXd& first, const VectorXd& second, const V
     return explanation_of({cause}, 1, unexplained);
 }
 
-TEST_CASE("a parameter is as uncertain as the shape that it belongs to") {
+TEST_CASE("the interval of a parameter contains the uncertainty of its shape") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const VectorXd series = random_series(signals, engine);
@@ -54,18 +54,19 @@ TEST_CASE("a parameter is as uncertain as the shape that it belongs to") {
     const double level = series.dot(unexplained) / series.squaredNorm();
     const double variance = 1 / series.squaredNorm();
     const auto expected = [&](double all) { return 1.96 * std::hypot(1.7 * std::sqrt(all), 0.04 * level); };
-    // another shape that is out of the question tells nothing
+    // A shape of negligible probability does not widen the interval.
     CHECK(reach(other) == Approx(expected(variance)));
-    // one as likely, of twice the coefficient: the variance within each, and that between them
+    // Two equally likely shapes, one coefficient twice the other: the variance within each plus that between
+    // them.
     CHECK(reach(series / 2) == Approx(expected((variance + 4 * variance + level * level) / 2)));
 }
 
-TEST_CASE("a cause that something unnamed takes away again is not likely") {
+TEST_CASE("confidence drops if an unnamed column cancels the cause") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const VectorXd cause = random_series(signals, engine);
     const VectorXd beside = random_series(signals, engine);
-    // all but the same course: only their difference is in the data
+    // Nearly collinear series: the data determine only their difference.
     const VectorXd nearly = cause + 0.05 * beside;
     const VectorXd unexplained = 2 * beside + random_series(signals, engine);
     const Candidate friction = of_one_column("coulomb_friction", "joint1", cause);
@@ -83,7 +84,7 @@ TEST_CASE("a cause that something unnamed takes away again is not likely") {
     CHECK(confidence({"qd1"}) < 0.2);
 }
 
-TEST_CASE("payload and last link are one cause unless more than a small share of it tells them apart") {
+TEST_CASE("payload and last link are one cause unless their columns differ by more than a small share") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const VectorXd body = random_series(signals, engine);
@@ -102,11 +103,11 @@ TEST_CASE("payload and last link are one cause unless more than a small share of
     CHECK(ties(0.01, "") == 0);
 }
 
-TEST_CASE("what no cause explains above 5 Hz hides no finding's gain below") {
+TEST_CASE("an unexplained residual above 5 Hz does not change the gain of a finding below 5 Hz") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const VectorXd slow = (0.5 * 2 * std::numbers::pi * signals.measured.time_s.array()).sin();
     const VectorXd fast = (30 * 2 * std::numbers::pi * signals.measured.time_s.array()).sin();
-    // the weighed fit sees the slow part only
+    // The weighted fit contains only the slow part.
     Explanation explanation = explanation_of({of_one_column("backlash", "joint1", slow)}, 1, 2 * slow);
     explanation.candidates.front().columns.front() = on_output(0, slow + fast);
     const auto findings = found(signals, explanation, 2 * slow - 3 * fast);
@@ -115,13 +116,13 @@ TEST_CASE("what no cause explains above 5 Hz hides no finding's gain below") {
     CHECK(findings.front().rms_after < 0.2 * findings.front().rms_before);
 }
 
-TEST_CASE("a cause that shows above 5 Hz only is found by what it brings there") {
+TEST_CASE("the gain of a cause that acts only above 5 Hz is measured there") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const VectorXd fast = (20 * 2 * std::numbers::pi * signals.measured.time_s.array()).sin();
     const VectorXd leak = 2 * signals.below(gains_below_hz, fast);
     REQUIRE(leak.norm() > 0);
     REQUIRE(leak.norm() < 0.1 * fast.norm());
-    // what is left below 5 Hz is by chance the opposite of the little that the cause has there
+    // The residual below 5 Hz happens to cancel the small part that the cause has there.
     const auto findings =
         found(signals, explanation_of({of_one_column("torque_ripple", "joint1", fast)}, 1, 2 * fast),
               2 * fast - leak);
@@ -129,8 +130,7 @@ TEST_CASE("a cause that shows above 5 Hz only is found by what it brings there")
     CHECK(findings.front().rms_before == Approx(2 * root_mean_square(fast)).epsilon(0.1));
 }
 
-TEST_CASE("a push at a joint that stands is told by its force, with what friction takes up, and as sure as "
-          "that allows") {
+TEST_CASE("a push at a joint at rest is reported with its force and the share that friction can hold") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     StandingContact push;
     push.joint = 2;
@@ -152,7 +152,7 @@ TEST_CASE("a push at a joint that stands is told by its force, with what frictio
     CHECK(finding.confidence == Approx(0.95));
     const FoundParameter& peak = finding.parameters[2];
     CHECK(peak.name == "peak");
-    // the surroundings', against the motor's 30, half of the friction's 10, and for a rounder top
+    // The force of the surroundings opposes the motor's 30 N·m, half of the friction's 10 and a rounder top.
     CHECK(peak.value == Approx(-30 - 5 - 4.5));
     CHECK(peak.high == Approx(-30 + 1.96 * std::hypot(0.5, 2)));
     CHECK(peak.low == Approx(-40 - 9 - 1.96 * std::hypot(0.5, 2)));

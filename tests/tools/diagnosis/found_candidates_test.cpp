@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Candidates made anew about what was found of them, and those of events, against what they stand for.
+// Compares relinearized candidates, and candidates of events, with an independent computation of their
+// effect.
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/diagnosis/swinging_arm.hpp"
@@ -19,7 +20,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// What a candidate adds with the coefficients of one of its shapes.
+/// Contribution of a candidate with the given coefficients of one of its shapes.
 MatrixXd added(const DiagnosisSignals& signals, const Candidate& candidate, std::size_t shape,
                const VectorXd& coefficients) {
     MatrixXd sum = MatrixXd::Zero(signals.rows(), signals.outputs());
@@ -36,7 +37,7 @@ double draw(std::mt19937_64& engine, double low, double high) {
 
 } // namespace
 
-TEST_CASE("about a large angle, a tilt and an encoder's errors are exact") {
+TEST_CASE("a relinearized tilt or encoder error is exact at a large angle") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const RobotMotion& motion = signals.measured.motion;
@@ -76,7 +77,7 @@ TEST_CASE("about a large angle, a tilt and an encoder's errors are exact") {
                rigid_outputs(signals.robot, signals.kind, truth) - signals.nominal, 5e-3);
 }
 
-TEST_CASE("a link that falls through the play of its gear spares its drive the load, until it is caught") {
+TEST_CASE("backlash takes the load off the drive while the link falls and returns it at the catch") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const Candidate backlash = backlash_candidate(signals, 4, {0.03, 0.075});
     const EffectShape& widest = backlash.shapes.back();
@@ -88,19 +89,19 @@ TEST_CASE("a link that falls through the play of its gear spares its drive the l
     int falls = 0;
     int opposed = 0;
     for (Index row = 20; row + 20 < signals.rows(); ++row) {
-        if (load[row - 3] * load[row - 2] < 0) { // the load has just turned over
+        if (load[row - 3] * load[row - 2] < 0) { // the load has just changed its sign
             ++falls;
             opposed += course[row] * load[row] < 0 ? 1 : 0;
         }
     }
     CHECK(falls > 3);
     CHECK(opposed > 0.9 * falls);
-    // the catch asks for what the fall has spared
+    // The impulse of the catch equals the impulse that the fall took away.
     const auto inner = course.segment(20, signals.rows() - 40);
     CHECK(std::abs(inner.sum()) < 0.1 * inner.cwiseAbs().sum());
 }
 
-TEST_CASE("the play of a gear is told by how long its link falls, however hard it is caught") {
+TEST_CASE("the gap of a backlash follows from the duration of the fall and not from the catch") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const Candidate backlash = backlash_candidate(signals, 4, {0.03, 0.075});
     const EffectShape& shape = backlash.shapes.back();
@@ -115,7 +116,7 @@ TEST_CASE("the play of a gear is told by how long its link falls, however hard i
     }
 }
 
-TEST_CASE("a payload that would have to be too far off is the best one that is not") {
+TEST_CASE("a payload fit beyond the allowed distance returns the best allowed payload") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const EffectShape shape = find(lasting_candidates(signals), "payload", "tool").shapes[1];
@@ -133,7 +134,7 @@ TEST_CASE("a payload that would have to be too far off is the best one that is n
             return (target - columns * coefficients).norm();
         };
         if (!shape.allowed(best)) {
-            continue; // no mass at all is best
+            continue; // the best fit has no mass
         }
         ++bounded;
         for (int other = 0; other < 300; ++other) {
@@ -146,7 +147,7 @@ TEST_CASE("a payload that would have to be too far off is the best one that is n
     CHECK(bounded > 5);
 }
 
-TEST_CASE("a push at the tip is a force along the base's axes with its lever about the sensor") {
+TEST_CASE("a push at the tip is a force along the base's axes with a lever about the sensor") {
     const Robot robot = icub_right_arm();
     const DiagnosisSignals signals = signals_of(robot, OutputKind::wrench);
     const std::vector<ContactSite> sites = contact_sites(signals);
@@ -175,7 +176,7 @@ TEST_CASE("a push at the tip is a force along the base's axes with its lever abo
     }
 }
 
-TEST_CASE("a contact's pulses close in on the one that was found; the first stays") {
+TEST_CASE("refined pulses surround the pulse that was found and keep it as the first") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const std::vector<ContactSite> sites = contact_sites(signals);
     const ContactPulse pulse{4, 6, 0.6};
@@ -192,7 +193,7 @@ TEST_CASE("a contact's pulses close in on the one that was found; the first stay
     CHECK(start(nearer, 3) == Approx(start(nearer, 0) - 0.075 * length));
 }
 
-TEST_CASE("a payload that is taken up is not there before, and weighs the same then") {
+TEST_CASE("a payload picked up later adds nothing before that time and its full weight afterwards") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const std::vector<EffectColumn> columns = payload_columns(signals);
     const Candidate taken = taken_payload(signals, columns, {7.005, 9});

@@ -16,7 +16,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Only a nuisance, with these coefficients, each with a standard deviation of 0.02; so many masses first.
+/// A model that has only nuisance parameters: the first `masses` are masses, each has a standard deviation of
+/// 0.02.
 Explanation of_nuisance(const VectorXd& coefficients, Index masses) {
     Explanation explanation;
     explanation.fit.coefficients = coefficients;
@@ -26,7 +27,7 @@ Explanation of_nuisance(const VectorXd& coefficients, Index masses) {
     return explanation;
 }
 
-TEST_CASE("masses that are granted are told beside those of the robot's file") {
+TEST_CASE("mass estimates of the nuisance parameters are listed with the masses in the robot's file") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     const VectorXd errors{{0.05, -0.02, 0, 0.1, -0.1, 0.01}};
     const VectorXd nominal = nominal_parameters(signals.robot, signals.kind);
@@ -46,7 +47,7 @@ TEST_CASE("masses that are granted are told beside those of the robot's file") {
     }
 }
 
-TEST_CASE("the masses beyond an F/T sensor are those of the links there") {
+TEST_CASE("the mass estimates of a wrench belong to the links beyond the F/T sensor") {
     const DiagnosisSignals signals = signals_of(icub_right_arm(), OutputKind::wrench);
     const Index bodies = nominal_parameters(signals.robot, signals.kind).size() / 10;
     const std::vector<GrantedQuantity> granted =
@@ -55,7 +56,7 @@ TEST_CASE("the masses beyond an F/T sensor are those of the links there") {
     CHECK(granted.back().where == "link" + std::to_string(signals.joints()));
 }
 
-TEST_CASE("torque constants that nobody gave are told, without an upper end where none is known") {
+TEST_CASE("unknown torque constants are estimated and have no upper bound where the data set none") {
     const DiagnosisSignals signals = signals_of(ur5(), OutputKind::motor_current);
     const VectorXd gains = VectorXd::LinSpaced(6, 0.1, 0.2); // A/(N·m)
     VectorXd errors{{0.25, 0, 0, -0.5, 0.1, -1.2}};
@@ -76,7 +77,7 @@ TEST_CASE("torque constants that nobody gave are told, without an upper end wher
     CHECK(parameter(1).value == Approx(1 / 0.12));
     CHECK(std::isinf(parameter(3).high));
     CHECK(parameter(3).low > 0);
-    CHECK(parameter(5).value == Approx(1 / 0.2)); // no motor turns the wrong way round
+    CHECK(parameter(5).value == Approx(1 / 0.2)); // a motor never turns the wrong way
 }
 
 } // namespace granted_test

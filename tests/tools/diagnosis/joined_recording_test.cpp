@@ -9,7 +9,7 @@ namespace {
 
 using namespace dfdyn::tools;
 
-/// 3 rows, 10 ms apart.
+/// A recording of 3 rows, 10 ms apart.
 Recording recording(const char* source, double first_s, double value) {
     Recording result;
     result.source = source;
@@ -25,7 +25,7 @@ Recording recording(const char* source, double first_s, double value) {
 
 } // namespace
 
-TEST_CASE("recordings become one whose time goes on, with a gap where another begins") {
+TEST_CASE("joined recordings have increasing times and a gap where each one begins") {
     const std::array<Recording, 2> parts{recording("a.csv", 5, 1), recording("b.csv", 0, 7)};
     const Recording joined = joined_recording(parts);
     REQUIRE(joined.row_count() == 6);

@@ -28,7 +28,7 @@ VectorXd white_noise(Index count, std::mt19937_64& engine) {
 
 } // namespace
 
-TEST_CASE("the lapped transform is orthonormal: coefficients become a signal and come back") {
+TEST_CASE("the lapped transform is orthonormal so that coefficients survive synthesis and analysis") {
     DFDYN_SEEDED_ENGINE(engine);
     const LappedTransform transform(32, 32);
     const Index samples = 32 * 12;
@@ -39,7 +39,7 @@ TEST_CASE("the lapped transform is orthonormal: coefficients become a signal and
     CHECK((again - coefficients).cwiseAbs().maxCoeff() < 1e-12);
 }
 
-TEST_CASE("a sine has its energy at its frequency, and hardly any elsewhere") {
+TEST_CASE("the energy of a sine lies in the bins around its frequency") {
     constexpr double cycles_per_sample = 10.5 / 128; // between the bins
     const LappedTransform transform(64, 64);
     const VectorXd time = VectorXd::LinSpaced(64 * 20, 0, 64 * 20 - 1);
@@ -51,7 +51,7 @@ TEST_CASE("a sine has its energy at its frequency, and hardly any elsewhere") {
     CHECK(power.tail(64 - 24).sum() < 1e-6 * power.sum());
 }
 
-TEST_CASE("the spectrum of a first-order autoregressive noise is the one of the textbook") {
+TEST_CASE("the spectrum of first-order autoregressive noise equals the closed form") {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr double memory = 0.9;
     VectorXd noise = white_noise(40000, engine);
@@ -66,11 +66,12 @@ TEST_CASE("the spectrum of a first-order autoregressive noise is the one of the 
         const double phase = std::numbers::pi * (static_cast<double>(bin) + 0.5) / 200;
         const double expected = 1 / (1 - 2 * memory * std::cos(phase) + memory * memory);
         INFO("bin " << bin);
-        CHECK(spectrum[bin] == Approx(expected).epsilon(0.25)); // 200 frames: deviation 10 % and less
+        // with 200 frames the standard deviation is at most 10 %
+        CHECK(spectrum[bin] == Approx(expected).epsilon(0.25));
     }
 }
 
-TEST_CASE("a burst makes its frames uncertain, and no others") {
+TEST_CASE("a burst raises the noise level of its own frames only") {
     DFDYN_SEEDED_ENGINE(engine);
     VectorXd noise = white_noise(100 * 40, engine);
     noise.segment(2000, 100) *= 8;

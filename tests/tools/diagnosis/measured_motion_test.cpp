@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 constexpr double swing_hz = 0.7;
 
-/// One joint that swings, its encoder of 2^16 counts per turn, its clock jittering.
+/// A swinging joint, measured by an encoder of 2^16 counts per turn with a jittering clock.
 Recording swinging(double rate_hz, double duration_s, std::mt19937_64& engine, double jitter_s) {
     constexpr double count = 2 * std::numbers::pi / 65536;
     std::normal_distribution<double> normal;
@@ -47,7 +47,7 @@ double middle_rms(const VectorXd& series) {
 
 } // namespace
 
-TEST_CASE("velocities and accelerations of a quantised, jittering swing are those of the swing") {
+TEST_CASE("velocity and acceleration of a quantised swing with jitter are close to those of the swing") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const double rate_hz : {100.0, 125.0, 500.0}) {
         const MeasuredMotion measured = measured_motion(swinging(rate_hz, 20, engine, 0.1 / rate_hz));
@@ -63,7 +63,7 @@ TEST_CASE("velocities and accelerations of a quantised, jittering swing are thos
     }
 }
 
-TEST_CASE("a gap parts the recording, short parts are left out, and none at all is an error") {
+TEST_CASE("a gap splits a recording and parts that are too short are dropped or an error if none is left") {
     DFDYN_SEEDED_ENGINE(engine);
     Recording recording = swinging(100, 20, engine, 0);
     recording.gap_before[1200] = 1;
@@ -76,7 +76,7 @@ TEST_CASE("a gap parts the recording, short parts are left out, and none at all 
     CHECK_THROWS_AS(measured_motion(swinging(100, 3, engine, 0)), InputError);
 }
 
-TEST_CASE("the low pass keeps what is below and takes away what is above its cutoff") {
+TEST_CASE("the low pass keeps frequencies below its cutoff and removes those above") {
     const VectorXd kernel = low_pass_kernel(0.1);
     const auto gain = [&](double cycles_per_sample) {
         std::complex<double> sum = 0;
@@ -92,7 +92,7 @@ TEST_CASE("the low pass keeps what is below and takes away what is above its cut
     CHECK(gain(0.2) < 1e-3);
 }
 
-TEST_CASE("differences of a cubic are its derivative") {
+TEST_CASE("the differences of a cubic polynomial are its derivative") {
     const VectorXd time = VectorXd::LinSpaced(20, 0, 19);
     const VectorXd cubic = time.array().cube() - 2 * time.array();
     const VectorXd slope = differentiated(cubic);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings that cannot answer: the diagnosis says so in words, and names nothing.
+// Recordings that a diagnosis cannot use: it reports the reason and names no cause.
 #include "tools/diagnosis/diagnosis.hpp"
 
 #include "tests/support/catch.hpp"
@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The UR5 without any error: what each test below spoils.
+/// A recording of an exact UR5, which each test below spoils in one way.
 struct CleanRecording {
     double duration_s = 30, rate_hz = 100;
     MatrixXd position, torque;
@@ -77,13 +77,13 @@ void check_refused(const Diagnosis& diagnosis, const std::string& words) {
 
 } // namespace
 
-TEST_CASE("a recording without errors raises no suspicion and has no finding of weight") {
+TEST_CASE("a recording without errors raises no suspicion and has a negligible residual") {
     const Diagnosis diagnosis = diagnosis_of(CleanRecording().recording());
     CHECK(diagnosis.suspicions.empty());
     CHECK(diagnosis.nominal.nrmse.maxCoeff() < 0.01);
 }
 
-TEST_CASE("units: degrees, thousandths, milliseconds, mN·m") {
+TEST_CASE("positions in degrees or thousandths and times in ms and torques in mN·m are reported") {
     CleanRecording degrees;
     degrees.position *= 180 / std::numbers::pi;
     check_refused(diagnosis_of(degrees.recording()), "looks like degrees");
@@ -96,7 +96,7 @@ TEST_CASE("units: degrees, thousandths, milliseconds, mN·m") {
     check_refused(diagnosis_of(torques.recording()), "another unit");
 }
 
-TEST_CASE("columns exchanged, of positions and of outputs") {
+TEST_CASE("exchanged columns of positions and of outputs are reported") {
     CleanRecording positions;
     positions.position.col(1).swap(positions.position.col(2));
     check_refused(diagnosis_of(positions.recording()), "positions 2 and 3 look exchanged");
@@ -105,7 +105,8 @@ TEST_CASE("columns exchanged, of positions and of outputs") {
     check_refused(diagnosis_of(torques.recording()), "outputs 1 and 4 look exchanged");
 }
 
-TEST_CASE("outputs of something else, an arm that stands, one joint alone, two seconds") {
+TEST_CASE(
+    "unrelated outputs and a resting arm and a single moving joint and a short recording are reported") {
     CleanRecording other; // outputs that do not belong to this motion
     for (Index joint = 0; joint < 6; ++joint) {
         const Eigen::ArrayXd time = VectorXd::LinSpaced(other.torque.rows(), 0, other.duration_s);

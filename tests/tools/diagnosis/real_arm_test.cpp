@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A real UR5 by its motor currents: tests/data/ur5_kufieta/PROVENANCE.md. What is known of it without a
-// doubt: its gears rub, neither friction nor a rotor is ever less than nothing, where the robot's own
-// controller believes its wrist to be heavy, and when somebody pushed it.
+// A real UR5 with its motor currents (tests/data/ur5_kufieta/PROVENANCE.md). These facts about it are
+// certain:
+// - its gears have friction;
+// - neither friction nor rotor inertia is negative;
+// - how much heavier its wrist is according to the robot's own controller;
+// - when somebody pushed it.
 #include "tests/support/catch.hpp"
 #include "tests/tools/robot/arms.hpp"
 #include "tools/diagnosis/diagnosis.hpp"
@@ -18,7 +21,7 @@ namespace {
 
 using namespace dfdyn::tools;
 
-/// Motor currents of the robot; of several runs as one.
+/// Motor currents of the robot; several runs are joined into one recording.
 Recording currents(const std::vector<std::string>& runs) {
     std::vector<std::filesystem::path> files;
     for (const std::string& run : runs) {
@@ -53,8 +56,9 @@ double parameter(const Finding& finding, const std::string& name) {
 
 bool is_contact(const Finding& finding) { return finding.effect == "external_contact"; }
 
-/// Times at which somebody pushed: where the current of joint 2 differs, for a fifth of a second, by more
-/// than 1 A from that of the same motion when nobody did. Neither a model nor a diagnosis is asked.
+/// Times at which somebody pushed: where the current of joint 2, averaged over a fifth of a second, differs
+/// by more than 1 A from the current of the same motion without a push. This uses neither a model nor a
+/// diagnosis.
 class Pushes {
   public:
     Pushes(const Recording& pushed, const Recording& undisturbed) {
@@ -95,15 +99,13 @@ class Pushes {
 
 } // namespace
 
-TEST_CASE(
-    "of a real arm the friction of its joints and its wrist's centre of mass are named, and nothing that "
-    "no machine has") {
+TEST_CASE("a real arm's joint friction and wrist centre of mass are named and no push is invented") {
     const Diagnosis diagnosis =
         diagnosis_of_run(currents({"No6_Acc_slow_Verify_Model", "No7_Acc_slow_Verify_Model_short"}));
     std::set<std::string> rubbing;
     for (const Finding& finding : diagnosis.findings) {
         INFO(finding.effect << " at " << finding.where);
-        CHECK_FALSE(is_contact(finding)); // nobody was near
+        CHECK_FALSE(is_contact(finding)); // nobody was near the robot
         if (is_friction(finding)) {
             rubbing.insert(finding.where);
         }
@@ -118,9 +120,10 @@ TEST_CASE(
         CHECK(one.parameter.low > 0);
     }
 
-    // The robot's file has the wrist's centres of mass on its axes. By the controller's own rigid torques
-    // (taur of the same recording, `dfdyn identify`), links 4 and 5 and 0.095 m times link 6's mass together
-    // are 0.134 kg·m more along link 5's axis than the file says, and links 5 and 6 0.033 kg·m across it.
+    // The robot's file has the wrist's centres of mass on its axes. According to the controller's own
+    // rigid-body torques (`taur` of the same recording, with `dfdyn identify`) the first moment of links 4
+    // and 5, plus 0.095 m times the mass of link 6, is 0.134 kg·m larger along link 5's axis than in the
+    // file. The first moment of links 5 and 6 across that axis is 0.033 kg·m larger.
     const auto wrist = std::ranges::find_if(diagnosis.findings, [](const Finding& finding) {
         return finding.effect == "link_inertia_error" && finding.where == "link5";
     });
@@ -132,7 +135,7 @@ TEST_CASE(
     CHECK(mass * parameter(*wrist, "delta_com_y") == Approx(0.033).epsilon(0.25));
 }
 
-TEST_CASE("pushes at a real arm are found at their times, and none where nobody pushed") {
+TEST_CASE("pushes at a real arm are found at their times and none where nobody pushed") {
     const Recording undisturbed = currents({"No7_Acc_slow_Verify_Model_short"});
     const Recording pushed = currents({"No7_Acc_slow_Verify_Model_short_with_disturbance"});
     const std::vector<Pushes::Push> pushes = Pushes(pushed, undisturbed).all();
@@ -154,7 +157,7 @@ TEST_CASE("pushes at a real arm are found at their times, and none where nobody 
             CHECK((contact.where == "joint2" || contact.where == "joint3"));
         }
     }
-    CHECK(likely == std::set<std::size_t>{0, 1, 2}); // at joints that stood
+    CHECK(likely == std::set<std::size_t>{0, 1, 2}); // at joints at rest
     CHECK(found.size() >= 4);
     for (const char* const run : {"No7_Acc_slow_Verify_Model_short", "No5_Acc_slow_no_disturbance",
                                   "No9_Singularity_Free_NoDist", "No3_Acc"}) {
@@ -163,7 +166,8 @@ TEST_CASE("pushes at a real arm are found at their times, and none where nobody 
     }
 }
 
-TEST_CASE("with the causes of one run of a real arm two others are predicted better at every joint") {
+TEST_CASE(
+    "the causes found in one run of a real arm improve the prediction of two other runs at every joint") {
     const Recording all =
         currents({"No6_Acc_slow_Verify_Model", "No5_Acc_slow_no_disturbance", "No9_Singularity_Free_NoDist"});
     const Diagnosis diagnosis = diagnosis_of_run(all, true);

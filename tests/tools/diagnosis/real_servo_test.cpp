@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A real servo that swings a pendulum, against the friction that others published for it: what they publish,
-// and why the comparison cannot be closer, is told in tests/data/xl330_bam/PROVENANCE.md.
+// A real servo that swings a pendulum, compared with the friction that others published for it.
+// tests/data/xl330_bam/PROVENANCE.md lists the published values and the limits of this comparison.
 #include "tests/support/catch.hpp"
 #include "tools/base/system/read_file.hpp"
 #include "tools/base/text/json_reader.hpp"
@@ -21,7 +21,7 @@ using namespace dfdyn::tools;
 const std::filesystem::path folder = DFDYN_TEST_DATA_DIR "/xl330_bam";
 constexpr double likely = 0.5;
 
-/// Parameters of the servo as published.
+/// Published parameters of the servo.
 struct Published {
     nlohmann::json json;
 
@@ -72,8 +72,7 @@ bool may_be(const FoundParameter& parameter, double value) {
 
 } // namespace
 
-TEST_CASE(
-    "a real servo's viscous and load-dependent friction are named, and are those that others published") {
+TEST_CASE("a real servo's viscous and load-dependent friction agree with the published values") {
     const Published m1("m1.json");
     const Published m6("m6.json");
     const Diagnosis diagnosis = diagnosis_with(options_with(m1.torque_per_volt()));
@@ -99,7 +98,7 @@ TEST_CASE(
     CHECK(diagnosis.extended.nrmse[0] < 0.7 * diagnosis.nominal.nrmse[0]);
 }
 
-TEST_CASE("a real servo's rotor inertia is the published one, whichever published torque per volt is taken") {
+TEST_CASE("a real servo's rotor inertia is the published one for either published torque per volt") {
     for (const char* const name : {"m1.json", "m6.json"}) {
         INFO(name);
         const Published published(name);
@@ -108,7 +107,7 @@ TEST_CASE("a real servo's rotor inertia is the published one, whichever publishe
     }
 }
 
-TEST_CASE("without held-out time the errors with and without the causes are those of the whole recording") {
+TEST_CASE("without a held-out part the errors are those over the whole recording") {
     DiagnosisOptions how = options_with(Published("m1.json").torque_per_volt());
     const Diagnosis held_out = diagnosis_with(how);
     how.measure = false;

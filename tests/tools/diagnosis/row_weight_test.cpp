@@ -10,7 +10,8 @@ using namespace dfdyn::tests;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Of what nobody knows the torques: as large as the positions.
+/// Row weights for a joint whose torques equal its positions, plus a slow disturbance of amplitude
+/// `straying`.
 MatrixXd weight_of(MeasuredMotion measured, double straying) {
     const MatrixXd torques = measured.motion.position;
     const Eigen::ArrayXd slowly = (3 * measured.time_s.array()).sin();
@@ -18,8 +19,8 @@ MatrixXd weight_of(MeasuredMotion measured, double straying) {
     return joint_row_weight(measured, torques);
 }
 
-/// The first of two joints stands from 5 s to 8 s, as far as a quantiser of 1.5 mrad lets anybody see; the
-/// second goes on as it would have.
+/// The first of two joints rests from 5 s to 8 s, apart from a quantiser's 1.5 mrad. The second moves
+/// throughout.
 MeasuredMotion stopping() {
     MeasuredMotion measured = swing(2);
     measured.motion.position.col(1) = measured.motion.position.col(0);
@@ -31,7 +32,7 @@ MeasuredMotion stopping() {
 
 } // namespace
 
-TEST_CASE("what a joint's torque is while it stands does not count, what the others' are does") {
+TEST_CASE("an unexplained torque of a joint at rest has no weight and those of other joints keep theirs") {
     const MatrixXd weight = weight_of(stopping(), 0.2);
     CHECK(weight.col(0).segment(500, 300).maxCoeff() == 0);
     CHECK(weight.col(0).segment(200, 260).minCoeff() == 1);
@@ -39,11 +40,11 @@ TEST_CASE("what a joint's torque is while it stands does not count, what the oth
     CHECK(weight.col(1).segment(200, 1600).minCoeff() == 1);
 }
 
-TEST_CASE("an output that keeps to the torques while its joint stands counts all the time") {
+TEST_CASE("an output that agrees with the torques during standstill keeps its weight") {
     CHECK(weight_of(stopping(), 0.01).middleRows(200, 1600).minCoeff() == 1);
 }
 
-TEST_CASE("a joint that sticks for a third of a second where it turns round stands there") {
+TEST_CASE("a joint that sticks for a third of a second at a reversal is at rest") {
     MeasuredMotion measured = swing(1);
     constexpr Index first = 700;
     constexpr Index count = 33;
@@ -56,7 +57,7 @@ TEST_CASE("a joint that sticks for a third of a second where it turns round stan
     CHECK(weight.middleRows(first + count + 40, 1000).minCoeff() == 1);
 }
 
-TEST_CASE("a joint that turns round slowly does not stand, and stops of a fifth of a second are none") {
+TEST_CASE("neither a slow reversal nor a stop of a fifth of a second is a standstill") {
     MeasuredMotion measured = swing(1);
     measured.motion.position.col(0) = 0.5 * (0.8 * measured.time_s.array()).cos();
     CHECK(weight_of(measured, 0.2).middleRows(200, 1600).minCoeff() == 1);
@@ -65,13 +66,13 @@ TEST_CASE("a joint that turns round slowly does not stand, and stops of a fifth 
     CHECK(weight_of(measured, 0.2).middleRows(200, 1600).minCoeff() == 1);
 }
 
-TEST_CASE("a joint that never moves still tells what the arm weighs") {
+TEST_CASE("the rows of a joint that never moves keep their weight") {
     MeasuredMotion measured = swing(1);
     measured.motion.position.setConstant(0.3);
     CHECK(weight_of(measured, 0.2).middleRows(200, 1600).minCoeff() == 1);
 }
 
-TEST_CASE("the ends of a stretch count little, the longest part of it in full") {
+TEST_CASE("the weight tapers at the ends of each segment and is one in between") {
     MeasuredMotion measured = swing(1);
     measured.stretches = {{0, 480}, {480, 1520}};
     const Eigen::VectorXd weight = end_row_weight(measured);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is looked for in a residual, against what was put there.
+// Scans of a residual into which a known effect was planted.
 #include "tools/diagnosis/candidates/scans.hpp"
 
 #include "tests/support/catch.hpp"
@@ -21,9 +21,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double persistent = 0.98; ///< from row to row
+constexpr double persistent = 0.98; ///< correlation from one row to the next
 
-/// Of variance 1, as slow as what is left of real torques.
+/// Noise of variance 1 that is as slow as the residuals of real torques.
 VectorXd slow_noise(Index rows, std::mt19937_64& engine) {
     std::normal_distribution<double> normal;
     VectorXd noise(rows);
@@ -35,7 +35,7 @@ VectorXd slow_noise(Index rows, std::mt19937_64& engine) {
     return noise;
 }
 
-/// Its variance per bin, in closed form.
+/// Closed-form variance per bin of `slow_noise`.
 VectorXd slow_spectrum(const SpectralRows& rows, double rate_hz) {
     VectorXd spectrum(rows.bins());
     for (Index bin = 0; bin < rows.bins(); ++bin) {
@@ -46,7 +46,7 @@ VectorXd slow_spectrum(const SpectralRows& rows, double rate_hz) {
     return spectrum;
 }
 
-/// The UR5, its residuals, and how much they are weighed.
+/// The UR5 with residuals of slow noise, and their weighted forms.
 struct Residual {
     DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     SpectralRows rows{signals.measured};
@@ -74,19 +74,19 @@ struct Residual {
 
 } // namespace
 
-TEST_CASE("where there is slow noise and nothing else, no push stands out") {
+TEST_CASE("slow noise alone yields no conspicuous push") {
     DFDYN_SEEDED_ENGINE(engine);
     const Residual residual(engine);
     const std::vector<ContactSite> sites = contact_sites(residual.signals);
     for (const Candidate& push :
          scan_contacts(residual.signals, residual.regression(), residual.weighed(), sites)) {
         INFO(push.where);
-        // half as much again as the fourth largest of hundreds of squares of a standard normal's
+        // 1.5 times the fourth largest of several hundred squares of a standard normal variable.
         CHECK(push.extra_price < 1.5 * 16);
     }
 }
 
-TEST_CASE("a push is found among slow noise, at its time, and the next ones to it are of the noise") {
+TEST_CASE("a push in slow noise is found at its time and does not raise its own threshold") {
     DFDYN_SEEDED_ENGINE(engine);
     Residual residual(engine);
     const double start_s = std::uniform_real_distribution<double>(3, 15)(engine);
@@ -102,7 +102,7 @@ TEST_CASE("a push is found among slow noise, at its time, and the next ones to i
     CHECK(push->extra_price < 1.5 * 16);
 }
 
-TEST_CASE("a payload that is taken up late has to explain more than loads that come and go would") {
+TEST_CASE("a late payload must explain more than loads of short duration would") {
     DFDYN_SEEDED_ENGINE(engine);
     Residual residual(engine);
     const std::vector<EffectColumn> payload = payload_columns(residual.signals);
@@ -112,14 +112,14 @@ TEST_CASE("a payload that is taken up late has to explain more than loads that c
         const MatrixXd weighed = weighed_residual(regression, VectorXd(0));
         return demanded_of_payload(residual.signals, regression, weighed, payload, taken_s);
     };
-    // half as much again as the fourth largest of a hundred sums of four squares of a standard normal's
+    // 1.5 times the fourth largest of a hundred sums of four squares of a standard normal variable.
     CHECK(demanded() < 1.5 * 15);
 
     const Candidate mass = find(lasting_candidates(residual.signals), "payload", "tool");
     const MatrixXd load = 2 * contribution(residual.signals, mass, 0);
     const MatrixXd precision = residual.regression().noise().cwiseInverse();
     std::vector<double> explained;
-    for (const Index first : {198, 702, 1206, 1710}) { // where windows are looked at
+    for (const Index first : {198, 702, 1206, 1710}) { // starts of windows that the scan examines
         MatrixXd burst = MatrixXd::Zero(load.rows(), load.cols());
         burst.middleRows(first, 151) = load.middleRows(first, 151);
         residual.left += burst;
@@ -130,12 +130,13 @@ TEST_CASE("a payload that is taken up late has to explain more than loads that c
         }
     }
     const double least = *std::ranges::min_element(explained);
-    // more than their evidence, which is half of that; not all of 1.5 times, for windows share one weight
+    // The threshold exceeds the evidence of a load, which is half of `explained`. It stays below 1.5 times
+    // that because the windows share one weight.
     CHECK(demanded() > 0.5 * least);
     CHECK(demanded() < 0.8 * least);
 }
 
-TEST_CASE("what a payload that is taken up early has to explain cannot be compared with anything") {
+TEST_CASE("the threshold of an early payload is zero because no windows remain for comparison") {
     DFDYN_SEEDED_ENGINE(engine);
     const Residual residual(engine);
     const EffectRegression regression = residual.regression();
@@ -143,7 +144,7 @@ TEST_CASE("what a payload that is taken up early has to explain cannot be compar
                               payload_columns(residual.signals), 8) == 0);
 }
 
-TEST_CASE("what is left at reversals only is bridged") {
+TEST_CASE("a residual that occurs only at reversals is interpolated") {
     DFDYN_SEEDED_ENGINE(engine);
     Residual residual(engine);
     const VectorXd velocity = residual.signals.measured.motion.velocity.col(0);

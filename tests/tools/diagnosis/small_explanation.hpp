@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Explanations of a few candidates on an arm's first output.
+// Models of the residual on an arm's first output, each with a few candidates.
 #pragma once
 
 #include "tests/tools/diagnosis/swinging_arm.hpp"
@@ -26,7 +26,8 @@ inline tools::Candidate of_one_column(const std::string& effect, const std::stri
     return candidate;
 }
 
-/// Candidates on the first output, of which the first `chosen` explain, in their first shapes; noise of 1.
+/// A fitted model of candidates on the first output. The first `chosen` candidates are in the model, each in
+/// its first shape; the noise has a variance of 1.
 inline tools::Explanation explanation_of(const std::vector<tools::Candidate>& candidates, std::size_t chosen,
                                          const Eigen::VectorXd& unexplained) {
     Eigen::MatrixXd columns(unexplained.size(), 0);

@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Stretches of 4.3 s and 15.7 s, of which rows count as the draw says.
+/// Segments of 4.3 s and 15.7 s whose rows have random weights.
 MeasuredMotion parted(std::mt19937_64& engine) {
     MeasuredMotion measured = swing(1);
     measured.stretches = {{0, 430}, {430, 1570}};
@@ -25,7 +25,7 @@ MeasuredMotion parted(std::mt19937_64& engine) {
 
 } // namespace
 
-TEST_CASE("every row of a recording counts, in short stretches as in long ones") {
+TEST_CASE("every row of a recording has the same weight in short and in long segments") {
     DFDYN_SEEDED_ENGINE(engine);
     MeasuredMotion measured = parted(engine);
     measured.weight.resize(0, 0);
@@ -34,7 +34,7 @@ TEST_CASE("every row of a recording counts, in short stretches as in long ones")
     for (int trial = 0; trial < 10; ++trial) {
         const Index at = draw(engine);
         INFO("row " << at);
-        // a bump well below 20 Hz
+        // A bump with frequencies well below 20 Hz.
         const VectorXd bump =
             (-0.5 * (VectorXd::LinSpaced(2000, 0, 1999).array() - static_cast<double>(at)).square() / 36)
                 .exp();
@@ -42,7 +42,7 @@ TEST_CASE("every row of a recording counts, in short stretches as in long ones")
     }
 }
 
-TEST_CASE("synthesis is the transpose of analysis, weights and gaps included") {
+TEST_CASE("synthesis is the transpose of analysis with weights and gaps") {
     DFDYN_SEEDED_ENGINE(engine);
     const SpectralRows rows(parted(engine));
     std::normal_distribution<double> normal;
@@ -53,7 +53,7 @@ TEST_CASE("synthesis is the transpose of analysis, weights and gaps included") {
           Approx(series.dot(rows.synthesise(coefficients, 0))));
 }
 
-TEST_CASE("rows that do not count make a noise no smaller") {
+TEST_CASE("rows without weight do not reduce the noise estimate") {
     DFDYN_SEEDED_ENGINE(engine);
     MeasuredMotion measured = swing(1);
     measured.weight = MatrixXd::Ones(2000, 1);
@@ -71,10 +71,10 @@ TEST_CASE("rows that do not count make a noise no smaller") {
         CHECK(unrest.minCoeff() > 0.5);
     }
     CHECK(spectrum.tail(rows.bins() - 4).mean() ==
-          Approx(0.09).epsilon(0.05)); // slow bins count as persistent
+          Approx(0.09).epsilon(0.05)); // the slowest bins are treated as persistent noise
 }
 
-TEST_CASE("frames within a share of the rows see nothing of the others") {
+TEST_CASE("frames within a share of the recording do not depend on later rows") {
     DFDYN_SEEDED_ENGINE(engine);
     const SpectralRows rows(parted(engine));
     VectorXd late = VectorXd::Zero(2000);

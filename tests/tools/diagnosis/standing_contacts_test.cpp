@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pushes at a joint that stands, among what its friction does there.
+// Pushes at a joint at rest, hidden among the changes of its static friction.
 #include "tools/diagnosis/search/standing_contacts.hpp"
 
 #include "tests/support/catch.hpp"
@@ -24,7 +24,7 @@ using Eigen::VectorXd;
 constexpr double friction = 5; ///< N·m
 constexpr Index stand_first = 200, stand_rows = 1500;
 
-/// The first joint stands from 2 to 17 s.
+/// A swinging arm whose first joint rests from 2 to 17 s.
 DiagnosisSignals standing_arm() {
     DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
     signals.measured.weight.setOnes(signals.rows(), signals.outputs());
@@ -33,7 +33,7 @@ DiagnosisSignals standing_arm() {
     return signals;
 }
 
-/// Friction of the first joint, known to a few percent.
+/// Friction of the first joint, known to within a few percent.
 Candidate friction_cause(const DiagnosisSignals& signals, const std::string& parameter) {
     Candidate candidate = of_one_column("coulomb_friction", "joint1", signals.direction(0));
     candidate.parameters = [parameter](const VectorXd& coefficients, const EffectShape&) {
@@ -52,7 +52,7 @@ std::vector<StandingContact> pushes_in(const DiagnosisSignals& signals, const Ex
                              measured - signals.nominal - explanation.all(signals));
 }
 
-/// What is measured of a joint that stands by itself: it creeps, and its friction gives way to either side.
+/// Torques of a joint that rests undisturbed: it creeps, and its friction yields in both directions.
 MatrixXd resting(const DiagnosisSignals& signals, std::mt19937_64& engine) {
     std::uniform_real_distribution<double> held(-friction, friction);
     std::normal_distribution<double> noise(0, 0.05);
@@ -70,7 +70,7 @@ MatrixXd resting(const DiagnosisSignals& signals, std::mt19937_64& engine) {
 
 } // namespace
 
-TEST_CASE("what friction can take up while a joint stands is no push") {
+TEST_CASE("a torque that friction can hold at rest is not a push") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = standing_arm();
     const MatrixXd measured = resting(signals, engine);
@@ -83,10 +83,10 @@ TEST_CASE("what friction can take up while a joint stands is no push") {
         return most;
     };
     CHECK(most_likely(1) < 0.5);
-    CHECK(most_likely(5) > 0.9); // the same is one where friction is that much less
+    CHECK(most_likely(5) > 0.9); // the same residual is a push if friction is five times smaller
 }
 
-TEST_CASE("a push that friction cannot take up is found while the joint stands, at its time and as large") {
+TEST_CASE("a push larger than friction is found at a joint at rest with its time and size") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = standing_arm();
     const double start_s = std::uniform_real_distribution<double>(3, 15)(engine);
@@ -107,7 +107,7 @@ TEST_CASE("a push that friction cannot take up is found while the joint stands, 
     CHECK((found->share - change * pulse_series(signals, pulse)).norm() < 0.6 * found->share.norm());
 }
 
-TEST_CASE("nothing is said of a joint that moves, or whose dry friction nobody knows") {
+TEST_CASE("a joint that moves or whose dry friction is unknown is never reported as pushed at rest") {
     DFDYN_SEEDED_ENGINE(engine);
     DiagnosisSignals signals = standing_arm();
     MatrixXd measured = resting(signals, engine);
@@ -121,32 +121,32 @@ TEST_CASE("nothing is said of a joint that moves, or whose dry friction nobody k
     CHECK(pushes_in(signals, with_friction(signals, "coulomb"), measured).empty());
 }
 
-TEST_CASE("nothing is said where friction is hardly known: one error would be a push at every stand") {
+TEST_CASE("no push at rest is reported if the friction estimate is uncertain") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = standing_arm();
     MatrixXd measured = resting(signals, engine);
     measured.col(0) += 30 * pulse_series(signals, {8, 8.75, 0.2});
     Explanation explanation = with_friction(signals, "coulomb");
     CHECK_FALSE(pushes_in(signals, explanation, measured).empty());
-    constexpr double precision = 1e-3; // of all that was measured
+    constexpr double precision = 1e-3; // as a share of all measurements
     explanation.problem.sums.gram *= precision;
     explanation.problem.sums.moment *= precision;
     explanation.named = fit_effects(explanation.problem, explanation.named_effects());
     CHECK(pushes_in(signals, explanation, measured).empty());
 }
 
-TEST_CASE("a change by what friction can take up and no more is as likely a push as not") {
+TEST_CASE("a push as large as static friction has a probability of one half") {
     StandingContact push;
     push.change = -10;
     push.held = 10;
     push.change_deviation = 3;
     push.held_deviation = 4;
     CHECK(push.probability() == Approx(0.5));
-    push.change = -20; // two deviations of 5 more: the normal distribution's table
+    push.change = -20; // two standard deviations of 5 more, from the table of the normal distribution
     CHECK(push.probability() == Approx(0.97725).epsilon(1e-4));
 }
 
-TEST_CASE("what a cause says of a joint that stands, and nobody measured, is no push") {
+TEST_CASE("a torque that a cause predicts at rest but nobody measured is not a push") {
     DFDYN_SEEDED_ENGINE(engine);
     const DiagnosisSignals signals = standing_arm();
     const VectorXd said = pulse_series(signals, {8, 8.75, 0.2});
@@ -159,15 +159,15 @@ TEST_CASE("what a cause says of a joint that stands, and nobody measured, is no 
     };
     MatrixXd measured = resting(signals, engine);
     CHECK_FALSE(likely(measured));
-    measured.col(0) += 60 * said; // twice what the cause says
+    measured.col(0) += 60 * said; // twice what the cause predicts
     CHECK(likely(measured));
 }
 
-TEST_CASE("a joint that stands where a recording pauses is not pushed by the pause") {
+TEST_CASE("a change of load across a gap of the recording is not a push") {
     DFDYN_SEEDED_ENGINE(engine);
     DiagnosisSignals signals = standing_arm();
     MatrixXd measured = resting(signals, engine);
-    // a second run, of 3 s, in which the joint stands with another load
+    // A second run of 3 s, in which the joint rests with another load.
     constexpr Index first = 800, count = 300;
     measured.col(0).segment(first, count).array() += 40;
     const auto likely = [&] {

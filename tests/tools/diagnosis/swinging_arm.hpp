@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An arm that swings, and what candidates add to its outputs.
+// An arm that swings, and the contributions of candidates to its outputs.
 #pragma once
 
 #include "tests/support/catch.hpp"
@@ -12,7 +12,7 @@
 
 namespace dfdyn::tests {
 
-/// Every joint swings with two frequencies; 20 s at 100 Hz, without any noise.
+/// Every joint swings with two frequencies; 20 s at 100 Hz without noise.
 inline tools::MeasuredMotion swing(Eigen::Index joints) {
     constexpr Eigen::Index rows = 2000;
     tools::MeasuredMotion measured;
@@ -39,7 +39,7 @@ inline tools::DiagnosisSignals signals_of(const tools::Robot& robot, tools::Outp
     return tools::diagnosis_signals(robot, kind, swing(static_cast<Eigen::Index>(robot.joints.size())));
 }
 
-/// A model of the rigid body alone, without friction and delays.
+/// A fitted model that has only the rigid body, without friction and delays.
 inline tools::FittedModel rigid_model(const tools::DiagnosisSignals& signals, bool gains_known = true) {
     return {signals.nominal,
             Eigen::MatrixXd::Zero(signals.rows(), static_cast<Eigen::Index>(signals.joints())),
@@ -63,7 +63,7 @@ inline Eigen::MatrixXd contribution(const tools::DiagnosisSignals& signals, cons
     return sum;
 }
 
-/// Away from the ends, where derivatives by differences are worse.
+/// Compares all rows except the 10 at either end, where finite differences are less accurate.
 inline void check_same(const Eigen::MatrixXd& found, const Eigen::MatrixXd& expected, double tolerance) {
     const Eigen::Index inner = found.rows() - 20;
     CHECK((found - expected).middleRows(10, inner).cwiseAbs().maxCoeff() <
