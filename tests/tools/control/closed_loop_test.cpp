@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop and the simulated arm, with the frames of devices between them, in simulated time.
+// The loop and the simulated arm, connected directly or by the frames of devices, in simulated time.
 #include "tools/control/closed_loop.hpp"
 
 #include "tests/support/allocation_guard.hpp"
@@ -24,7 +24,7 @@ LoopLimits without_observer() {
     return limits;
 }
 
-/// Tracking errors of the pendulum, tick by tick, rad.
+/// Tracking errors of the pendulum at each tick, rad.
 std::vector<double> errors(const Scenario& scenario, double duration_s, const LoopModel* model = nullptr,
                            const BusDescription* bus = nullptr,
                            const LoopLimits& limits = without_observer()) {
@@ -53,17 +53,16 @@ LoopModel random_model(std::mt19937_64& engine) {
     return {unlearned_model(engine, 1, 0.008, {"tau1"}, 30), "model", true};
 }
 
-TEST_CASE("with a rigid body that is right the arm follows; a payload that nobody knows of makes the error "
-          "of its weight") {
+TEST_CASE("an exact rigid body makes the loop follow and an unknown payload leaves the error of its weight") {
     CHECK(rms(errors(pendulum_scenario(), 5), 0) < 1e-3);
     Scenario scenario = pendulum_scenario();
     scenario.payloads = {{0, 0.2, Eigen::Vector3d::Zero()}};
-    // about 0.3 rad: 0.2 kg of weight over the position gain
+    // About 0.3 rad: the weight of 0.2 kg over the position gain.
     const double sag = 0.2 / pendulum_mass * weight(0.3) / 50;
     CHECK(rms(errors(scenario, 5), 0) == Approx(sag).epsilon(0.5));
 }
 
-TEST_CASE("a loop that learns carries a payload that nobody told it of") {
+TEST_CASE("a loop that learns compensates an unknown payload") {
     DFDYN_SEEDED_ENGINE(engine);
     const LoopModel model = random_model(engine);
     const std::vector<double> nominal = errors(loaded_scenario(), 12);
@@ -71,7 +70,8 @@ TEST_CASE("a loop that learns carries a payload that nobody told it of") {
     CHECK(rms(learned, 8000) < rms(nominal, 8000) / 3);
 }
 
-TEST_CASE("an observer takes an unknown payload over within a second, learning leaves it less to do") {
+TEST_CASE(
+    "an observer compensates an unknown payload within a second and learning reduces the error further") {
     DFDYN_SEEDED_ENGINE(engine);
     const LoopModel model = random_model(engine);
     const double nominal = rms(errors(loaded_scenario(), 12), 1000);
@@ -81,7 +81,7 @@ TEST_CASE("an observer takes an unknown payload over within a second, learning l
     CHECK(rms(learned, 8000) < rms(observed, 8000));
 }
 
-TEST_CASE("where what is learned may add nothing the arm moves as without it, and it is learned") {
+TEST_CASE("with a learned limit of zero the loop moves as without learning but still learns") {
     DFDYN_SEEDED_ENGINE(engine);
     const LoopModel model = random_model(engine);
     LoopLimits limits = without_observer();
@@ -93,7 +93,7 @@ TEST_CASE("where what is learned may add nothing the arm moves as without it, an
     CHECK(loop.loop().feed_forward().learned_share()[0] > 0.5);
 }
 
-TEST_CASE("what is learned is taken out of a running loop, and put back, without a step") {
+TEST_CASE("the learned torque is disabled and enabled in a running loop without a step") {
     DFDYN_SEEDED_ENGINE(engine);
     const LoopModel model = random_model(engine);
     ClosedLoop loop(test_pendulum(), loaded_scenario(), "test", &model, nullptr, without_observer());
@@ -116,7 +116,8 @@ TEST_CASE("what is learned is taken out of a running loop, and put back, without
     CHECK(step < usual + 0.4); // N·m, of 20
 }
 
-TEST_CASE("frames between loop and arm cost no more than their quantisation, and a period where SYNC does") {
+TEST_CASE(
+    "frames between loop and arm add no more than their quantisation to the error and SYNC one period") {
     const double direct = rms(errors(loaded_scenario(), 4), 0);
     const BusDescription by_sync = one_drive(at_sync);
     const BusDescription by_set = one_drive(at_set);
@@ -124,7 +125,7 @@ TEST_CASE("frames between loop and arm cost no more than their quantisation, and
     CHECK(rms(errors(loaded_scenario(), 4, nullptr, &by_sync), 0) == Approx(direct).epsilon(0.05));
 }
 
-TEST_CASE("the same closed loop gives the same bits, over frames and with learning") {
+TEST_CASE("the same closed loop gives bit-identical errors over frames and with learning") {
     DFDYN_SEEDED_ENGINE(engine);
     const LoopModel model = random_model(engine);
     const BusDescription bus = one_drive(at_sync);
@@ -136,8 +137,8 @@ TEST_CASE("the same closed loop gives the same bits, over frames and with learni
     CHECK(once != errors(scenario, 2, &model, &bus));
 }
 
-// At a sample the host's estimators, whose sizes are known at run time only, make room for their results.
-TEST_CASE("between two samples of its model a loop that learns does not touch the heap") {
+// At a sample, the host's estimators allocate their results because their sizes are known only at run time.
+TEST_CASE("a loop that learns does not allocate memory between two samples of its model") {
     DFDYN_SEEDED_ENGINE(engine);
     const LoopModel model = random_model(engine);
     const auto loop = make_control_loop(test_pendulum(), pendulum_scenario(), "test", &model);
@@ -160,7 +161,7 @@ TEST_CASE("between two samples of its model a loop that learns does not touch th
     CHECK(loop->feed_forward().learned()->counters().learned > 200);
 }
 
-TEST_CASE("a bus that does not fit robot and scenario is refused") {
+TEST_CASE("a bus that does not fit robot and scenario is rejected") {
     const auto refusal = [](const BusDescription& bus, const Scenario& scenario, const Robot& robot) {
         try {
             check_bus(bus, robot, scenario);

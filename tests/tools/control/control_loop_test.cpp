@@ -16,10 +16,10 @@ namespace control_loop_test {
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
 
-/// So that what is held is the nominal weight alone.
+/// Without an observer, so that the torque that holds the arm is the nominal weight alone.
 const LoopLimits no_observer{{}, {}, StopMode::hold, {0}};
 
-/// A loop about a pendulum that stands at the reference's start, tick by tick.
+/// A loop with a pendulum that rests at the start of the reference; the test runs it tick by tick.
 class Bench {
   public:
     explicit Bench(const Scenario& scenario, const LoopLimits& limits = {})
@@ -45,7 +45,7 @@ class Bench {
     std::int64_t ticks_ = 0;
 };
 
-TEST_CASE("no command is beyond the limit, and those at it are counted") {
+TEST_CASE("no command exceeds the torque limit and commands at the limit are counted") {
     Scenario scenario = pendulum_scenario();
     scenario.actuators.torque_limit = JointVector::Constant(1, 1);
     Bench bench(scenario, {{0.5}, {}, StopMode::hold});
@@ -62,7 +62,7 @@ TEST_CASE("no command is beyond the limit, and those at it are counted") {
     CHECK(bench.loop().counters().limited >= 20);
 }
 
-TEST_CASE("a loop that loses its positions coasts, then goes over to the weight at the last one") {
+TEST_CASE("a loop without positions coasts and then ramps to the weight at the last position") {
     Bench bench(pendulum_scenario(), no_observer);
     for (int tick = 0; tick < 50; ++tick) {
         bench.tick();
@@ -76,7 +76,7 @@ TEST_CASE("a loop that loses its positions coasts, then goes over to the weight 
     const double start = bench.tick(false);
     CHECK(bench.loop().state() == LoopState::stopping);
     CHECK(bench.loop().cause() == StopCause::no_position);
-    CHECK(start == Approx(before).margin(0.1)); // no jump
+    CHECK(start == Approx(before).margin(0.1)); // continues without a jump
     double last = start;
     for (int tick = 0; tick < 300; ++tick) {
         const double next = bench.tick(false);
@@ -87,7 +87,7 @@ TEST_CASE("a loop that loses its positions coasts, then goes over to the weight 
     CHECK(last == Approx(weight(bench.position()[0])).epsilon(1e-6));
 }
 
-TEST_CASE("an arm that does not stand where the motion begins is not touched") {
+TEST_CASE("the loop applies no torque to an arm that is away from the start of the motion") {
     Bench bench(pendulum_scenario());
     bench.position()[0] += 1;
     for (int tick = 0; tick < 10; ++tick) {
@@ -97,7 +97,7 @@ TEST_CASE("an arm that does not stand where the motion begins is not touched") {
     CHECK(bench.loop().counters().running == 0);
 }
 
-TEST_CASE("an arm that drifts while the loop holds it is damped, and pulled back") {
+TEST_CASE("an arm that drifts while the loop holds it is damped and pulled back") {
     Bench bench(pendulum_scenario());
     for (int tick = 0; tick < 20; ++tick) {
         bench.tick();
@@ -112,11 +112,12 @@ TEST_CASE("an arm that drifts while the loop holds it is damped, and pulled back
         bench.position()[0] += 0.001; // 1 rad/s
         torque = bench.tick(true, true);
     }
-    const double spring = 50 * 0.05; // of the position gain, to where it stood
+    // position gain times the distance to the rest position, limited to 0.05 rad
+    const double spring = 50 * 0.05;
     CHECK(torque == Approx(weight(bench.position()[0]) - 5 * 1.0 - spring).epsilon(1e-3));
 }
 
-TEST_CASE("positions that come back after the stop are damped again, and those that go are not") {
+TEST_CASE("after a stop damping follows positions that return and ends when they are lost again") {
     Bench bench(pendulum_scenario());
     for (int tick = 0; tick < 50; ++tick) {
         bench.tick();
@@ -132,12 +133,12 @@ TEST_CASE("positions that come back after the stop are damped again, and those t
     }
     CHECK(torque < weight(bench.position()[0]) - 3);
     for (int tick = 0; tick < 300; ++tick) {
-        torque = bench.tick(false); // and are gone
+        torque = bench.tick(false); // the positions are lost again
     }
     CHECK(torque == Approx(weight(bench.position()[0])).margin(0.5)); // it came to rest within 0.1 rad
 }
 
-TEST_CASE("brakes are requested when the arm rests, at once where nothing damps it; limp only if told") {
+TEST_CASE("the loop requests brakes when the arm rests or positions fail and goes limp only in limp mode") {
     for (const StopMode mode : {StopMode::hold, StopMode::limp}) {
         for (const bool blind : {false, true}) {
             CAPTURE(static_cast<int>(mode), blind);
@@ -154,7 +155,7 @@ TEST_CASE("brakes are requested when the arm rests, at once where nothing damps 
                 requested = requested < 0 && bench.loop().brake_requested() ? tick : requested;
                 limp = limp < 0 && bench.loop().limp() ? tick : limp;
             }
-            CHECK(requested == (blind ? 5 : 200)); // ticks of damping, of the ramp
+            CHECK(requested == (blind ? 5 : 200)); // ticks without damping, or of the ramp
             CHECK(limp == (mode == StopMode::limp ? requested + 200 : -1));
             CHECK(torque == Approx(mode == StopMode::limp ? 0 : weight(bench.position()[0])).margin(0.01));
             CHECK(bench.loop().done() == (mode == StopMode::limp || blind));
@@ -162,7 +163,7 @@ TEST_CASE("brakes are requested when the arm rests, at once where nothing damps 
     }
 }
 
-TEST_CASE("a program may end when it was told to and the brakes are requested, or when nobody answers") {
+TEST_CASE("the loop is done once brakes are requested after a requested stop or after a second of silence") {
     Bench told(pendulum_scenario()), silent(pendulum_scenario());
     for (int tick = 0; tick < 50; ++tick) {
         told.tick();
@@ -181,7 +182,7 @@ TEST_CASE("a program may end when it was told to and the brakes are requested, o
     CHECK(told.loop().cause() == StopCause::bus_lost);
 }
 
-TEST_CASE("limits follow from gains, torque limits and the robot, or are those that are given") {
+TEST_CASE("default limits follow from gains and torque limits and robot unless limits are given") {
     Scenario scenario = pendulum_scenario();
     Robot robot = test_pendulum();
     robot.joints[0].velocity = 2.5;
@@ -210,7 +211,7 @@ TEST_CASE("limits follow from gains, torque limits and the robot, or are those t
     CHECK(bench.loop().cause() == StopCause::following_error);
 }
 
-TEST_CASE("every cause stops the loop within its patience, without a jump of the torque") {
+TEST_CASE("every cause stops the loop within its patience and without a jump of the torque") {
     struct Fault {
         StopCause cause;
         int patience;
@@ -250,7 +251,7 @@ TEST_CASE("every cause stops the loop within its patience, without a jump of the
     }
 }
 
-TEST_CASE("a loop is told what its scenario and model must have") {
+TEST_CASE("a scenario or model that the loop cannot use is rejected with what is expected") {
     const auto refusal = [](const Scenario& scenario, const Robot& robot, const LoopModel* model) {
         try {
             make_control_loop(robot, scenario, "s.json", model);
@@ -277,7 +278,7 @@ TEST_CASE("a loop is told what its scenario and model must have") {
           "s.json: controller.kind: expected feed_forward, found another");
 }
 
-TEST_CASE("a position that is no number moves nothing, and the loop goes on") {
+TEST_CASE("a position that is NaN moves nothing and the loop continues") {
     Bench bench(pendulum_scenario());
     for (int tick = 0; tick < 50; ++tick) {
         bench.tick();

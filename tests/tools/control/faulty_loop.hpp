@@ -18,21 +18,21 @@
 
 namespace dfdyn::tests {
 
-/// What a test does to a loop and its arm at a tick of the motion.
+/// Fault of a loop and its arm at one tick of the motion.
 struct LoopFault {
     using Drops = std::function<bool(const hal::Frame&)>;
     using Reads = std::function<void(tools::JointVector&)>;
 
-    bool lost = false;         ///< none of the frames that the devices send in this tick arrives
-    std::int64_t clock_ns = 0; ///< added to the stamps of those that arrive
-    int late_ticks = 0;        ///< for so many periods the loop does not run, then makes up for them
-    tools::LoopInput given{};  ///< deadline_missed, bus_lost and stop_requested count, if set
-    Drops drops{};             ///< frames of the devices that do not arrive
-    Reads reads{};             ///< changes what the encoders show
+    bool lost = false;         ///< no frame that the devices send in this tick arrives
+    std::int64_t clock_ns = 0; ///< added to the stamps of the frames that arrive
+    int late_ticks = 0;        ///< if not 0, the loop does not run in this tick and makes up for it later
+    tools::LoopInput given{};  ///< only deadline_missed, bus_lost and stop_requested are used
+    Drops drops{};             ///< returns true for device frames that do not arrive
+    Reads reads{};             ///< changes the positions that the encoders report
 };
 
-/// A loop and the simulated arm of a scenario with the frames of its devices between them, tick by tick, in
-/// simulated time, with faults.
+/// A loop and the simulated arm of a scenario, connected by the frames of the arm's devices. It runs tick by
+/// tick in simulated time, with faults.
 class FaultyLoop {
   public:
     using Faults = std::function<LoopFault(int tick)>;
@@ -47,7 +47,7 @@ class FaultyLoop {
         tools::MemoryBus::join(loop_end_, wire_);
     }
 
-    /// Runs until the motion is `time_s` old, or for as long after it has stopped.
+    /// Runs until `time_s` since the motion began, whether or not the loop has stopped by then.
     void run_to(
         double time_s, const Faults& faults = [](int) { return LoopFault{}; }) {
         while (moving_tick_ * period_s_ < time_s) {
@@ -60,17 +60,18 @@ class FaultyLoop {
         start_ = plant_.truth().position;
         peak_distance_ = 0;
     }
-    double peak_step() const { return peak_step_; }   ///< of a command in a tick, in torque limits
-    double peak_speed() const { return peak_speed_; } ///< of a joint, rad/s
+    /// largest change of a command in one tick, as a share of the torque limit
+    double peak_step() const { return peak_step_; }
+    double peak_speed() const { return peak_speed_; } ///< largest speed of a joint, rad/s
     double peak_distance() const {
         return peak_distance_;
-    } ///< of a joint since the peaks were forgotten, rad
+    } ///< largest distance of a joint from its position at the last `forget_peaks`, rad
     int moving_tick() const { return moving_tick_; }
     int delay_ticks() const { return port_.delay_ticks(); }
     const tools::ControlLoop& loop() const { return *loop_; }
     tools::SimulatedPlant& plant() { return plant_; }
     const tools::JointVector& command() const { return command_; }
-    /// Whether the arm's brakes have closed, 0.2 s after they were requested: then nothing moves.
+    /// Whether the arm's brakes have closed, which is 0.2 s after the request. From then on nothing moves.
     bool braked() const { return braked_tick_ >= 0 && moving_tick_ >= braked_tick_; }
     const tools::PortCounters& port() const { return port_.counters(); }
 
@@ -103,7 +104,7 @@ class FaultyLoop {
         moving_tick_ += loop_->state() == tools::LoopState::waiting ? 0 : 1;
     }
 
-    /// The devices' frames of this tick, to the loop.
+    /// Sends the devices' frames of this tick to the loop.
     void carry(const LoopFault& fault) {
         loop_end_.set_time(now_ns_);
         wire_.set_time(now_ns_ + fault.clock_ns);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A loop over the frames of devices that are lost, late or wrongly stamped, and what it does when it stops.
+// A loop whose devices' frames are lost, late or wrongly stamped, and its behaviour when it stops.
 #include "tests/tools/control/faulty_loop.hpp"
 
 #include "tests/support/catch.hpp"
@@ -20,7 +20,7 @@ namespace hal = dfdyn::hal;
 
 const std::string data = DFDYN_TEST_DATA_DIR;
 
-/// Robot and scenario of the project's test data.
+/// Robot and scenario from the project's test data.
 struct Arm {
     Robot robot;
     Scenario scenario;
@@ -37,7 +37,7 @@ BusDescription bus_of(const std::string& name) { return read_bus_description(dat
 
 constexpr std::int64_t ms = 1'000'000;
 
-/// A fault of time: what happens in the `after`-th tick since it began, at least 0.
+/// A fault in time. `fault` receives the number of ticks since it began, at least 0.
 struct TimeFault {
     std::string name;
     std::function<LoopFault(int after)> fault;
@@ -67,8 +67,7 @@ std::vector<TimeFault> time_faults() {
     return faults;
 }
 
-TEST_CASE("lost cycles, a late tick and clocks that jump change no command by a tenth of its limit, and no "
-          "speed by a fifth") {
+TEST_CASE("lost cycles and late ticks and clock jumps change no command by a tenth of its limit") {
     const auto [arm, bus] =
         GENERATE(table<std::string, std::string>({{"ur5", "ur5_loop.json"}, {"icub", "icub_loop.json"}}));
     const Arm parts = arm == "ur5" ? ur5() : icub();
@@ -92,7 +91,8 @@ TEST_CASE("lost cycles, a late tick and clocks that jump change no command by a 
     }
 }
 
-TEST_CASE("of 1 % and 5 % of the frames lost no command changes by a tenth of its limit, and the loop runs") {
+TEST_CASE(
+    "losing 1 % or 5 % of the frames changes no command by a tenth of its limit and the loop keeps running") {
     DFDYN_SEEDED_ENGINE(engine);
     const Arm parts = ur5();
     for (const double share : {0.01, 0.05}) {
@@ -113,7 +113,7 @@ TEST_CASE("of 1 % and 5 % of the frames lost no command changes by a tenth of it
     }
 }
 
-/// Buses of all device families, for the small arm: boards and sensor.
+/// Buses of all device families for the small arm, with their boards and F/T sensor.
 struct Family {
     std::string name, text;
 };
@@ -169,12 +169,13 @@ Arm small_arm() {
     return arm;
 }
 
-/// A way to stop a loop: `begin` is the tick of the fault.
+/// A cause that stops a loop, with the limits that the stop must keep.
 struct StopFault {
     StopCause cause;
-    int ticks;           ///< from the fault to the stop, at most, beside the bus' delay
-    double speed;        ///< afterwards, of that before, at most
-    double distance_rad; ///< beside that at the speed before, until the stop and for 0.1 s, at most
+    int ticks;    ///< at most, from the fault to the stop, in addition to the delay of the bus
+    double speed; ///< at most, after the fault, as a multiple of the speed before it
+    /// at most, in addition to the distance at the speed before the fault until 0.1 s after the stop
+    double distance_rad;
     std::function<LoopFault(int after)> fault;
 };
 
@@ -186,7 +187,7 @@ std::vector<StopFault> stop_faults() {
             return fault;
         };
     };
-    const auto frozen = std::make_shared<JointVector>(); // what the encoder shows
+    const auto frozen = std::make_shared<JointVector>(); // the encoder's constant reading
     return {
         {StopCause::requested, 1, 1.2, 0, health([](LoopInput& input) { input.stop_requested = true; })},
         {StopCause::bus_lost, 1, 1.2, 0, health([](LoopInput& input) { input.bus_lost = true; })},
@@ -198,7 +199,7 @@ std::vector<StopFault> stop_faults() {
              fault.lost = true;
              return fault;
          }},
-        // the encoder is wrong by more than half a radian from then on, and so is gravity
+        // From the fault on the encoder is wrong by more than half a radian; the computed gravity is too.
         {StopCause::following_error, 1, 1.6, 0.2,
          [](int) {
              LoopFault fault;
@@ -219,8 +220,7 @@ std::vector<StopFault> stop_faults() {
     };
 }
 
-TEST_CASE(
-    "whatever stops a loop, over whichever devices: in time, without a kick, and the arm comes to rest") {
+TEST_CASE("every stop over every device family is in time and without a jump and the arm comes to rest") {
     const TemporaryDirectory directory;
     const Arm arm = small_arm();
     for (const Family& family : families(directory)) {
@@ -249,15 +249,15 @@ TEST_CASE(
     }
 }
 
-/// How far a pendulum with a load that its rigid body does not know sinks after a stop, rad, and whether a
-/// model has learned it before.
+/// Returns the distance (rad) that a pendulum with an unmodelled load sinks after a stop, with or without a
+/// model that learned the load before.
 double sinks(const LoopModel* learned, const std::vector<double>& bandwidth) {
     Scenario scenario = pendulum_scenario();
     scenario.payloads = {{0, 1, Eigen::Vector3d::Zero()}};
     scenario.task = PointToPointTask{{JointVector::Constant(1, 0.3), JointVector::Constant(1, 0.7)}, 1, 0.5};
     FaultyLoop loop(test_pendulum(), scenario, one_drive(at_sync), learned,
                     {{0.5}, {}, StopMode::hold, bandwidth});
-    loop.run_to(13.3); // in a dwell
+    loop.run_to(13.3); // during a dwell
     loop.forget_peaks();
     loop.run_to(15.5, [](int) {
         LoopFault fault;
@@ -268,7 +268,7 @@ double sinks(const LoopModel* learned, const std::vector<double>& bandwidth) {
     return loop.peak_distance();
 }
 
-TEST_CASE("an arm that has learned its load, or observes it, holds it after a stop") {
+TEST_CASE("an arm that has learned or observes its load holds it after the loop stops") {
     DFDYN_SEEDED_ENGINE(engine);
     const LoopModel model{unlearned_model(engine, 1, 0.008, {"tau1"}, 30), "model", true};
     const double nominal = sinks(nullptr, {0});
@@ -277,7 +277,7 @@ TEST_CASE("an arm that has learned its load, or observes it, holds it after a st
     CHECK(sinks(nullptr, {}) < nominal / 3);
 }
 
-TEST_CASE("in a minute without faults no limit stops an arm, and no tick coasts", "[.long]") {
+TEST_CASE("a minute without faults causes no stop of the loop and no coasting tick", "[.long]") {
     for (const auto& [arm, bus] : {std::pair{ur5(), "ur5_loop.json"}, std::pair{icub(), "icub_loop.json"}}) {
         FaultyLoop loop(arm.robot, arm.scenario, bus_of(bus));
         loop.run_to(95);

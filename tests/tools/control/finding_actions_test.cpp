@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a loop does about changes that the learner's monitor has named.
+// Actions of a loop in response to changes that the learner's monitor has identified.
 #include "tools/control/loop/finding_actions.hpp"
 
 #include "tests/support/catch.hpp"
@@ -21,15 +21,15 @@ using namespace dfdyn::tools;
 using namespace dfdyn::tests;
 using dfdyn::Cause;
 
-/// What became of a loop on a pendulum with friction, without observer, with a fault.
+/// Result of a run with a fault: a loop without observer on a pendulum with friction.
 struct Outcome {
     std::vector<TakenAction> actions;
     LoopState state = LoopState::waiting;
     StopCause cause = StopCause::none;
     double end_s = 0;
-    std::vector<double> error; ///< root mean square over all joints, rad, of each second
+    std::vector<double> error; ///< root mean square over all joints, rad, per second
 
-    /// Root mean square from second `from` to `to`.
+    /// Root mean square of the seconds `from` to `to` - 1, rad.
     double rms(std::size_t from, std::size_t to) const {
         double square = 0;
         for (std::size_t second = from; second < to; ++second) {
@@ -83,7 +83,7 @@ std::string refusal(const std::vector<std::string>& choices) {
     return "none";
 }
 
-TEST_CASE("each cause has the action that was chosen, and is only reported by default") {
+TEST_CASE("each cause has the chosen action and by default is only reported") {
     const FindingActions actions({"friction_changed=relearn", "bias_moved=compensate", "sensor_frozen=stop"},
                                  "--on-finding");
     CHECK(actions.of(Cause::friction) == FindingAction::relearn);
@@ -93,7 +93,7 @@ TEST_CASE("each cause has the action that was chosen, and is only reported by de
     CHECK(FindingActions().of(Cause::friction) == FindingAction::report);
 }
 
-TEST_CASE("an action that makes no sense for a cause is refused with those that do") {
+TEST_CASE("an action that does not suit its cause is rejected and the suitable ones are listed") {
     CHECK(refusal({"external_contact=stop"}) == "none");
     CHECK(refusal({"external_contact=relearn"}) ==
           "--on-finding: external_contact: expected report, stop, found \"relearn\"");
@@ -106,7 +106,7 @@ TEST_CASE("an action that makes no sense for a cause is refused with those that 
           "bias_moved, external_contact, sensor_frozen, found \"friction\"");
 }
 
-TEST_CASE("after friction has tripled a learner that relearns tracks as well as before no later") {
+TEST_CASE("after friction has tripled a learner that relearns is as accurate as before no later") {
     const std::string fault = R"([{"kind": "friction_step", "factor": 3, "from_s": 24}])";
     const Outcome without = run(fault, {}, 42);
     const Outcome with = run(fault, {"friction_changed=relearn"}, 42);
@@ -118,7 +118,7 @@ TEST_CASE("after friction has tripled a learner that relearns tracks as well as 
     CHECK(with.rms(32, 41) < without.rms(32, 41));
 }
 
-TEST_CASE("an offset of the torque that is compensated makes no second worse, and all together better") {
+TEST_CASE("compensating a torque offset worsens no second by more than a tenth and improves the whole") {
     const std::string fault = R"([{"kind": "push", "joint": 1, "torque_nm": 2.5, "from_s": 24}])";
     const Outcome without = run(fault, {}, 36.5);
     const Outcome with = run(fault, {"bias_moved=compensate"}, 36.5);
@@ -132,7 +132,7 @@ TEST_CASE("an offset of the torque that is compensated makes no second worse, an
     CHECK(with.rms(24, 36) < without.rms(24, 36));
 }
 
-TEST_CASE("a change whose action is to stop stops the loop within four seconds, by its name") {
+TEST_CASE("a change with the action stop stops the loop within four seconds and is named as the cause") {
     const std::string fault = R"([{"kind": "friction_step", "factor": 3, "from_s": 40}])";
     const Outcome outcome = run(fault, {"friction_changed=stop"}, 46);
     CHECK(outcome.state == LoopState::stopped);

@@ -22,7 +22,7 @@ SafeStopConfig limits() {
     return config;
 }
 
-/// A joint's readings, in whole quanta, and what is thought of them.
+/// A joint whose readings are whole quanta, with the watch that checks them.
 class Joint {
   public:
     StopCause tick(double position, double reference, double command = 0) {
@@ -49,12 +49,12 @@ class Joint {
         {JointVector::Constant(1, 900), JointVector::Constant(1, 90)}, filter(), period_s};
 };
 
-TEST_CASE("an encoder that freezes on a moving joint is found at the fifth reading, and not used before") {
+TEST_CASE("an encoder that freezes on a moving joint is detected at the fifth equal reading") {
     for (const double speed : {0.5, 1.0, -1.8}) {
         CAPTURE(speed);
         Joint joint;
         double position = 0;
-        for (int tick = 0; tick <= 100; ++tick) { // from rest, as every motion
+        for (int tick = 0; tick <= 100; ++tick) { // from rest, as every motion begins
             position += speed * tick / 100 * period_s;
             REQUIRE(joint.tick(position) == StopCause::none);
         }
@@ -66,7 +66,7 @@ TEST_CASE("an encoder that freezes on a moving joint is found at the fifth readi
     }
 }
 
-TEST_CASE("an encoder that freezes on a joint at rest is found once the reference has moved on") {
+TEST_CASE("an encoder that freezes on a joint at rest is detected once the reference has moved away") {
     Joint joint;
     double reference = 0;
     int late = 0;
@@ -79,25 +79,25 @@ TEST_CASE("an encoder that freezes on a joint at rest is found once the referenc
     CHECK(reference > 0.1 / 16);
 }
 
-TEST_CASE("joints that stand, stop at once, creep, or show one step in many are not frozen") {
+TEST_CASE("a joint that rests or stops abruptly or creeps is not reported as frozen") {
     Joint standing;
     for (int tick = 0; tick < 1000; ++tick) {
         CHECK(standing.tick(0.3) == StopCause::none);
     }
-    Joint braking; // at 12 rad/s², from 1.5 rad/s
+    Joint braking; // decelerates with 12 rad/s² from 1.5 rad/s
     double speed = 1.5, position = 0;
     for (int tick = 0; tick < 300; ++tick) {
         speed = tick < 50 ? speed : std::max(0.0, speed - 12 * period_s);
         position += speed * period_s;
         CHECK(braking.tick(position) == StopCause::none);
     }
-    Joint creeping; // a step every 8 readings
+    Joint creeping; // one quantum every 8 readings
     for (int tick = 0; tick < 2000; ++tick) {
         CHECK(creeping.tick(quantum / 8 * tick) == StopCause::none);
     }
 }
 
-TEST_CASE("a joint that is too fast is found at the third reading, one wrong reading is not") {
+TEST_CASE("overspeed needs three readings after the filter's lag and one wrong reading is not enough") {
     Joint joint;
     for (int tick = 0; tick < 50; ++tick) {
         REQUIRE(joint.tick(1.9 * period_s * tick + (tick == 30 ? 0.01 : 0)) == StopCause::none);
@@ -109,10 +109,10 @@ TEST_CASE("a joint that is too fast is found at the third reading, one wrong rea
         ++readings;
     } while (joint.tick(position) == StopCause::none);
     CHECK(joint.watch.cause() == StopCause::overspeed);
-    CHECK(readings <= 12); // of them the filter's lag, then three
+    CHECK(readings <= 12); // the lag of the filter plus three readings
 }
 
-TEST_CASE("a joint that presses at its torque limit without moving stops, one that moves does not") {
+TEST_CASE("a joint that presses at its torque limit without moving stops and one that moves does not") {
     Joint moving;
     for (int tick = 0; tick < 100; ++tick) {
         CHECK(moving.tick(0.8 * period_s * tick, 0.8 * period_s * tick, 50) == StopCause::none);

@@ -34,7 +34,7 @@ JointVector torque(const JointVector& position) {
     return result;
 }
 
-/// Learns `count` samples of the motion, with as many slices in between as there are ticks.
+/// Learns `count` samples of the motion, each in `ticks` slices.
 void learn(LearnedFeedForward& feed_forward, int first, int count, int ticks) {
     for (int tick = first; tick < first + count; ++tick) {
         const JointVector measured = torque(position(tick));
@@ -45,7 +45,7 @@ void learn(LearnedFeedForward& feed_forward, int first, int count, int ticks) {
     }
 }
 
-/// Predictions along the motion.
+/// Returns the predictions along the motion.
 std::vector<JointVector> follow(LearnedFeedForward& feed_forward, int first, int count) {
     std::vector<JointVector> predictions;
     for (int tick = first; tick < first + count; ++tick) {
@@ -66,7 +66,7 @@ std::string refusal(const TrainedModel& model) {
     return "none";
 }
 
-TEST_CASE("what was learned of measured positions is predicted for the reference's") {
+TEST_CASE("a model learned from measured positions predicts the torque at reference positions") {
     DFDYN_SEEDED_ENGINE(engine);
     LearnedFeedForward feed_forward(model_of(engine), true, 2, 8, "model");
     feed_forward.begin(0, position(0).data());
@@ -77,13 +77,13 @@ TEST_CASE("what was learned of measured positions is predicted for the reference
     for (int tick = 11; tick < 301; ++tick) {
         square += (predicted[static_cast<std::size_t>(tick - 1)] - torque(position(tick))).squaredNorm();
     }
-    CHECK(std::sqrt(square / 290) < 0.1); // of torques of about 1 N·m
+    CHECK(std::sqrt(square / 290) < 0.1); // the torques are about 1 N·m
     CHECK(feed_forward.counters().samples == 1500);
-    CHECK(feed_forward.counters().learned == 1500 - 4); // its window of 5 positions was empty
+    CHECK(feed_forward.counters().learned == 1500 - 4); // the window of 5 positions was empty at first
     CHECK(feed_forward.counters().faults == 0);
 }
 
-TEST_CASE("learning in the slices of eight ticks gives what learning at once does, bit for bit") {
+TEST_CASE("learning in the slices of eight ticks equals learning at once bit for bit") {
     DFDYN_SEEDED_ENGINE(engine);
     const TrainedModel model = model_of(engine);
     std::vector<std::vector<JointVector>> predictions;
@@ -97,7 +97,7 @@ TEST_CASE("learning in the slices of eight ticks gives what learning at once doe
     CHECK(predictions[0].back() != JointVector::Zero(2));
 }
 
-TEST_CASE("with more ticks per sample each does less") {
+TEST_CASE("more ticks per sample reduce the cost of each tick") {
     DFDYN_SEEDED_ENGINE(engine);
     const TrainedModel model = model_of(engine);
     const std::int64_t one = LearnedFeedForward(model, true, 2, 1, "model").tick_cost();
@@ -105,7 +105,7 @@ TEST_CASE("with more ticks per sample each does less") {
     CHECK(eight < one / 2);
 }
 
-TEST_CASE("from the start the model knows an arm at rest; a refused sample changes nothing and is counted") {
+TEST_CASE("a model predicts an arm at rest from the start and counts a rejected sample without learning it") {
     DFDYN_SEEDED_ENGINE(engine);
     LearnedFeedForward feed_forward(model_of(engine), true, 2, 8, "model");
     feed_forward.begin(0, position(0).data());
@@ -121,7 +121,7 @@ TEST_CASE("from the start the model knows an arm at rest; a refused sample chang
     CHECK(feed_forward.counters().last_fault == dfdyn::Reason::position_out_of_range);
 }
 
-TEST_CASE("a sample without torque is not learned, and the window of positions goes on over it") {
+TEST_CASE("a sample without torque is not learned but its position enters the window") {
     DFDYN_SEEDED_ENGINE(engine);
     LearnedFeedForward feed_forward(model_of(engine), true, 2, 8, "model");
     feed_forward.begin(0, position(0).data());
@@ -138,7 +138,7 @@ TEST_CASE("a sample without torque is not learned, and the window of positions g
     CHECK(feed_forward.counters().samples == 150);
 }
 
-TEST_CASE("a model of something else than these joints' torques by their positions is refused") {
+TEST_CASE("a model that does not map these joints' positions to their torques is rejected") {
     DFDYN_SEEDED_ENGINE(engine);
     CHECK(refusal(model_of(engine)) == "none");
     CHECK(refusal(model_of(engine, {"i1", "i2"})) ==
@@ -152,7 +152,7 @@ TEST_CASE("a model of something else than these joints' torques by their positio
                                "derivatives (input STD)");
 }
 
-TEST_CASE("a model goes on from what it had learned at a snapshot, and from nothing else") {
+TEST_CASE("a model continues from its snapshot and rejects a damaged one") {
     DFDYN_SEEDED_ENGINE(engine);
     const TrainedModel model = model_of(engine);
     LearnedFeedForward feed_forward(model, true, 2, 8, "model");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults of link and time: what is lost between devices and loop, and ticks and clocks that are not on time.
+// Faults of bus and timing: frames lost between devices and loop, late ticks, and clocks that jump.
 #include "tests/support/catch.hpp"
 #include "tests/tools/control/pendulum.hpp"
 #include "tests/tools/control/scripted_bus.hpp"
@@ -20,13 +20,13 @@ namespace hal = dfdyn::hal;
 
 constexpr double period_s = 0.001;
 
-/// What a tick was, and where the arm was when it began.
+/// One tick, and the position of the arm when it began.
 struct Tick {
     double due_s = 0, begun_s = 0;
     std::int64_t measured_ns = 0;
     bool missed = false;
     std::optional<double> position, torque; ///< measured
-    double true_position = 0, held = 0;     ///< N·m, of the actuator until its command
+    double true_position = 0, held = 0;     ///< N·m, of the actuator until this tick's command
     double command = 0, error = 0;
 
     bool operator==(const Tick&) const = default;
@@ -65,7 +65,7 @@ std::vector<Tick> run(const std::string& faults, double duration_s, const BusDes
     return ticks;
 }
 
-/// The arm alone, under the torques of these ticks' commands, as the actuator held them.
+/// Simulates the arm alone, with the torques of these ticks' commands as the actuator held them.
 SimulatedPlant replayed(const std::vector<Tick>& ticks, double until_s) {
     SimulatedPlant plant(test_pendulum(), noisy_scenario(),
                          JointVector::Constant(1, ticks.front().true_position));
@@ -77,7 +77,7 @@ SimulatedPlant replayed(const std::vector<Tick>& ticks, double until_s) {
     return plant;
 }
 
-/// N·m: half of what a command over the bus is rounded to.
+/// N·m, half of the resolution of a command on the bus.
 constexpr double rounding = 0.00051;
 
 bool same_until(const std::vector<Tick>& one, const std::vector<Tick>& other, double time_s) {
@@ -85,7 +85,7 @@ bool same_until(const std::vector<Tick>& one, const std::vector<Tick>& other, do
     return std::equal(one.begin(), one.begin() + count, other.begin(), other.begin() + count);
 }
 
-TEST_CASE("without faults loop and arm take turns: a cycle of the devices, a tick, its command") {
+TEST_CASE("without faults the loop and the arm alternate between reading and tick and command") {
     const Scenario scenario = noisy_scenario();
     const auto loop = make_control_loop(test_pendulum(), scenario, "test", nullptr);
     SimulatedPlant plant(test_pendulum(), scenario, loop->reference().position);
@@ -103,7 +103,7 @@ TEST_CASE("without faults loop and arm take turns: a cycle of the devices, a tic
     }
 }
 
-TEST_CASE("without faults loop and devices take turns over their frames likewise") {
+TEST_CASE("without faults the loop and the devices alternate in the same way over their frames") {
     const Scenario scenario = noisy_scenario();
     const BusDescription bus = one_drive(at_sync);
     MemoryBus loop_end, plant_end;
@@ -132,7 +132,7 @@ TEST_CASE("without faults loop and devices take turns over their frames likewise
     CHECK(loop->counters().running == 1000);
 }
 
-TEST_CASE("cycles that are lost give as many ticks without readings, from their time on") {
+TEST_CASE("lost cycles of the devices give the loop as many ticks without readings") {
     const BusDescription bus = one_drive(at_sync);
     for (const BusDescription* const link : {static_cast<const BusDescription*>(nullptr), &bus}) {
         const std::vector<Tick> sound = run("[]", 0.4, link);
@@ -144,12 +144,12 @@ TEST_CASE("cycles that are lost give as many ticks without readings, from their 
             CHECK_FALSE(ticks.at(tick).position);
             CHECK_FALSE(ticks.at(tick).torque);
         }
-        CHECK(ticks.at(link == nullptr ? 303 : 320).position);                  // devices qualify again
+        CHECK(ticks.at(link == nullptr ? 303 : 320).position);                  // devices must qualify again
         CHECK(std::abs(ticks.at(303).held - ticks.at(302).command) < rounding); // commands are not lost
     }
 }
 
-TEST_CASE("of many readings and commands the share is lost that was asked for, the same with the same seed") {
+TEST_CASE("the share of lost readings and commands is as configured and depends only on the seed") {
     const std::string faults = R"([{"kind": "frames_lost", "share": 0.01, "from_s": 1, "for_s": 10}])";
     const std::vector<Tick> ticks = run(faults, 12);
     REQUIRE(ticks.size() == 12000);
@@ -162,7 +162,7 @@ TEST_CASE("of many readings and commands the share is lost that was asked for, t
         readings += reading ? 1 : 0;
         commands += command ? 1 : 0;
     }
-    // binomial: 100 of 10,000, standard deviation 9.95; five of them
+    // Binomial distribution: 100 of 10,000 with a standard deviation of 9.95, five of which are allowed.
     CHECK(std::abs(static_cast<double>(readings) - 100) < 50);
     CHECK(std::abs(static_cast<double>(commands) - 100) < 50);
     CHECK(ticks == run(faults, 12));
@@ -172,7 +172,8 @@ TEST_CASE("of many readings and commands the share is lost that was asked for, t
           std::ranges::find_if(other, lost) - other.begin());
 }
 
-TEST_CASE("a bus loses the share of the frames of either direction, one by one, and all of silent devices") {
+TEST_CASE("a lossy bus loses the configured share of frames in each direction and silent devices lose all "
+          "commands") {
     ScriptedBus wire;
     wire.room = 100'000;
     LossyBus<ScriptedBus> bus(wire, 7);
@@ -184,7 +185,7 @@ TEST_CASE("a bus loses the share of the frames of either direction, one by one, 
     for (std::uint32_t i = 0; i < 20'000; ++i) {
         hal::Frame frame;
         frame.id = i;
-        CHECK(bus.send(frame) == hal::SendResult::sent); // nobody knows
+        CHECK(bus.send(frame) == hal::SendResult::sent); // the sender does not notice the loss
         wire.waiting.push_back(frame);
         if (wire.waiting.size() == room.size()) {
             const std::span<const hal::Frame> frames = bus.drain(room);
@@ -192,7 +193,7 @@ TEST_CASE("a bus loses the share of the frames of either direction, one by one, 
             received += frames.size();
         }
     }
-    // binomial: 1,000 of 20,000, standard deviation 30.8; five of them
+    // Binomial distribution: 1,000 of 20,000 with a standard deviation of 30.8, five of which are allowed.
     CHECK(std::abs(static_cast<double>(wire.taken.size()) - 19'000) < 155);
     CHECK(std::abs(static_cast<double>(received) - 19'000) < 155);
     wire.taken.clear();
@@ -205,7 +206,7 @@ TEST_CASE("a bus loses the share of the frames of either direction, one by one, 
     CHECK(bus.drain(room).size() == 10);
 }
 
-TEST_CASE("a late tick sees the arm where the old command left it, and its own command begins late") {
+TEST_CASE("a late tick of the loop sees the arm under the old command and delays its own command") {
     const std::string late = R"([{"kind": "late_ticks", "at_s": 0.3, "late_s": 0.0025}])";
     const BusDescription bus = one_drive(at_set);
     for (const BusDescription* const link : {static_cast<const BusDescription*>(nullptr), &bus}) {
@@ -221,8 +222,8 @@ TEST_CASE("a late tick sees the arm where the old command left it, and its own c
         const Tick& tick = ticks.at(300);
         CHECK(tick.begun_s == Approx(0.3025));
         CHECK(std::abs(tick.held - ticks[299].command) < rounding);
-        check_position(tick, 0.302);                  // the last cycle of the devices
-        for (const std::size_t next : {301U, 302U}) { // at once, with nothing new to see
+        check_position(tick, 0.302);                  // from the last cycle of the devices before the tick
+        for (const std::size_t next : {301U, 302U}) { // made up for at once, without a new reading
             CHECK(ticks[next].begun_s == tick.begun_s);
             CHECK_FALSE(ticks[next].position);
             CHECK(ticks[next].true_position == tick.true_position);
@@ -231,13 +232,14 @@ TEST_CASE("a late tick sees the arm where the old command left it, and its own c
         CHECK(ticks[303].begun_s == Approx(0.303));
         check_position(ticks[303], 0.303);
         CHECK(ticks[303].true_position != tick.true_position);
-        CHECK(std::abs(ticks[300].error - ticks[299].error) < 1e-4); // of when they were due
+        // relative to the reference at the due times
+        CHECK(std::abs(ticks[300].error - ticks[299].error) < 1e-4);
         CHECK(std::abs(ticks[302].error - ticks[301].error) < 1e-4);
     }
 }
 
-// Pace is what keeps the time of a real run.
-TEST_CASE("late ticks begin, follow each other and miss their deadlines as in real time") {
+// `Pace` keeps the time of a run in real time.
+TEST_CASE("late ticks of the loop begin and follow each other and miss deadlines as in real time") {
     const std::vector<Tick> ticks = run(R"([{"kind": "late_ticks", "at_s": 0.1, "late_s": 0.0015, "ticks": 3},
                 {"kind": "late_ticks", "at_s": 0.2, "late_s": 0.001},
                 {"kind": "late_ticks", "at_s": 0.25, "late_s": 0.012}])",
@@ -258,7 +260,7 @@ TEST_CASE("late ticks begin, follow each other and miss their deadlines as in re
     CHECK(pace.counters().missed == 3 + 11);
 }
 
-TEST_CASE("drives let go of the last command while a tick is later than they keep it") {
+TEST_CASE("drives drop the last command while a tick is later than their command timeout") {
     const BusDescription bus = one_drive(at_sync);
     const std::vector<Tick> ticks =
         run(R"([{"kind": "late_ticks", "at_s": 0.1, "late_s": 0.03}])", 0.12, &bus);
@@ -267,7 +269,7 @@ TEST_CASE("drives let go of the last command while a tick is later than they kee
     CHECK(ticks.at(100).held == 0);
 }
 
-TEST_CASE("a bus' own clock that is set moves the stamps of all later samples, not the pace") {
+TEST_CASE("setting a bus clock of its own shifts the stamps of all later samples but not the pace") {
     for (const double by_s : {0.004, 0.5, -0.004, -0.5}) {
         const std::vector<Tick> ticks = run(
             R"([{"kind": "clock_jump", "clock": "bus", "at_s": 0.1, "by_s": )" + std::to_string(by_s) + "}]",
@@ -281,14 +283,14 @@ TEST_CASE("a bus' own clock that is set moves the stamps of all later samples, n
     }
 }
 
-TEST_CASE("where a bus has the clock of the ticks and that is set, samples go on in the time from before") {
+TEST_CASE("if bus and ticks share a clock that is set then samples continue in the time from before") {
     const BusDescription bus = one_drive(at_sync);
     const std::vector<Tick> ticks =
         run(R"([{"kind": "clock_jump", "clock": "bus", "at_s": 0.1, "by_s": 0.004}])", 0.2, &bus);
     CHECK(ticks.back().measured_ns - ticks.at(50).measured_ns == 149'000'000);
 }
 
-TEST_CASE("a wall clock that is set while frames wait moves no sample, as on SocketCAN") {
+TEST_CASE("setting the wall clock while frames wait shifts no sample as on SocketCAN") {
     const BusDescription bus = one_drive(at_sync);
     const std::vector<Tick> sound = run("[]", 0.2, &bus);
     for (const double by_s : {0.004, 0.5, 1.0, -0.004, -0.5, -1.0}) {
@@ -298,7 +300,7 @@ TEST_CASE("a wall clock that is set while frames wait moves no sample, as on Soc
     }
 }
 
-TEST_CASE("frames are stamped by the wall clock of who receives them, and read by his clock") {
+TEST_CASE("frames are stamped with the receiver's wall clock and converted to its monotonic clock") {
     MemoryBus sender, receiver;
     MemoryBus::join(sender, receiver);
     std::array<hal::Frame, 8> room{};
@@ -306,7 +308,7 @@ TEST_CASE("frames are stamped by the wall clock of who receives them, and read b
     for (const std::int64_t set_ns : {4'000'000LL, -1'000'000'000LL, 1'000'000'000LL}) {
         const std::int64_t sent_ns = receiver.now_ns() + 2'000'000;
         receiver.set_time(sent_ns);
-        sender.set_time(0); // a device has no clock of ours
+        sender.set_time(0); // devices do not share the receiver's clock
         sender.send({});
         receiver.set_time(sent_ns + 500'000);
         receiver.set_wall_clock(set_ns);

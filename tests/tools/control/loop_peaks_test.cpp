@@ -9,7 +9,7 @@ namespace loop_peaks_test {
 
 using namespace dfdyn::tools;
 
-TEST_CASE("peaks are the largest step between two commands, and the largest speed, of each joint by itself") {
+TEST_CASE("peaks are the largest step between two commands and the largest speed of each joint") {
     LoopPeaks peaks;
     std::ostringstream text;
     print_peaks(text, peaks);
@@ -29,7 +29,7 @@ TEST_CASE("peaks are the largest step between two commands, and the largest spee
     CHECK(text.str() == "peaks: command, from tick to tick, by 12.0, 3.0 N·m; joints at 3.00, 0.30 rad/s\n");
 }
 
-TEST_CASE("where no speed is known the peaks are those of the commands") {
+TEST_CASE("without speeds only the peaks of the commands are printed") {
     LoopPeaks peaks;
     peaks.add(JointVector::Constant(1, 2));
     peaks.add(JointVector::Constant(1, -3));

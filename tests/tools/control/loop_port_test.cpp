@@ -22,12 +22,13 @@ hal::Frame stamped(hal::Frame frame, std::int64_t time_ns) {
     return frame;
 }
 
-/// A port and the drive at the other end, tick by tick.
+/// A port and the drive at the other end of the bus, run tick by tick.
 class Line {
   public:
     explicit Line(const BusDescription& description) : devices_(description), port_(description, 0.001) {}
 
-    /// Goes on by a period; the drive sends its position and torque if it is to, stamped `jump_ns` ahead.
+    /// Advances by one period. If `sends` is set, the drive sends position and torque, stamped `jump_ns`
+    /// ahead.
     LoopInput tick(double position, bool sends = true) {
         bus.time_ns += period;
         if (sends) {
@@ -39,7 +40,7 @@ class Line {
     LoopPort& port() { return port_; }
 
     ScriptedBus bus;
-    std::int64_t jump_ns = 0; ///< of the clock that stamps
+    std::int64_t jump_ns = 0; ///< offset of the clock that stamps
 
   private:
     void send(double position) {
@@ -56,10 +57,10 @@ class Line {
     LoopPort port_;
 };
 
-/// Position at tick k.
+/// Position (rad) at a tick.
 double at(int tick) { return 0.5 + 0.001 * tick; }
 
-TEST_CASE("a tick gets position and torque of the instant that the description's trigger gives") {
+TEST_CASE("a tick gets position and torque of the time that the description's trigger defines") {
     const auto [trigger, delay] =
         GENERATE(table<std::string, int>({{at_sync, 1}, {at_timer, 2}, {at_set, 0}}));
     CAPTURE(trigger);
@@ -76,7 +77,7 @@ TEST_CASE("a tick gets position and torque of the instant that the description's
     CHECK((*input.torque)[0] == Approx(10 * at(29 - delay)).margin(1e-3));
 }
 
-TEST_CASE("where the bus has no torque, what was commanded stands for it") {
+TEST_CASE("on a bus without measured torque the commanded torque is used") {
     Line line(one_drive(at_set, "i"));
     for (int tick = 0; tick < 30; ++tick) {
         line.tick(at(tick));
@@ -86,8 +87,7 @@ TEST_CASE("where the bus has no torque, what was commanded stands for it") {
     CHECK((*line.tick(at(31)).torque)[0] == 7);
 }
 
-TEST_CASE(
-    "a drive that falls silent, or sends what cannot be, gives ticks without position, and the reason") {
+TEST_CASE("a silent drive or an impossible position gives ticks without position and the reason") {
     Line line(one_drive(at_timer));
     for (int tick = 0; tick < 30; ++tick) {
         line.tick(at(tick));
@@ -101,14 +101,14 @@ TEST_CASE(
     CHECK(line.port().counters().last_joint == 0);
     const std::uint64_t invalid = line.port().counters().invalid;
     for (int tick = 0; tick < 5; ++tick) {
-        input = line.tick(100); // 16 turns
+        input = line.tick(100); // 100 rad is 16 turns away
     }
     CHECK(input.position == nullptr);
     CHECK(line.port().counters().last_reason == hal::Reason::position_out_of_range);
     CHECK(line.port().counters().invalid == invalid + 5);
 }
 
-TEST_CASE("a sample of an earlier instant has its own stamp") {
+TEST_CASE("a sample of an earlier cycle keeps its own stamp") {
     Line line(one_drive(at_sync));
     for (int tick = 0; tick < 30; ++tick) {
         line.tick(at(tick));
@@ -122,7 +122,7 @@ TEST_CASE("a sample of an earlier instant has its own stamp") {
     CHECK(next.time_ns == line.bus.time_ns - period);
 }
 
-TEST_CASE("a joint whose value is held from the sample before is missing") {
+TEST_CASE("a joint whose value is held from the previous sample is reported as missing") {
     std::string trigger = at_timer;
     Line line(one_drive(trigger.replace(trigger.find("0.002"), 5, "0.000")));
     for (int tick = 0; tick < 30; ++tick) {
@@ -136,7 +136,7 @@ TEST_CASE("a joint whose value is held from the sample before is missing") {
     CHECK(line.tick(at(31)).missing == nullptr);
 }
 
-TEST_CASE("devices that come back and qualify are said to return, silent ones are not") {
+TEST_CASE("devices that qualify again are reported as returning and silent devices are not") {
     Line line(one_drive(at_sync));
     for (int tick = 0; tick < 30; ++tick) {
         line.tick(at(tick));
@@ -144,7 +144,7 @@ TEST_CASE("devices that come back and qualify are said to return, silent ones ar
     for (int tick = 0; tick < 6; ++tick) {
         CHECK_FALSE(line.tick(0, false).returning);
     }
-    CHECK(line.tick(at(36)).position != nullptr); // of the SYNC before the silence
+    CHECK(line.tick(at(36)).position != nullptr); // belongs to the SYNC before the silence
     int returning = 0;
     for (int tick = 37; line.tick(at(tick)).position == nullptr; ++tick) {
         ++returning;
@@ -154,7 +154,7 @@ TEST_CASE("devices that come back and qualify are said to return, silent ones ar
     CHECK(line.port().counters().last_reason == hal::Reason::qualifying);
 }
 
-TEST_CASE("after a small jump of the bus' clock samples are on the clock of the ticks again") {
+TEST_CASE("after a small jump of the bus clock samples are on the clock of the ticks again") {
     const std::string trigger = GENERATE(at_sync, at_set, at_timer);
     CAPTURE(trigger);
     Line line(one_drive(trigger));
@@ -178,8 +178,7 @@ TEST_CASE("after a small jump of the bus' clock samples are on the clock of the 
     CHECK(line.port().counters().clock_jumps == 1);
 }
 
-TEST_CASE(
-    "a clock of ticks and stamps that is set by some periods leaves the measurements' times as they were") {
+TEST_CASE("setting the common clock of ticks and stamps leaves the times of the measurements unchanged") {
     const std::string trigger = GENERATE(at_sync, at_set, at_timer);
     const int periods = GENERATE(-4, -2, -1, 1, 2);
     CAPTURE(trigger, periods);
@@ -194,7 +193,7 @@ TEST_CASE(
         const LoopInput input = line.tick(at(tick));
         if (input.position != nullptr && input.missing == nullptr) {
             ++used;
-            const std::int64_t measured = tick + 1 - line.port().delay_ticks(); // tick 0 was at one period
+            const std::int64_t measured = tick + 1 - line.port().delay_ticks(); // tick 0 was after one period
             CHECK(input.time_ns == measured * period);
             CHECK((*input.position)[0] == Approx(at(tick - line.port().delay_ticks())).margin(1e-5));
         }
@@ -203,7 +202,7 @@ TEST_CASE(
     CHECK(line.port().counters().clock_jumps == 1);
 }
 
-TEST_CASE("ticks for which no sample becomes complete are counted") {
+TEST_CASE("ticks without a complete sample are counted") {
     Line line(one_drive(at_set));
     for (int tick = 0; tick < 30; ++tick) {
         line.tick(at(tick));
@@ -214,7 +213,7 @@ TEST_CASE("ticks for which no sample becomes complete are counted") {
     CHECK(line.port().counters().invalid == before.invalid);
 }
 
-TEST_CASE("a flood is read in pieces of a bounded size, and the sample behind it is found") {
+TEST_CASE("a flood is read in pieces of bounded size and the sample behind it is found") {
     Line line(one_drive(at_set));
     for (int tick = 0; tick < 30; ++tick) {
         line.tick(at(tick));
@@ -230,7 +229,7 @@ TEST_CASE("a flood is read in pieces of a bounded size, and the sample behind it
     CHECK(line.port().counters().overfull_ticks == 2);
 }
 
-TEST_CASE("a bus that is off, or an interface that is down, is lost; one that struggles is not") {
+TEST_CASE("only a bus that is off or an interface that is down counts as lost") {
     Line line(one_drive(at_set));
     for (const auto& [state, lost] :
          {std::pair(hal::BusState::active, false), std::pair(hal::BusState::warning, false),
@@ -241,7 +240,7 @@ TEST_CASE("a bus that is off, or an interface that is down, is lost; one that st
     }
 }
 
-TEST_CASE("command frames that the bus has no room for are counted") {
+TEST_CASE("command frames that do not fit on the bus are counted") {
     Line line(one_drive(at_set));
     line.bus.room = 1;
     line.port().send(line.bus, JointVector::Constant(1, 1));
@@ -250,7 +249,7 @@ TEST_CASE("command frames that the bus has no room for are counted") {
     CHECK(line.port().counters().refused == 1);
 }
 
-TEST_CASE("a sensor that has not told its full scales is asked for them, ten times a second") {
+TEST_CASE("a sensor that has not sent its full scales is requested to do so ten times a second") {
     const TemporaryDirectory directory;
     std::string text = file_content(DFDYN_TEST_DATA_DIR "/can/icub_loop.json");
     const std::string known = R"(, "full_scale": [1500, 1500, 2000, 35, 35, 25])";

@@ -14,7 +14,7 @@ using namespace dfdyn::tools;
 using dfdyn::tests::file_content;
 using dfdyn::tests::TemporaryDirectory;
 
-/// Ticks of 1 ms from 5 s on, whose position is the tick's number; without torque at tick 4.
+/// Records ticks of 1 ms from 5 s on, whose position is the number of the tick; tick 4 has no torque.
 void record(LoopRecording& recording, int ticks) {
     JointVector position(2), torque(2);
     for (int tick = 0; tick < ticks; ++tick) {
@@ -34,13 +34,13 @@ std::string written(const LoopRecording& recording) {
     return file_content(directory.path() / "run.csv");
 }
 
-TEST_CASE("every so many ticks a row of positions and torques is kept, where both were measured") {
+TEST_CASE("a recording keeps one row in every n ticks if position and torque were measured") {
     LoopRecording recording(2, 2, 0.001, 1);
     record(recording, 8);
     CHECK(written(recording) == "t,q1,q2,tau1,tau2\n0,0,0.5,0,2\n0.002,2,0.5,-2,2\n0.006,6,0.5,-6,2\n");
 }
 
-TEST_CASE("a recording ends where its time is over, and takes no memory while it runs") {
+TEST_CASE("a recording ends after its duration and allocates no memory while it runs") {
     LoopRecording recording(2, 1, 0.001, 0.01);
     const dfdyn::tests::AllocationGuard guard;
     record(recording, 100);
@@ -50,7 +50,7 @@ TEST_CASE("a recording ends where its time is over, and takes no memory while it
     CHECK(std::count(text.begin(), text.end(), '\n') == 12);
 }
 
-TEST_CASE("a recording of nothing has its columns") {
+TEST_CASE("a recording without rows has its header") {
     CHECK(written(LoopRecording(1, 1, 0.001, 1)) == "t,q1,tau1\n");
 }
 

@@ -10,11 +10,11 @@
 
 namespace dfdyn::tests {
 
-/// The arm of the control tests, and what moves it.
+/// Mass (kg) and length (m) of the arm of the control tests.
 inline constexpr double pendulum_mass = 1, pendulum_length = 0.5;
 inline tools::Robot test_pendulum() { return pendulum(pendulum_mass, pendulum_length); }
 
-/// What holds it, N·m.
+/// Torque that balances gravity, N·m.
 inline double weight(double position) { return pendulum_mass * 9.81 * pendulum_length * std::sin(position); }
 
 inline tools::Scenario pendulum_scenario() {
@@ -26,12 +26,12 @@ inline tools::Scenario pendulum_scenario() {
     return scenario;
 }
 
-/// When a sample is assembled.
+/// Triggers that assemble a sample.
 inline const std::string at_sync = R"({"on": "sync"})";
 inline const std::string at_timer = R"({"on": "timer", "delay_s": 0.002})";
 inline const std::string at_set = R"({"on": "set"})";
 
-/// A CiA 402 drive on node 1 at 1 kHz, in units of 0.001 N·m; `trigger` as JSON.
+/// A CiA 402 drive on node 1 at 1 kHz with efforts in units of 0.001 N·m; `trigger` is JSON.
 inline tools::BusDescription one_drive(const std::string& trigger, const std::string& quantity = "tau") {
     const TemporaryDirectory directory;
     return tools::read_bus_description(directory.write(

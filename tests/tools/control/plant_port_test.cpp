@@ -13,7 +13,7 @@ using namespace dfdyn::tools;
 using namespace dfdyn::tests;
 namespace hal = dfdyn::hal;
 
-/// The drive's torque command, N·m.
+/// The command frame for a drive torque in N·m.
 hal::Frame command(double torque) {
     TorqueFrames frames(one_drive(at_sync));
     return frames.encode({&torque, 1})[0];
@@ -27,7 +27,7 @@ std::int64_t count_of(const ScriptedBus& bus, std::uint32_t id) {
     return std::ranges::count_if(bus.taken, [id](const hal::Frame& frame) { return frame.id == id; });
 }
 
-TEST_CASE("drives hold a command for 20 ms, then have no torque until the next") {
+TEST_CASE("drives hold a command for 20 ms and then apply no torque until the next command") {
     PlantPort port(one_drive(at_sync), {});
     ScriptedBus bus;
     CHECK(port.torque(0)[0] == 0);
@@ -46,7 +46,7 @@ TEST_CASE("drives hold a command for 20 ms, then have no torque until the next")
     CHECK(port.commands() == 2);
 }
 
-TEST_CASE("a plant's devices send SYNC, position and torque in every tick, heartbeats ten times a second") {
+TEST_CASE("a plant's devices send SYNC and position and torque in every tick and ten heartbeats a second") {
     PlantPort port(one_drive(at_sync), {});
     SimulatedPlant plant = resting_plant();
     plant.apply(JointVector::Constant(1, 2));
@@ -66,7 +66,7 @@ TEST_CASE("a plant's devices send SYNC, position and torque in every tick, heart
     CHECK(port.refused() == 0);
 }
 
-TEST_CASE("drives that measure currents send the torque over the torque constant") {
+TEST_CASE("drives that measure currents send the torque divided by the torque constant") {
     TorqueSensorModel sensor;
     sensor.torque_constant = JointVector::Constant(1, 4);
     PlantPort port(one_drive(at_sync, "i"), sensor);
@@ -78,11 +78,11 @@ TEST_CASE("drives that measure currents send the torque over the torque constant
     CHECK(last.data[4] + 256 * last.data[5] == 500);
 }
 
-TEST_CASE("what is no command changes nothing; frames that find no room are counted") {
+TEST_CASE("frames that are not commands change nothing and frames that do not fit on the bus are counted") {
     PlantPort port(one_drive(at_sync), {});
     ScriptedBus bus;
     hal::Frame other = command(5);
-    other.id = 0x202; // another node's
+    other.id = 0x202; // the command of another node
     hal::Frame longer = command(5);
     longer.length = 3;
     bus.waiting = {other, longer};
@@ -92,7 +92,7 @@ TEST_CASE("what is no command changes nothing; frames that find no room are coun
     SimulatedPlant plant = resting_plant();
     bus.room = 1;
     port.send(bus, plant);
-    CHECK(port.refused() == 2); // of SYNC, heartbeat and position
+    CHECK(port.refused() == 2); // two of SYNC, heartbeat and position
 }
 
 } // namespace plant_port_test

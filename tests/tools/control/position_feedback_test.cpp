@@ -21,7 +21,7 @@ PositionFeedback feedback() {
             {JointVector::Constant(2, 3), JointVector::Constant(2, 100)}};
 }
 
-/// Both joints follow a reference of constant speed, 0.01 rad behind it.
+/// Both joints follow a reference of constant speed and lag 0.01 rad behind it.
 Reference reference(int tick) {
     return {JointVector::Constant(2, speed * period_s * tick), JointVector::Constant(2, speed),
             JointVector::Zero(2)};
@@ -37,10 +37,10 @@ PositionFeedback after(int ticks) {
     return result;
 }
 
-TEST_CASE("the velocity over a gap is that over the gap") {
+TEST_CASE("the velocity after lost readings is the average over the gap") {
     PositionFeedback loop = after(20);
     for (int tick = 20; tick < 23; ++tick) {
-        loop.advance(); // nothing arrives
+        loop.advance(); // no reading arrives
     }
     loop.advance();
     loop.observe(0, position(23), reference(23));
@@ -52,7 +52,7 @@ TEST_CASE("the velocity over a gap is that over the gap") {
     CHECK(loop.regular());
 }
 
-TEST_CASE("an older reading gives the torque of this tick, whatever its age") {
+TEST_CASE("an older reading gives the torque of the present tick whatever its age") {
     for (const int age : {1, 2, 5}) {
         PositionFeedback loop = after(20);
         const double before = loop.torque()[0];
@@ -67,8 +67,7 @@ TEST_CASE("an older reading gives the torque of this tick, whatever its age") {
     }
 }
 
-TEST_CASE(
-    "without readings the torque stays where it was: the arm is taken to follow with the error it had") {
+TEST_CASE("without readings the torque stays constant because the tracking error is assumed to be constant") {
     PositionFeedback loop = after(20);
     const double before = loop.torque()[0];
     for (int tick = 20; tick < 60; ++tick) {
@@ -78,7 +77,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("an error that changes goes on changing for a bounded time, at no more than the joint's speed") {
+TEST_CASE("a changing error is extrapolated for a bounded time with at most the joint's speed limit") {
     for (const double rate : {0.1, -20.0}) {
         CAPTURE(rate);
         PositionFeedback loop = after(20);
@@ -98,7 +97,7 @@ TEST_CASE("an error that changes goes on changing for a bounded time, at no more
     }
 }
 
-TEST_CASE("a joint whose reading is missing coasts alone") {
+TEST_CASE("only the joint whose reading is missing coasts") {
     PositionFeedback loop = after(20);
     const double before = loop.torque()[1];
     loop.advance();
@@ -112,10 +111,11 @@ TEST_CASE("a joint whose reading is missing coasts alone") {
     CHECK_FALSE(loop.complete());
 }
 
-TEST_CASE("a reading where no acceleration can have brought the joint is not regular") {
+TEST_CASE("a reading that would need an impossible acceleration is reported as irregular") {
     PositionFeedback loop = after(20);
     loop.advance();
-    loop.observe(0, position(20).array() + 0.0003, reference(20)); // 100 rad/s² in 2 ms: 0.0004 rad
+    // 100 rad/s² moves a joint by 0.0004 rad in 2 ms
+    loop.observe(0, position(20).array() + 0.0003, reference(20));
     CHECK(loop.regular());
     loop.advance();
     loop.observe(0, position(21).array() + 0.01, reference(21));

@@ -36,7 +36,7 @@ TickHealth health(const std::function<void(TickHealth&)>& spoil) {
     return result;
 }
 
-TEST_CASE("a loop waits for positions as long as it takes, then runs while all is well") {
+TEST_CASE("a loop waits for positions without a time limit and then runs while no fault occurs") {
     SafeStop stop(small_config());
     for (int tick = 0; tick < 100; ++tick) {
         CHECK(stop.tick({}, no_error) == LoopState::waiting);
@@ -47,7 +47,7 @@ TEST_CASE("a loop waits for positions as long as it takes, then runs while all i
     CHECK(stop.cause() == StopCause::none);
 }
 
-TEST_CASE("a loop stops at the first tick beyond its patience, and not before") {
+TEST_CASE("a loop stops at the first faulty tick beyond its patience and not before") {
     const std::vector<std::pair<StopCause, std::function<void(TickHealth&)>>> faults{
         {StopCause::requested, [](TickHealth& h) { h.stop_requested = true; }},
         {StopCause::bus_lost, [](TickHealth& h) { h.bus_lost = true; }},
@@ -65,7 +65,7 @@ TEST_CASE("a loop stops at the first tick beyond its patience, and not before") 
         SafeStop recovered = stop;
         CHECK(stop.tick(faulty, no_error) == LoopState::stopping);
         CHECK(stop.cause() == faults[i].first);
-        // in a row: one good tick starts the count again
+        // Only consecutive ticks count: one good tick restarts the count.
         CHECK(recovered.tick(healthy, no_error) == LoopState::running);
         for (int tick = 0; tick < patience[i]; ++tick) {
             CHECK(recovered.tick(faulty, no_error) == LoopState::running);
@@ -73,8 +73,7 @@ TEST_CASE("a loop stops at the first tick beyond its patience, and not before") 
     }
 }
 
-TEST_CASE(
-    "a joint too far from its reference stops the loop, to either side, or as soon as it is no number") {
+TEST_CASE("a following error beyond the limit in either direction or NaN stops the loop") {
     for (const double error : {0.11, -0.11, std::numeric_limits<double>::quiet_NaN()}) {
         SafeStop stop = running();
         CHECK(stop.tick(healthy, JointVector::Constant(2, 0.09)) == LoopState::running);
@@ -85,8 +84,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE(
-    "devices that come back and still qualify have a patience of their own, beyond that of lost cycles") {
+TEST_CASE("returning devices that still qualify have a patience of their own in addition to lost cycles") {
     SafeStop stop = running();
     const TickHealth lost = health([](TickHealth& h) { h.position_valid = false; });
     const TickHealth returning = health([](TickHealth& h) {
@@ -108,7 +106,7 @@ TEST_CASE(
     CHECK(stop.cause() == StopCause::no_position);
 }
 
-TEST_CASE("stopping becomes stopped after the ramp, and nothing leads back") {
+TEST_CASE("a stopping loop is stopped after the ramp and never runs again") {
     SafeStop stop = running();
     stop.tick(health([](TickHealth& h) { h.bus_lost = true; }), no_error);
     for (int tick = 1; tick < small_config().ramp_ticks; ++tick) {
@@ -121,7 +119,7 @@ TEST_CASE("stopping becomes stopped after the ramp, and nothing leads back") {
     CHECK(stop.cause() == StopCause::bus_lost);
 }
 
-TEST_CASE("who has not moved anything stops at once") {
+TEST_CASE("a loop that has not yet moved the arm stops at once") {
     SafeStop asked(small_config());
     CHECK(asked.tick({false, false, false, true, false, StopCause::none}, no_error) == LoopState::stopped);
     SafeStop elsewhere(small_config());

@@ -21,7 +21,7 @@ class Line {
             REQUIRE(tick(k) == 0);
         }
     }
-    /// The next tick, with the sample of tick `k`, and the clock of the stamps `jump_ns` ahead.
+    /// Advances by one tick that receives the sample of tick `k`, with a stamp that is `jump_ns` ahead.
     std::optional<int> tick(int k, std::int64_t jump_ns = 0) {
         clock.advance();
         ++next;
@@ -33,10 +33,10 @@ class Line {
     }
 
     SampleClock clock{period};
-    int next = 0; ///< tick to come
+    int next = 0; ///< number of the next tick
 };
 
-TEST_CASE("samples in time with the ticks are the expected ones, with jitter of up to half a period") {
+TEST_CASE("samples with a jitter of up to half a period belong to their ticks") {
     DFDYN_SEEDED_ENGINE(engine);
     std::uniform_int_distribution<std::int64_t> jitter(-period / 2, period / 2);
     Line line;
@@ -45,14 +45,14 @@ TEST_CASE("samples in time with the ticks are the expected ones, with jitter of 
     }
 }
 
-TEST_CASE("after a lost cycle the older sample is used at its own instant, then the expected one") {
+TEST_CASE("after a lost cycle an older sample is used with its own time and then the expected one") {
     Line line;
     line.silent_tick(); // 10
     CHECK(line.tick(10) == -1);
     CHECK(line.tick(12) == 0);
 }
 
-TEST_CASE("samples that stay a tick older after a lost cycle are used as such") {
+TEST_CASE("samples that stay one tick older after a lost cycle are used as such") {
     Line line;
     line.silent_tick();
     for (int k = 10; k < 50; ++k) {
@@ -60,7 +60,7 @@ TEST_CASE("samples that stay a tick older after a lost cycle are used as such") 
     }
 }
 
-TEST_CASE("no sample is used twice, nor one that is too old to be extrapolated") {
+TEST_CASE("neither a sample that was used before nor one too old to extrapolate is used") {
     Line line;
     CHECK(line.tick(9) == std::nullopt);
     CHECK(line.tick(9) == std::nullopt);
@@ -72,14 +72,14 @@ TEST_CASE("no sample is used twice, nor one that is too old to be extrapolated")
     CHECK(line.tick(line.next - SampleClock::max_age - 1) == std::nullopt);
 }
 
-TEST_CASE("the sample of a tick to come is recognised") {
+TEST_CASE("a sample of the next tick is recognised") {
     Line line;
-    CHECK(line.tick(11) == 1); // a late tick
-    line.silent_tick();        // made up for at once
+    CHECK(line.tick(11) == 1); // received in a late tick
+    line.silent_tick();        // the tick made up for at once
     CHECK(line.tick(12) == 0);
 }
 
-TEST_CASE("stamps that jump are not believed until they have been consistent, then they are the expected") {
+TEST_CASE("stamps that jump are accepted once they have been consistent") {
     for (const std::int64_t jump_ns : {-1'000'000'000, -20'000'000, -4'000'000, 30'000'000, 1'000'000'000}) {
         CAPTURE(jump_ns);
         Line line;
@@ -89,7 +89,7 @@ TEST_CASE("stamps that jump are not believed until they have been consistent, th
         for (int k = 0; k < 100; ++k) {
             CHECK(line.tick(line.next, jump_ns) == 0);
         }
-        CHECK(line.tick(line.next) != 0); // and back
+        CHECK(line.tick(line.next) != 0); // a jump back needs the same
     }
 }
 

@@ -8,7 +8,7 @@
 
 namespace dfdyn::tests {
 
-/// A bus whose every part a test sets: what waits, what state it is in, how many frames it still takes.
+/// A bus that a test controls: the frames that wait, its state, and how many frames it accepts.
 struct ScriptedBus {
     std::vector<hal::Frame> waiting, taken;
     std::size_t room = 1000;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// False alarms of the monitor in a loop whose arm stands between its motions.
+// False alarms of the monitor in a loop whose arm rests between its motions.
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
@@ -36,8 +36,8 @@ struct LoopArm {
 LoopArm ur5() { return {"ur5", "ur5/ur5_robot.urdf"}; }
 LoopArm icub() { return {"icub", "icub_right_arm/icub_right_arm.urdf"}; }
 
-/// Random postures within half of the amplitude of the scenario's motion; each joint moves between two of
-/// them with probability ½, in 2 s, and then stands for `standstill_s`.
+/// Random postures within half of the amplitude of the scenario's motion. Between two of them each joint
+/// moves with probability ½, in 2 s, and then rests for `standstill_s`.
 TaskModel standstills(const Scenario& scenario, double standstill_s, std::mt19937_64& engine) {
     const auto& motion = std::get<MultisineTask>(scenario.task);
     std::uniform_real_distribution<double> share(-0.5, 0.5);
@@ -58,7 +58,8 @@ std::vector<std::string> torques(const LoopArm& arm) {
     return output_names(OutputKind::joint_torque, arm.robot.joints.size());
 }
 
-/// The changes that the monitor of a loop reports, a line each. The loop begins with nothing learned.
+/// Returns the changes that the loop's monitor reports, one line each. The loop begins with an untrained
+/// model.
 std::vector<std::string> reports(LoopArm arm, const LoopModel& model, double standstill_s, double duration_s,
                                  std::mt19937_64& engine) {
     arm.scenario.seed = engine();
@@ -75,10 +76,10 @@ std::vector<std::string> reports(LoopArm arm, const LoopModel& model, double sta
     return lines;
 }
 
-/// A memory of 8 s, with which much is forgotten in a standstill.
+/// A memory of 8 s, so that most of the past is forgotten in a standstill.
 constexpr double forgetting = 0.999;
 
-TEST_CASE("an arm that stands for 10 s between its motions raises no alarm") {
+TEST_CASE("an arm that rests for 10 s between its motions raises no alarm") {
     DFDYN_SEEDED_ENGINE(engine);
     LoopArm arm = icub();
     LoopModel model{unlearned_model(engine, 4, 0.008, torques(arm), 30), "model", true};
@@ -88,8 +89,8 @@ TEST_CASE("an arm that stands for 10 s between its motions raises no alarm") {
     CHECK(lines.empty());
 }
 
-/// Positions and torques of half a minute of the scenario's motion under the nominal rigid body, without
-/// payload, at the rate of the recordings.
+/// Records positions and torques of half a minute of the scenario's motion with the nominal rigid body,
+/// without payload, at the rate of the recordings.
 Recording commissioning(LoopArm arm) {
     arm.scenario.payloads.clear();
     arm.scenario.seed = 1;
@@ -117,7 +118,7 @@ Recording commissioning(LoopArm arm) {
     return recording;
 }
 
-/// A model as tools/loop_demo.sh trains it.
+/// A model trained like the one of tools/loop_demo.sh.
 LoopModel commissioned(const LoopArm& arm, ModelClass kind) {
     ModelTraining training;
     training.options.model = kind;
@@ -134,7 +135,7 @@ LoopModel commissioned(const LoopArm& arm, ModelClass kind) {
             "model", true};
 }
 
-/// Reports the false alarms of ten hours: both models, standstills of 5 s to 5 minutes, 75 minutes each.
+/// Checks the false alarms in ten hours: both models, standstills of 5 s to 5 minutes, 75 minutes each.
 void check_ten_hours(const LoopArm& arm, std::mt19937_64& engine) {
     constexpr std::array standstills_s{5., 20., 60., 300.};
     constexpr double run_s = 4500;
@@ -153,16 +154,15 @@ void check_ten_hours(const LoopArm& arm, std::mt19937_64& engine) {
             WARN(text.str());
         }
     }
-    CHECK(alarms <= 2); // one in 5 h is stated
+    CHECK(alarms <= 2); // the documentation states one alarm in 5 h
 }
 
-TEST_CASE("a UR5 that stands for seconds to minutes raises at most two false alarms in ten hours",
-          "[.long]") {
+TEST_CASE("a UR5 that rests for seconds to minutes raises at most two false alarms in ten hours", "[.long]") {
     DFDYN_SEEDED_ENGINE(engine);
     check_ten_hours(ur5(), engine);
 }
 
-TEST_CASE("an iCub's arm that stands for seconds to minutes raises at most two false alarms in ten hours",
+TEST_CASE("an iCub's arm that rests for seconds to minutes raises at most two false alarms in ten hours",
           "[.long]") {
     DFDYN_SEEDED_ENGINE(engine);
     check_ten_hours(icub(), engine);

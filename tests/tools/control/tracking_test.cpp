@@ -19,7 +19,7 @@ JointVector two(double first, double second) {
     return result;
 }
 
-/// Errors of 3 and 4 mrad for a second, then twice as much for one, then half a second of the same.
+/// Errors of 3 and 4 mrad for one second, then of 6 and 8 mrad for one and a half seconds.
 std::vector<TrackingWindow> windows() {
     Tracking tracking(1);
     for (int tick = 0; tick < 250; ++tick) {
@@ -30,7 +30,7 @@ std::vector<TrackingWindow> windows() {
     return tracking.windows();
 }
 
-TEST_CASE("the tracking error is the root mean square of each whole window") {
+TEST_CASE("the tracking error is the root mean square of each complete window") {
     const std::vector<TrackingWindow> result = windows();
     REQUIRE(result.size() == 2);
     CHECK(result[0].start_s == 0);
@@ -43,7 +43,7 @@ TEST_CASE("the tracking error is the root mean square of each whole window") {
     CHECK(result[1].learned[1] == Approx(0.75));
 }
 
-TEST_CASE("runs are shown side by side, with the first's error over the last's") {
+TEST_CASE("runs are printed side by side with the first run's error divided by the last run's") {
     std::vector<TrackingWindow> better = windows();
     for (TrackingWindow& window : better) {
         window.all /= 4;
@@ -56,7 +56,7 @@ TEST_CASE("runs are shown side by side, with the first's error over the last's")
                        "       1.000    7.071    1.768    4.000\n");
 }
 
-TEST_CASE("a report has the table, the curves and a page; a run without a whole window has none") {
+TEST_CASE("a report has a table and curves and a page and needs a run with a complete window") {
     const dfdyn::tests::TemporaryDirectory directory;
     const std::filesystem::path folder = directory.path() / "out";
     write_tracking(folder, "A title", {{"nominal", {}}});
