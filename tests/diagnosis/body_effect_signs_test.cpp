@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Effects of bodies, mounting and sensors, as the simulation makes them, against what their names, units and
-// signs say.
+// Compares simulated effects of bodies, mounting and sensors with the name, unit and sign of their
+// parameters.
 #include "tests/diagnosis/effect_trial.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
@@ -39,8 +39,8 @@ std::vector<Eigen::Isometry3d> places(const Robot& robot, const JointVector& pos
     return result;
 }
 
-/// Torques that a point mass at `point` of link `link` takes: weight and inertia, d'Alembert's way.
-/// Accelerations from positions of the point shortly before and after.
+/// Joint torques that a point mass at `point` of link `link` needs for its weight and inertia, by
+/// d'Alembert's principle. Accelerations are differences of the point's positions shortly before and after.
 JointVector point_mass_torque(const Robot& robot, const SimulatedTruth& truth, std::size_t link, double mass,
                               const Eigen::Vector3d& point) {
     constexpr double h = 1e-4;
@@ -69,7 +69,7 @@ void check_torque_addition(const EffectTrial& trial, double margin, const Expect
     }
 }
 
-/// What the sensor shows, from what it truly bears.
+/// Compares each wrench reading with `expected`, a function of the true wrench.
 template <class Expected>
 void check_reading(const EffectTrial& trial, const Expected& expected) {
     CAPTURE(trial.size);
@@ -92,7 +92,7 @@ Wrench six(const EffectTrial& trial) {
 
 } // namespace
 
-TEST_CASE("a payload is a point mass at its place in the tip's frame, from when it is attached") {
+TEST_CASE("a payload is a point mass in the tip's frame from the time at which it is attached") {
     for (std::uint64_t trial_seed = seed(); trial_seed < seed() + 3; ++trial_seed) {
         const EffectTrial trial = try_effect("payload", "ur5_torque", trial_seed);
         const Robot& robot = trial.setup.robot;
@@ -109,7 +109,7 @@ TEST_CASE("a payload is a point mass at its place in the tip's frame, from when 
     }
 }
 
-TEST_CASE("a link's error is true minus nominal: mass at the centre of mass, or the centre moved") {
+TEST_CASE("a link's error is true minus nominal mass at the centre of mass or a displaced centre") {
     for (std::uint64_t trial_seed = seed(); trial_seed < seed() + 4; ++trial_seed) {
         const EffectTrial trial = try_effect("link_inertia_error", "three_joint_torque", trial_seed);
         const Robot& robot = trial.setup.robot;
@@ -127,10 +127,10 @@ TEST_CASE("a link's error is true minus nominal: mass at the centre of mass, or 
     }
 }
 
-TEST_CASE("tilt turns the base by tilt_x and then by tilt_y about the root's axes") {
+TEST_CASE("a tilt rotates the base by tilt_x and then by tilt_y about the root's axes") {
     const EffectTrial trial = try_effect("gravity_tilt", "three_joint_torque", seed());
     Robot tilted = trial.setup.robot;
-    // the whole arm turned, under the same gravity
+    // The whole arm is rotated under the same gravity.
     tilted.joints.front().placement = Eigen::AngleAxisd(trial.parameter("tilt_y"), Eigen::Vector3d::UnitY()) *
                                       Eigen::AngleAxisd(trial.parameter("tilt_x"), Eigen::Vector3d::UnitX()) *
                                       tilted.joints.front().placement;
@@ -139,7 +139,7 @@ TEST_CASE("tilt turns the base by tilt_x and then by tilt_y about the root's axe
     });
 }
 
-TEST_CASE("an encoder's offset is measured minus true") {
+TEST_CASE("an encoder's offset is measured minus true position") {
     const EffectTrial trial = try_effect("encoder_offset", "ur5_torque", seed());
     for (const SimulatedSample& sample : trial.samples) {
         JointVector expected = sample.truth.position;
@@ -149,7 +149,7 @@ TEST_CASE("an encoder's offset is measured minus true") {
     }
 }
 
-TEST_CASE("an eccentric encoder shows a sine of the position on top of it") {
+TEST_CASE("an eccentric encoder adds a sine of the position to its reading") {
     const EffectTrial trial = try_effect("encoder_eccentricity", "ur5_torque", seed());
     for (const SimulatedSample& sample : trial.samples) {
         const double q = sample.truth.position[trial.joint()];
@@ -159,7 +159,7 @@ TEST_CASE("an eccentric encoder shows a sine of the position on top of it") {
     }
 }
 
-TEST_CASE("a F/T sensor's bias and drift are added to its reading") {
+TEST_CASE("the bias and the drift of an F/T sensor are added to its reading") {
     const EffectTrial biased = try_effect("ft_bias", "icub_wrench", seed());
     check_reading(biased,
                   [&](const Wrench& truth, const SimulatedSample&) { return Wrench(truth + six(biased)); });
@@ -169,7 +169,7 @@ TEST_CASE("a F/T sensor's bias and drift are added to its reading") {
     });
 }
 
-TEST_CASE("a F/T sensor's gain and crosstalk multiply the true wrench") {
+TEST_CASE("the gain and the crosstalk of an F/T sensor multiply the true wrench") {
     const EffectTrial gain = try_effect("ft_gain", "icub_wrench", seed());
     check_reading(gain, [&](Wrench wrench, const SimulatedSample&) {
         wrench[static_cast<Eigen::Index>(gain.parameter("axis"))] *= gain.parameter("gain");
@@ -183,12 +183,12 @@ TEST_CASE("a F/T sensor's gain and crosstalk multiply the true wrench") {
     });
 }
 
-TEST_CASE("a F/T sensor mounted askew shows the true wrench turned by roll, pitch and yaw") {
+TEST_CASE("a misaligned F/T sensor measures the true wrench rotated by roll and pitch and yaw") {
     const EffectTrial trial = try_effect("ft_rotation", "icub_wrench", seed());
     const double r = trial.parameter("roll");
     const double p = trial.parameter("pitch");
     const double y = trial.parameter("yaw");
-    Eigen::Matrix3d turn; // as URDF writes it out
+    Eigen::Matrix3d turn; // the rotation matrix as URDF defines it
     turn << std::cos(y) * std::cos(p), std::cos(y) * std::sin(p) * std::sin(r) - std::sin(y) * std::cos(r),
         std::cos(y) * std::sin(p) * std::cos(r) + std::sin(y) * std::sin(r), std::sin(y) * std::cos(p),
         std::sin(y) * std::sin(p) * std::sin(r) + std::cos(y) * std::cos(r),
@@ -201,7 +201,7 @@ TEST_CASE("a F/T sensor mounted askew shows the true wrench turned by roll, pitc
     });
 }
 
-TEST_CASE("a delayed F/T sensor shows what was, not what will be") {
+TEST_CASE("a delayed F/T sensor measures the past wrench") {
     const EffectTrial trial = try_effect("delay", "icub_wrench", seed(), 1000);
     const double delay = trial.parameter("delay");
     CHECK(delay > 0);
@@ -215,7 +215,7 @@ TEST_CASE("a delayed F/T sensor shows what was, not what will be") {
     }
 }
 
-TEST_CASE("a push at the tip is what the surroundings exert: it is passed on to the sensor's base side") {
+TEST_CASE("a push at the tip is the force of the surroundings and reaches the base side of the sensor") {
     const EffectTrial trial = try_effect("external_contact", "icub_wrench", seed());
     const Robot& robot = trial.setup.robot;
     const Eigen::Vector3d direction(trial.parameter("base_x"), trial.parameter("base_y"),

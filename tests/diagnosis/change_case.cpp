@@ -19,16 +19,16 @@ namespace {
 
 constexpr double change_rate_hz = 100;
 constexpr double change_integration_rate_hz = 2000;
-/// The learner, and the monitor's idea of what is usual, settle before.
+/// The learner and the monitor's noise estimate have converged by then.
 constexpr double earliest_s = 60;
 constexpr double trained_s = 25;
 
-/// How an arm is, beside its URDF, and how large its changes are.
+/// Properties of an arm that its URDF does not contain, and the sizes of its changes.
 struct ChangeArm {
     std::string name;
-    double rotor_inertia, coulomb, stiffness; ///< of the first joint
-    std::vector<double> joint_share;          ///< the others', relative to it
-    double torque_noise;                      ///< N·m, first joint
+    double rotor_inertia, coulomb, stiffness; ///< of the first joint, kg·m², N·m and N·m/rad
+    std::vector<double> joint_share;          ///< of each joint, relative to the first
+    double torque_noise;                      ///< N·m, of the first joint
     double payload_from, payload_to;          ///< kg
     double push_from, push_to;                ///< N
 };
@@ -98,10 +98,11 @@ void attach_payload(ChangeCase& one, const ChangeArm& arm, Scenario& scenario, D
     one.size = formatted("%.2f kg", payload.mass);
 }
 
-/// The simulation's time, for what changes in it.
+/// Time of the simulation (s), shared with everything that changes during it.
 using Clock = std::shared_ptr<double>;
 
-/// Beside the bristles' friction, that of further seals and bearings: it changes sign within 0.01 rad/s.
+/// Adds the friction of further seals and bearings to that of the bristles. It reverses its sign within 0.01
+/// rad/s.
 void change_friction(ChangeCase& one, Scenario& scenario, const Clock& clock, Draw& draw) {
     const std::size_t joint = draw.below(scenario.actuators.friction.size());
     const LuGreParameters& before = scenario.actuators.friction[joint];
@@ -195,7 +196,7 @@ Recording simulate_rows(const PanelRobot& kind, const Robot& robot, const Scenar
     return recording;
 }
 
-/// What there is to train on.
+/// The part of the recording that is used for training.
 Recording beginning(Recording recording) {
     const auto rows = static_cast<std::size_t>(trained_s * change_rate_hz);
     recording.time_s.resize(rows);
@@ -206,7 +207,7 @@ Recording beginning(Recording recording) {
     return recording;
 }
 
-/// Friction does not show in what a sensor in the arm measures.
+/// A sensor in the arm does not measure joint friction, so friction changes are left out for wrenches.
 std::vector<Cause> causes_of(bool wrench) {
     std::vector<Cause> causes{Cause::payload, Cause::bias, Cause::contact, Cause::frozen};
     if (!wrench) {
@@ -224,7 +225,7 @@ void change(ChangeCase& one, const ChangeArm& arm, Scenario& scenario, const Clo
     case Cause::contact:
         return push(one, arm, scenario, draw);
     default:
-        return; // in the recording
+        return; // applied to the recording
     }
 }
 

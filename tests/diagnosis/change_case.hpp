@@ -9,19 +9,19 @@
 
 namespace dfdyn::tests {
 
-/// A simulated arm that learns, and what changes meanwhile.
+/// A simulated arm whose model learns while something changes.
 struct ChangeCase {
     std::uint64_t seed = 0;
     std::string robot_name;
-    std::optional<Cause> cause; ///< none: nothing changes
+    std::optional<Cause> cause; ///< empty if nothing changes
     double time_s = 0;          ///< of the change
-    double end_s = 0;           ///< of a contact; of others the recording's
-    std::string where;          ///< as the monitor names it
-    std::string size;           ///< in words
+    double end_s = 0;           ///< end of a contact; for other changes the end of the recording
+    std::string where;          ///< place as the monitor names it
+    std::string size;           ///< size of the change in words
     tools::Recording recording; ///< 100 rows per second
 };
 
-/// What is fixed in a panel of changes.
+/// Fixed properties of a panel of changes.
 struct ChangeMix {
     std::optional<std::string> robot; ///< of change_robot_names()
     std::optional<Cause> cause;
@@ -29,14 +29,15 @@ struct ChangeMix {
     double duration_s = 100;
 };
 
-/// ur5_torque, icub_wrench, three_joint_torque.
+/// Returns ur5_torque, icub_wrench and three_joint_torque.
 const std::vector<std::string>& change_robot_names();
 
-/// The case of `seed`: motion, noise, cause, time, place and size are random; the same seed gives the same
-/// bytes. A bias and a frozen reading are put into the recording, everything else is simulated.
+/// Makes the case of `seed`. Motion, noise, cause, time, place and size are random; equal seeds give equal
+/// bytes. A bias and a frozen reading are written into the recording; everything else is simulated.
 ChangeCase make_change_case(std::uint64_t seed, const ChangeMix& mix);
 
-/// What is replayed over a case: rigid body, friction and offsets, trained on its first 25 s and learning on.
+/// The model that is replayed over a case: rigid body, friction and offsets. It is trained on the first 25 s
+/// and keeps learning.
 struct ChangeModel {
     tools::TrainedModel model;
     tools::MonitorSetup monitor;

@@ -16,7 +16,7 @@ using namespace tools;
 namespace {
 
 constexpr double settled_s = 20;
-constexpr double latest_s = 10; ///< after the change: an alarm still belongs to it
+constexpr double latest_s = 10; ///< an alarm belongs to a change for this time after it
 
 constexpr std::array causes{Cause::payload, Cause::friction, Cause::bias, Cause::contact, Cause::frozen};
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Changes hidden in simulated arms, found by the monitor of what learns them; the panel has many more.
+// Changes hidden in simulated arms, found by the monitor of the learner. The panel has many more cases.
 #include "tests/diagnosis/change_panel.hpp"
 
 #include "tests/support/catch.hpp"
@@ -16,8 +16,8 @@ int count(const std::vector<ChangeScore>& scores, bool (*holds)(const ChangeScor
 
 } // namespace
 
-// The floors are what these seeds have to give at least; docs/guide/monitor.md has the shares of many more.
-TEST_CASE("most changes hidden in simulated arms are found, named and placed", "[changes]") {
+// The limits are the least that these seeds must give; docs/monitor.md has the shares over many more cases.
+TEST_CASE("most changes hidden in simulated arms are found with their cause and place", "[changes]") {
     ChangeMix mix;
     mix.duration_s = 82;
     std::string all;
@@ -30,7 +30,7 @@ TEST_CASE("most changes hidden in simulated arms are found, named and placed", "
     CHECK(count(scores, [](const ChangeScore& one) { return one.false_alarms > 0; }) == 0);
 }
 
-TEST_CASE("where nothing changes in a simulated arm the monitor is silent", "[changes]") {
+TEST_CASE("the monitor raises no alarm if nothing changes in a simulated arm", "[changes]") {
     ChangeMix mix;
     mix.never = true;
     mix.duration_s = 120;

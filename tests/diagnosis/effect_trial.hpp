@@ -10,7 +10,7 @@
 
 namespace dfdyn::tests {
 
-/// One effect hidden in a short simulation, without noise: what the sensors showed, and what was so.
+/// A short simulation with one hidden effect and no noise: the sensors' readings and the truth.
 struct EffectTrial {
     PanelSetup setup;
     DrawnEffect effect;
@@ -25,13 +25,13 @@ struct EffectTrial {
         }
         return 0;
     }
-    /// From the number that `where` ends with.
+    /// The joint's index, from the number at the end of `where`.
     Eigen::Index joint() const {
         return std::stoi(effect.where.substr(effect.where.find_first_of("0123456789"))) - 1;
     }
 };
 
-/// `rate_hz`: of the rows. The effect has strength 10 by its own guess, or less.
+/// Simulates the effect `name` at `rate_hz` rows per second. Its strength is at most 10 by its own estimate.
 inline EffectTrial try_effect(const std::string& name, const std::string& robot, std::uint64_t seed,
                               double rate_hz = 200) {
     PanelMix mix;

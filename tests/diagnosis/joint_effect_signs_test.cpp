@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every effect on joint torques, as the simulation makes it, against what its name, units and sign say.
+// Compares every simulated effect on joint torques with the name, unit and sign of its parameters.
 #include "tests/diagnosis/effect_trial.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
@@ -15,7 +15,7 @@ using namespace dfdyn::tools;
 
 const std::string robots[] = {"ur5_torque", "three_joint_torque"};
 
-/// The torque of the described rigid body along the true motion.
+/// Torques of the nominal rigid body along the true motion.
 JointVector rigid(const EffectTrial& trial, const SimulatedTruth& truth) {
     const ArmDynamics dynamics(trial.setup.robot, JointVector::Zero(truth.position.size()));
     ArmDynamics::Configuration configuration;
@@ -23,7 +23,7 @@ JointVector rigid(const EffectTrial& trial, const SimulatedTruth& truth) {
     return dynamics.inverse(configuration, truth.velocity, truth.acceleration);
 }
 
-/// `expected(sample)` is what the effect adds to its joint's torque; everything else stays.
+/// Checks that the effect adds `expected(sample)` to the torque of its joint and changes no other torque.
 template <class Expected>
 void check_addition(const EffectTrial& trial, double margin, const Expected& expected) {
     CAPTURE(trial.setup.kind.name, trial.effect.where, trial.size);
@@ -36,7 +36,7 @@ void check_addition(const EffectTrial& trial, double margin, const Expected& exp
 
 } // namespace
 
-TEST_CASE("viscous friction opposes the velocity in proportion") {
+TEST_CASE("viscous friction opposes the motion and is proportional to the velocity") {
     for (const std::string& robot : robots) {
         const EffectTrial trial = try_effect("viscous_friction", robot, seed());
         check_addition(trial, 1e-9, [&](const SimulatedSample& sample) {
@@ -45,7 +45,7 @@ TEST_CASE("viscous friction opposes the velocity in proportion") {
     }
 }
 
-TEST_CASE("Coulomb friction opposes the direction, by its level of that direction") {
+TEST_CASE("Coulomb friction opposes the motion with the level of its direction") {
     for (std::uint64_t trial_seed = seed(); trial_seed < seed() + 4; ++trial_seed) {
         const EffectTrial trial = try_effect("coulomb_friction", robots[trial_seed % 2], trial_seed);
         const double mean = trial.parameter("coulomb");
@@ -58,11 +58,11 @@ TEST_CASE("Coulomb friction opposes the direction, by its level of that directio
         for (const SimulatedSample& sample : trial.samples) {
             const double velocity = sample.truth.velocity[trial.joint()];
             const double added = (sample.torque - rigid(trial, sample.truth))[trial.joint()];
-            REQUIRE(added < 1.001 * forward); // no bump where the joint turns round
+            REQUIRE(added < 1.001 * forward); // no bump at a reversal
             REQUIRE(added > -1.001 * backward);
             slid = velocity * past > 0 ? slid + std::abs(velocity) / 200 : 0;
             past = velocity;
-            if (slid > 0.02) { // the bristles have bent as far as they do
+            if (slid > 0.02) { // the bristles have reached their full deflection
                 REQUIRE(added == Approx(velocity > 0 ? forward : -backward).epsilon(1e-3));
                 ++sliding;
             }
@@ -72,7 +72,7 @@ TEST_CASE("Coulomb friction opposes the direction, by its level of that directio
     }
 }
 
-TEST_CASE("Stribeck friction is Coulomb's at speed, and reaches for the static level near standstill") {
+TEST_CASE("Stribeck friction is Coulomb friction at speed and approaches the static level near standstill") {
     const EffectTrial trial = try_effect("stribeck_friction", "three_joint_torque", seed());
     double largest = 0;
     double past = 0;
@@ -91,7 +91,7 @@ TEST_CASE("Stribeck friction is Coulomb's at speed, and reaches for the static l
     CHECK(largest < trial.parameter("static") * 1.001);
 }
 
-TEST_CASE("load-dependent friction is a share of what the gear passes on, and opposes the motion") {
+TEST_CASE("load-dependent friction is a share of the torque through the gear and opposes the motion") {
     for (const std::string& robot : robots) {
         const EffectTrial trial = try_effect("load_dependent_friction", robot, seed());
         const double mu = trial.parameter("mu");
@@ -105,7 +105,7 @@ TEST_CASE("load-dependent friction is a share of what the gear passes on, and op
             const double added = sample.torque[trial.joint()] - load;
             slid = velocity * past > 0 ? slid + std::abs(velocity) / 200 : 0;
             past = velocity;
-            if (slid > 0.05) { // bristles follow a load that changes after a short way
+            if (slid > 0.05) { // the bristles follow a changing load after a short travel
                 squares += added * added;
                 errors += std::pow(added - std::copysign(mu * std::abs(load), velocity), 2);
             }
@@ -116,7 +116,7 @@ TEST_CASE("load-dependent friction is a share of what the gear passes on, and op
     }
 }
 
-TEST_CASE("presliding friction is a spring that gives way at its break-away level") {
+TEST_CASE("presliding friction is a spring that yields at its break-away level") {
     const EffectTrial trial = try_effect("presliding_hysteresis", "ur5_torque", seed());
     const double level = trial.parameter("break_away");
     const double stiffness = trial.parameter("stiffness");
@@ -139,7 +139,7 @@ TEST_CASE("presliding friction is a spring that gives way at its break-away leve
     }
     CHECK(largest <= level * (1 + 1e-9));
     CHECK(largest > 0.95 * level);
-    // right after a reversal the bent bristles help the way back: twice as steep at most
+    // Right after a reversal the bent bristles push back, so that the slope is at most doubled.
     CHECK(steepest > 0.9 * stiffness);
     CHECK(steepest < 2.02 * stiffness);
 }
@@ -149,14 +149,14 @@ TEST_CASE("a torque offset is added to the reading") {
     check_addition(trial, 1e-9, [&](const SimulatedSample&) { return trial.parameter("offset"); });
 }
 
-TEST_CASE("a rotor resists the joint's acceleration") {
+TEST_CASE("rotor inertia adds a torque proportional to the joint's acceleration") {
     const EffectTrial trial = try_effect("rotor_inertia", "three_joint_torque", seed());
     check_addition(trial, 1e-8, [&](const SimulatedSample& sample) {
         return trial.parameter("inertia") * sample.truth.acceleration[trial.joint()];
     });
 }
 
-TEST_CASE("a joint's spring pulls to its rest, so that the actuator must hold against it") {
+TEST_CASE("a joint spring pulls towards its rest position and the actuator holds against it") {
     const EffectTrial trial = try_effect("joint_spring", "ur5_torque", seed());
     check_addition(trial, 1e-8, [&](const SimulatedSample& sample) {
         return trial.parameter("stiffness") *
@@ -164,7 +164,7 @@ TEST_CASE("a joint's spring pulls to its rest, so that the actuator must hold ag
     });
 }
 
-TEST_CASE("ripple adds a sine of the position to the torque") {
+TEST_CASE("torque ripple adds a sine of the position to the torque") {
     const EffectTrial trial = try_effect("torque_ripple", "three_joint_torque", seed());
     check_addition(trial, 1e-8, [&](const SimulatedSample& sample) {
         return trial.parameter("amplitude") *
@@ -173,7 +173,7 @@ TEST_CASE("ripple adds a sine of the position to the torque") {
     });
 }
 
-TEST_CASE("an actuator's gain is the true torque over the logged one") {
+TEST_CASE("an actuator's gain is the true torque divided by the logged torque") {
     const EffectTrial trial = try_effect("actuator_gain", "ur5_torque", seed());
     for (const SimulatedSample& sample : trial.samples) {
         JointVector expected = sample.truth.torque;
@@ -182,7 +182,7 @@ TEST_CASE("an actuator's gain is the true torque over the logged one") {
     }
 }
 
-TEST_CASE("a delayed torque reading shows what was, not what will be") {
+TEST_CASE("a delayed torque reading is the past torque") {
     const EffectTrial trial = try_effect("delay", "ur5_torque", seed(), 2000);
     const double delay = trial.parameter("delay");
     CHECK(delay > 0);
@@ -197,7 +197,7 @@ TEST_CASE("a delayed torque reading shows what was, not what will be") {
     }
 }
 
-TEST_CASE("friction that drifts changes by its rate per second, relative to its start") {
+TEST_CASE("drifting friction changes by its rate per second relative to the level at the start") {
     const EffectTrial trial = try_effect("friction_drift", "ur5_torque", seed());
     const EffectParameters companion = trial.effect.companion->parameters;
     const bool viscous = companion.front().first == "viscous";
@@ -214,7 +214,7 @@ TEST_CASE("friction that drifts changes by its rate per second, relative to its 
     }
 }
 
-TEST_CASE("a push on a joint is what the surroundings exert: the actuator is spared it") {
+TEST_CASE("a push on a joint is the torque of the surroundings and reduces the actuator's torque") {
     const EffectTrial trial = try_effect("external_contact", "three_joint_torque", seed());
     const double start = trial.parameter("start");
     const double end = trial.parameter("end");
@@ -225,7 +225,7 @@ TEST_CASE("a push on a joint is what the surroundings exert: the actuator is spa
     });
 }
 
-TEST_CASE("play lets the link lag behind its motor by half the gap either way") {
+TEST_CASE("backlash lets the link lag behind its motor by half the gap in either direction") {
     const EffectTrial trial = try_effect("backlash", "three_joint_torque", seed());
     const double gap = trial.parameter("gap");
     double ahead = 0;
@@ -237,12 +237,12 @@ TEST_CASE("play lets the link lag behind its motor by half the gap either way") 
         REQUIRE(sample.position[trial.joint()] ==
                 Approx(sample.truth.motor_position[trial.joint()]).margin(1e-7));
     }
-    // contacts give way a little
+    // The contacts are slightly elastic.
     CHECK(ahead == Approx(gap / 2).epsilon(0.25));
     CHECK(behind == Approx(-gap / 2).epsilon(0.25));
 }
 
-TEST_CASE("a soft gear twists by the torque it passes on, over its stiffness") {
+TEST_CASE("a soft gear twists by its transmitted torque divided by its stiffness") {
     for (const std::string& robot : robots) {
         EffectTrial trial = try_effect("joint_flexibility", robot, seed());
         trial.effect.hide(trial.size, trial.setup.scenario);
@@ -262,11 +262,11 @@ TEST_CASE("a soft gear twists by the torque it passes on, over its stiffness") {
     }
 }
 
-TEST_CASE("play and softness that vanish leave the arm that is described") {
+TEST_CASE("backlash and compliance that approach zero leave the nominal arm") {
     EffectTrial trial = try_effect("joint_flexibility", "ur5_torque", seed());
     Scenario scenario = trial.setup.scenario;
     trial.effect.hide(trial.size, scenario);
-    // as stiff as the step can follow
+    // The largest stiffness that the integration step can follow.
     scenario.actuators.gear.stiffness = 4e6 * scenario.actuators.rotor_inertia;
     scenario.actuators.gear.damping = 2e3 * scenario.actuators.rotor_inertia;
     scenario.integration_rate_hz = 8000;

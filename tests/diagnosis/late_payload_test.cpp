@@ -4,8 +4,8 @@
 
 using namespace dfdyn::tests;
 
-TEST_CASE("real residuals that look like a load for some seconds do not make the held-out error worse") {
-    // the first two thirds of this recording, which are to predict the rest, end with four such seconds
+TEST_CASE("real residuals that resemble a load for some seconds do not worsen the held-out error") {
+    // The first two thirds of this recording, which are fitted, end with four such seconds.
     const CaseScore score = run_panel(203125, 1, PanelMix{}, 1, [](const CaseScore&) {}).front();
     INFO(describe(score));
     REQUIRE(score.noise == "resampled");

@@ -8,15 +8,14 @@ namespace {
 
 std::vector<CaseScore> wrenches_in_white_noise(PanelMix mix) {
     mix.two_effects_share = mix.outside_share = 0;
-    mix.robot = "icub_wrench"; // behind its sensor there are four bodies only
+    mix.robot = "icub_wrench"; // only four bodies are beyond its sensor
     mix.noise = "white";
     return run_panel(101601, 8, mix, 1, [](const CaseScore&) {});
 }
 
 } // namespace
 
-TEST_CASE(
-    "the one link that is off in an otherwise exact file is named, though masses could all be uncertain") {
+TEST_CASE("a single wrong link in an otherwise exact file is named although all masses could be uncertain") {
     PanelMix mix;
     mix.null_share = 0;
     mix.effect = "link_inertia_error";
@@ -32,8 +31,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE(
-    "where all masses are a little off no link is likely, though exact masses would do with few names") {
+TEST_CASE("small errors of all masses make no single link likely") {
     PanelMix mix;
     mix.null_share = 1;
     mix.masses_off = true;

@@ -43,7 +43,7 @@ std::vector<std::string> candidates(const PanelSetup& setup, Kind kind) {
     return names;
 }
 
-/// Effects until one of them can have its strength. Throws InputError when none can.
+/// Draws effects until one of them can have the wanted strength. Throws InputError if none can.
 Fitted draw_fitted(const PanelSetup& setup, const std::vector<std::string>& names, const PanelMix& mix,
                    Draw& draw, PanelCase& result) {
     const double strength = mix.strength.value_or(draw.of(strengths_drawn));
@@ -77,14 +77,14 @@ void describe(const PanelSetup& setup, const Fitted& fitted, PanelCase& result) 
     }
 }
 
-/// Two that are not the same at the same place.
+/// Draws two effects that are not the same at the same place.
 PanelRun draw_two(const PanelSetup& setup, const PanelMix& mix, Draw& draw, PanelCase& result) {
     const std::vector<std::string> names = candidates(setup, Kind::two);
     const Fitted first = draw_fitted(setup, names, mix, draw, result);
     for (int redraw = 0; redraw < most_redraws; ++redraw) {
         const Fitted second = draw_fitted(setup, names, mix, draw, result);
         if (first.effect.effect == second.effect.effect || first.effect.where == second.effect.where) {
-            ++result.redraws; // friction of two kinds on one joint is one friction
+            ++result.redraws; // two kinds of friction on one joint could not be told apart
             continue;
         }
         try {

@@ -11,7 +11,7 @@ using namespace tools;
 
 namespace {
 
-/// The largest first: it is the one to be found.
+/// Puts the parameter of largest magnitude first, because it is the one that a diagnosis must find.
 EffectParameters largest_first(EffectParameters parameters) {
     std::ranges::stable_sort(parameters, [](const auto& one, const auto& other) {
         return std::abs(one.second) > std::abs(other.second);
@@ -51,7 +51,7 @@ DrawnEffect link_mass(const EffectDraw& of, std::size_t link) {
     effect.parameters = [sign](double size) { return EffectParameters{{"delta_mass", sign * size}}; };
     effect.guess = guess_along_reference(of, effect.hide, 0.01 * mass);
     effect.largest = (sign < 0 ? 0.8 : 3) * mass;
-    if (of.setup.masses_off) { // closer than this to what is believed, it is as good as every other link's
+    if (of.setup.masses_off) { // closer to nominal it would be an ordinary mass error
         const double believed = 1 + of.setup.mass_errors[link];
         effect.smallest = std::max(0.0, mass * (sign * (believed * (1 + sign * largest_mass_error) - 1)));
     }
@@ -75,7 +75,7 @@ DrawnEffect link_centre(const EffectDraw& of, std::size_t link) {
     return effect;
 }
 
-/// Of a link that has a mass, all of it beyond a F/T sensor.
+/// Draws an error of a link that has mass and that is beyond the F/T sensor if there is one.
 DrawnEffect link_error(const EffectDraw& of) {
     const Robot& robot = of.setup.robot;
     const std::size_t first = of.setup.wrench() ? robot.sensor->link : 0;

@@ -12,68 +12,70 @@
 
 namespace dfdyn::tests {
 
-/// By name and in the units of the effect's own description. Axes of a F/T sensor are 0 … 5 for fx … mz.
+/// Names and values in the units of the effect's description. Axes of an F/T sensor are 0 to 5 for fx to mz.
 using EffectParameters = std::vector<std::pair<std::string, double>>;
 
-/// What makes a recording differ from the arm's rigid body.
+/// A difference between a recording and the nominal rigid body.
 struct HiddenEffect {
     std::string effect, where;
     EffectParameters parameters; ///< main parameter first
-    std::string main_output;     ///< where it is largest relative to the noise
-    /// rms of what it adds there / rms of the noise there, both below 5 Hz; it alone, without other effects
+    std::string main_output;     ///< output with the largest ratio to the noise
+    /// Ratio of the rms of the contribution to the rms of the noise at `main_output`, both below 5 Hz, for
+    /// this effect alone.
     double strength = 0;
-    /// Logarithm of the likelihood ratio to nothing, below 5 Hz, for someone who knows its exact course, the
-    /// noise's spectrum and the arm: no method has more to decide by. 0 of the second of two effects.
+    /// Logarithm of the likelihood ratio against no effect, below 5 Hz, if the arm, the effect's exact
+    /// contribution and the noise spectrum are known. It bounds the evidence of every method. 0 for the
+    /// second of two effects.
     double evidence = 0;
-    std::string depends_on = {}; ///< outside the catalogue: the input that it is a function of
+    std::string depends_on = {}; ///< input of which an effect outside the catalogue is a function
 };
 
-/// A recording with its answer. Whoever is tested may see `nominal`, `recording`, `outputs` and, where
-/// `torque_constants_known`, `torque_constants`.
+/// A recording with its answer. A method under test may use `nominal`, `recording`, `outputs` and, if
+/// `torque_constants_known` is set, `torque_constants`.
 struct PanelCase {
     std::uint64_t seed = 0;
-    std::string robot_name, urdf, tip; ///< the file below tests/data/robots
-    tools::Robot nominal;              ///< as it is believed to be
+    std::string robot_name, urdf, tip; ///< file below tests/data/robots
+    tools::Robot nominal;              ///< with the errors of the robot description
     tools::OutputKind outputs = tools::OutputKind::joint_torque;
     tools::Recording recording; ///< t, q and the outputs
     bool masses_off = false;
     std::vector<double> mass_errors; ///< per link: nominal over true, minus 1
     std::string noise;               ///< white, ar1_0.9, ar1_0.98 or resampled
-    std::vector<double> noise_rms;   ///< per output, as asked for
+    std::vector<double> noise_rms;   ///< rms per output as configured
     bool torque_constants_known = true;
     std::vector<double>
-        torque_constants; ///< N·m/A, per joint, as the log believes them; empty for others than currents
-    std::vector<HiddenEffect> hidden; ///< the one that was asked for first
-    bool outside_catalogue = false;   ///< then hidden names no effect that diagnosis knows
-    int redraws = 0;                  ///< effects that physics did not allow at the strength wanted
+        torque_constants; ///< nominal values per joint, N·m/A; empty unless the outputs are currents
+    std::vector<HiddenEffect> hidden; ///< first the effect that was requested
+    bool outside_catalogue = false;   ///< then `hidden` has no effect of the diagnosis's catalogue
+    int redraws = 0;                  ///< number of effects that could not reach the wanted strength
     int simulations = 0;
 };
 
-/// How the cases are drawn. Nulls first, then pairs, then effects outside the catalogue; the rest have one
-/// effect.
+/// Shares of the kinds of cases, drawn in this order: no effect, two effects, an effect outside the
+/// catalogue. All others have one effect.
 struct PanelMix {
     double null_share = 0.5;
     double two_effects_share = 0.1;
     double outside_share = 0.1;
-    double known_constants_share = 0.25; ///< of recordings of currents
-    std::optional<std::string> effect;   ///< always this one
-    std::optional<double> strength;      ///< always this one
+    double known_constants_share = 0.25; ///< share of the recordings of currents
+    std::optional<std::string> effect;   ///< if set, every case has this effect
+    std::optional<double> strength;      ///< if set, every effect has this strength
     std::optional<std::string> robot, noise;
     std::optional<bool> masses_off;
-    std::optional<double> duration_s; ///< of every recording; otherwise 40 to 60
+    std::optional<double> duration_s; ///< of every recording; 40 to 60 s if not set
 };
 
-/// Names that PanelMix::robot and PanelMix::noise may have.
+/// Valid names for PanelMix::robot and PanelMix::noise.
 std::vector<std::string> panel_robot_names();
 std::vector<std::string> panel_noise_names();
 
-/// Of the catalogue, those of random cases or all; and the kinds outside of it.
+/// Names of the catalogue's effects (those of random cases, or all), and of the effects outside the
+/// catalogue.
 std::vector<std::string> panel_effect_names(bool all = false);
 std::vector<std::string> outside_effect_names();
 
-/// The case of `seed`: the same seed and mix give the same bytes. Throws InputError for a name that is
-/// unknown, or an effect that does not show on the outputs asked for. Cost: one to five simulations of about
-/// a second.
+/// Makes the case of `seed`; equal seeds and mixes give equal bytes. Throws InputError for an unknown name or
+/// an effect that the requested outputs cannot show. Cost: one to five simulations of about a second each.
 PanelCase make_panel_case(std::uint64_t seed, const PanelMix& mix = {});
 
 } // namespace dfdyn::tests

@@ -22,7 +22,8 @@ namespace {
 using namespace dfdyn::tests;
 using namespace dfdyn::tools;
 
-/// rms below 5 Hz by the spectrum: each line weighted as a second-order Butterworth low pass, twice, would.
+/// Root mean square below 5 Hz from the spectrum, weighted like a second-order Butterworth low pass applied
+/// twice.
 double spectral_rms(const Eigen::VectorXd& signal, double rate_hz) {
     const auto count = static_cast<double>(signal.size());
     double power = 0;
@@ -60,8 +61,9 @@ PanelMix only(const std::string& effect, double strength) {
 
 } // namespace
 
-TEST_CASE("strengths are what they claim: sensors' effects, by the spectrum of the difference they make") {
-    // these do not change the motion: recordings with and without differ by the effect alone
+TEST_CASE(
+    "the strength of a sensor effect equals the ratio of the spectra of the difference and of the noise") {
+    // These effects do not change the motion: recordings with and without them differ by the effect alone.
     const std::pair<const char*, const char*> cases[] = {
         {"torque_offset", "ur5_torque"}, {"ft_gain", "icub_wrench"}, {"delay", "three_joint_torque"}};
     for (const auto& [effect, robot] : cases) {
@@ -92,7 +94,7 @@ TEST_CASE("strengths are what they claim: sensors' effects, by the spectrum of t
     }
 }
 
-TEST_CASE("the same seed makes the same bytes, another seed others") {
+TEST_CASE("the same seed gives the same bytes and another seed gives others") {
     const TemporaryDirectory directory;
     const auto bytes = [&](std::uint64_t case_seed, const std::string& name) {
         write_panel_case(make_panel_case(case_seed), directory.path(), name);
@@ -107,7 +109,7 @@ TEST_CASE("the same seed makes the same bytes, another seed others") {
     CHECK(truth.at("seed") == seed());
 }
 
-TEST_CASE("a recording shows positions and outputs only, finite, in step, and within the joints' limits") {
+TEST_CASE("a recording has only finite positions and outputs of equal length within the joints' limits") {
     for (const std::string& robot : panel_robot_names()) {
         PanelMix mix;
         mix.robot = robot;
@@ -131,7 +133,7 @@ TEST_CASE("a recording shows positions and outputs only, finite, in step, and wi
     }
 }
 
-TEST_CASE("nominal masses are off by up to 10 %, all of a link alike, or exact") {
+TEST_CASE("nominal masses are exact or wrong by up to 10 % with all parameters of a link scaled alike") {
     PanelMix mix;
     mix.null_share = 1;
     mix.robot = "icub_wrench";
@@ -158,7 +160,7 @@ TEST_CASE("every effect of the catalogue can be hidden") {
     CHECK(hidden.size() == effect_catalogue().size());
 }
 
-TEST_CASE("names that are unknown, and effects that outputs do not show, are refused") {
+TEST_CASE("unknown names and effects that the outputs cannot show are rejected") {
     CHECK_THROWS_AS(make_panel_case(1, only("gremlins", 1)), InputError);
     PanelMix mix = only("viscous_friction", 1);
     mix.robot = "icub_wrench";
@@ -168,7 +170,7 @@ TEST_CASE("names that are unknown, and effects that outputs do not show, are ref
     CHECK_THROWS_AS(make_panel_case(1, mix), InputError);
 }
 
-TEST_CASE("what the real recording's regression leaves is coloured noise of every joint") {
+TEST_CASE("the residuals of the real recording's regression are coloured noise at every joint") {
     const auto& residuals = real_residuals();
     REQUIRE(residuals.size() == 6);
     for (const std::vector<double>& series : residuals) {
@@ -180,7 +182,7 @@ TEST_CASE("what the real recording's regression leaves is coloured noise of ever
         }
         CHECK(series.size() > 9000);
         CAPTURE(neighbours / squares);
-        CHECK(neighbours / squares > 0.2); // white noise: 0.01
+        CHECK(neighbours / squares > 0.2); // 0.01 for white noise
         CHECK(neighbours / squares < 0.999);
     }
 }

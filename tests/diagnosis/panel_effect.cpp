@@ -11,7 +11,7 @@ namespace dfdyn::tests {
 
 using namespace tools;
 
-/// The generators of the catalogue's effects, for setups on whose outputs they show; in panel_*_effects.cpp.
+/// Generators of the catalogue's effects for setups whose outputs show them. Defined in panel_*_effects.cpp.
 namespace hidden_effects {
 
 DrawnEffect viscous_friction(const EffectDraw& of);
@@ -50,7 +50,7 @@ struct CatalogueEntry {
     const char* name;
     Shows shows;
     DrawnEffect (*draw)(const EffectDraw& of);
-    /// Not in random cases: those of a seed stay what they were before this effect was added.
+    /// Left out of random cases, so that the case of a seed is the same as before this effect was added.
     bool on_request = false;
 };
 
@@ -82,7 +82,7 @@ constexpr std::array<CatalogueEntry, 25> catalogue{{
     {"external_contact", Shows::both, hidden_effects::external_contact},
 }};
 
-/// The body that payloads add, whenever they are attached.
+/// The robot with the bodies of all payloads, including those that are attached later.
 Robot with_payloads(Robot robot, const Scenario& scenario) {
     for (const Payload& payload : scenario.payloads) {
         const InertialParameters body =
@@ -95,7 +95,7 @@ Robot with_payloads(Robot robot, const Scenario& scenario) {
     return robot;
 }
 
-/// What the encoders show of a motion.
+/// The motion as the encoders measure it.
 MotionRows shown(const MotionRows& motion, const EncoderModel& encoders) {
     MotionRows result = motion;
     for (Eigen::Index joint = 0; joint < motion.position.cols(); ++joint) {
@@ -121,7 +121,7 @@ std::vector<std::string> panel_effect_names(bool all) {
 bool shows(const std::string& effect, OutputKind outputs, bool constants_known) {
     const auto* const entry = std::ranges::find(catalogue, effect, &CatalogueEntry::name);
     if (entry == catalogue.end()) {
-        return outputs != OutputKind::wrench; // outside of it: all on the joints
+        return outputs != OutputKind::wrench; // outside the catalogue: all act on the joints
     }
     if (effect == "actuator_gain" && !constants_known) {
         return false;

@@ -7,7 +7,7 @@
 
 namespace dfdyn::tests {
 
-/// Writes NAME.csv, what may be seen, and NAME.truth.json, the answer, into `directory`.
+/// Writes the recording NAME.csv and the answer NAME.truth.json into `directory`.
 void write_panel_case(const PanelCase& panel_case, const std::filesystem::path& directory,
                       const std::string& name);
 

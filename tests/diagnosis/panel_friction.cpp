@@ -12,14 +12,14 @@ using namespace tools;
 
 namespace {
 
-/// The least inertia that a joint's bristles move, over the reference motion.
+/// Smallest inertia that a joint's bristles move during the reference motion.
 double least_inertia(const PanelSetup& setup, Eigen::Index joint) {
     const ArmDynamics dynamics(setup.robot, JointVector::Zero(setup.joints()));
     ArmDynamics::Configuration configuration;
     double least = std::numeric_limits<double>::infinity();
     for (Eigen::Index row = 0; row < setup.reference.position.rows(); row += 50) {
         dynamics.configure(setup.reference.position.row(row).transpose(), configuration);
-        // the inertia of one joint while the others are free is the least it can be
+        // The inertia of a joint is smallest while the other joints are free.
         const JointMatrix inverse = dynamics.mass_matrix(configuration).inverse();
         least = std::min(least, 1 / inverse(joint, joint));
     }
@@ -112,7 +112,7 @@ DrawnEffect presliding(const EffectDraw& of, Eigen::Index joint) {
     return effect;
 }
 
-/// Friction that is there, and changes: the size is the change per second.
+/// Friction that changes with time; the size is the relative change per second.
 DrawnEffect drift(const EffectDraw& of, Eigen::Index joint) {
     const double duration = of.setup.duration_s;
     const double change = of.draw.uniform(0.4, 1.5); // over the whole recording
@@ -152,7 +152,7 @@ DrawnEffect rubbing(const EffectDraw& of, DrawnEffect (*draw)(const EffectDraw&,
     DrawnEffect effect = draw(of, joint);
     effect.where = joint_place(joint);
     if (effect.largest == 0) {
-        // beyond the effort that the joint has for its own motion no controller would move it well
+        // A controller cannot follow with friction beyond the torque of the joint's own motion.
         const double own = rms(of.setup.reference_output.col(joint)) * of.setup.torque_constants[joint];
         effect.largest = 3 * own + 2 * effect.guess;
     }

@@ -13,13 +13,12 @@ using namespace tools;
 
 namespace {
 
-constexpr double rotor_share = 0.6;        // of the least inertia that the joint can have
-constexpr double contact_frequency = 1000; // rad/s, of the rotor on a closed gear
+constexpr double rotor_share = 0.6;        // of the smallest inertia of the joint
+constexpr double contact_frequency = 1000; // rad/s, of the rotor on closed teeth
 constexpr double slowest_frequency = 25;   // rad/s, of the arm on a soft gear
 constexpr double gear_integration_rate_hz = 4000;
 
-/// Inertias that a joint has during the reference motion: while the other joints are free, and while they are
-/// held.
+/// Inertias of a joint during the reference motion, with the other joints free and held.
 struct JointInertia {
     double least_free = std::numeric_limits<double>::infinity();
     Eigen::VectorXd mean_held; ///< of all joints
@@ -43,18 +42,18 @@ JointInertia joint_inertia(const PanelSetup& setup, Eigen::Index joint) {
     return result;
 }
 
-/// Takes the rotor out of the link, so that a rigid gear would make the arm that is described.
+/// Subtracts the rotor from the link, so that the arm with a rigid gear is the nominal one.
 void take_rotor_out(RobotJoint& joint, double rotor) {
     joint.inertia -= body_parameters(0, Eigen::Vector3d::Zero(), rotor * joint.axis * joint.axis.transpose());
 }
 
-/// The feedback of a motor that has a soft gear behind it is made for its rotor, not for the arm.
+/// Tunes the feedback of a motor with a soft gear for its rotor instead of the arm.
 void retune(Scenario& scenario, const JointInertia& inertia, Eigen::Index joint, double rotor) {
     ControllerModel& controller = scenario.controller;
     controller.kind = ControllerKind::feed_forward;
     controller.velocity_gain = 14 * inertia.mean_held;
     controller.position_gain = 7 * controller.velocity_gain;
-    // fast, as the drive of a light rotor is: else its weight turns the link over
+    // A light rotor needs a fast drive: otherwise the link's weight turns it over.
     controller.rate_hz = scenario.encoders.rate_hz = 2000;
     controller.velocity_gain[joint] = 150 * rotor;
     controller.position_gain[joint] = 20 * controller.velocity_gain[joint];
@@ -82,7 +81,7 @@ void soften(Scenario& scenario, const Gear& soft, double stiffness, double dampi
     retune(scenario, soft.inertia, soft.joint, soft.rotor);
 }
 
-/// N·m, per row of the reference.
+/// Torque through the gear per row of the reference motion, N·m.
 Eigen::VectorXd gear_torque(const PanelSetup& setup, Eigen::Index joint) {
     PanelSetup torques = setup;
     torques.kind.outputs = OutputKind::joint_torque;
@@ -90,7 +89,8 @@ Eigen::VectorXd gear_torque(const PanelSetup& setup, Eigen::Index joint) {
     return rigid_outputs(torques, setup.robot, setup.reference).col(joint);
 }
 
-/// The share of time during which the torque has the rarer sign: where it never turns, play is an offset.
+/// Share of time during which the torque has its rarer sign. If the torque never reverses, backlash is only
+/// an offset.
 double turning_share(const Eigen::VectorXd& torque) {
     const auto up = static_cast<double>((torque.array() > 0).count());
     const double share = up / static_cast<double>(torque.size());
@@ -119,14 +119,14 @@ DrawnEffect play_of_gear(const EffectDraw& of, const Gear& gear) {
         constexpr double small = 1e-3;
         MotionRows real = of.setup.reference;
         real.position.col(joint) -= small / 2 * torque.cwiseSign();
-        // beside the angle, there is the link's push when the play is through
+        // The impact of the link at the end of the gap adds to the effect of the angle.
         effect.guess = std::min(0.03, small * of.strength / strength_along_reference(of.setup, real));
     }
     effect.largest = 0.15;
     return effect;
 }
 
-/// The size is the compliance, rad/(N·m).
+/// Compliance of a gear; the size is in rad/(N·m).
 DrawnEffect flexibility(const EffectDraw& of, const Gear& gear) {
     const Eigen::Index joint = gear.joint;
     const double loss = of.draw.uniform(0.02, 0.06); // damping ratio of the rotor on the gear

@@ -67,7 +67,7 @@ struct Pulse {
         contact.end_s = end_s;
         return contact;
     }
-    /// rms over the whole recording of a pulse of height 1.
+    /// Root mean square of a pulse of height 1 over the whole recording.
     double rms(double duration_s) const { return std::sqrt(3.0 / 8 * (end_s - start_s) / duration_s); }
 };
 

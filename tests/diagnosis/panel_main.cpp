@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes recordings with hidden effects, and their answers; and scores the diagnosis on them.
+// Makes recordings with hidden effects and their answers, and scores the diagnosis on them.
 #include "tests/diagnosis/change_panel.hpp"
 #include "tests/diagnosis/panel_files.hpp"
 #include "tests/diagnosis/panel_table.hpp"
@@ -24,10 +24,10 @@ struct PanelOptions {
     std::optional<std::uint64_t> seed;
     int cases = 1;
     PanelMix mix;
-    std::filesystem::path directory; ///< of generate
-    int threads = 2;                 ///< of score
-    std::filesystem::path tables;    ///< of score and changes
-    bool hold = false;               ///< of score: fail where it is worse than it has been
+    std::filesystem::path directory; ///< for generate
+    int threads = 2;                 ///< for score
+    std::filesystem::path tables;    ///< for score and changes
+    bool hold = false;               ///< for score: fail if a rate is below its floor
     ChangeMix changes;
 };
 

@@ -10,9 +10,9 @@ using namespace tools;
 
 namespace {
 
-constexpr double limit_margin = 0.12; // rad, left free before a joint's limit
+constexpr double limit_margin = 0.12; // rad, kept free before a joint's limit
 
-/// Where a joint moves: centre and half range.
+/// Centre and half range of a joint's motion.
 struct Range {
     double centre, half;
 };
@@ -27,7 +27,7 @@ Range random_range(const PanelRobot& kind, const RobotJoint& joint, Draw& draw) 
     return {draw.uniform(low + half, high - half), half};
 }
 
-/// More at the low frequencies; never beyond the range nor the speed.
+/// Random tones with larger amplitudes at low frequencies, within the range and the speed.
 std::vector<Tone> random_tones(double half, double speed, Draw& draw) {
     std::vector<Tone> tones(static_cast<std::size_t>(draw.whole(3, 7)));
     double sum = 0;
@@ -46,7 +46,7 @@ std::vector<Tone> random_tones(double half, double speed, Draw& draw) {
     return tones;
 }
 
-/// A slow tone that takes the joint round more than once.
+/// Whether the joint's limits allow a slow tone of more than one turn.
 bool turns_round(const RobotJoint& joint) {
     const double whole_turn = 2 * std::numbers::pi + limit_margin;
     return (!joint.lower || *joint.lower <= -whole_turn + 2 * limit_margin) &&
@@ -77,7 +77,7 @@ PointToPointTask random_postures(const PanelRobot& kind, const Robot& robot, dou
     PointToPointTask task;
     task.move_s = draw.uniform(1.2, 2.5);
     task.dwell_s = draw.uniform(0.2, 0.8);
-    const double farthest = kind.speed * task.move_s / 1.875; // the fifth-order polynomial's fastest
+    const double farthest = kind.speed * task.move_s / 1.875; // peak speed of the fifth-order polynomial
     std::vector<Range> ranges;
     for (const RobotJoint& joint : robot.joints) {
         ranges.push_back(random_range(kind, joint, draw));

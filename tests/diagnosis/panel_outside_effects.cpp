@@ -11,7 +11,7 @@ namespace {
 
 using Law = std::function<double(const JointVector& position, const JointVector& velocity)>;
 
-/// What opposes a joint, per unit of size.
+/// Torque that opposes a joint, per unit of size.
 struct OutsideLaw {
     Law law;
     std::string depends_on;
@@ -20,7 +20,7 @@ struct OutsideLaw {
 
 std::string input(const char* what, Eigen::Index joint) { return what + std::to_string(joint + 1); }
 
-/// Friction that grows with the distance from a middle.
+/// Friction that grows with the distance from a centre.
 OutsideLaw position_dependent_friction(const EffectDraw& of, Eigen::Index joint) {
     const double middle = of.setup.reference.position.col(joint).mean();
     return {[joint, middle](const JointVector& q, const JointVector& v) {
@@ -30,7 +30,7 @@ OutsideLaw position_dependent_friction(const EffectDraw& of, Eigen::Index joint)
             {{"middle", middle}}};
 }
 
-/// A cable that pulls back, harder and harder, beyond an angle.
+/// A cable that pulls back beyond an angle, with increasing stiffness.
 OutsideLaw catching_cable(const EffectDraw& of, Eigen::Index joint) {
     const Eigen::VectorXd position = of.setup.reference.position.col(joint);
     const double low = position.minCoeff();
@@ -44,14 +44,14 @@ OutsideLaw catching_cable(const EffectDraw& of, Eigen::Index joint) {
             {{"from", from}}};
 }
 
-/// The square of another joint's velocity, as a rotor that is not balanced would cause.
+/// The square of another joint's velocity, as from an unbalanced rotor.
 OutsideLaw velocity_squared_coupling(const EffectDraw&, Eigen::Index joint, Eigen::Index other) {
     return {[other](const JointVector&, const JointVector& v) { return v[other] * v[other]; },
             input("qd", other),
             {{"joint", static_cast<double>(joint + 1)}, {"other", static_cast<double>(other + 1)}}};
 }
 
-/// Friction of another joint's motion in this one, as of a belt that runs through it.
+/// Friction in this joint caused by another joint's motion, as from a belt that runs through it.
 OutsideLaw cross_joint_friction(const EffectDraw&, Eigen::Index joint, Eigen::Index other) {
     return {[other](const JointVector&, const JointVector& v) { return std::tanh(v[other] / 0.05); },
             input("qd", other),

@@ -8,10 +8,10 @@
 
 namespace dfdyn::tests {
 
-/// Random draws that are the same with every standard library.
+/// Random numbers that are equal with every standard library.
 class Draw {
   public:
-    /// Different `stream`s of one seed are independent.
+    /// Different values of `stream` with one seed give independent numbers.
     Draw(std::uint64_t seed, std::uint32_t stream) {
         std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U),
                                stream};
@@ -22,7 +22,7 @@ class Draw {
         constexpr double step = 0x1p-53;
         return from + (to - from) * static_cast<double>(engine_() >> 11U) * step;
     }
-    /// Equally likely in every factor; both positive.
+    /// Uniform in the logarithm; both bounds are positive.
     double log_uniform(double from, double to) { return from * std::exp(uniform(0, std::log(to / from))); }
     bool chance(double share) { return uniform(0, 1) < share; }
     double sign() { return chance(0.5) ? 1 : -1; }

@@ -26,8 +26,8 @@ Eigen::MatrixXd rows_of(const Columns& columns) {
     return Eigen::Map<const Rows>(columns.values.data(), count, width);
 }
 
-/// What a joint's current may come from: rigid torques and accelerations of all joints, its own friction at
-/// several scales of velocity, its position.
+/// Regressor of a joint's current: rigid-body torques and accelerations of all joints, its own friction at
+/// several scales of velocity, and its position.
 Eigen::MatrixXd explanation(const Eigen::MatrixXd& torque, const Eigen::MatrixXd& acceleration,
                             const Eigen::VectorXd& position, const Eigen::VectorXd& velocity) {
     Eigen::MatrixXd columns(torque.rows(), torque.cols() + acceleration.cols() + 8);
@@ -45,7 +45,8 @@ std::vector<std::vector<double>> residuals() {
     arm.kind = panel_robot("ur5_torque");
     arm.robot = read_panel_robot(arm.kind);
     const MotionRows motion{rows_of(recording.position), rates.first, rates.second};
-    const Eigen::Index inner = motion.position.rows() - 100; // the derivatives' windows end there
+    // without the ends, where derivative windows are incomplete
+    const Eigen::Index inner = motion.position.rows() - 100;
     const Eigen::MatrixXd torque = rigid_outputs(arm, arm.robot, motion).middleRows(50, inner);
     const Eigen::MatrixXd current = rows_of(recording.output).middleRows(50, inner);
     std::vector<std::vector<double>> result;

@@ -14,7 +14,7 @@ using namespace tools;
 
 namespace {
 
-constexpr double tolerance = 0.15; // of the strength
+constexpr double tolerance = 0.15; // relative, of the strength
 constexpr int most_simulations = 4;
 
 PanelRun empty_run(const PanelSetup& setup, const Scenario& scenario) {
@@ -26,7 +26,7 @@ PanelRun empty_run(const PanelSetup& setup, const Scenario& scenario) {
     return run;
 }
 
-/// Of joint `joint`, at one instant.
+/// Writes the measured motion of joint `joint` at one sample into a row.
 void show(MotionRows& shown, Eigen::Index row, Eigen::Index joint, const SimulatedTruth& truth,
           const EncoderModel& encoders) {
     const double size = encoders.eccentricity[joint];
@@ -48,7 +48,7 @@ void hide(const DrawnEffect& effect, double size, Robot& robot, Scenario& scenar
     }
 }
 
-/// Of a model with the friction of the companion as it is on average.
+/// Subtracts a model with the companion's friction at its average level.
 void subtract_steady_friction(Eigen::MatrixXd& difference, const PanelSetup& setup, const PanelRun& run,
                               const DrawnEffect& effect, double size) {
     const Eigen::Index joint = *effect.drifting_joint;
@@ -59,8 +59,8 @@ void subtract_steady_friction(Eigen::MatrixXd& difference, const PanelSetup& set
     }
 }
 
-/// Rates of the motion that the encoders show, as rows of a recording tell them: the vibrations of a soft
-/// joint are faster than the rows and must not turn into slow ones.
+/// Rates of the motion that the encoders measure, computed from rows of a recording. Vibrations of a soft
+/// joint are filtered because they are faster than the rows and would be aliased.
 MotionRows from_rows(const MotionRows& shown, double rate_hz) {
     MotionRows result = shown;
     const Eigen::Index rows = shown.position.rows();
@@ -68,7 +68,7 @@ MotionRows from_rows(const MotionRows& shown, double rate_hz) {
     const double step = static_cast<double>(reach) / rate_hz;
     for (Eigen::Index row = 2 * reach; row + 2 * reach < rows; ++row) {
         const auto at = [&](Eigen::Index steps) { return shown.position.row(row + steps * reach); };
-        // differences of fourth order
+        // Differences of fourth order.
         result.velocity.row(row) = (at(-2) - 8 * at(-1) + 8 * at(1) - at(2)) / (12 * step);
         result.acceleration.row(row) =
             (-at(-2) + 16 * at(-1) - 30 * at(0) + 16 * at(1) - at(2)) / (12 * step * step);
@@ -76,7 +76,7 @@ MotionRows from_rows(const MotionRows& shown, double rate_hz) {
     return result;
 }
 
-/// What the rigid body of the true arm leaves of the outputs.
+/// Outputs minus those of the true arm's rigid body.
 Eigen::MatrixXd unexplained(const PanelSetup& setup, const PanelRun& run, const DrawnEffect& effect) {
     const MotionRows motion =
         effect.soft ? from_rows(run.shown, setup.scenario.recording.rate_hz) : run.shown;
@@ -159,7 +159,7 @@ std::optional<Fitted> fit_strength(const PanelSetup& setup, const DrawnEffect& e
         ++fitted.simulations;
         try {
             fitted.run = run_panel(setup, robot, scenario);
-        } catch (const InputError&) { // it runs away, or nothing is left of a link
+        } catch (const InputError&) { // the arm is unstable, or a link would have no mass
             return std::nullopt;
         }
         const Eigen::VectorXd reached =

@@ -15,7 +15,7 @@ bool is(const tools::Finding& finding, const HiddenEffect& hidden) {
     return finding.effect == hidden.effect && finding.where == hidden.where;
 }
 
-/// Whether it tells few enough causes to be an answer.
+/// Whether the finding is specific enough: its class of indistinguishable causes is small.
 bool answers(const tools::Finding& finding) { return finding.indistinguishable.size() < largest_class; }
 
 bool has(const tools::Finding& finding, const HiddenEffect& hidden) {
@@ -35,7 +35,8 @@ void score_parameter(EffectScore& score, const HiddenEffect& hidden, const tools
     if (found == finding.parameters.end()) {
         return;
     }
-    const bool is_factor = hidden.effect == "actuator_gain" || hidden.effect == "ft_gain"; // 1: none
+    // no error is a gain of 1
+    const bool is_factor = hidden.effect == "actuator_gain" || hidden.effect == "ft_gain";
     score.relative_error = std::abs(found->value - value) / std::abs(is_factor ? value - 1 : value);
     score.in_interval = found->low <= value && value <= found->high;
 }
@@ -98,7 +99,7 @@ std::vector<ConstantScore> score_constants(const PanelCase& panel_case, const to
     return result;
 }
 
-/// Of errors on held-out time, in the mean of the outputs' squares.
+/// Relative change of the error on held-out time, from the mean of squares over the outputs.
 double harm_of(const tools::Diagnosis& diagnosis) {
     const Eigen::ArrayXd ratio = diagnosis.extended.rms.array() / diagnosis.nominal.rms.array();
     return std::sqrt(ratio.square().mean()) - 1;

@@ -10,31 +10,31 @@
 
 namespace dfdyn::tests {
 
-/// What became of one hidden effect.
+/// Result for one hidden effect.
 struct EffectScore {
     std::string effect, where;
     double strength = 0, evidence = 0;
-    bool named = false;                   ///< the finding's own name and place
-    bool in_class = false;                ///< or a class of at most three that has it
-    bool alone = false;                   ///< the finding that has it has no ties
-    std::string named_as;                 ///< what was found instead, or nothing
+    bool named = false;                   ///< a finding has its name and place
+    bool in_class = false;                ///< or its class of at most three causes contains it
+    bool alone = false;                   ///< this finding has no ties
+    std::string named_as;                 ///< the finding that was reported instead, or empty
     std::optional<double> relative_error; ///< of the main parameter
     bool in_interval = false;
 
     bool found() const { return named || in_class; }
 };
 
-/// What became of one finding.
+/// Result for one finding.
 struct FindingScore {
     std::string effect, where;
     double confidence = 0;
     double margin_to_nothing = 0, margin_to_others = 0;
     std::size_t ties = 0;
-    bool right = false; ///< it, or its class, is there
+    bool right = false; ///< the finding or its class is true
     bool own_name = false;
 };
 
-/// What was said of a torque constant that was not given.
+/// Estimate of a torque constant that was not given.
 struct ConstantScore {
     double relative_error = 0;
     bool in_interval = false;
@@ -47,20 +47,20 @@ struct CaseScore {
     std::vector<EffectScore> effects;
     std::vector<FindingScore> findings;
     std::vector<ConstantScore> constants;
-    /// Without any effect, masses exact and constants known: by what share the model with the causes, if
-    /// there are any, errs more on held-out time than the one without, over all outputs.
+    /// Relative increase of the held-out error over all outputs by the causes found. Set only for recordings
+    /// without any effect, with exact masses and known constants.
     std::optional<double> harm;
-    bool unexplained_right = false; ///< outside the catalogue: the right output, by the right input
+    bool unexplained_right = false; ///< for an effect outside the catalogue: right output and right input
     double seconds = 0;
 };
 
-/// Nothing is hidden, and nothing unknown: there is nothing to explain but noise. The held-out error is to be
-/// measured then.
+/// Whether nothing is hidden or unknown, so that the recording differs from the model by noise only. The
+/// held-out error is then measured.
 bool is_exact(const PanelCase& panel_case);
 
 CaseScore score_case(const PanelCase& panel_case, const tools::Diagnosis& diagnosis);
 
-/// One line for people.
+/// Describes a case in one line.
 std::string describe(const CaseScore& score);
 
 } // namespace dfdyn::tests

@@ -48,7 +48,7 @@ DrawnEffect wrong_constant(const EffectDraw& of, Eigen::Index joint) {
     return effect;
 }
 
-/// rms of the change per second of the reference's outputs.
+/// Root mean square of the reference output's change per second.
 double rate_rms(const PanelSetup& setup, Eigen::Index output) {
     const Eigen::VectorXd column = setup.reference_output.col(output);
     return 50 * rms(column.tail(column.size() - 1) - column.head(column.size() - 1));
@@ -79,7 +79,7 @@ DrawnEffect late_reading(const EffectDraw& of) {
     return effect;
 }
 
-/// A random pattern over the axes, in units of their noise: one axis, or all of them. The largest is 1.
+/// A random pattern over one or all axes in units of their noise; the largest entry is 1.
 Wrench pattern(const EffectDraw& of) {
     Wrench result = Wrench::Zero();
     if (of.draw.chance(0.5)) {
@@ -95,7 +95,7 @@ Wrench pattern(const EffectDraw& of) {
     return result;
 }
 
-/// The axis that stands out of the noise most comes first.
+/// Parameters of six axes, sorted by their ratio to the noise.
 EffectParameters six(const Wrench& values, const Eigen::VectorXd& noise) {
     Eigen::Index main = 0;
     values.cwiseQuotient(noise).cwiseAbs().maxCoeff(&main);
@@ -119,7 +119,7 @@ DrawnEffect bias(const EffectDraw& of) {
     return effect;
 }
 
-/// From nothing at the first row.
+/// A drift that is zero at the first row.
 DrawnEffect drift(const EffectDraw& of) {
     const Wrench shape = pattern(of);
     const Eigen::VectorXd noise = of.setup.noise_in_band;
@@ -162,7 +162,7 @@ DrawnEffect crosstalk(const EffectDraw& of) {
                                 {"to_axis", static_cast<double>(to)}};
     };
     effect.guess = of.strength * of.setup.noise_in_band[to] / rms(of.setup.reference_output.col(from));
-    // a force's full share in a torque is a lever, a torque's in a force its inverse
+    // Crosstalk from a force to a torque is a lever (m), from a torque to a force its inverse.
     effect.largest = (from < 3) == (to < 3) ? 0.6 : from < 3 ? 0.2 : 5;
     return effect;
 }

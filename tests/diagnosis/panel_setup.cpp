@@ -15,7 +15,7 @@ namespace {
 
 constexpr double reference_rate_hz = 50;
 constexpr double integration_rate_hz = 2000;
-/// An output that hardly moves has the noise of one that moves this much of the largest of its unit.
+/// Noise of an output that hardly varies, as a share of the noise of the largest output of its unit.
 constexpr double floor_share = 0.05;
 
 JointVector zeros(const Robot& robot) {
@@ -39,7 +39,7 @@ Scenario base_scenario(const PanelRobot& kind, const Robot& robot, double durati
     scenario.encoders.eccentricity = zeros(robot);
     scenario.encoders.eccentricity_phase = zeros(robot);
     scenario.encoders.bits_per_turn = draw.whole(14, 20);
-    scenario.derivatives.rate_hz = 10; // nobody looks at them
+    scenario.derivatives.rate_hz = 10; // the derivatives of the simulation are not used
     scenario.derivatives.velocity_window = 40;
     scenario.derivatives.acceleration_window = 40;
     scenario.derivatives.noise_bound = 6.3 / std::exp2(scenario.encoders.bits_per_turn);
@@ -81,7 +81,7 @@ OutputNoiseModel unit_noise(const std::string& name, Eigen::Index joints, Draw& 
     return model;
 }
 
-/// Per output its own size, or a share of the largest with its unit.
+/// Size of each output, at least a share of the largest of its unit.
 Eigen::VectorXd sizes(const PanelSetup& setup) {
     const Eigen::MatrixXd& rows = setup.reference_output;
     Eigen::VectorXd size =
@@ -110,7 +110,7 @@ void add_noise(PanelSetup& setup, Draw& draw) {
     setup.noise_in_band = band_rms(setup.noise_rows, setup.scenario.recording.rate_hz);
 }
 
-/// Each link on its own; the centres of mass stay.
+/// Draws an independent mass error for each link; the centres of mass stay.
 void mistake_masses(PanelSetup& setup, const PanelMix& mix, Draw draw) {
     const bool off = draw.chance(0.5);
     setup.masses_off = mix.masses_off.value_or(off);
@@ -136,7 +136,7 @@ std::string PanelSetup::output_name(Eigen::Index output) const {
 PanelSetup make_panel_setup(std::uint64_t seed, const PanelMix& mix) {
     Draw draw(seed, 1);
     PanelSetup setup;
-    // drawn even when given, so that the rest stays as it is
+    // Drawn even if given, so that all other draws are unchanged.
     const std::string robot = draw.of(panel_robot_names());
     const std::string noise = draw.of(panel_noise_names());
     setup.kind = panel_robot(mix.robot.value_or(robot));

@@ -18,7 +18,7 @@ using tools::ReportTable;
 constexpr double likely = 0.5;
 constexpr double confident = 0.9;
 constexpr double largest_harm = 0.005;
-constexpr double nominal_strength = 0.75; ///< drawn as 1, reached within 15 %
+constexpr double nominal_strength = 0.75; ///< a strength of 1 is reached within 15 %
 
 void add_effect(PanelSummary& summary, const EffectScore& effect) {
     if (effect.strength >= 2) {
@@ -47,7 +47,8 @@ void add_named(PanelSummary& summary, const CaseScore& score) {
         add_effect(summary, effect);
     }
     const bool drift = std::ranges::any_of(score.effects, [](const EffectScore& effect) {
-        return effect.effect == "friction_drift"; // comes with its friction: not two by chance
+        // always drawn together with its friction, so it is not a pair of independent effects
+        return effect.effect == "friction_drift";
     });
     if (score.effects.size() == 2 && !drift) {
         Rate& rate = weakest(score) >= nominal_strength ? summary.both_named : summary.both_named_with_weak;
@@ -66,8 +67,9 @@ bool wrong_name(const CaseScore& score) {
     });
 }
 
-/// A rate with what is asked of it; what it has been on the fixed panel of short recordings, less what
-/// another machine's rounding may cost; and on a thousand long ones, less what chance may.
+/// A rate with its target and two limits. `floor` is the value on the fixed panel of short recordings minus a
+/// margin for the rounding of other machines. `long_floor` is the value on a thousand long recordings minus a
+/// margin for chance.
 struct Line {
     const char* what;
     Rate rate;
@@ -139,7 +141,7 @@ ReportTable effect_table(const std::vector<CaseScore>& scores) {
     return table;
 }
 
-/// Found or not, by what there is to decide by: no method can do more.
+/// Detections by evidence, which bounds the detections of every method.
 ReportTable evidence_table(const std::vector<CaseScore>& scores) {
     constexpr std::array edges{0.0, 3.0, 6.0, 10.0, 20.0, 50.0, 1e300};
     std::array<std::array<Rate, 3>, edges.size() - 1> found;

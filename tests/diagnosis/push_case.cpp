@@ -13,9 +13,9 @@ using namespace tools;
 namespace {
 
 constexpr double push_case_s = 80;
-constexpr double edge_s = 0.4; ///< of a wait, before a push and behind it
+constexpr double edge_s = 0.4; ///< of a wait, kept free before and after a push
 
-/// Postures near the middle of what the setup's own task reaches, long waits between them.
+/// Postures near the middle of the setup's own task, with long waits between them.
 PointToPointTask waits_between(const PanelSetup& setup, Draw& draw) {
     PointToPointTask task;
     task.move_s = draw.uniform(1.5, 2.5);
@@ -32,7 +32,7 @@ PointToPointTask waits_between(const PanelSetup& setup, Draw& draw) {
     return task;
 }
 
-/// Each joint's inertia in the first posture, rotors left out.
+/// Inertia of each joint in the first posture, without rotors.
 Eigen::VectorXd inertia_of_joints(const PanelSetup& setup, const PointToPointTask& task) {
     const ArmDynamics dynamics(setup.robot, JointVector::Zero(setup.joints()));
     ArmDynamics::Configuration configuration;
@@ -40,8 +40,8 @@ Eigen::VectorXd inertia_of_joints(const PanelSetup& setup, const PointToPointTas
     return dynamics.mass_matrix(configuration).diagonal();
 }
 
-/// Dry and viscous friction of a size that the joint's own torques set; its gear's rotor, that bristles can
-/// be stiff against.
+/// Adds dry and viscous friction in proportion to the joint's own torques. Adds the gear's rotor too, so that
+/// the bristles can be stiff.
 void add_friction(PanelSetup& setup, const Eigen::VectorXd& inertia, Draw& draw) {
     constexpr double fastest = 2400;    // rad/s, of a rotor on its bristles
     constexpr double least_share = 0.1; // of the largest joint's torque
@@ -62,7 +62,7 @@ void add_friction(PanelSetup& setup, const Eigen::VectorXd& inertia, Draw& draw)
     }
 }
 
-/// A controller that holds its posture as industrial ones do.
+/// Makes the controller as stiff as an industrial one.
 void stiffen(PanelSetup& setup, Draw& draw) {
     Scenario& scenario = setup.scenario;
     scenario.integration_rate_hz = 8000;
@@ -74,7 +74,7 @@ void stiffen(PanelSetup& setup, Draw& draw) {
     scenario.derivatives.noise_bound = 6.3 / std::exp2(scenario.encoders.bits_per_turn);
 }
 
-/// In every other wait one, at any joint.
+/// Draws a push at a random joint in every other wait.
 std::vector<HiddenPush> draw_pushes(const PanelSetup& setup, const PointToPointTask& task, Draw& draw) {
     std::vector<HiddenPush> pushes;
     const double period = task.move_s + task.dwell_s;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arms that are pushed while they stand: physics makes the recordings, and nothing but they are diagnosed.
+// Arms that are pushed at rest: the recordings are simulated, and the diagnosis sees nothing else.
 #include "tests/diagnosis/push_panel.hpp"
 
 #include "tests/support/catch.hpp"
@@ -15,7 +15,7 @@ constexpr int cases = 4;
 
 } // namespace
 
-TEST_CASE("pushes at simulated arms that stand are found where friction cannot take them up") {
+TEST_CASE("a push at rest is found if it exceeds friction and is not reported otherwise") {
     int strong = 0;
     int found = 0;
     for (const PushScore& score : run_push_panel(first_seed, cases, [](const PushScore&) {})) {

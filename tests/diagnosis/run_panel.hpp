@@ -8,8 +8,8 @@
 
 namespace dfdyn::tests {
 
-/// Makes, diagnoses and scores the cases of seeds `seed` to `seed` + `cases` - 1 on so many threads; `done`
-/// is called for each as it is done, one at a time. The scores are in the order of the seeds.
+/// Makes, diagnoses and scores the cases of seeds `seed` to `seed` + `cases` - 1 with `threads` threads.
+/// Calls `done` for each completed case, one at a time. The scores are in the order of the seeds.
 std::vector<CaseScore> run_panel(std::uint64_t seed, int cases, const PanelMix& mix, int threads,
                                  const std::function<void(const CaseScore&)>& done);
 

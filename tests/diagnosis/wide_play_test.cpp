@@ -6,7 +6,7 @@
 
 using namespace dfdyn::tests;
 
-TEST_CASE("play in a gear whose blow is not that of the whole joint is named, with its gap") {
+TEST_CASE("backlash is named with its gap even if the impact differs from that of the whole joint") {
     for (const auto& [robot, seed] :
          {std::pair{"three_joint_torque", 101600}, std::pair{"ur5_torque", 101604}}) {
         PanelMix mix;
