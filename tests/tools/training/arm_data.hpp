@@ -10,7 +10,7 @@
 
 namespace dfdyn::tests {
 
-/// A smooth motion of `joints` joints with exact derivatives, and outputs that depend on them, plus noise.
+/// A smooth motion of `joints` joints with exact derivatives, and outputs that depend on them, with noise.
 inline tools::TrainingData arm_data(Eigen::Index samples, Eigen::Index joints, Eigen::Index outputs,
                                     tools::NormalSource& random) {
     tools::TrainingData data;
@@ -41,7 +41,7 @@ inline tools::TrainingData arm_data(Eigen::Index samples, Eigen::Index joints, E
     return data;
 }
 
-/// Rows first, first + stride, … below `end`.
+/// Returns the rows first, first + stride, ... below `end`.
 inline tools::RowList rows_between(Eigen::Index first, Eigen::Index end, Eigen::Index stride = 1) {
     tools::RowList rows;
     for (Eigen::Index row = first; row < end; row += stride) {

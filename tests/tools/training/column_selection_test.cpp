@@ -12,7 +12,7 @@ namespace tools = dfdyn::tools;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-TEST_CASE("columns that others make up are left out, whatever their size") {
+TEST_CASE("columns that are linear combinations of others are left out whatever their size") {
     const std::uint64_t seed = dfdyn::tests::seed() + GENERATE(range(0U, 5U));
     CAPTURE(seed);
     tools::NormalSource random(seed);
@@ -21,7 +21,7 @@ TEST_CASE("columns that others make up are left out, whatever their size") {
     psi.col(2).setZero();
     psi.col(4) = 3 * psi.col(0) - 2e6 * psi.col(1);
     const tools::ColumnChoice choice = tools::select_columns(psi, 1e-6);
-    // Of columns 0, 1 and 4 any two span the third.
+    // Any two of columns 0, 1 and 4 span the third.
     CHECK(choice.columns.size() == 4);
     for (std::size_t c = 0; c < choice.columns.size(); ++c) {
         CHECK(choice.columns[c] != 2);
@@ -31,7 +31,7 @@ TEST_CASE("columns that others make up are left out, whatever their size") {
     }
 }
 
-TEST_CASE("the threshold is the part of a column that the others must leave") {
+TEST_CASE("the threshold is the share of a column that the others do not explain") {
     tools::NormalSource random(dfdyn::tests::seed());
     MatrixXd psi = random.matrix(1000, 2);
     psi.col(0).normalize();
@@ -42,7 +42,7 @@ TEST_CASE("the threshold is the part of a column that the others must leave") {
     CHECK(tools::select_columns(MatrixXd::Zero(5, 3), 0.1).columns.empty());
 }
 
-TEST_CASE("a column of rounding error is never chosen, however well it fits") {
+TEST_CASE("a column of rounding errors is never selected however well it fits") {
     const std::uint64_t seed = dfdyn::tests::seed() + GENERATE(range(0U, 5U));
     CAPTURE(seed);
     tools::NormalSource random(seed);
@@ -52,7 +52,7 @@ TEST_CASE("a column of rounding error is never chosen, however well it fits") {
     CHECK(tools::select_columns(1e-15 * psi, 1e-3).columns == std::vector<Index>{0, 1, 2, 4});
 }
 
-TEST_CASE("a column counts by what the largest parameter of a machine makes of it") {
+TEST_CASE("columns are weighed with the largest parameter of a machine") {
     tools::NormalSource random(dfdyn::tests::seed());
     MatrixXd psi = random.matrix(300, 3);
     for (Index c = 0; c < 3; ++c) {
@@ -63,5 +63,5 @@ TEST_CASE("a column counts by what the largest parameter of a machine makes of i
     psi.col(1) *= 2;
     psi.col(2) /= 2;
     CHECK(tools::select_columns(psi, 1e-3, size).columns == std::vector<Index>{0, 1});
-    CHECK(tools::select_columns(psi, 1e-3).columns.size() == 3); // nothing is known of the machine
+    CHECK(tools::select_columns(psi, 1e-3).columns.size() == 3); // without any knowledge of the machine
 }

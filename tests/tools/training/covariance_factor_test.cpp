@@ -21,7 +21,7 @@ MatrixXd random_covariance(Eigen::Index size) {
     return root * root.transpose() + MatrixXd::Identity(size, size);
 }
 
-TEST_CASE("CovarianceFactor inverts, solves and has the determinant, for sizes around its blocks") {
+TEST_CASE("CovarianceFactor gives inverse and solution and determinant for sizes around its block size") {
     const Eigen::Index size = GENERATE(1, 2, 47, 48, 49, 96, 97, 150);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(size);
@@ -35,11 +35,11 @@ TEST_CASE("CovarianceFactor inverts, solves and has the determinant, for sizes a
     const MatrixXd sides = MatrixXd::Random(size, 3);
     CHECK((factor->solve(sides) - inverse * sides).norm() < 1e-10 * (inverse * sides).norm());
     const double log_determinant =
-        truth.matrixLU().diagonal().array().abs().log().sum(); // the product itself would overflow
+        truth.matrixLU().diagonal().array().abs().log().sum(); // the product of the diagonal would overflow
     CHECK(factor->log_determinant() == Approx(log_determinant).epsilon(1e-12));
 }
 
-TEST_CASE("CovarianceFactor refuses what is no covariance") {
+TEST_CASE("CovarianceFactor rejects a matrix that is not a covariance") {
     MatrixXd covariance = random_covariance(60);
     SECTION("negative") { covariance(50, 50) = -1; }
     SECTION("not a number") { covariance(50, 50) = std::numeric_limits<double>::quiet_NaN(); }

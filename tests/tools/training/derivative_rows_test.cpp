@@ -15,7 +15,7 @@ namespace derivative_rows_test {
 namespace tools = dfdyn::tools;
 using Eigen::VectorXd;
 
-/// Impulse response of (numerator) / (1 - beta z^-1), run as the recursion that it is.
+/// Impulse response of (numerator) / (1 - beta z^-1), computed by its recursion.
 VectorXd impulse_response(const std::vector<double>& numerator, double beta, int lags) {
     VectorXd response(lags + 1);
     double state = 0;
@@ -37,7 +37,7 @@ TEST_CASE("filtered rows are the impulse responses of the paper's filters") {
     CHECK((tools::filtered_acceleration_row(beta, lags) - acceleration).norm() < 1e-14);
 }
 
-TEST_CASE("slopes of the filtered rows are their derivatives") {
+TEST_CASE("the slopes of the filtered rows equal finite differences") {
     const double beta = GENERATE(0.01, 0.3, 0.9);
     const int lags = GENERATE(1, 2, 8);
     CAPTURE(beta, lags);
@@ -64,7 +64,7 @@ TEST_CASE("polynomial rows differentiate polynomials of their degree exactly") {
     constexpr int lags = 9;
     tools::NormalSource random(dfdyn::tests::seed());
     const VectorXd coefficients = random.matrix(degree + 1, 1);
-    VectorXd window = VectorXd::Zero(lags + 1); // of a polynomial in the time since the newest sample
+    VectorXd window = VectorXd::Zero(lags + 1); // values of a polynomial in the time since the newest sample
     for (int lag = 0; lag <= lags; ++lag) {
         for (int power = 0; power <= degree; ++power) {
             window[lag] += coefficients[power] * std::pow(-lag, power);
@@ -74,7 +74,7 @@ TEST_CASE("polynomial rows differentiate polynomials of their degree exactly") {
     CHECK(found == Approx(coefficients[order] * std::pow(lags, order)).epsilon(1e-9));
 }
 
-TEST_CASE("a polynomial row of more samples than coefficients lets less noise through") {
+TEST_CASE("a polynomial row with more samples than coefficients amplifies noise less") {
     const double tight = tools::polynomial_derivative_row(1, 9, 9).norm();
     CHECK(tools::polynomial_derivative_row(1, 1, 9).norm() < tight / 10);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What training measures of the outputs away from its data, by what the estimator makes of it.
+// Training measures how far the outputs deviate away from its data; these tests measure the estimator's
+// predictions.
 #include "tools/training/start/extrapolation.hpp"
 
 #include "tests/support/catch.hpp"
@@ -17,10 +18,10 @@ using Eigen::Index;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-/// Outputs about their mean in the training data: relative error and coverage, per output.
+/// Error relative to the outputs' mean in the training data, and coverage, per output.
 struct Outcome {
-    VectorXd error;    ///< rms over that of the constant
-    VectorXd coverage; ///< share within two standard deviations
+    VectorXd error;    ///< rms relative to that of the constant prediction
+    VectorXd coverage; ///< share of samples within two standard deviations
 };
 
 Outcome frozen(const tools::TrainedModel& model, const tools::TrainingData& data, const RowVectorXd& mean) {
@@ -74,7 +75,7 @@ tools::TrainingData small_arm() {
     return dfdyn::tests::arm_data(1000, 2, 2, random);
 }
 
-/// The same motion and outputs eight length scales away in the position of each joint.
+/// The same motion and outputs with each joint's position moved by eight length scales.
 tools::TrainingData elsewhere(tools::TrainingData data, const tools::TrainedModel& model) {
     const auto rows = static_cast<std::size_t>(model.input.rows_per_joint);
     for (std::size_t joint = 0; joint < static_cast<std::size_t>(model.joints); ++joint) {
@@ -85,7 +86,7 @@ tools::TrainingData elsewhere(tools::TrainingData data, const tools::TrainedMode
 }
 
 TEST_CASE(
-    "where it never was, a model of features is hardly worse than the mean, and its deviation says so") {
+    "far from its data a model of features is about as accurate as the mean and its deviation covers that") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     const tools::TrainingData here = small_arm();
     tools::TrainedModel model = tools::train(here, options()).model;
@@ -102,12 +103,12 @@ TEST_CASE(
         CHECK(far.error[k] < 1.05);
         CHECK(far.coverage[k] > 0.9);
     }
-    model.extrapolation.reset(); // the paper's
+    model.extrapolation.reset(); // the estimator of the paper
     const Outcome paper = frozen(model, there, mean);
     CHECK(paper.error.maxCoeff() > far.error.maxCoeff() + 0.05);
 }
 
-TEST_CASE("without shrinkage a model is the paper's") {
+TEST_CASE("without shrinkage training gives the model of the paper") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     const tools::TrainingData data = small_arm();
     tools::TrainingOptions paper = options();

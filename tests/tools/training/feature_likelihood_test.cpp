@@ -29,7 +29,7 @@ struct Problem {
     VectorXd theta{{-3.0, 0.7, 0.1, -0.2, 0.3, -0.4}};
 };
 
-TEST_CASE("FeatureLikelihood is the normal density of the outputs under the features' kernel plus noise") {
+TEST_CASE("FeatureLikelihood is the normal density of the outputs with the features' kernel plus noise") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     const Problem problem;
     const MatrixXd phases =
@@ -52,7 +52,7 @@ TEST_CASE("FeatureLikelihood is the normal density of the outputs under the feat
     CHECK(-0.5 * value->minus_two_log_likelihood == Approx(expected).epsilon(1e-9));
 }
 
-TEST_CASE("the gradient of FeatureLikelihood is its derivative") {
+TEST_CASE("the gradient of FeatureLikelihood equals finite differences") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     const Problem problem;
     const tools::FeatureLikelihood likelihood(*problem.input, problem.output_likelihood, problem.omega);

@@ -39,7 +39,7 @@ struct Problem {
     }
 
     tools::TrainingData noisy(tools::TrainingData clean) {
-        clean.positions += 1e-3 * random.matrix(120, 2); // the rows of the filters matter
+        clean.positions += 1e-3 * random.matrix(120, 2); // so that the rows of the filters matter
         return clean;
     }
 };
@@ -66,15 +66,14 @@ void check_gradient(const tools::Likelihood& likelihood, const VectorXd& theta) 
         return likelihood.evaluate(at)->minus_two_log_likelihood;
     };
     const VectorXd truth = dfdyn::tests::differences(value_at, theta, 1e-3);
-    if (truth.isZero(0)) { // physics alone does not depend on the input's gains
+    if (truth.isZero(0)) { // physics alone does not depend on the gains of the input
         CHECK(value->gradient.isZero(0));
     } else {
         CHECK(dfdyn::tests::relative_error(value->gradient, truth) < 2e-6);
     }
 }
 
-TEST_CASE(
-    "the gradients of all models with all inputs are derivatives, of the exact kernel and of features") {
+TEST_CASE("the gradients of all models with all inputs equal finite differences") {
     const std::string name = GENERATE("NP", "P", "PD", "SP", "SPK", "SPKD");
     const auto input =
         GENERATE(InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR);
@@ -93,7 +92,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("with physics, motion and kernel that all hang together the likelihood is the normal density") {
+TEST_CASE("the likelihood with coupled physics and motion and kernel is the normal density") {
     const std::string name = GENERATE("SP", "SPK", "P");
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(name);
@@ -137,9 +136,9 @@ TEST_CASE("with physics, motion and kernel that all hang together the likelihood
     CHECK(value->minus_two_log_likelihood == Approx(expected).epsilon(1e-8));
 }
 
-// The paper's filters are cut after lag M, those of the physics keep ramps and parabolas exact: they agree up
-// to beta^(M-1), here 1.5e-8.
-TEST_CASE("DFR starts where DFSR ends also where its physics shares rows with the input") {
+// The paper's filters are truncated after lag M; those of the physics are exact for ramps and parabolas. They
+// agree up to beta^(M-1), which is 1.5e-8 here.
+TEST_CASE("DFR can start from DFSR's optimum if its physics shares rows with the input") {
     const std::string name = GENERATE("P", "SP", "SPK", "SPKD");
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(name);
@@ -159,7 +158,7 @@ TEST_CASE("DFR starts where DFSR ends also where its physics shares rows with th
           Approx(structured.exact().evaluate(theta)->minus_two_log_likelihood).epsilon(1e-5));
 }
 
-TEST_CASE("DFR starts where DFSR ends: the same kernel, the same likelihood") {
+TEST_CASE("DFR can start from DFSR's optimum with equal kernel and likelihood") {
     const std::string name = GENERATE("NP", "SPK");
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(name);

@@ -26,7 +26,7 @@ TEST_CASE("gaussian_kernel is the Gaussian of the distance") {
     CHECK(kernel.diagonal() == VectorXd::Ones(20));
 }
 
-TEST_CASE("gaussian_kernel_pull_back is the derivative") {
+TEST_CASE("gaussian_kernel_pull_back equals finite differences") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     tools::NormalSource random(dfdyn::tests::seed());
     const MatrixXd inputs = random.matrix(9, 3);

@@ -27,7 +27,7 @@ double relative_error(const MatrixXd& predicted, const MatrixXd& measured) {
     return sum / static_cast<double>(measured.cols());
 }
 
-TEST_CASE("the hold-out error is that of the kernel's prediction of what it has not seen") {
+TEST_CASE("the hold-out error of a kernel is the error of its prediction of unseen samples") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     tools::NormalSource random(dfdyn::tests::seed());
     const MatrixXd inputs = random.matrix(60, 2);
@@ -56,10 +56,10 @@ TEST_CASE("the hold-out error is that of the kernel's prediction of what it has 
         CHECK(point.error >= best.error);
     }
     CHECK(best.error < 0.3);
-    CHECK(best.noise_ratio > 1e-5); // it knows that there is noise
+    CHECK(best.noise_ratio > 1e-5); // recognises the noise
 }
 
-TEST_CASE("the hold-out error of physics is that of ridge regression") {
+TEST_CASE("the hold-out error of physics is the error of ridge regression") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     tools::NormalSource random(dfdyn::tests::seed());
     const MatrixXd columns = random.matrix(60, 8); // two outputs, four parameters
@@ -69,7 +69,7 @@ TEST_CASE("the hold-out error of physics is that of ridge regression") {
     outputs += random.matrix(60, 2) * VectorXd{{0.1, 0.4}}.asDiagonal();
     const auto points = tools::hold_out_physics(columns, outputs, training);
     REQUIRE(points);
-    // Weak priors agree with weighted least squares, whose weights are its own residuals.
+    // Weak priors give weighted least squares, with weights from its own residuals.
     MatrixXd design(2 * training, 4);
     design << columns.topLeftCorner(training, 4), columns.topRightCorner(training, 4);
     VectorXd weights = VectorXd::Ones(2 * training);
@@ -85,17 +85,17 @@ TEST_CASE("the hold-out error of physics is that of ridge regression") {
     MatrixXd predicted(20, 2);
     predicted << columns.bottomLeftCorner(20, 4) * parameters, columns.bottomRightCorner(20, 4) * parameters;
     CHECK(points->back().error == Approx(relative_error(predicted, outputs.bottomRows(20))).epsilon(1e-4));
-    CHECK(points->front().error > 0.5); // the prior does not let the parameters leave zero
+    CHECK(points->front().error > 0.5); // the prior keeps the parameters at zero
     CHECK(tools::best_point(*points).error <= points->back().error);
 }
 
-TEST_CASE("a covariance that cannot be factored has no finite error, and the best point is another") {
+TEST_CASE("a covariance that cannot be factored has an infinite error and is not the best point") {
     const MatrixXd inputs = MatrixXd::Constant(20, 1, std::numeric_limits<double>::quiet_NaN());
     const auto points = tools::hold_out_kernel(inputs, MatrixXd::Random(20, 1), 10);
     CHECK(std::isinf(tools::best_point(points).error));
 }
 
-TEST_CASE("a point lies at the edge of a grid in the coordinates that vary") {
+TEST_CASE("a point is at the edge of a grid only in coordinates that vary") {
     std::vector<tools::HoldOutPoint> grid;
     for (const double length_scale : {1.0, 2.0, 4.0}) {
         for (const double noise_ratio : {0.1, 0.2, 0.3}) {

@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 constexpr int lags = 4;
 
-/// Three joints, the last of them held, and the rows behind the first window.
+/// Three joints, the last of them held, and the rows after the first window.
 struct Arm {
     tools::TrainingData data;
     tools::RowList rows = dfdyn::tests::rows_between(lags, 200);
@@ -45,7 +45,7 @@ struct Arm {
 
 MatrixXd centred(const MatrixXd& matrix) { return matrix.rowwise() - matrix.colwise().mean(); }
 
-TEST_CASE("stored inputs are the trained ones up to a constant") {
+TEST_CASE("stored inputs equal the trained inputs up to a constant") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     const int kind = GENERATE(0, 1, 2, 3, 4, 5);
     CAPTURE(kind);
@@ -60,7 +60,7 @@ TEST_CASE("stored inputs are the trained ones up to a constant") {
     CHECK((centred(stored) - centred(inputs)).norm() < 1e-9 * inputs.norm());
 }
 
-TEST_CASE("every input of a moving joint has its gain as standard deviation, the first one") {
+TEST_CASE("the standard deviation of each input of a moving joint is its gain") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     const int kind = GENERATE(0, 1, 2, 3, 4, 5);
     CAPTURE(kind);
@@ -72,10 +72,10 @@ TEST_CASE("every input of a moving joint has its gain as standard deviation, the
     const Eigen::Index count = deviations.size() / 3;
     CHECK(deviations[0] == Approx(1));
     CHECK((deviations.segment(0, count) - deviations.segment(count, count)).norm() < 1e-6);
-    CHECK(deviations.tail(count).maxCoeff() < 1e-12); // the held joint
+    CHECK(deviations.tail(count).maxCoeff() < 1e-12); // of the joint that is held
 }
 
-TEST_CASE("a held joint has scale one times the gain") {
+TEST_CASE("the scale of a joint that is held is its gain") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     Arm arm;
     const auto df = arm.map(0)->model(VectorXd(0));
@@ -112,7 +112,7 @@ TEST_CASE("stored DFW rows are the diagonal of the gains") {
     CHECK(model.rows[1] == 0);
 }
 
-TEST_CASE("STD without gains of its own has inputs of unit deviation and nothing to learn") {
+TEST_CASE("STD without individual gains has inputs of unit deviation and no hyperparameters") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     Arm arm;
     const auto map = arm.map(5);

@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 constexpr int lags = 5;
 
-/// Upper triangular, regular, with elements of different size.
+/// A regular upper triangular matrix with elements of different sizes.
 MatrixXd pooled_factor(tools::NormalSource& random) {
     MatrixXd factor = random.matrix(lags + 1, lags + 1).triangularView<Eigen::Upper>();
     factor.diagonal() = VectorXd::LinSpaced(lags + 1, 1, 0.05);
@@ -43,7 +43,7 @@ TEST_CASE("DFW rows are a diagonal whose first gain is one") {
     CHECK(family->stored_gain(rows) == rows.gain);
 }
 
-TEST_CASE("DFSR rows are the paper's, with poles and gains in their ranges") {
+TEST_CASE("DFSR rows are those of the paper with poles and gains in their ranges") {
     const auto family = tools::structured_rows(lags);
     const VectorXd parameters{{0.3, -0.7, 0, std::log(3)}};
     const tools::InputRows rows = family->evaluate(parameters);
@@ -59,7 +59,7 @@ TEST_CASE("DFSR rows are the paper's, with poles and gains in their ranges") {
     CHECK(family->stored_gain(rows) == rows.gain);
 }
 
-TEST_CASE("DFR rows have length one, the first is the position") {
+TEST_CASE("DFR rows have length one and the first is the position") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     tools::NormalSource random(dfdyn::tests::seed());
     const int count = GENERATE(1, 2, 3, 5);
@@ -79,7 +79,7 @@ TEST_CASE("DFR rows have length one, the first is the position") {
     CHECK(family->stored_gain(rows) == VectorXd::Ones(count));
 }
 
-TEST_CASE("DFR starts from differentiators of rising order, then from perturbed ones") {
+TEST_CASE("DFR starts from differentiators of increasing order and then from perturbed ones") {
     tools::NormalSource random(7);
     const MatrixXd factor = pooled_factor(random);
     const auto family = tools::free_rows(lags, 3, factor);
@@ -104,7 +104,7 @@ TEST_CASE("DFR starts from differentiators of rising order, then from perturbed 
     CHECK((family->start(3, random) - family->start(3, random)).norm() > 0.1);
 }
 
-TEST_CASE("all starts lie within the bounds") {
+TEST_CASE("all starts are within the bounds") {
     tools::NormalSource random(7);
     const MatrixXd factor = pooled_factor(random);
     for (const auto& family : {tools::identity_rows(lags), tools::diagonal_rows(lags),

@@ -42,8 +42,8 @@ TEST_CASE("the spacing of a window follows the sample period") {
     }
 }
 
-// What training sees and what the estimator computes must be the same numbers.
-TEST_CASE("inputs of spaced positions are those of the dense rows, sample by sample") {
+// The inputs of training and of the estimator must be the same numbers.
+TEST_CASE("inputs of spaced positions equal those of the dense rows at every sample") {
     const int every = GENERATE(2, 5);
     const int lags = 3;
     const tools::TrainingData data = noisy_data(101);
@@ -61,9 +61,9 @@ TEST_CASE("inputs of spaced positions are those of the dense rows, sample by sam
     CHECK(dense.lags == tools::dense_lags({lags, every}));
     const tools::RowList rows = tools::usable_rows(data.gap_before, dense.lags);
     const MatrixXd computed = tools::stored_inputs(dense, data, rows);
-    REQUIRE(seen.rows() == computed.rows()); // every tick of the estimator is a row of training
+    REQUIRE(seen.rows() == computed.rows()); // each tick of the estimator is a row of training
     for (Index row = 0; row < seen.rows(); ++row) {
-        // an output belongs to one sample: it identifies the tick
+        // An output belongs to only one sample, so it identifies the tick.
         const auto same = [&](Index tick) {
             return data.outputs.row(tick) == spaced.outputs.row(spaced_rows[static_cast<std::size_t>(row)]);
         };

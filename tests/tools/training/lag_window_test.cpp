@@ -23,13 +23,13 @@ double naive_deviation(const MatrixXd& positions, const tools::RowList& rows, Ei
     return std::sqrt((values.array() - values.mean()).square().mean());
 }
 
-TEST_CASE("lag_windows holds each joint's positions, newest first") {
+TEST_CASE("lag_windows contains the positions of each joint with the newest first") {
     const MatrixXd positions{{0, 100}, {1, 101}, {2, 102}, {3, 103}, {4, 104}};
     const MatrixXd expected{{2, 1, 0, 102, 101, 100}, {4, 3, 2, 104, 103, 102}};
     CHECK(tools::lag_windows(positions, {2, 4}, 2) == expected);
 }
 
-TEST_CASE("LagSpread has the standard deviation of any row, and its gradient") {
+TEST_CASE("LagSpread gives the standard deviation of any row and its gradient") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     tools::NormalSource random(dfdyn::tests::seed());
     const MatrixXd positions = dfdyn::tests::arm_data(1500, 3, 1, random).positions;
@@ -45,7 +45,7 @@ TEST_CASE("LagSpread has the standard deviation of any row, and its gradient") {
     }
 }
 
-TEST_CASE("LagSpread keeps the digits of second differences of a slow motion far from zero") {
+TEST_CASE("LagSpread is accurate for second differences of a slow motion far from zero") {
     MatrixXd positions(2000, 1);
     for (Eigen::Index t = 0; t < 2000; ++t) {
         positions(t, 0) = 3 + std::sin(0.002 * static_cast<double>(t)); // second differences of 4e-6
@@ -56,13 +56,13 @@ TEST_CASE("LagSpread keeps the digits of second differences of a slow motion far
     CHECK(deviation == Approx(naive_deviation(positions, rows, 0, row)).epsilon(1e-7));
 }
 
-TEST_CASE("LagSpread calls constant what does not move") {
+TEST_CASE("LagSpread treats joints that do not move as constant") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     tools::NormalSource random(dfdyn::tests::seed());
     MatrixXd positions = dfdyn::tests::arm_data(300, 4, 1, random).positions;
     positions.col(1).setConstant(0.3);
     for (Eigen::Index t = 0; t < 300; ++t) {
-        positions(t, 2) = 1 + 1e-4 * static_cast<double>(t % 2); // a held joint whose encoder flickers
+        positions(t, 2) = 1 + 1e-4 * static_cast<double>(t % 2); // a held joint whose encoder toggles
         positions(t, 3) = 0.01 * static_cast<double>(t);         // constant velocity
     }
     const tools::LagSpread spread(positions, dfdyn::tests::rows_between(2, 300), 2);
@@ -76,7 +76,7 @@ TEST_CASE("LagSpread calls constant what does not move") {
     CHECK(spread.deviation(3, velocity) == 0);
 }
 
-TEST_CASE("the pooled factor measures rows in a typical joint's deviation") {
+TEST_CASE("the pooled factor measures rows in standard deviations of a typical joint") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     tools::NormalSource random(dfdyn::tests::seed());
     MatrixXd positions = dfdyn::tests::arm_data(400, 3, 1, random).positions;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bounds that training sets from what it saw and from what the motors can give.
+// Limits that training derives from its data and from the efforts of the motors.
 #include "tools/training/start/limits.hpp"
 
 #include "tests/support/catch.hpp"
@@ -22,7 +22,7 @@ TrainingData some_data() {
     return data;
 }
 
-TEST_CASE("predictions are bounded by three times what training saw, measurements by ten times") {
+TEST_CASE("predictions are limited to three times and measurements to ten times the largest training value") {
     const LimitModel limits = limits_of(some_data());
     CHECK(limits.prediction[0] == 90);
     CHECK(limits.prediction[1] == 15);
@@ -33,15 +33,16 @@ TEST_CASE("predictions are bounded by three times what training saw, measurement
     CHECK(limits.output[2] > 0);
 }
 
-TEST_CASE("a prediction is bounded by the motor's effort where the data keep within it") {
+TEST_CASE("a prediction is limited to the motor's effort if the data do not exceed it") {
     LimitModel limits = limits_of(some_data());
-    bound_by_efforts(limits, std::array{56.0, 4.0, 0.0}); // the second exceeded its effort: not believed
+    // the second effort is ignored because the data exceed it
+    bound_by_efforts(limits, std::array{56.0, 4.0, 0.0});
     CHECK(limits.prediction[0] == 56);
     CHECK(limits.prediction[1] == 15);
     CHECK(limits.prediction[2] > 0);
 }
 
-TEST_CASE("an effort beyond what training saw three times bounds nothing") {
+TEST_CASE("an effort beyond three times the largest training value limits nothing") {
     LimitModel limits = limits_of(some_data());
     bound_by_efforts(limits, std::array{1000.0, 1000.0, 1000.0});
     CHECK(limits.prediction[0] == 90);

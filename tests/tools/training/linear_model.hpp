@@ -13,7 +13,7 @@
 
 namespace dfdyn::tests {
 
-/// y_k = Psi_k pi + e_k with random columns and covariance, and everything about it by dense algebra.
+/// The model y_k = Psi_k pi + e_k with random columns and covariance, evaluated with dense matrices.
 struct LinearModel {
     static constexpr Eigen::Index outputs = 3;
     static constexpr Eigen::Index columns = 4;
@@ -30,7 +30,7 @@ struct LinearModel {
         draw(Eigen::VectorXd::LinSpaced(outputs, -1, 1), 2.0);
     }
 
-    /// New outputs with these variances.
+    /// Draws new outputs with these variances.
     void draw(const Eigen::VectorXd& log_variances, double prior_variance) {
         const Eigen::VectorXd pi = std::sqrt(prior_variance) * random.matrix(columns, 1);
         y = covariance.llt().matrixL() * random.matrix(psi.rows(), outputs);
@@ -47,7 +47,7 @@ struct LinearModel {
         return tools::linear_statistics(y, psi, covariance.llt().solve(y), covariance.llt().solve(psi));
     }
 
-    /// (N m) x p, output by output.
+    /// All columns, output by output; (N m) x p.
     Eigen::MatrixXd stacked_columns() const {
         Eigen::MatrixXd stacked(psi.rows() * outputs, columns);
         for (Eigen::Index k = 0; k < outputs; ++k) {
@@ -56,7 +56,7 @@ struct LinearModel {
         return stacked;
     }
 
-    /// blockdiag(v_k C).
+    /// Block diagonal matrix of v_k C.
     Eigen::MatrixXd stacked_covariance(const Eigen::VectorXd& log_variances) const {
         const Eigen::Index samples = psi.rows();
         Eigen::MatrixXd stacked = Eigen::MatrixXd::Zero(samples * outputs, samples * outputs);
@@ -67,7 +67,7 @@ struct LinearModel {
         return stacked;
     }
 
-    /// log p(y) as in the textbook; without prior at the generalised least-squares estimate of pi.
+    /// log p(y) by the textbook formula; without a prior, at the generalised least-squares estimate of pi.
     double log_density(tools::PhysicsPrior prior, const Eigen::VectorXd& x) const {
         Eigen::MatrixXd total = stacked_covariance(x.head(outputs));
         Eigen::VectorXd residual = y.reshaped();

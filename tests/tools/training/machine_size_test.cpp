@@ -19,7 +19,7 @@ VectorXd sizes_of(const Robot& robot, const std::vector<std::string>& effects = 
     return parameter_sizes(robot, chain, effect_models(effects, chain, 0.05));
 }
 
-TEST_CASE("the size of each parameter follows from mass, reach and limits") {
+TEST_CASE("the size of each parameter follows from mass and reach and limits") {
     Robot robot = dfdyn::tests::planar_arm(9.81); // two links of 1 kg, 1 m from joint to joint
     robot.tip_placement.translation() = Eigen::Vector3d(0.6, 0, 0);
     robot.joints[0].effort = 200;
@@ -33,12 +33,12 @@ TEST_CASE("the size of each parameter follows from mass, reach and limits") {
     CHECK(sizes[0] == Approx(2));
     CHECK(sizes[13] == Approx(2 * 1.6));
     CHECK(sizes[19] == Approx(2 * 1.6 * 1.6));
-    const VectorXd expected{
-        {200 / 4.0, weight, 200, weight, 2 * 1.6 * 1.6, 2 * 1.6 * 1.6, 200, weight}}; // by effect, by joint
+    const VectorXd expected{// by effect, then by joint
+                            {200 / 4.0, weight, 200, weight, 2 * 1.6 * 1.6, 2 * 1.6 * 1.6, 200, weight}};
     CHECK((sizes.tail(8) - expected).norm() < 1e-9);
 }
 
-TEST_CASE("a link reaches as far as its centre of mass, whatever the tip") {
+TEST_CASE("the reach of a link is at least the distance of its centre of mass") {
     Robot robot = dfdyn::tests::planar_arm(9.81);
     robot.joints.resize(1);
     robot.tip_placement.setIdentity();
@@ -46,7 +46,7 @@ TEST_CASE("a link reaches as far as its centre of mass, whatever the tip") {
     CHECK(sizes_of(robot)[3] == Approx(0.5 * 0.1));
 }
 
-TEST_CASE("what a parameter may be off by follows from the links beyond its joint") {
+TEST_CASE("the prior deviation of a parameter follows from the links beyond its joint") {
     Robot robot = dfdyn::tests::planar_arm(9.81); // two links of 1 kg, 1 m from joint to joint
     robot.tip_placement.translation() = Eigen::Vector3d(0.6, 0, 0);
     const ChainModel chain = chain_model(robot, OutputKind::joint_torque);
@@ -63,17 +63,17 @@ TEST_CASE("what a parameter may be off by follows from the links beyond its join
     CHECK(expected.tail(2).norm() == 0);
 }
 
-TEST_CASE("a robot's file without masses gives sizes by its efforts, one without either by a tonne") {
+TEST_CASE("without masses the sizes follow from efforts and without efforts from one tonne") {
     Robot robot = dfdyn::tests::planar_arm(9.81);
     for (RobotJoint& joint : robot.joints) {
         joint.inertia.setZero();
     }
     CHECK(sizes_of(robot)[0] == 1000);
     robot.joints[1].effort = 9.81;
-    CHECK(sizes_of(robot)[0] == Approx(1)); // at 1 m
+    CHECK(sizes_of(robot)[0] == Approx(1)); // kg, at a distance of 1 m
 }
 
-TEST_CASE("real robots' own parameters are within their sizes") {
+TEST_CASE("the nominal parameters of real robots are within their sizes") {
     for (const Robot& robot : {dfdyn::tests::ur5(), dfdyn::tests::icub_right_arm()}) {
         CAPTURE(robot.name);
         const VectorXd own = nominal_parameters(robot, OutputKind::joint_torque);
@@ -81,7 +81,7 @@ TEST_CASE("real robots' own parameters are within their sizes") {
     }
 }
 
-TEST_CASE("a parameter beyond its bound is refused with name, value and bound") {
+TEST_CASE("a parameter beyond its bound is rejected with its name and value and bound") {
     PhysicsModel physics;
     physics.selected = {1, 3};
     physics.parameter_names = {"link1 mcx (kg·m)", "link1 mcz (kg·m)"};
@@ -94,7 +94,7 @@ TEST_CASE("a parameter beyond its bound is refused with name, value and bound") 
         Catch::Matchers::StartsWith("trained physics: parameter link1 mcz (kg·m): expected at most 400 in "
                                     "magnitude") &&
             Catch::Matchers::ContainsSubstring("found 2e+13"));
-    physics.start.weights = {-600, 4e-13}; // |-300|, 400: at the bounds
+    physics.start.weights = {-600, 4e-13}; // -300 and 400, which are at the bounds
     CHECK_NOTHROW(check_parameters(physics, sizes));
     physics.start.weights[0] = std::numeric_limits<double>::quiet_NaN();
     CHECK_THROWS_AS(check_parameters(physics, sizes), InputError);

@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 constexpr int lags = 5;
 
-/// A small training problem: scales from all rows, likelihood on every ninth.
+/// A small training problem with scales from all rows and a likelihood of every ninth row.
 struct Problem {
     tools::NormalSource random;
     tools::TrainingData data;
@@ -29,7 +29,7 @@ struct Problem {
 
     Problem(const std::string& kind, std::uint64_t seed) : random(seed) {
         data = dfdyn::tests::arm_data(250, 3, 2, random);
-        data.positions += 1e-3 * random.matrix(250, 3); // rows off the derivatives matter
+        data.positions += 1e-3 * random.matrix(250, 3); // so that the rows differ from exact derivatives
         data.positions.col(1).setConstant(-0.4);
         const tools::RowList all = dfdyn::tests::rows_between(lags, 250);
         const tools::LagSpread spread(data.positions, all, lags);
@@ -53,7 +53,7 @@ struct Problem {
     }
 };
 
-TEST_CASE("the gradient of the marginal likelihood is its derivative, for every input") {
+TEST_CASE("the gradient of the marginal likelihood equals finite differences for every input") {
     const std::string kind = GENERATE("STD", "DF", "DFW", "DFSR", "DFR1", "DFR2", "DFR3", "DFR5");
     const std::uint64_t seed = dfdyn::tests::seed() + GENERATE(0U, 1U, 2U);
     CAPTURE(kind, seed);
@@ -71,7 +71,7 @@ TEST_CASE("the gradient of the marginal likelihood is its derivative, for every 
           1e-6);
 }
 
-TEST_CASE("the marginal likelihood is the normal density of the outputs under kernel plus noise") {
+TEST_CASE("the marginal likelihood is the normal density of the outputs with kernel plus noise") {
     const std::string kind = GENERATE("STD", "DFR3");
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     Problem problem(kind, dfdyn::tests::seed());
@@ -96,7 +96,7 @@ TEST_CASE("the marginal likelihood is the normal density of the outputs under ke
     CHECK(-0.5 * value->minus_two_log_likelihood == Approx(expected).epsilon(1e-9));
 }
 
-TEST_CASE("the marginal likelihood has no value where it cannot be computed") {
+TEST_CASE("the marginal likelihood has no value if it cannot be computed") {
     Problem problem("DFSR", dfdyn::tests::seed());
     SECTION("outputs beyond doubles") {
         const tools::ProfiledVarianceLikelihood outputs(1e200 * problem.outputs);

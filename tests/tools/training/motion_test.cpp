@@ -19,13 +19,13 @@ using Eigen::VectorXd;
 constexpr int lags = 6;
 constexpr double period = 0.02;
 
-/// The last positions, newest first, of a joint at a + b t + c t^2 / 2, newest at t = 0.
+/// Positions of a joint at a + b t + c t^2 / 2, newest first and at t = 0.
 VectorXd parabola(double a, double b, double c) {
     const VectorXd time = -period * VectorXd::LinSpaced(lags + 1, 0, lags);
     return a + b * time.array() + c * time.array().square() / 2;
 }
 
-TEST_CASE("filters of the physics give slope and curvature in physical units") {
+TEST_CASE("the filters of the physics give slope and curvature in physical units") {
     const double logit = GENERATE(-3.0, 0.0, 2.5);
     const auto rows = tools::difference_motion(lags, period, 0, true)->evaluate(VectorXd::Constant(2, logit));
     CHECK(rows.row(0).dot(parabola(2, 0, 0)) == Approx(0).margin(1e-9));
@@ -34,7 +34,7 @@ TEST_CASE("filters of the physics give slope and curvature in physical units") {
     CHECK(rows.row(1).dot(parabola(2, -3, 5)) == Approx(5));
 }
 
-TEST_CASE("the filters of the physics are those of DFSR, where the window is long") {
+TEST_CASE("the filters of the physics equal those of DFSR if the window is long") {
     constexpr double beta = 0.3;
     constexpr int many = 60;
     const VectorXd velocity = tools::mean_difference_row(1, beta, many);
@@ -49,7 +49,7 @@ TEST_CASE("the polynomial of the physics is exact for parabolas") {
     CHECK(rows.row(1).dot(parabola(2, -3, 5)) == Approx(5));
 }
 
-TEST_CASE("DFR's rows start in physical units") {
+TEST_CASE("the rows of DFR start in physical units") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     tools::NormalSource random(dfdyn::tests::seed());
     tools::TrainingData data = dfdyn::tests::arm_data(400, 2, 1, random);
@@ -65,13 +65,13 @@ TEST_CASE("DFR's rows start in physical units") {
     const tools::MotionSamples samples = motion->evaluate(parameters);
     const MatrixXd velocities = data.velocities(all, Eigen::all);
     const MatrixXd accelerations = data.accelerations(all, Eigen::all);
-    CHECK((samples.velocities - velocities).norm() < 0.35 * velocities.norm()); // a filter lags behind
+    CHECK((samples.velocities - velocities).norm() < 0.35 * velocities.norm()); // a filter has a lag
     CHECK((samples.accelerations - accelerations).norm() < 0.35 * accelerations.norm());
     CHECK(samples.positions == data.positions(all, Eigen::all));
     CHECK(family->evaluate(input).rows.row(1).norm() == Approx(1));
 }
 
-TEST_CASE("the pull back of every motion is its derivative") {
+TEST_CASE("the pull back of every motion equals finite differences") {
     const int kind = GENERATE(0, 1, 2, 3);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(kind);

@@ -9,7 +9,7 @@
 
 namespace dfdyn::tests {
 
-/// Gradient of `function` at `point` by fourth-order central differences.
+/// Gradient of `function` at `point` from fourth-order central differences.
 template <class Function>
 Eigen::VectorXd differences(const Function& function, const Eigen::VectorXd& point, double step = 1e-3) {
     Eigen::VectorXd gradient(point.size());
@@ -24,13 +24,13 @@ Eigen::VectorXd differences(const Function& function, const Eigen::VectorXd& poi
     return gradient;
 }
 
-/// The largest error of an element, relative to the element plus a thousandth of the largest element.
+/// Largest error of an element, relative to the element plus a thousandth of the largest element.
 inline double relative_error(const Eigen::MatrixXd& found, const Eigen::MatrixXd& expected) {
     const double floor = 1e-3 * expected.cwiseAbs().maxCoeff();
     return ((found - expected).array().abs() / (expected.array().abs() + floor)).maxCoeff();
 }
 
-/// log N(y; 0, covariance), as in the textbook: explicit determinant.
+/// log N(y; 0, covariance) by the textbook formula with an explicit determinant.
 inline double log_normal_density(const Eigen::VectorXd& y, const Eigen::MatrixXd& covariance) {
     const Eigen::PartialPivLU<Eigen::MatrixXd> lu(2 * std::numbers::pi * covariance);
     return -0.5 * std::log(lu.determinant()) - 0.5 * y.dot(covariance.partialPivLu().solve(y));

@@ -53,7 +53,8 @@ TEST_CASE("ProfiledVarianceLikelihood is the normal density at the best variance
     }
 }
 
-TEST_CASE("ProfiledVarianceLikelihood has the derivative with respect to the covariance") {
+TEST_CASE(
+    "the derivative of ProfiledVarianceLikelihood with respect to the covariance equals finite differences") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     const Problem problem;
     const auto along = [&](Eigen::Index row, Eigen::Index column) {
@@ -73,7 +74,7 @@ TEST_CASE("ProfiledVarianceLikelihood has the derivative with respect to the cov
     MatrixXd expected(8, 8);
     for (Eigen::Index row = 0; row < 8; ++row) {
         for (Eigen::Index column = 0; column < 8; ++column) {
-            expected(row, column) = along(row, column) / (row == column ? 1 : 2); // both entries move
+            expected(row, column) = along(row, column) / (row == column ? 1 : 2); // both entries change
         }
     }
     CHECK(dfdyn::tests::relative_error(gradient, expected) < 1e-6);

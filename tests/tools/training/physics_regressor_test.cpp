@@ -18,7 +18,7 @@ using Arm = dfdyn::Chain<dfdyn::dynamic>;
 using Map = dfdyn::Physics<dfdyn::StandardMeasured, dfdyn::dynamic, dfdyn::CoulombFriction<dfdyn::dynamic>>;
 using RigidBody = tools::PhysicsRegressor<Map, Arm>;
 
-/// All columns of a random robot, and Coulomb friction at its second joint.
+/// Regressor with all columns of a random robot and with Coulomb friction at its second joint.
 RigidBody regressor_of(std::mt19937_64& engine, int joints) {
     RigidBody::Constants constants{};
     constants.chain = dfdyn::tests::chain_of<Arm>(dfdyn::tests::random_robot(engine, joints));
@@ -45,7 +45,7 @@ tools::MotionState state_of(const VectorXd& xi) {
     return {xi.head(joints), xi.segment(joints, joints), xi.tail(joints)};
 }
 
-TEST_CASE("training sees the physics of the firmware") {
+TEST_CASE("training uses the physics of the firmware") {
     DFDYN_SEEDED_ENGINE(engine);
     const RigidBody regressor = regressor_of(engine, 3);
     const VectorXd xi = dfdyn::tests::random_motion(engine, 3);
@@ -59,8 +59,8 @@ TEST_CASE("training sees the physics of the firmware") {
     CHECK(values.block(2, 0, 1, 10).isZero()); // the first link does not load the last joint
 }
 
-TEST_CASE("the regressor's pull back is its derivative") {
-    const int joints = GENERATE(2, 3, 6); // one pass of dual numbers and more
+TEST_CASE("the pull back of the regressor equals finite differences") {
+    const int joints = GENERATE(2, 3, 6); // one pass of dual numbers, and several
     DFDYN_SEEDED_ENGINE(engine);
     const RigidBody regressor = regressor_of(engine, joints);
     const VectorXd xi = dfdyn::tests::random_motion(engine, joints);

@@ -21,12 +21,12 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int lags = 3;
-constexpr Index features = 12; // columns: 6 frequencies
+constexpr Index features = 12; // columns of 6 frequencies
 constexpr Index outputs = 3;
 constexpr Index parameters = 5;
 constexpr double kernel_variance = 50; // of the weights
 
-/// A model with made-up constants and columns, and all unknowns [w_1 … w_m, pi] at once.
+/// A model with invented constants and columns, solved for all unknowns [w_1 ... w_m, pi] at once.
 struct Problem {
     tools::NormalSource random{dfdyn::tests::seed()};
     tools::TrainingData data = dfdyn::tests::arm_data(400, 2, outputs, random);
@@ -59,7 +59,7 @@ struct Problem {
         return result;
     }
 
-    /// A prior with a mean and correlations.
+    /// Sets a prior with a mean and correlations.
     void know() {
         const MatrixXd root = random.matrix(parameters, parameters);
         prior = {random.matrix(parameters, 1),
@@ -70,7 +70,7 @@ struct Problem {
         return tools::random_features(model.features, tools::stored_inputs(model.input, data, rows));
     }
 
-    /// Sum over outputs and rows of the weighted squares of [phi in block k, psi~], with priors.
+    /// Sum over outputs and rows of the weighted squares of [phi in block k, psi~], plus the priors.
     MatrixXd information(bool kernel, bool physics) const {
         const Index size = outputs * features + parameters;
         MatrixXd sum = MatrixXd::Zero(size, size);
@@ -107,7 +107,7 @@ struct Problem {
     }
 };
 
-/// U D U'.
+/// The product U D U'.
 MatrixXd covariance(const std::vector<double>& unit_upper, const std::vector<double>& diagonal) {
     const auto size = static_cast<Index>(diagonal.size());
     MatrixXd upper = MatrixXd::Identity(size, size);
@@ -124,7 +124,7 @@ double error_of(const MatrixXd& found, const MatrixXd& truth) {
     return (found - truth).norm() / truth.norm();
 }
 
-TEST_CASE("SPK's start in block-arrow form is the solution for all unknowns") {
+TEST_CASE("the start of SPK in block-arrow form is the solution for all unknowns") {
     const double forgetting_factor = GENERATE(1.0, 0.995);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(forgetting_factor);
@@ -152,7 +152,7 @@ TEST_CASE("SPK's start in block-arrow form is the solution for all unknowns") {
     }
 }
 
-TEST_CASE("P's start is the solution of ridge regression") {
+TEST_CASE("the start of P is the solution of ridge regression") {
     const double forgetting_factor = GENERATE(1.0, 0.995);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(forgetting_factor);
@@ -169,13 +169,13 @@ TEST_CASE("P's start is the solution of ridge regression") {
     CHECK(start.kernel.weights.empty());
 }
 
-TEST_CASE("the start of SP and SP2 is NP's on the residual") {
+TEST_CASE("the start of SP and SP2 is the start of NP on the residual") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     Problem problem(1);
     const VectorXd pi = problem.random.matrix(parameters, 1);
     const tools::JointStart start = tools::residual_start(problem.physics(), pi);
     const VectorXd target =
-        problem.right_hand_side(true, false) - [&] { // the design's cross products with what is known
+        problem.right_hand_side(true, false) - [&] { // cross products of the design with the known part
             VectorXd sum = VectorXd::Zero(outputs * features + parameters);
             for (Index k = 0; k < outputs; ++k) {
                 const VectorXd known = problem.design(k, false, true).rightCols(parameters) * pi;
@@ -190,7 +190,7 @@ TEST_CASE("the start of SP and SP2 is NP's on the residual") {
     CHECK(start.physics.diagonal.empty());
 }
 
-TEST_CASE("a start that cannot be solved for is an error") {
+TEST_CASE("a start whose equations cannot be solved is an error") {
     Problem problem(1);
     problem.columns(3, 2) = std::nan("");
     CHECK_THROWS_AS(tools::joint_start(problem.physics(), problem.prior), tools::InputError);

@@ -19,7 +19,7 @@ constexpr int inputs = 6;
 
 MatrixXd sample_points() { return tools::NormalSource(dfdyn::tests::seed()).matrix(15, inputs); }
 
-/// Sum over pairs of points, mean over 40 draws, of the squared error of the kernel.
+/// Sum over pairs of points, averaged over 40 draws, of the squared error of the kernel.
 double mean_square_error(int count, bool orthogonal, double length_scale) {
     const MatrixXd points = sample_points();
     const MatrixXd kernel = tools::gaussian_kernel(points, length_scale);
@@ -34,13 +34,13 @@ double mean_square_error(int count, bool orthogonal, double length_scale) {
     return sum / draws;
 }
 
-/// The same in theory for independent frequencies: the variance of a pair is (1 - K^2)^2 / (2 d).
+/// Theoretical value for independent frequencies: the variance of a pair is (1 - K^2)^2 / (2 d).
 double expected_square_error(int count, double length_scale) {
     const MatrixXd kernel = tools::gaussian_kernel(sample_points(), length_scale);
     return (1 - kernel.array().square()).square().sum() / (2.0 * count);
 }
 
-TEST_CASE("random features miss the kernel by what theory says") {
+TEST_CASE("the kernel error of random features is as theory predicts") {
     const int count = GENERATE(50, 200, 800);
     const double length_scale = GENERATE(1.5, 3.0);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
@@ -51,8 +51,8 @@ TEST_CASE("random features miss the kernel by what theory says") {
     CHECK(ratio < 1.5);
 }
 
-TEST_CASE("orthogonal random features are closer to the kernel") {
-    const int count = GENERATE(48, 250); // whole blocks; a part of one
+TEST_CASE("orthogonal random features approximate the kernel better") {
+    const int count = GENERATE(48, 250); // whole blocks; an incomplete block
     const double length_scale = GENERATE(2.0, 4.0);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(count, length_scale);
@@ -73,10 +73,10 @@ TEST_CASE("orthogonal frequencies are orthogonal in blocks and as long as indepe
     CHECK(std::abs(squares.mean() - inputs) <
           4 * std::sqrt(2.0 * inputs / count)); // chi-squared: mean 6, variance 12
     CHECK((squares - squares.mean()).square().mean() == Approx(2.0 * inputs).epsilon(0.15));
-    CHECK(std::abs(omega.mean()) < 4 / std::sqrt(count * inputs)); // no preferred side
+    CHECK(std::abs(omega.mean()) < 4 / std::sqrt(count * inputs)); // symmetric about zero
 }
 
-TEST_CASE("a feature vector has length one, cosines before sines") {
+TEST_CASE("a feature vector has length one and its cosines come before its sines") {
     const auto model = tools::draw_features(7, inputs, true, 2, 1);
     const MatrixXd points = sample_points();
     const MatrixXd features = tools::random_features(model, points);

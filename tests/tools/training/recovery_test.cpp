@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Data drawn from the model itself, with known hyperparameters: the search must come back to them, as far as
-// the data can tell.
+// Data drawn from the model with known hyperparameters, which the search must recover within the accuracy
+// that the data allow.
 #include "tools/base/numerics/linear_algebra.hpp"
 #include "tools/training/likelihood/marginal_likelihood.hpp"
 #include "tools/training/search/minimise.hpp"
@@ -36,7 +36,7 @@ struct Draw {
                            : tools::derivative_input(data, rows, rows, spread, true);
     }
 
-    /// Ten outputs of different size with covariance rho_k^2 (K + r I).
+    /// Draws ten outputs of different sizes with covariance rho_k^2 (K + r I).
     MatrixXd outputs(const VectorXd& theta) {
         const MatrixXd inputs = input->inputs(theta.tail(theta.size() - 2));
         MatrixXd covariance = tools::gaussian_kernel(inputs, std::exp(theta[1]));
@@ -47,7 +47,7 @@ struct Draw {
     }
 };
 
-/// Second derivatives of log L at its maximum, negative: the information that the data have on theta.
+/// Negative second derivatives of log L at its maximum: the information of the data about theta.
 MatrixXd information(const tools::MarginalLikelihood& likelihood, const VectorXd& theta) {
     MatrixXd result(theta.size(), theta.size());
     for (Eigen::Index i = 0; i < theta.size(); ++i) {
@@ -74,13 +74,13 @@ TEST_CASE("hyperparameters are recovered from data drawn from the model") {
     const tools::Minimum minimum = tools::minimise(value_of, likelihood.bounds(), start, 1e-4, 300);
     const VectorXd error = minimum.point - truth;
     const MatrixXd curvature = information(likelihood, minimum.point);
-    // Asymptotically chi-squared with as many degrees of freedom as parameters; 0.001 quantiles.
+    // Asymptotically chi-squared with one degree of freedom per parameter; the 0.999 quantiles.
     CHECK(error.dot(curvature * error) < (structured ? 22.5 : 18.5));
     const MatrixXd covariance = tools::inverse_matrix(curvature);
     CHECK(covariance.diagonal().minCoeff() > 0);
-    CHECK(std::sqrt(covariance(0, 0)) < 0.15); // the data do tell the noise and the length scale
+    CHECK(std::sqrt(covariance(0, 0)) < 0.15); // the data determine the noise and the length scale
     CHECK(std::sqrt(covariance(1, 1)) < 0.15);
-    // Asymptotically half a chi-squared variable, too.
+    // Asymptotically half a chi-squared variable as well.
     CHECK(likelihood.evaluate(truth)->minus_two_log_likelihood - minimum.value < (structured ? 22.5 : 18.5));
     CHECK(minimum.value < likelihood.evaluate(truth)->minus_two_log_likelihood);
 }

@@ -42,7 +42,7 @@ class WithRepeatedColumn final : public tools::Regressor {
     double factor_;
 };
 
-/// A recording whose physics repeats a column three times as large, and what the robot says of it.
+/// A recording whose physics has a repeated column three times as large, and the robot's prior.
 struct Arm {
     tools::NormalSource random{dfdyn::tests::seed()};
     tools::TrainingData data = dfdyn::tests::arm_data(500, 3, 2, random);
@@ -62,7 +62,7 @@ struct Arm {
     }
 };
 
-TEST_CASE("the robot's knowledge of a column left out goes to the columns that replace it") {
+TEST_CASE("the prior of a column that was left out is added to the columns that replace it") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     const Arm arm;
     const tools::TrainingSetup setup(arm.data, arm.options);
@@ -80,15 +80,15 @@ TEST_CASE("the robot's knowledge of a column left out goes to the columns that r
     CHECK((covariance - expected).norm() < 1e-6 * expected.norm());
 }
 
-TEST_CASE("lags further apart do not change how many samples count as one") {
+TEST_CASE("the spacing of lags does not change the number of samples that count as one") {
     Arm arm;
     const double dense = tools::parameter_variance_factor({arm.data, arm.options});
-    arm.data.sample_period_s *= 3; // as of spaced_data(), which has the rows of all phases
+    arm.data.sample_period_s *= 3; // like spaced_data(), which contains the rows of all phases
     arm.options.every = 3;
     CHECK(tools::parameter_variance_factor({arm.data, arm.options}) == Approx(dense));
 }
 
-TEST_CASE("where the recording determines a parameter it counts, elsewhere the robot's own does") {
+TEST_CASE("a parameter follows the recording if that determines it and the robot's prior otherwise") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     Arm arm;
     const VectorXd truth{{2, -1, 3, 1.5, -2, 1}};
@@ -104,13 +104,13 @@ TEST_CASE("where the recording determines a parameter it counts, elsewhere the r
         const tools::TrainedPhysics physics = *tools::train(arm.data, arm.options).physics;
         VectorXd result = VectorXd::Zero(7);
         result(physics.columns) = physics.column_scale.cwiseProduct(physics.start.parameters);
-        result[1] += 3 * result[6]; // whichever was chosen
+        result[1] += 3 * result[6]; // for either choice of column
         return VectorXd(result.head(columns));
     };
     CHECK((parameters(1e4) - truth).norm() < 0.1);
     const VectorXd robot{{10, 40, 10, 10, 10, 10}};
     CHECK((parameters(1e-6) - robot).norm() < 0.1);
-    arm.options.shrinkage = false; // the paper's
+    arm.options.shrinkage = false; // the estimator of the paper
     CHECK((parameters(1e-6) - truth).norm() < 0.1);
 }
 

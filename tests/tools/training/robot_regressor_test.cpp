@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The regressor that training sees: its gradient against differences, its columns against the robot's
-// torques.
+// The regressor of training: its gradient compared with differences, its columns with the robot's torques.
 #include "tools/training/physics/robot_regressor.hpp"
 
 #include "tests/support/catch.hpp"
@@ -28,7 +27,7 @@ MotionState random_state(std::mt19937_64& engine, Index joints) {
     return {draw(), draw(), draw()};
 }
 
-/// sum(gradient ∘ ψ)
+/// The sum of all elements of gradient ∘ ψ.
 double contracted(const Regressor& regressor, const MotionState& state, const MatrixXd& gradient) {
     MatrixXd values;
     regressor.evaluate(state, values);
@@ -56,8 +55,7 @@ void check_gradient(const Regressor& regressor, MotionState state, const MatrixX
 
 } // namespace
 
-TEST_CASE(
-    "the gradient with respect to the motion is that of differences, for both outputs and all effects") {
+TEST_CASE("the gradient with respect to the motion equals differences for both outputs and all effects") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::vector<std::string> of_torques{"viscous_friction", "coulomb_friction", "stribeck_friction",
                                               "rotor_inertia",    "joint_spring",     "torque_offset"};
@@ -82,7 +80,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("columns times the robot's parameters are gravity's torques at rest, in units of the output") {
+TEST_CASE("columns times the robot's parameters are the gravity torques at rest in units of the output") {
     DFDYN_SEEDED_ENGINE(engine);
     Robot robot = random_robot(engine, 1);
     robot.joints[0].prismatic = false;
@@ -99,7 +97,7 @@ TEST_CASE("columns times the robot's parameters are gravity's torques at rest, i
     CHECK((values * parameters)(0, 0) == Approx(0.1 * torque).epsilon(1e-9));
 }
 
-TEST_CASE("columns are named with their units, in their order") {
+TEST_CASE("columns are named with their units in their order") {
     std::mt19937_64 engine(1);
     const Robot robot = random_robot(engine, 2);
     const ChainModel chain = chain_model(robot, OutputKind::joint_torque);
@@ -111,7 +109,7 @@ TEST_CASE("columns are named with their units, in their order") {
     CHECK(names[23] == "joint2 offset (N·m)");
 }
 
-TEST_CASE("effects that the outputs cannot show, or that nobody knows, are refused") {
+TEST_CASE("unknown effects and effects that the outputs cannot show are rejected") {
     std::mt19937_64 engine(1);
     Robot robot = random_robot(engine, 2);
     robot.sensor.reset();

@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 constexpr int lags = 3;
 constexpr int features = 12;
 
-/// A model with made-up constants, and the rows it starts from: more than two blocks.
+/// A model with invented constants, and its start rows, which fill more than two blocks.
 struct Problem {
     tools::NormalSource random{dfdyn::tests::seed()};
     tools::TrainingData data = dfdyn::tests::arm_data(700, 2, 3, random);
@@ -61,7 +61,7 @@ MatrixXd unit_upper(const tools::StartModel& start, Index size) {
     return upper;
 }
 
-TEST_CASE("the start's U D U' is the inverse of the information matrix") {
+TEST_CASE("the factors U D U' of the start are the inverse of the information matrix") {
     const double forgetting_factor = GENERATE(1.0, 0.995);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(forgetting_factor);
@@ -80,7 +80,7 @@ TEST_CASE("the start's U D U' is the inverse of the information matrix") {
     CHECK((covariance - truth).norm() < 1e-10 * truth.norm());
 }
 
-TEST_CASE("the start's weights are the least-squares solution") {
+TEST_CASE("the weights of the start are the least-squares solution") {
     const double forgetting_factor = GENERATE(1.0, 0.995);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(forgetting_factor);
@@ -109,17 +109,17 @@ TEST_CASE("the start's weights are the least-squares solution") {
     }
 }
 
-TEST_CASE("the start stays finite when forgetting leaves nothing of the prior") {
+TEST_CASE("the start is finite even if forgetting removes the prior") {
     Problem problem(0.9);
-    problem.data.positions.bottomRows(400).setZero(); // and the arm rests at the end
+    problem.data.positions.bottomRows(400).setZero(); // the arm also rests at the end
     const tools::StartModel start = tools::batch_start(problem.model, problem.data, problem.rows);
     const Eigen::Map<const VectorXd> diagonal(start.diagonal.data(), 2 * features);
     CHECK(diagonal.allFinite());
     CHECK(diagonal.minCoeff() > 0);
-    CHECK(diagonal.maxCoeff() <= 1.001e6 * 50); // the prior's variance over the weight it keeps
+    CHECK(diagonal.maxCoeff() <= 1.001e6 * 50); // variance of the prior divided by its remaining weight
 }
 
-TEST_CASE("a start whose information is singular is refused, with the prior that does not help") {
+TEST_CASE("a start with a singular information matrix is rejected with its prior variance") {
     Problem problem(1);
     problem.model.outputs.prior_variance = std::numeric_limits<double>::infinity(); // none
     problem.rows.resize(features); // for twice as many weights

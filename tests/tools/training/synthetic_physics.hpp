@@ -8,7 +8,7 @@
 
 namespace dfdyn::tests {
 
-/// Columns of the kind that mechanics has: linear in the accelerations, quadratic in the velocities.
+/// Columns like those of mechanics: linear in the accelerations and quadratic in the velocities.
 class SyntheticRegressor final : public tools::Regressor {
   public:
     SyntheticRegressor(Eigen::Index joints, Eigen::Index outputs, Eigen::Index columns,

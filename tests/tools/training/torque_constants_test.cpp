@@ -49,7 +49,7 @@ TrainingData currents(std::mt19937_64& engine, const Robot& robot, const std::ve
 
 } // namespace
 
-TEST_CASE("gains come back from currents with friction and offsets") {
+TEST_CASE("gains are recovered from currents with friction and offsets") {
     DFDYN_SEEDED_ENGINE(engine);
     const Robot robot = random_robot(engine, 3);
     const std::vector<double> gains{0.11, 0.09, 0.13};
@@ -60,20 +60,20 @@ TEST_CASE("gains come back from currents with friction and offsets") {
     }
 }
 
-TEST_CASE("a joint whose nominal torque is nothing gets the median of the others' gains") {
+TEST_CASE("a joint without nominal torque gets the median of the other gains") {
     DFDYN_SEEDED_ENGINE(engine);
     Robot robot = random_robot(engine, 4);
-    robot.joints.back().inertia *= 1e-9; // a wrist that carries nothing: its current is friction
+    robot.joints.back().inertia *= 1e-9; // a wrist without load, whose current is friction
     TrainingData data = currents(engine, robot, {0.08, 0.1, 0.12, 0.5});
     data.outputs.col(3) += VectorXd::NullaryExpr(400, [&] { return uniform(engine, -0.1, 0.1); });
     const auto found = estimate_torque_gains(robot, data, sign_velocity);
     CHECK(found[1].source == TorqueGain::Source::estimated);
     CHECK(found[3].source == TorqueGain::Source::median);
-    CHECK(found[3].gain >= 0.08 * (1 - 1e-6)); // of the others, with or without its own
+    CHECK(found[3].gain >= 0.08 * (1 - 1e-6)); // the median of the others, with or without its own gain
     CHECK(found[3].gain <= 0.12 * (1 + 1e-6));
 }
 
-TEST_CASE("a gain from a third to three times the median is a joint's own") {
+TEST_CASE("a gain is accepted between a third of the median and three times the median") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto [gain, own] = GENERATE(
         table<double, bool>({{0.032, false}, {0.034, true}, {0.1, true}, {0.29, true}, {0.31, false}}));
@@ -84,7 +84,7 @@ TEST_CASE("a gain from a third to three times the median is a joint's own") {
     CHECK((found[2].source == TorqueGain::Source::estimated) == own);
 }
 
-TEST_CASE("currents against the torque everywhere leave gains of one") {
+TEST_CASE("currents opposite to the torques at all joints give gains of one") {
     DFDYN_SEEDED_ENGINE(engine);
     const Robot robot = random_robot(engine, 2);
     for (const TorqueGain& gain :

@@ -30,7 +30,7 @@ using tools::ModelClass;
 
 constexpr int lags = 5;
 
-/// An arm of three joints whose two outputs are physics of six columns, friction that these do not have, and
+/// An arm of three joints with two outputs: physics of six columns, friction that is not among them, and
 /// noise.
 struct Arm {
     tools::NormalSource random{dfdyn::tests::seed()};
@@ -82,7 +82,7 @@ struct Arm {
     }
 };
 
-/// A regressor with one more column, of rounding errors.
+/// A regressor with an additional column of rounding errors.
 class WithRoundingColumn final : public tools::Regressor {
   public:
     explicit WithRoundingColumn(const tools::Regressor& exact) : exact_(exact) {}
@@ -108,7 +108,7 @@ class WithRoundingColumn final : public tools::Regressor {
     const tools::Regressor& exact_;
 };
 
-/// The model's predictions at `rows` of `data` as the firmware makes them, from the result's numbers alone.
+/// Predictions for the rows `rows` of `data` by the firmware's formulas, from the stored numbers alone.
 MatrixXd predictions(const Arm& arm, const tools::TrainingResult& result, const tools::TrainingData& data,
                      const tools::RowList& rows) {
     const tools::TrainedModel& model = result.model;
@@ -161,7 +161,7 @@ bool same(const tools::TrainingResult& a, const tools::TrainingResult& b) {
            a.physics->motion_rows == b.physics->motion_rows;
 }
 
-TEST_CASE("every model with every input predicts what it was trained on, from its numbers alone") {
+TEST_CASE("every model with every input predicts its training data from its stored numbers alone") {
     const auto model = GENERATE(ModelClass::P, ModelClass::SP, ModelClass::SP2, ModelClass::SPK);
     const auto input =
         GENERATE(InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR);
@@ -188,11 +188,11 @@ TEST_CASE("every model with every input predicts what it was trained on, from it
         relative_error(predictions(arm, result, arm.data, rows), arm.data.outputs(rows, Eigen::all));
     CHECK(error < (model == ModelClass::P ? 0.5 : 0.1));
     if (model == ModelClass::P) {
-        CHECK(error > 0.02); // it does not know friction
+        CHECK(error > 0.02); // the model has no friction
     }
 }
 
-TEST_CASE("physics carries the models to motions beyond those they were trained on") {
+TEST_CASE("physics lets the models predict motions beyond their training data") {
     const auto input = GENERATE(InputKind::STD, InputKind::DFR, InputKind::DFSR);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(static_cast<int>(input));
@@ -203,7 +203,7 @@ TEST_CASE("physics carries the models to motions beyond those they were trained 
     const MatrixXd truth = beyond.outputs(rows, Eigen::all);
     const double nonparametric =
         relative_error(predictions(arm, tools::train(arm.data, arm.options), beyond, rows), truth);
-    CHECK(nonparametric > 0.3); // it has seen nothing of the kind
+    CHECK(nonparametric > 0.3); // the training data contain nothing similar
     for (const auto model : {ModelClass::P, ModelClass::SP, ModelClass::SP2, ModelClass::SPK}) {
         CAPTURE(static_cast<int>(model));
         arm.options.model = model;
@@ -212,7 +212,7 @@ TEST_CASE("physics carries the models to motions beyond those they were trained 
     }
 }
 
-TEST_CASE("physical parameters come out where the physics is right") {
+TEST_CASE("physical parameters are correct if the physics is") {
     const auto model = GENERATE(ModelClass::SP, ModelClass::SPK);
     const auto prior = GENERATE(tools::PriorForm::scaled, tools::PriorForm::unit, tools::PriorForm::diagonal);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
@@ -232,7 +232,7 @@ TEST_CASE("physical parameters come out where the physics is right") {
     }
 }
 
-TEST_CASE("a column of rounding error never becomes a parameter") {
+TEST_CASE("a column of rounding errors never becomes a parameter") {
     const auto model = GENERATE(ModelClass::P, ModelClass::SP, ModelClass::SP2, ModelClass::SPK);
     const auto prior = GENERATE(tools::PriorForm::scaled, tools::PriorForm::unit, tools::PriorForm::diagonal);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
@@ -249,7 +249,7 @@ TEST_CASE("a column of rounding error never becomes a parameter") {
     CHECK(result.physics->columns.size() == 6);
 }
 
-TEST_CASE("the prior deviation of a parameter is at most what a machine can have") {
+TEST_CASE("the prior deviation of a parameter is at most the size that a machine can have") {
     const auto model = GENERATE(ModelClass::P, ModelClass::SPK);
     const auto prior = GENERATE(tools::PriorForm::scaled, tools::PriorForm::unit, tools::PriorForm::diagonal);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
@@ -273,7 +273,7 @@ TEST_CASE("the prior deviation of a parameter is at most what a machine can have
     }
 }
 
-TEST_CASE("columns of the physics are of order one in units of the noise") {
+TEST_CASE("the columns of the physics are of order one in units of the noise") {
     Arm arm;
     arm.options.model = ModelClass::SPK;
     arm.options.input = InputKind::STD;
@@ -289,22 +289,23 @@ TEST_CASE("columns of the physics are of order one in units of the noise") {
     }
 }
 
-TEST_CASE("the physics of DFR can have filters of its own") {
+TEST_CASE("the physics of DFR can have its own filters") {
     const auto model = GENERATE(ModelClass::SP2, ModelClass::SPK);
     Arm arm;
     arm.options.model = model;
     arm.options.physics.own_motion = true;
-    arm.options.rows_per_joint = 2; // none of them an acceleration
+    arm.options.rows_per_joint = 2; // without an acceleration
     const tools::TrainingResult result = tools::train(arm.data, arm.options);
     const MatrixXd& rows = result.physics->motion_rows;
-    CHECK(rows.bottomRows(2).rowwise().sum().norm() < 1e-8 * rows.norm()); // constants are at rest
+    // a constant position has no velocity or acceleration
+    CHECK(rows.bottomRows(2).rowwise().sum().norm() < 1e-8 * rows.norm());
     const VectorXd time = -arm.data.sample_period_s * VectorXd::LinSpaced(lags + 1, 0, lags);
     CHECK(rows.row(1).dot(time) == Approx(1));
     CHECK(rows.row(2).dot(time.cwiseAbs2() / 2) == Approx(1));
     CHECK(result.model.input.rows_per_joint == 2);
 }
 
-TEST_CASE("SP2 takes parameters that are given") {
+TEST_CASE("SP2 uses given parameters") {
     Arm arm;
     arm.options.model = ModelClass::SP2;
     arm.options.hyper = GENERATE(HyperMethod::ML, HyperMethod::CV);
@@ -316,8 +317,8 @@ TEST_CASE("SP2 takes parameters that are given") {
     CHECK(result.physics->columns.size() == 6);
 }
 
-TEST_CASE("DFR is at least as likely as DFSR") {
-    // Without a motion of its own SPK's prior has other units under either input.
+TEST_CASE("the likelihood of DFR is at least that of DFSR") {
+    // Without filters of its own, the prior of SPK has different units for the two inputs.
     const auto [model, own_motion] = GENERATE(
         table<ModelClass, bool>({{ModelClass::NP, true}, {ModelClass::SPK, true}, {ModelClass::SP, false}}));
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
@@ -330,10 +331,11 @@ TEST_CASE("DFR is at least as likely as DFSR") {
     arm.options.input = InputKind::DFR;
     arm.options.starts = 1;
     CHECK(tools::train(arm.data, arm.options).model.training.log_likelihood >=
-          structured - (own_motion ? 1e-6 : 1e-3)); // the search's tolerance: the filters are cut differently
+          // tolerance of the search; the filters are truncated differently
+          structured - (own_motion ? 1e-6 : 1e-3));
 }
 
-TEST_CASE("cross validation fills the model and gives the grid") {
+TEST_CASE("cross validation fills the model and reports its grid") {
     const auto model = GENERATE(ModelClass::NP, ModelClass::P, ModelClass::SP2);
     const auto input = GENERATE(InputKind::STD, InputKind::DF, InputKind::DFSR);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
@@ -360,7 +362,7 @@ TEST_CASE("cross validation fills the model and gives the grid") {
     }
 }
 
-TEST_CASE("cross validation takes the point with the least error on what it holds out") {
+TEST_CASE("cross validation selects the point with the smallest hold-out error") {
     const auto input = GENERATE(InputKind::STD, InputKind::DF, InputKind::DFSR);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(static_cast<int>(input));
@@ -395,7 +397,7 @@ TEST_CASE("cross validation takes the point with the least error on what it hold
     CHECK(tools::best_point(result.hold_out).error == Approx(error).epsilon(1e-6));
 }
 
-TEST_CASE("training with physics gives the same model again, whatever the number of threads") {
+TEST_CASE("training with physics is deterministic for any number of threads") {
     const auto model = GENERATE(ModelClass::P, ModelClass::SP, ModelClass::SP2, ModelClass::SPK);
     CAPTURE(static_cast<int>(model));
     Arm arm;
@@ -405,7 +407,7 @@ TEST_CASE("training with physics gives the same model again, whatever the number
     CHECK(same(first, tools::train(arm.data, arm.options)));
 }
 
-TEST_CASE("options that do not go together are refused") {
+TEST_CASE("inconsistent options are rejected") {
     Arm arm;
     arm.options.model = ModelClass::SPK;
     SECTION("no robot") {
@@ -449,7 +451,7 @@ TEST_CASE("options that do not go together are refused") {
     }
 }
 
-TEST_CASE("outputs beyond what doubles can square leave no start with a finite likelihood") {
+TEST_CASE("outputs whose squares overflow leave no start with a finite likelihood") {
     Arm arm;
     arm.options.model = GENERATE(ModelClass::P, ModelClass::SP, ModelClass::SPK);
     arm.data.outputs *= 1e200;

@@ -63,7 +63,7 @@ bool same(const tools::TrainedModel& a, const tools::TrainedModel& b) {
            a.training.all_starts == b.training.all_starts;
 }
 
-/// The first third of the rows repeat the first sample: the arm stands still.
+/// Appends a standstill: the first `rows` rows repeat the first sample.
 tools::TrainingData with_standstill(tools::TrainingData data, Index rows) {
     tools::TrainingData result = data;
     const Index total = data.positions.rows() + rows;
@@ -75,7 +75,7 @@ tools::TrainingData with_standstill(tools::TrainingData data, Index rows) {
     return result;
 }
 
-TEST_CASE("training fills the whole model, for every input") {
+TEST_CASE("training fills the complete model for every input") {
     const auto kind =
         GENERATE(InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR);
     CAPTURE(static_cast<int>(kind));
@@ -105,7 +105,7 @@ TEST_CASE("training fills the whole model, for every input") {
           *std::max_element(model.training.all_starts.begin(), model.training.all_starts.end()));
 }
 
-TEST_CASE("a trained model predicts what it was trained on") {
+TEST_CASE("a trained model predicts its training data") {
     const auto kind = GENERATE(InputKind::STD, InputKind::DFR, InputKind::DFSR);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(static_cast<int>(kind));
@@ -129,7 +129,7 @@ TEST_CASE("a trained model predicts what it was trained on") {
     }
 }
 
-TEST_CASE("training gives the same model again, whatever the number of threads") {
+TEST_CASE("training is deterministic for any number of threads") {
     const auto kind = GENERATE(InputKind::STD, InputKind::DFR, InputKind::DFSR);
     CAPTURE(static_cast<int>(kind));
     const tools::TrainingData data = three_joints();
@@ -145,10 +145,10 @@ TEST_CASE("training gives the same model again, whatever the number of threads")
     CHECK(other.features.omega != first.features.omega);
 }
 
-TEST_CASE("rows at rest set neither scales nor offsets") {
+TEST_CASE("rows at rest affect neither scales nor offsets") {
     const tools::TrainingData moving = three_joints();
     const tools::TrainingData resting = with_standstill(moving, 3000);
-    const tools::TrainingOptions options = quick_options(InputKind::DF); // scales without parameters
+    const tools::TrainingOptions options = quick_options(InputKind::DF); // scales without hyperparameters
     const tools::TrainedModel a = trained(moving, options);
     const tools::TrainedModel b = trained(resting, options);
     for (std::size_t i = 0; i < a.input.scale.size(); ++i) {
@@ -157,12 +157,12 @@ TEST_CASE("rows at rest set neither scales nor offsets") {
     for (std::size_t k = 0; k < 2; ++k) {
         const auto output = moving.outputs.col(static_cast<Index>(k));
         const double range = output.maxCoeff() - output.minCoeff();
-        // Behind the standstill five more rows in motion have a whole window.
+        // After the standstill five more rows in motion have a complete window.
         CHECK(std::abs(b.outputs.offset[k] - a.outputs.offset[k]) < 5 * range / 595);
     }
 }
 
-TEST_CASE("outputs that are not centred have offset 0; centring is the same as taking the mean away before") {
+TEST_CASE("uncentred outputs have offset 0 and centring equals subtracting the mean first") {
     const auto hyper = GENERATE(tools::HyperMethod::ML, tools::HyperMethod::CV);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     tools::TrainingData data = three_joints();
@@ -185,7 +185,7 @@ TEST_CASE("STD without relevance scales every input to unit deviation") {
     options.relevance = false;
     const tools::TrainingData data = three_joints();
     const tools::TrainedModel model = trained(data, options);
-    for (Index joint = 0; joint < 3; ++joint) { // all rows are in motion, the first five have no window
+    for (Index joint = 0; joint < 3; ++joint) { // all rows are in motion; the first five have no window
         const auto deviation = [](const VectorXd& x) {
             return std::sqrt((x.array() - x.mean()).square().mean());
         };
@@ -198,7 +198,7 @@ TEST_CASE("STD without relevance scales every input to unit deviation") {
     CHECK(trained(data, options).training.log_likelihood >= model.training.log_likelihood);
 }
 
-TEST_CASE("limits are ten times what training saw, at least two pi for positions") {
+TEST_CASE("limits are ten times the largest training value and at least two pi for positions") {
     tools::TrainingData data = three_joints();
     data.positions.col(1) *= 0.01;
     const tools::TrainedModel model = trained(data, quick_options(InputKind::DFSR));
@@ -233,7 +233,7 @@ TEST_CASE("training reports every evaluation and every start") {
     CHECK(last.evaluations_most == 80); // three starts and the refinement
     CHECK(after_the_starts > 0);
     CHECK(ends == model.training.all_starts);
-    CHECK(starting_calls == 1); // then the start of learning is computed
+    CHECK(starting_calls == 1); // followed by the start of learning
 }
 
 TEST_CASE("cross validation reports every point of its grid") {
@@ -256,7 +256,7 @@ TEST_CASE("an exception of the callback ends training") {
     CHECK_THROWS_AS(tools::train(three_joints(), quick_options(InputKind::DFR), callback), std::domain_error);
 }
 
-TEST_CASE("training refuses data that it cannot learn from") {
+TEST_CASE("training rejects data from which it cannot learn") {
     tools::TrainingData data = three_joints();
     const tools::TrainingOptions options = quick_options(InputKind::DFR);
     SECTION("an arm at rest") {
@@ -291,7 +291,7 @@ TEST_CASE("training refuses data that it cannot learn from") {
     }
 }
 
-TEST_CASE("training refuses options out of range") {
+TEST_CASE("training rejects options out of range") {
     tools::TrainingOptions options = quick_options(InputKind::DFR);
     const tools::TrainingData data = three_joints();
     SECTION("lags") {

@@ -27,9 +27,9 @@ std::string message(const tools::TrainingData& data, InputKind kind = InputKind:
     return "";
 }
 
-TEST_CASE("sound training data pass") { CHECK(message(small_data()).empty()); }
+TEST_CASE("valid training data pass") { CHECK(message(small_data()).empty()); }
 
-TEST_CASE("training data are refused by row and column") {
+TEST_CASE("invalid training data are rejected with row and column") {
     tools::TrainingData data = small_data();
     const double nan = std::numeric_limits<double>::quiet_NaN();
     SECTION("position") {
@@ -53,7 +53,7 @@ TEST_CASE("training data are refused by row and column") {
     }
 }
 
-TEST_CASE("training data of the wrong shape are refused") {
+TEST_CASE("training data of the wrong shape are rejected") {
     tools::TrainingData data = small_data();
     SECTION("outputs") {
         data.outputs.conservativeResize(29, 3);
@@ -77,7 +77,7 @@ TEST_CASE("training data of the wrong shape are refused") {
     }
 }
 
-TEST_CASE("derivatives are not asked for where the input does without") {
+TEST_CASE("derivatives are not required if the input does not use them") {
     tools::TrainingData data = small_data();
     data.velocities.resize(0, 0);
     data.accelerations.setConstant(std::numeric_limits<double>::quiet_NaN());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long training takes with the default effort.
+// Duration of training with the default effort.
 #include "tests/support/catch.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tests/tools/training/synthetic_physics.hpp"

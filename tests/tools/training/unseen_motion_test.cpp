@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a model with physics predicts of a real arm's motion that it has not seen and does not learn.
+// Predictions of a real arm's motion by a model with physics that was not trained on it and does not learn.
 #include "tools/training/model_training.hpp"
 
 #include "tests/support/catch.hpp"
@@ -24,10 +24,10 @@ Recording recording(const std::string& name, RowRange rows = {}) {
     return read_recording(std::filesystem::path(DFDYN_TEST_DATA_DIR) / "ur5_kufieta" / name, options);
 }
 
-/// Per output.
+/// Result per output.
 struct Outcome {
-    VectorXd error;    ///< rms over the deviation from the mean of the recording learned
-    VectorXd coverage; ///< share within two standard deviations
+    VectorXd error;    ///< rms relative to the deviation from the mean of the training recording
+    VectorXd coverage; ///< share of samples within two standard deviations
 };
 
 Outcome frozen(std::span<const TrainedModel> models, const Recording& learned, const Recording& unseen) {
@@ -76,8 +76,8 @@ TrainedModel trained(const Recording& learned, const ModelTraining& training) {
         .model;
 }
 
-// This pair had been seen when the range in Extrapolation::parameter_doubt was chosen.
-TEST_CASE("P predicts a motion that a real arm has not shown it, and its deviation holds", "[.long]") {
+// This pair of recordings was already known when the range in Extrapolation::parameter_doubt was chosen.
+TEST_CASE("P predicts a motion of a real arm outside its training data within its deviation", "[.long]") {
     const Recording learned = recording("Movement_No5_Acc_slow_no_disturbance.csv");
     const Recording unseen = recording("Movement_No9_Singularity_Free_NoDist.csv");
     ModelTraining training;
@@ -97,8 +97,8 @@ TEST_CASE("P predicts a motion that a real arm has not shown it, and its deviati
     CHECK(paper.coverage.maxCoeff() < 0.9);
 }
 
-// These rows are among those that chose how much variances weigh.
-TEST_CASE("frozen, a combination is at most 5 % worse than its best member on more of the motion learned",
+// These rows are among the data that chose the weight of the variances.
+TEST_CASE("a frozen combination is at most 5 % worse than its best member later in the training motion",
           "[.long]") {
     const std::string name = "Movement_No5_Acc_slow_no_disturbance.csv";
     const Recording learned = recording(name, {0, 2200});

@@ -23,7 +23,7 @@ VectorXd some_variances(PhysicsPrior prior) {
     return x;
 }
 
-TEST_CASE("the variance criterion is the normal density of the outputs, and has its derivatives") {
+TEST_CASE("the variance criterion and its derivatives are those of the normal density of the outputs") {
     const auto prior = GENERATE(PhysicsPrior::none, PhysicsPrior::shared, PhysicsPrior::diagonal);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     CAPTURE(static_cast<int>(prior));
@@ -46,7 +46,7 @@ TEST_CASE("the variance criterion is the normal density of the outputs, and has 
     }
 }
 
-TEST_CASE("the best variances are a minimum of the criterion") {
+TEST_CASE("the best variances minimise the criterion") {
     const auto prior = GENERATE(PhysicsPrior::none, PhysicsPrior::shared);
     const std::uint64_t seed = dfdyn::tests::seed() + GENERATE(range(0U, 5U));
     CAPTURE(static_cast<int>(prior), seed);
@@ -62,12 +62,12 @@ TEST_CASE("the best variances are a minimum of the criterion") {
         const VectorXd elsewhere = x + 0.3 * random.matrix(x.size(), 1);
         CHECK(model.log_density(prior, elsewhere) <= model.log_density(prior, x) + 1e-9);
     }
-    // sums are rounded as their terms happen to be aligned
+    // The rounding of sums depends on the alignment of their terms.
     CHECK(best->at.value ==
           Approx(tools::variance_criterion(model.statistics(), prior, x)->value).epsilon(1e-13));
 }
 
-TEST_CASE("a prior can be held while the outputs' variances are found") {
+TEST_CASE("the variance of a prior can be fixed while those of the outputs are estimated") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     const LinearModel model(dfdyn::tests::seed());
     const VectorXd log_prior{{0.5, -1, 20, -20}};
@@ -85,13 +85,13 @@ TEST_CASE("variances are recovered from outputs drawn with them") {
     model.draw(truth, 4.0);
     const auto best = tools::best_variances(model.statistics(), PhysicsPrior::shared);
     REQUIRE(best);
-    for (Index k = 0; k < 3; ++k) { // the logarithm's standard deviation is sqrt(2 / N) = 0.07
+    for (Index k = 0; k < 3; ++k) { // the standard deviation of the logarithm is sqrt(2 / N) = 0.07
         CHECK(std::abs(std::log(best->output_variance[k]) - truth[k]) < 4 * 0.071);
     }
     CHECK(std::abs(std::log(best->prior_variance[0] / 4.0)) < 4 * std::sqrt(2.0 / LinearModel::columns));
 }
 
-TEST_CASE("what is returned is a minimum also where columns are nearly the same, or nothing is") {
+TEST_CASE("for nearly collinear columns the result is a minimum or there is none") {
     const auto prior = GENERATE(PhysicsPrior::none, PhysicsPrior::shared, PhysicsPrior::diagonal);
     const double difference = GENERATE(1e-3, 1e-5, 1e-6, 1e-7, 1e-8);
     const std::uint64_t seed = dfdyn::tests::seed() + GENERATE(range(0U, 10U));
@@ -109,7 +109,7 @@ TEST_CASE("what is returned is a minimum also where columns are nearly the same,
     }
 }
 
-TEST_CASE("columns that are the same leave least squares without a solution, a prior does not") {
+TEST_CASE("equal columns leave least squares without a solution unless there is a prior") {
     LinearModel model(dfdyn::tests::seed());
     for (Index k = 0; k < LinearModel::outputs; ++k) {
         model.psi.col(k * LinearModel::columns + 1) = model.psi.col(k * LinearModel::columns);
@@ -119,8 +119,9 @@ TEST_CASE("columns that are the same leave least squares without a solution, a p
     CHECK(tools::best_variances(model.statistics(), PhysicsPrior::shared));
 }
 
-// Proposition proposition:connection_SPK_SPmean of the paper.
-TEST_CASE("as gamma grows the estimators of SPK and SP coincide, their likelihoods differ by a determinant") {
+// The paper's proposition on SPK and SP with the mean of the parameters.
+TEST_CASE(
+    "as gamma grows the estimators of SPK and SP coincide and their likelihoods differ by a determinant") {
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
     const LinearModel model(dfdyn::tests::seed());
     const VectorXd log_variances = some_variances(PhysicsPrior::none);
@@ -145,7 +146,7 @@ TEST_CASE("as gamma grows the estimators of SPK and SP coincide, their likelihoo
     }
     CHECK(last_estimate < 1e-5 * mean->parameters.norm());
     CHECK(last_likelihood < 1e-4);
-    CHECK(std::abs(determinant) > 0.1); // the term that sets them apart
+    CHECK(std::abs(determinant) > 0.1); // the term by which they differ
 }
 
 } // namespace variance_components_test
