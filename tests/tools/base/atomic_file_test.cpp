@@ -29,7 +29,7 @@ using dfdyn::tools::GrowingFile;
 using dfdyn::tools::InputError;
 using dfdyn::tools::write_file;
 
-/// Runs `work` in a child process and returns how it ended, as waitpid says it. Exit status 99: an exception.
+/// Runs `work` in a child process and returns its waitpid status. Exit status 99 means an exception.
 template <typename Work>
 int status_of_child(Work work) {
     const pid_t child = ::fork();
@@ -60,7 +60,7 @@ class Pipe {
     void close_reading_end() { close_once(ends_[0]); }
     void close_writing_end() { close_once(ends_[1]); }
 
-    /// Up to 10 kB; waits for some; empty at the end.
+    /// Reads up to 10 kB, waits for the first byte, and returns nothing at the end.
     std::string read_some() const {
         std::array<char, 10'000> part{};
         const ssize_t count = ::read(ends_[0], part.data(), part.size());
@@ -81,7 +81,7 @@ void write_half(AtomicFile& file) { file.stream() << "half of " << std::flush; }
 
 } // namespace
 
-TEST_CASE("write_file writes all bytes and leaves nothing beside them") {
+TEST_CASE("write_file writes all bytes and leaves no other file") {
     const TemporaryDirectory directory;
     const std::filesystem::path target = directory.path() / "out";
     const std::string content = std::string("a\0\r\n", 4) + std::string(1'000'000, 'x');
@@ -105,7 +105,7 @@ TEST_CASE("AtomicFile shows its target only after commit") {
     CHECK(directory.file_count() == 1);
 }
 
-TEST_CASE("AtomicFile without commit leaves no trace") {
+TEST_CASE("AtomicFile without commit changes nothing") {
     const TemporaryDirectory directory;
     const std::filesystem::path target = directory.write("out", "before");
     const auto interrupted = [&] {
@@ -118,7 +118,7 @@ TEST_CASE("AtomicFile without commit leaves no trace") {
     CHECK(directory.file_count() == 1);
 }
 
-TEST_CASE("AtomicFile lets two writers of one target finish, the last one wins") {
+TEST_CASE("AtomicFile lets two writers of one target finish and the last one wins") {
     const TemporaryDirectory directory;
     const std::filesystem::path target = directory.path() / "out";
     AtomicFile first(target);
@@ -132,7 +132,7 @@ TEST_CASE("AtomicFile lets two writers of one target finish, the last one wins")
     CHECK(directory.file_count() == 1);
 }
 
-TEST_CASE("AtomicFile that is done leaves alone a temporary file that now has its name") {
+TEST_CASE("a committed AtomicFile does not remove a new temporary file of the same name") {
     const TemporaryDirectory directory;
     const std::filesystem::path target = directory.path() / "out";
     auto first = std::make_unique<AtomicFile>(target);
@@ -144,7 +144,7 @@ TEST_CASE("AtomicFile that is done leaves alone a temporary file that now has it
     CHECK(file_content(target) == "second");
 }
 
-TEST_CASE("AtomicFile writes numbers alike in every locale") {
+TEST_CASE("AtomicFile writes numbers the same way in every locale") {
     struct Comma : std::numpunct<char> {
         char do_decimal_point() const override { return ','; }
     };
@@ -177,7 +177,7 @@ TEST_CASE("AtomicFile removes its temporary file when a signal ends the program"
     CHECK(directory.file_count() == 1);
 }
 
-TEST_CASE("AtomicFile leaves alone a signal that the program ignores or handles") {
+TEST_CASE("AtomicFile does not change signals that the program ignores or handles") {
     const TemporaryDirectory directory;
     const std::filesystem::path target = directory.path() / "out";
     const int status = status_of_child([&] {
@@ -196,7 +196,7 @@ TEST_CASE("AtomicFile leaves alone a signal that the program ignores or handles"
     CHECK(file_content(target) == "whole");
 }
 
-TEST_CASE("a signal after the file is done removes nothing") {
+TEST_CASE("a signal after the commit removes nothing") {
     const TemporaryDirectory directory;
     const std::filesystem::path target = directory.path() / "out";
     const int status = status_of_child([&] {
@@ -212,7 +212,7 @@ TEST_CASE("a signal after the file is done removes nothing") {
     CHECK(directory.file_count() == 1);
 }
 
-TEST_CASE("AtomicFile reports a disk that refuses, out of the write, and leaves the target") {
+TEST_CASE("AtomicFile reports a full disk when writing and keeps the target") {
     const TemporaryDirectory directory;
     const std::filesystem::path target = directory.write("out", "before");
     const int status = status_of_child([&] {
@@ -236,9 +236,9 @@ TEST_CASE("AtomicFile reports a disk that refuses, out of the write, and leaves 
     CHECK(directory.file_count() == 1);
 }
 
-TEST_CASE("AtomicFile does not commit what it could not write") {
-    // A pipe that nobody reads, and no device such as /dev/full: a broken build run as root would replace the
-    // device.
+TEST_CASE("AtomicFile does not commit if a write failed") {
+    // A pipe that nobody reads, instead of a device like /dev/full, which a faulty build run as root would
+    // replace.
     Pipe pipe;
     const std::string target = pipe.writing_end();
     AtomicFile flushed(target);
@@ -256,7 +256,7 @@ TEST_CASE("AtomicFile does not commit what it could not write") {
     std::signal(SIGPIPE, previous);
 }
 
-TEST_CASE("AtomicFile names the path and the reason when it cannot begin") {
+TEST_CASE("AtomicFile names the path and the reason if it cannot begin") {
     const TemporaryDirectory directory;
     const std::string base = directory.path().string();
     CHECK_THROWS_MATCHES(write_file(base + "/none/out", "x"), InputError,
@@ -278,7 +278,7 @@ TEST_CASE("AtomicFile names the path and the reason when it cannot begin") {
     CHECK(directory.file_count() == 0);
 }
 
-TEST_CASE("AtomicFile reports a target that became a directory meanwhile") {
+TEST_CASE("AtomicFile reports a target that has become a directory") {
     const TemporaryDirectory directory;
     const std::string target = directory.path() / "out";
     {
@@ -291,13 +291,13 @@ TEST_CASE("AtomicFile reports a target that became a directory meanwhile") {
     CHECK(directory.file_count() == 1);
 }
 
-TEST_CASE("AtomicFile refuses to replace a file that its user may not write") {
+TEST_CASE("AtomicFile does not replace a file that its user may not write") {
     const TemporaryDirectory directory;
     const std::filesystem::path target = directory.write("out", "before");
     REQUIRE(::chmod(target.c_str(), 0444) == 0);
     REQUIRE(::chmod(directory.path().c_str(), 0777) == 0);
     const int status = status_of_child([&] {
-        constexpr uid_t nobody = 65534; // root may write everything
+        constexpr uid_t nobody = 65534; // because root may write everything
         if (::geteuid() == 0 && ::seteuid(nobody) != 0) {
             return 2;
         }
@@ -329,7 +329,7 @@ TEST_CASE("AtomicFile keeps the permissions of an existing file and obeys the um
     CHECK((status.st_mode & 07777U) == 0640U);
 }
 
-TEST_CASE("AtomicFile writes through symbolic links, also to a file that is not there yet") {
+TEST_CASE("AtomicFile writes through symbolic links even if their target does not exist yet") {
     const TemporaryDirectory directory;
     const std::filesystem::path target = directory.path() / "target";
     const std::filesystem::path link = directory.path() / "link";
@@ -349,10 +349,10 @@ TEST_CASE("AtomicFile writes a pipe directly") {
     CHECK(pipe.read_some() == "through");
 }
 
-TEST_CASE("AtomicFile writes all bytes however often a signal interrupts it") {
+TEST_CASE("AtomicFile writes all bytes however many signals interrupt it") {
     struct sigaction interrupting {};
     struct sigaction previous {};
-    interrupting.sa_handler = [](int) {}; // no SA_RESTART: a write returns early, with a part or nothing done
+    interrupting.sa_handler = [](int) {}; // without SA_RESTART a write returns early, after a part or nothing
     REQUIRE(::sigaction(SIGUSR1, &interrupting, &previous) == 0);
     Pipe pipe;
     std::string received;
@@ -375,7 +375,7 @@ TEST_CASE("AtomicFile writes all bytes however often a signal interrupts it") {
     CHECK(received == content);
 }
 
-TEST_CASE("AtomicFile refuses a seventeenth file at once, and has room again afterwards") {
+TEST_CASE("AtomicFile rejects a seventeenth file and accepts one again afterwards") {
     const TemporaryDirectory directory;
     const std::string base = directory.path() / "out";
     {
@@ -389,7 +389,7 @@ TEST_CASE("AtomicFile refuses a seventeenth file at once, and has room again aft
     CHECK(directory.file_count() == 1);
 }
 
-TEST_CASE("GrowingFile shows what was flushed at once, in place of what was there") {
+TEST_CASE("GrowingFile replaces its target and shows data as soon as they are flushed") {
     const TemporaryDirectory directory;
     const auto target = directory.write("out.csv", "what was there before, and is longer");
     {
@@ -404,7 +404,7 @@ TEST_CASE("GrowingFile shows what was flushed at once, in place of what was ther
     CHECK_THROWS_AS(GrowingFile(directory.path()), InputError);
 }
 
-TEST_CASE("make_folder makes what is missing and leaves what is there") {
+TEST_CASE("make_folder creates missing folders and keeps existing ones") {
     const TemporaryDirectory directory;
     const std::filesystem::path folder = directory.path() / "a/b/c";
     dfdyn::tools::make_folder(folder);

@@ -75,7 +75,7 @@ void check_equal(const Columns& one, const Columns& other) {
 
 } // namespace
 
-TEST_CASE("a recording that was written reads back the same, bit by bit") {
+TEST_CASE("a recording that was written reads back bit by bit") {
     DFDYN_SEEDED_ENGINE(engine);
     const TemporaryDirectory directory;
     for (int count = 0; count < 100; ++count) {
@@ -104,7 +104,7 @@ TEST_CASE("CsvWriter writes numbers and names separated by commas") {
     CHECK(out.str() == "t,tau1_pred,tau1_std,status\n0.008,-1.5,nan,ok\n");
 }
 
-TEST_CASE("CsvWriter cannot write a ragged table, nor a name that would break it") {
+TEST_CASE("CsvWriter rejects incomplete rows and names that would break the table") {
     std::ostringstream out;
     CsvWriter writer(out, Names{"t", "q1"});
     writer.field(1);

@@ -29,7 +29,7 @@ Lines read_all(const std::filesystem::path& path) {
 
 } // namespace
 
-TEST_CASE("LineReader takes LF, CRLF, no end of the last line, and drops a byte order mark") {
+TEST_CASE("LineReader accepts LF and CRLF and a last line without either and drops a byte order mark") {
     const auto [content, lines] = GENERATE(table<std::string, Lines>({
         {"", {}},
         {"a", {"a"}},
@@ -46,7 +46,7 @@ TEST_CASE("LineReader takes LF, CRLF, no end of the last line, and drops a byte 
     CHECK(read_all(directory.write("text", content)) == lines);
 }
 
-TEST_CASE("LineReader gives random lines back whatever their lengths") {
+TEST_CASE("LineReader returns random lines of any length") {
     DFDYN_SEEDED_ENGINE(engine);
     std::geometric_distribution<std::size_t> short_length(0.05);
     std::uniform_int_distribution<std::size_t> long_length(60'000, 200'000);
@@ -61,11 +61,12 @@ TEST_CASE("LineReader gives random lines back whatever their lengths") {
     CHECK(read_all(directory.write("text", content)) == lines);
 }
 
-TEST_CASE("LineReader limits the length of a line, not of the file") {
+TEST_CASE("LineReader limits the length of a line but not of the file") {
     const TemporaryDirectory directory;
     const std::string longest(LineReader::longest_line, 'x');
     CHECK(read_all(directory.write("text", longest + "\r\n" + longest)) == Lines{longest, longest});
-    // 65534: the reader has read up to the CR of the second line, and not its LF, when it looks at the length
+    // With 65534 bytes the reader has read the CR of the second line but not its LF when it checks the
+    // length.
     const std::string shifted(65534, 'a');
     CHECK(read_all(directory.write("text", shifted + "\n" + longest + "\r\n")) == Lines{shifted, longest});
     const auto path = directory.write("text", "a\n" + longest + "x\n");
@@ -78,7 +79,7 @@ TEST_CASE("LineReader limits the length of a line, not of the file") {
                              "/dev/zero:1: expected a line of at most 1048576 bytes, found a longer one"));
 }
 
-TEST_CASE("LineReader says what the system refuses") {
+TEST_CASE("LineReader reports the reason of the system") {
     const TemporaryDirectory directory;
     const std::string path = directory.path().string();
     CHECK_THROWS_MATCHES(read_all(path + "/none"), InputError,

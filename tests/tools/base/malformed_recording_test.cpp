@@ -18,7 +18,7 @@ using dfdyn::tests::TemporaryDirectory;
 
 const ReadOptions torque{.outputs = OutputKind::joint_torque, .velocity = true, .acceleration = true};
 
-/// What is said about the file `content`, behind its path; nothing when it is read.
+/// The error message about a file with `content`, without its path, or nothing if the file can be read.
 std::optional<std::string> refusal(const TemporaryDirectory& directory, std::string_view content,
                                    const ReadOptions& options) {
     const std::string path = directory.write("log.csv", content);
@@ -51,7 +51,7 @@ bool is_one_line(const std::string& text) {
     return std::all_of(text.begin(), text.end(), [](char byte) { return byte >= ' ' && byte <= '~'; });
 }
 
-/// A file that is read, or refused with one line; anything else (a crash, another exception) fails the test.
+/// Checks that the file is read or rejected with one line. A crash or another exception fails the test.
 void check_survived(const TemporaryDirectory& directory, const std::string& content) {
     for (const bool skip : {false, true}) {
         ReadOptions options = torque;
@@ -64,7 +64,7 @@ void check_survived(const TemporaryDirectory& directory, const std::string& cont
 
 } // namespace
 
-TEST_CASE("a bad header is refused with what was expected and found") {
+TEST_CASE("a bad header is rejected with the expected and the found text") {
     const std::string needed = "1: expected columns t, q1, q2, tau1, tau2, found no ";
     check_refused(
         {
@@ -120,7 +120,7 @@ TEST_CASE("a bad header is refused with what was expected and found") {
         torque);
 }
 
-TEST_CASE("a header that does not fit the chain is refused") {
+TEST_CASE("a header that does not fit the chain is rejected") {
     ReadOptions two_joints;
     two_joints.joint_count = 2;
     check_refused(
@@ -131,7 +131,7 @@ TEST_CASE("a header that does not fit the chain is refused") {
         two_joints);
 }
 
-TEST_CASE("a header with very many columns is refused in a short line") {
+TEST_CASE("a header with very many columns is rejected with a short message") {
     std::string header = "t";
     for (int column = 0; column < 10'000; ++column) {
         header += ",x" + std::to_string(column);
@@ -143,7 +143,7 @@ TEST_CASE("a header with very many columns is refused in a short line") {
     CHECK(message->size() < 400);
 }
 
-TEST_CASE("a bad row is refused with line, column, what was expected and what was found") {
+TEST_CASE("a bad row is rejected with line and column and the expected and the found text") {
     const std::string head = "t,q1,tau1,x\n0,0,0,\n";
     const std::string number = ": expected a number, found ";
     const std::string finite = ": expected a finite number in the range of a double, found ";
@@ -185,7 +185,7 @@ TEST_CASE("a bad row is refused with line, column, what was expected and what wa
         torque);
 }
 
-TEST_CASE("a row range outside the recording is refused") {
+TEST_CASE("a row range outside the recording is rejected") {
     const std::string three_rows = "t,q1,tau1\n0,0,0\n1,0,0\n2,0,0\n";
     const auto [range, needed] =
         GENERATE(table<std::string, std::string>({{"3:", "4"}, {"100:", "101"}, {":4", "4"}, {"1:9", "9"}}));
@@ -196,7 +196,7 @@ TEST_CASE("a row range outside the recording is refused") {
           " --rows: expected at least " + needed + " rows in the recording, found 3");
 }
 
-TEST_CASE("a recording of which no row is left is refused") {
+TEST_CASE("a recording without any usable row is rejected") {
     ReadOptions options = torque;
     options.skip_bad_rows = true;
     check_refused({{"t,q1,tau1\n0,x,0\n1\n",
@@ -204,7 +204,7 @@ TEST_CASE("a recording of which no row is left is refused") {
                   options);
 }
 
-TEST_CASE("a recording that cannot be read is refused with the system's reason") {
+TEST_CASE("a recording that cannot be read is rejected with the reason of the system") {
     const TemporaryDirectory directory;
     const std::string path = directory.path().string();
     CHECK_THROWS_MATCHES(read_recording(path, torque), InputError,
@@ -214,7 +214,7 @@ TEST_CASE("a recording that cannot be read is refused with the system's reason")
         Catch::Matchers::Message(path + "/no\\x0ane: cannot open: No such file or directory"));
 }
 
-TEST_CASE("every beginning of a valid recording is read or refused in one line") {
+TEST_CASE("every prefix of a valid recording is read or rejected with one line") {
     const std::string whole = "\xef\xbb\xbft,\"q1\",q2,qd1,qd2,tau1,tau2,x\r\n"
                               "0.000,-1.5,+2e-3,0.1,0.2,12.5,-7,ok\r\n"
                               "0.008,-1.4,3,0.3,0.4,12.6,-7.25,\r\n";
@@ -224,7 +224,7 @@ TEST_CASE("every beginning of a valid recording is read or refused in one line")
     }
 }
 
-TEST_CASE("a recording with random bytes changed is read or refused in one line") {
+TEST_CASE("a recording with random bytes changed is read or rejected with one line") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::string whole = "t,q1,q2,tau1,tau2\n0.0,1,2,3,4\n0.1,1,2,3,4\n0.2,1,2,3,4\n";
     const TemporaryDirectory directory;

@@ -23,7 +23,7 @@ TEST_CASE("parse_number reads decimal numbers") {
     CHECK(number.value == value);
 }
 
-TEST_CASE("parse_number says why it refuses") {
+TEST_CASE("parse_number reports why it rejects a text") {
     const auto [text, fault] = GENERATE(table<std::string_view, NumberFault>({
         {"", NumberFault::not_a_number},       {"abc", NumberFault::not_a_number},
         {"1.5x", NumberFault::not_a_number},   {"0x1p3", NumberFault::not_a_number},
@@ -41,7 +41,7 @@ TEST_CASE("parse_number says why it refuses") {
     CHECK(tools::parse_number(text).fault == fault);
 }
 
-TEST_CASE("number_text and parse_number are inverse on every finite double") {
+TEST_CASE("number_text and parse_number are inverse for every finite double") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int count = 0; count < 10'000; ++count) {
         const auto value = std::bit_cast<double>(engine());
@@ -54,7 +54,7 @@ TEST_CASE("number_text and parse_number are inverse on every finite double") {
     }
 }
 
-TEST_CASE("number_text writes the shortest form, and what is not finite as pandas reads it") {
+TEST_CASE("number_text writes the shortest form and non-finite numbers as pandas reads them") {
     CHECK(tools::number_text(0.1) == "0.1");
     CHECK(tools::number_text(-2.2250738585072014e-308) == "-2.2250738585072014e-308");
     CHECK(tools::number_text(std::numeric_limits<double>::quiet_NaN()) == "nan");

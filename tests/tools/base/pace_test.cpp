@@ -9,7 +9,7 @@ using dfdyn::tools::Pace;
 
 constexpr std::int64_t start = 1'000'000, period = 1000;
 
-TEST_CASE("ticks are due at absolute times, however late they begin and however long they take") {
+TEST_CASE("ticks are due at absolute times however late they begin and however long they take") {
     Pace pace(start, period);
     CHECK(pace.due_ns() == start + period);
     pace.begin(start + period + 700);
@@ -20,13 +20,13 @@ TEST_CASE("ticks are due at absolute times, however late they begin and however 
     CHECK(pace.due_ns() == start + 3 * period);
 }
 
-TEST_CASE("a deadline is missed by a tick that begins after the next was due, and each is counted") {
+TEST_CASE("a tick that begins after the next was due misses its deadline and each is counted") {
     Pace pace(start, period);
     CHECK_FALSE(pace.begin(pace.due_ns() + period));
     pace.end(pace.due_ns() + period);
     CHECK(pace.begin(pace.due_ns() + period + 1));
     pace.end(pace.due_ns() + period + 300);
-    // a stall of five periods: those that it made late are run at once, until the time is caught up with
+    // After a stall of five periods the late ticks run at once until the time is caught up.
     const std::int64_t now = pace.due_ns() + 5 * period;
     int ticks = 0;
     for (; pace.due_ns() <= now; ++ticks) {

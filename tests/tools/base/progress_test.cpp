@@ -72,7 +72,7 @@ TEST_CASE("Progress without a known end shows the count alone") {
     CHECK(terminal.written() == "\r\x1b[Kfit: 7");
 }
 
-TEST_CASE("Progress writes nothing for short work, and at most once a period") {
+TEST_CASE("Progress writes nothing for short work and at most once a period") {
     const PseudoTerminal terminal;
     const auto wait_ms = GENERATE(0, 110);
     const auto start = std::chrono::steady_clock::now();
@@ -120,7 +120,7 @@ TEST_CASE("Progress of short work is silent in a pipe") {
     CHECK(pipe.written().empty());
 }
 
-TEST_CASE("Progress of long work writes plain lines into a pipe, one a period over all objects") {
+TEST_CASE("Progress of long work writes plain lines into a pipe with one a period over all objects") {
     const LogPipe pipe;
     constexpr std::chrono::milliseconds plain{250};
     for (const char* const label : {"first", "second"}) {
@@ -131,13 +131,13 @@ TEST_CASE("Progress of long work writes plain lines into a pipe, one a period ov
         progress.update(200);
         CHECK(pipe.written() == std::string(label) + ": 100 of 400 (25 %)\n");
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(110)); // longer than a terminal's period
+    std::this_thread::sleep_for(std::chrono::milliseconds(110)); // longer than the period of a terminal
     Progress progress("third", 400, pipe.descriptor(), std::chrono::seconds(60));
     progress.update(1);
     CHECK(pipe.written().empty());
 }
 
-TEST_CASE("an activity shows its seconds while it lasts") {
+TEST_CASE("an activity shows its elapsed seconds") {
     const PseudoTerminal terminal;
     {
         const dfdyn::tools::Activity activity("solving", terminal.descriptor());
@@ -155,7 +155,7 @@ TEST_CASE("an activity shows its seconds while it lasts") {
     CHECK(std::ranges::count(lines, '\n') <= 4);
 }
 
-TEST_CASE("Progress shows parts of one as tenths") {
+TEST_CASE("Progress shows fractions as tenths") {
     const PseudoTerminal terminal;
     Progress progress("units", 360, terminal.descriptor());
     wait_one_period();

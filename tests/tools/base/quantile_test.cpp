@@ -12,7 +12,7 @@
 
 namespace tools = dfdyn::tools;
 
-TEST_CASE("quantiles of a few values are read off, between them interpolated") {
+TEST_CASE("quantiles of a few values are the values themselves or interpolated between them") {
     const std::vector<double> values{9, 1, 5, 3};
     CHECK(tools::quantile(values, 0) == 1);
     CHECK(tools::quantile(values, 1) == 9);
@@ -24,7 +24,7 @@ TEST_CASE("quantiles of a few values are read off, between them interpolated") {
     CHECK(std::isnan(tools::median({})));
 }
 
-TEST_CASE("quantiles do not depend on the values' order, grow with the share and mirror with the sign") {
+TEST_CASE("quantiles are independent of order and increase with the share and mirror with the sign") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto count = GENERATE(range(std::size_t{1}, std::size_t{12}));
     CAPTURE(count);

@@ -23,7 +23,7 @@ TEST_CASE("NormalSource is standard normal") {
     std::vector<double> values(count);
     std::generate(values.begin(), values.end(), [&random] { return random.next(); });
     std::sort(values.begin(), values.end());
-    double distance = 0; // Kolmogorov's
+    double distance = 0; // Kolmogorov-Smirnov statistic
     for (std::size_t i = 0; i < count; ++i) {
         const double expected = 0.5 * std::erfc(-values[i] / std::numbers::sqrt2);
         distance = std::max(distance, std::abs(expected - static_cast<double>(i) / count));
@@ -31,7 +31,7 @@ TEST_CASE("NormalSource is standard normal") {
     CHECK(distance < 1.95 / std::sqrt(count)); // exceeded with probability 0.001
 }
 
-TEST_CASE("seeds and streams of NormalSource differ") {
+TEST_CASE("seeds and streams of NormalSource give different numbers") {
     const Eigen::MatrixXd base = tools::NormalSource(1).matrix(10, 10);
     CHECK(base == tools::NormalSource(1, 0).matrix(10, 10));
     for (const Eigen::MatrixXd& other :

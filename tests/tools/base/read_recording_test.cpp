@@ -29,7 +29,7 @@ constexpr std::string_view two_joints = "t,q1,q2,qd1,qd2,qdd1,qdd2,tau1,tau2\n"
 
 } // namespace
 
-TEST_CASE("a recording has what was asked for, row by row") {
+TEST_CASE("a recording contains the requested columns row by row") {
     const Recording recording =
         read(two_joints, {.outputs = OutputKind::joint_torque, .velocity = true, .acceleration = true});
     CHECK(recording.row_count() == 2);
@@ -51,7 +51,7 @@ TEST_CASE("a recording has what was asked for, row by row") {
     CHECK_THAT(recording.source, Catch::Matchers::EndsWith("/log.csv"));
 }
 
-TEST_CASE("columns that nobody asked for are ignored and listed, whatever is in them") {
+TEST_CASE("columns that were not requested are ignored and listed whatever they contain") {
     const Recording recording = read("note,q1,t,,qd1,tau1,qdd1,\nhand, 1 ,0,x,nan,,-,\n");
     CHECK(recording.ignored_columns ==
           Names{"note", "column 4 (unnamed)", "qd1", "tau1", "qdd1", "column 8 (unnamed)"});
@@ -61,20 +61,20 @@ TEST_CASE("columns that nobody asked for are ignored and listed, whatever is in 
     CHECK_FALSE(recording.output.present());
 }
 
-TEST_CASE("velocities and accelerations that the recording does not have are not there") {
+TEST_CASE("velocities and accelerations that a recording lacks are reported as absent") {
     const Recording recording = read("t,q1\n0,1\n", {.velocity = true, .acceleration = true});
     CHECK_FALSE(recording.velocity.present());
     CHECK_FALSE(recording.acceleration.present());
 }
 
-TEST_CASE("columns are found by name, in the order of the joints") {
+TEST_CASE("columns are found by name and ordered by joint") {
     const Recording recording =
         read("mz,q2,fx,my,fy,q1,mx,fz,t\n6,20,1,5,2,10,4,3,0\n", {.outputs = OutputKind::wrench});
     CHECK(recording.position.values == Values{10, 20});
     CHECK(recording.output.values == Values{1, 2, 3, 4, 5, 6});
 }
 
-TEST_CASE("joint numbers are read as numbers: ten joints are in order, q011 is another column") {
+TEST_CASE("joint numbers are compared as numbers and q011 is not joint 11") {
     const Recording recording = read("t,q011,q10,q9,q8,q7,q6,q5,q4,q3,q2,q1\n0,0,10,9,8,7,6,5,4,3,2,1\n");
     CHECK(recording.position.values == Values{1, 2, 3, 4, 5, 6, 7, 8, 9, 10});
     CHECK(recording.ignored_columns == Names{"q011"});
@@ -95,8 +95,8 @@ TEST_CASE("harmless differences in the text do not matter") {
     CHECK(recording.position.values == Values{1, 2});
 }
 
-TEST_CASE("the locale of the program does not matter") {
-    // Whether or not this machine has the locale: the reader may not ask.
+TEST_CASE("the locale of the program does not affect reading") {
+    // Valid whether or not this machine has the locale.
     const std::string previous = std::setlocale(LC_ALL, nullptr);
     std::setlocale(LC_ALL, "de_DE.UTF-8");
     const Recording recording = read("t,q1\n0,1.5\n");
@@ -104,13 +104,13 @@ TEST_CASE("the locale of the program does not matter") {
     CHECK(recording.position.values == Values{1.5});
 }
 
-TEST_CASE("time becomes nanoseconds, rounded, also before zero and for today's clock") {
+TEST_CASE("time is rounded to nanoseconds and may be negative or as large as the present date") {
     const Recording recording = read("t,q1\n-0.0000000016,1\n-1e-9,1\n1e-9,1\n1700000000.5,1\n9.2e9,1\n");
     CHECK(recording.time_ns ==
           std::vector<std::int64_t>{-2, -1, 1, 1'700'000'000'500'000'000, 9'200'000'000'000'000'000});
 }
 
-TEST_CASE("a row range selects rows of the file and does not look at others") {
+TEST_CASE("a row range selects rows of the file and does not read others") {
     const std::string content = "t,q1\nbad\n1,1\n2,2\n3,3\nbad\n";
     const auto [range, positions] =
         GENERATE(table<std::string, Values>({{"1:4", {1, 2, 3}}, {"2:3", {2}}, {"3:4", {3}}}));
@@ -151,7 +151,7 @@ TEST_CASE("a row range counts skipped rows too") {
     CHECK(recording.gap_before == Flags{1, 1});
 }
 
-TEST_CASE("nothing behind the last row asked for is looked at") {
+TEST_CASE("rows after the requested range are not read") {
     const std::string endless(std::size_t{2} << 20U, '1');
     CHECK(read("t,q1\n0,0\n1,1\n" + endless, {.rows = parse_row_range(":2")}).row_count() == 2);
     const Recording recording =
@@ -160,7 +160,7 @@ TEST_CASE("nothing behind the last row asked for is looked at") {
     CHECK(recording.skipped.total() == 1);
 }
 
-TEST_CASE("several recordings come in order, each with its own rows") {
+TEST_CASE("several recordings are read in order with the same row range") {
     const TemporaryDirectory directory;
     const std::vector<std::filesystem::path> paths{directory.write("b.csv", "t,q1\n0,1\n1,2\n"),
                                                    directory.write("a.csv", "q1,t\n3,0\n4,1\n5,2\n")};

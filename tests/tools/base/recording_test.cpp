@@ -10,7 +10,7 @@
 using namespace dfdyn::tools;
 using Names = std::vector<std::string>;
 
-TEST_CASE("outputs are chosen by kind") {
+TEST_CASE("outputs are selected by kind") {
     CHECK(output_names(parse_output_kind("tau"), 2) == Names{"tau1", "tau2"});
     CHECK(output_names(parse_output_kind("i"), 3) == Names{"i1", "i2", "i3"});
     CHECK(output_names(parse_output_kind("wrench"), 2) == Names{"fx", "fy", "fz", "mx", "my", "mz"});
@@ -29,7 +29,7 @@ TEST_CASE("a row range has an optional first and last row") {
     CHECK(parse_row_range("5:7").last == 7);
 }
 
-TEST_CASE("a bad row range is an error that quotes it") {
+TEST_CASE("an invalid row range is an error that quotes it") {
     const std::string whole_numbers = "FIRST:LAST, whole numbers from 0 or nothing";
     const std::string order = "FIRST before LAST (which is not included)";
     const auto [text, expected] = GENERATE_COPY(table<std::string, std::string>({

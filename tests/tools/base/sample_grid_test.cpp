@@ -12,7 +12,7 @@ namespace sample_grid_test {
 
 using namespace dfdyn::tools;
 
-/// A recording of which only the stamps matter.
+/// A recording in which only the time stamps matter.
 Recording with_stamps(std::vector<std::int64_t> stamps_ns) {
     Recording recording;
     recording.source = "run.csv";
@@ -35,7 +35,7 @@ long restarts(const Recording& recording) {
     return std::count(flags.begin(), flags.end(), 1);
 }
 
-TEST_CASE("the period of a steady clock is exact, with lost samples too") {
+TEST_CASE("the period of a steady clock is exact even with lost samples") {
     for (const std::int64_t period_ns : {20'000'000, 8'000'000, 1'000'000, 200'000}) {
         auto stamps = repeated_steps({period_ns}, 1000);
         for (const int lost : {900, 500, 499, 200}) {
@@ -48,7 +48,7 @@ TEST_CASE("the period of a steady clock is exact, with lost samples too") {
     }
 }
 
-TEST_CASE("the period of uneven steps is their mean, and none of them is a gap") {
+TEST_CASE("the period of uneven steps is their mean and none of them is a gap") {
     constexpr std::int64_t ms = 1'000'000;
     const Recording in_turn = with_stamps(repeated_steps({10 * ms, 12 * ms}, 1001));
     CHECK(sample_period_s({&in_turn, 1}) == Approx(0.011));
@@ -70,7 +70,7 @@ TEST_CASE("jitter of nearly half a period changes neither the period nor the win
     CHECK(restarts(recording) == 1);
 }
 
-TEST_CASE("a window restarts where the recording marks a break") {
+TEST_CASE("a window restarts where the recording has a gap") {
     Recording recording = with_stamps(repeated_steps({1'000'000}, 100));
     recording.gap_before[40] = 1;
     const auto flags = window_restarts(recording, 0.001);
@@ -78,7 +78,7 @@ TEST_CASE("a window restarts where the recording marks a break") {
     CHECK(flags[40] == 1);
 }
 
-TEST_CASE("one row has no period") {
+TEST_CASE("a recording of one row has no period") {
     const Recording recording = with_stamps({5});
     CHECK_THROWS_MATCHES(
         sample_period_s({&recording, 1}), InputError,

@@ -32,7 +32,7 @@ std::int64_t longest_step_ns(const Recording& recording) {
 
 } // namespace
 
-TEST_CASE("the shipped recordings of the UR5 are read whole") {
+TEST_CASE("the shipped recordings of the UR5 are read completely") {
     const auto [name, rows, end_ns,
                 longest_ns] = GENERATE(table<std::string, std::size_t, std::int64_t, std::int64_t>({
         {"Movement_No3_Acc.csv", 1251, 19'855'437'000, 24'367'000},
@@ -51,7 +51,7 @@ TEST_CASE("the shipped recordings of the UR5 are read whole") {
     CHECK(recording.ignored_columns == joint_names("taur", 6));
 }
 
-TEST_CASE("values of a shipped recording land in their columns") {
+TEST_CASE("values of a shipped recording are in their columns") {
     const Recording recording = read_ur5("Movement_No6_Acc_slow_Verify_Model.csv");
     CHECK(recording.position.row(0)[0] == -1.570796);
     CHECK(recording.position.row(0)[5] == -0.000299);
@@ -60,7 +60,7 @@ TEST_CASE("values of a shipped recording land in their columns") {
     CHECK(recording.output.row(1)[5] == 0.091502);
 }
 
-TEST_CASE("the shipped recordings of the TX40 and of the second UR5 are read whole") {
+TEST_CASE("the shipped recordings of the TX40 and of the second UR5 are read completely") {
     const Recording tx40 = read_six_joints("tx40_figaroh/tx40_5kHz.csv", OutputKind::joint_torque);
     CHECK(tx40.row_count() == 37'500);
     CHECK(tx40.time_ns.back() == 7'499'800'000);

@@ -17,14 +17,14 @@ TEST_CASE("in_quotes makes any bytes printable and short") {
     CHECK(tools::in_quotes(std::string(41, 'x')) == '"' + std::string(40, 'x') + "...\"");
 }
 
-TEST_CASE("shown keeps a path on one line and its letters") {
+TEST_CASE("shown keeps a path on one line and keeps its letters") {
     CHECK(tools::shown("a/b c.csv") == "a/b c.csv");
     CHECK(tools::shown("Pr\xc3\xbc"
                        "fung\n.csv") == "Pr\xc3\xbc"
                                         "fung\\x0a.csv");
 }
 
-TEST_CASE("listed makes names printable and short, too") {
+TEST_CASE("listed makes names printable and short") {
     CHECK(tools::listed(std::vector<std::string>{"T \xc2\xb0", std::string(41, 'x')}) ==
           "T \\xc2\\xb0, " + std::string(40, 'x') + "...");
 }
@@ -38,14 +38,14 @@ TEST_CASE("listed stops after 30 names") {
     CHECK_THAT(tools::listed(names), Catch::Matchers::EndsWith("q, ... (31 in all)"));
 }
 
-TEST_CASE("trimmed takes spaces and tabs off both ends only") {
+TEST_CASE("trimmed removes spaces and tabs at both ends only") {
     CHECK(tools::trimmed(" \t a b\t ") == "a b");
     CHECK(tools::trimmed("a") == "a");
     CHECK(tools::trimmed(" \t").empty());
     CHECK(tools::trimmed("\na\r") == "\na\r");
 }
 
-TEST_CASE("system_error says path, what cannot be done, and why") {
+TEST_CASE("system_error contains path and action and reason") {
     CHECK(std::string(tools::system_error("x.csv", "cannot open", ENOENT).what()) ==
           "x.csv: cannot open: No such file or directory");
 }

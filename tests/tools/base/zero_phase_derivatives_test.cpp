@@ -12,7 +12,7 @@ namespace tools = dfdyn::tools;
 
 namespace {
 
-/// One signal over jittered times around a period of 10 ms.
+/// A signal sampled at times with jitter around a period of 10 ms.
 tools::Recording recording_of(const std::function<double(double)>& signal, int rows) {
     std::mt19937_64 engine(dfdyn::tests::seed());
     std::uniform_real_distribution<double> jitter(-0.003, 0.003);
@@ -30,7 +30,7 @@ tools::Recording recording_of(const std::function<double(double)>& signal, int r
 
 } // namespace
 
-TEST_CASE("zero-phase derivatives of a cubic are exact, whatever the times") {
+TEST_CASE("zero-phase derivatives of a cubic polynomial are exact for any times") {
     const auto cubic = [](double t) { return 2 - t + 0.5 * t * t - 0.25 * t * t * t; };
     const tools::Recording recording = recording_of(cubic, 60);
     const tools::SampledDerivatives derivatives =
@@ -47,7 +47,7 @@ TEST_CASE("zero-phase derivatives of a cubic are exact, whatever the times") {
     }
 }
 
-TEST_CASE("zero-phase derivatives of a sine do not lag") {
+TEST_CASE("zero-phase derivatives of a sine have no lag") {
     const tools::Recording recording = recording_of([](double t) { return std::sin(3 * t); }, 400);
     const tools::SampledDerivatives derivatives =
         tools::zero_phase_derivatives(recording, recording.position, {});
@@ -68,7 +68,7 @@ TEST_CASE("zero-phase derivatives of a sine do not lag") {
     CHECK(quadrature == Approx(in_phase / power * cross).margin(1e-2 * power));
 }
 
-TEST_CASE("no derivative is taken over a gap") {
+TEST_CASE("no derivative is computed across a gap") {
     tools::Recording recording = recording_of([](double t) { return t; }, 60);
     recording.gap_before[30] = 1;
     std::vector<std::uint8_t> valid =
@@ -77,7 +77,7 @@ TEST_CASE("no derivative is taken over a gap") {
         CHECK((valid[row] != 0) == ((row >= 5 && row < 25) || (row >= 35 && row < 55)));
     }
     recording.gap_before[30] = 0;
-    for (std::size_t row = 30; row < 60; ++row) { // 40 ms pass
+    for (std::size_t row = 30; row < 60; ++row) { // a gap of 40 ms
         recording.time_s[row] += 0.03;
         recording.time_ns[row] += 30'000'000;
     }
