@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An arm on a CAN bus from the command line: simulate, convert, train, replay.
+// An arm on a CAN bus from the command line with simulate, convert, train and replay.
 #include "tests/support/catch.hpp"
 #include "tests/tools/commands/run_program.hpp"
 
@@ -13,7 +13,7 @@ using dfdyn::tests::Outcome;
 using dfdyn::tests::run_program;
 using dfdyn::tests::TemporaryDirectory;
 
-/// Two drives, the second on node `second`.
+/// Two drives, the second with node number `second`.
 std::string drives(int second) {
     return R"({"schema": "dfdyn.bus/1", "bit_rate": 1000000, "sample_rate_hz": 100, "trigger": {"on": "sync"},
  "joints": {"family": "cia402", "position": {"pdo": "0x280", "length": 6, "start_bit": 0, "bits": 32},
@@ -24,7 +24,7 @@ std::string drives(int second) {
  "output": {"family": "efforts", "quantity": "tau"}})";
 }
 
-/// A recording of the small arm, what its drives sent meanwhile, and a model.
+/// A recording of the small arm, the frames of its drives, and a model.
 class Bench {
   public:
     Bench() {
@@ -54,7 +54,7 @@ class Bench {
     TemporaryDirectory directory_;
 };
 
-TEST_CASE("simulated drives send what the simulated recording converts to, byte for byte") {
+TEST_CASE("the frames of simulated drives equal those converted from the recording byte for byte") {
     const Bench bench;
     const Outcome converted =
         bench.call("convert --log " + bench.path("run.csv") + bench.bus() + " -o " + bench.path("again.log"));
@@ -64,14 +64,14 @@ TEST_CASE("simulated drives send what the simulated recording converts to, byte 
     CHECK(file_content(bench.path("again.log")) == file_content(bench.path("run.log")));
 }
 
-TEST_CASE("frames become predictions; where they are another arm's, the program says so") {
+TEST_CASE("frames become predictions and frames of another arm are reported") {
     const Bench bench;
     bench.train();
     const std::string log = " --log " + bench.path("run.log");
     const Outcome replayed = bench.replay(log + bench.bus() + " -o " + bench.path("out.csv"));
     CAPTURE(replayed.error);
     CHECK(replayed.status == 0);
-    // 3 frames of each of 450 rows; 2 heartbeats at 0, 0.1, … 4.5 s, when the last row is sent
+    // 3 frames for each of 450 rows, and 2 heartbeats at 0, 0.1, ... 4.5 s, when the last row is sent.
     CHECK_THAT(replayed.out, ContainsSubstring("bus: 1442 frames\n"));
     CHECK_THAT(file_content(bench.path("out.csv")), ContainsSubstring(",1,ok\n"));
 
@@ -80,7 +80,7 @@ TEST_CASE("frames become predictions; where they are another arm's, the program 
     CHECK_THAT(other.out, ContainsSubstring("x frames that nobody in the description sends: first 0x702"));
 }
 
-TEST_CASE("options of a bus without a bus are refused") {
+TEST_CASE("bus options without a bus are rejected") {
     const Bench bench;
     bench.train();
     const std::string csv = " --log " + bench.path("run.csv");
@@ -93,7 +93,7 @@ TEST_CASE("options of a bus without a bus are refused") {
     CHECK_FALSE(std::filesystem::exists(bench.path("no.log")));
 }
 
-TEST_CASE("a log of a bus is judged: all is well, or what is wrong with its place") {
+TEST_CASE("buscheck reports that nothing is wrong or each fault with its place") {
     const Bench bench;
     const std::string log = " --log " + bench.path("run.log");
     const Outcome well = bench.call("buscheck" + log + bench.bus());

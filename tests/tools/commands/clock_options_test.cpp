@@ -17,7 +17,7 @@ TrainingOptions applied(const ClockOptions& clock, double period_s, InputKind in
     return options;
 }
 
-TEST_CASE("the default window is as long at any sample rate") {
+TEST_CASE("the default window has the same duration at any sample rate") {
     for (const double period_s : {0.02, 0.011, 0.008, 0.002, 0.001, 0.0002}) {
         const TrainingOptions options = applied({}, period_s);
         CHECK(period_s * options.lags * options.every == Approx(0.08).margin(0.6 * period_s));
@@ -27,7 +27,7 @@ TEST_CASE("the default window is as long at any sample rate") {
     CHECK(applied({}, 0.008).every == 1);
 }
 
-TEST_CASE("a memory in seconds is the same at any sample rate") {
+TEST_CASE("a memory in seconds has the same duration at any sample rate") {
     ClockOptions clock;
     clock.memory_s = 10;
     for (const double period_s : {0.02, 0.008, 0.001, 0.0002}) {
@@ -36,7 +36,7 @@ TEST_CASE("a memory in seconds is the same at any sample rate") {
     }
 }
 
-TEST_CASE("lags and forgetting in samples are taken as they are") {
+TEST_CASE("lags and forgetting in samples are used unchanged") {
     ClockOptions clock;
     clock.lags = 30;
     clock.forgetting_factor = 0.9999;
@@ -63,12 +63,12 @@ TEST_CASE("window and memory are described in seconds") {
           "sample period 0.0002 s, window 0.08 s (20 lags, 20 samples apart), memory 20 s");
 }
 
-TEST_CASE("input STD has lags one sample apart") {
+TEST_CASE("input STD has lags of one sample") {
     CHECK(applied({}, 0.001, InputKind::STD).every == 1);
     CHECK(applied({}, 0.001, InputKind::STD).lags == 80);
 }
 
-TEST_CASE("a window of more samples than a model holds is refused") {
+TEST_CASE("a window with more samples than a model can have is rejected") {
     ClockOptions clock;
     clock.window_s = 0.3;
     CHECK_THROWS_WITH(applied(clock, 0.0002),

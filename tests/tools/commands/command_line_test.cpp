@@ -16,7 +16,7 @@ using dfdyn::tests::TemporaryDirectory;
 
 long line_count(const std::string& text) { return std::ranges::count(text, '\n'); }
 
-/// The lines that begin with "note: ".
+/// Returns the lines that begin with "note: ".
 std::string notes(const std::string& text) {
     std::istringstream lines(text);
     std::string result;
@@ -32,7 +32,7 @@ const std::string log_file = DFDYN_TEST_DATA_DIR "/ur5_kufieta/Movement_No7_Acc_
 const std::string quick =
     " --outputs i --features 20 --starts 1 --likelihood-rows 60 --lags 4 --rows 0:1200 ";
 
-TEST_CASE("help and version end with status 0, and every subcommand shows an example") {
+TEST_CASE("help and version end with status 0 and every subcommand shows an example") {
     const TemporaryDirectory directory;
     CHECK(run_program(directory, "--help").status == 0);
     CHECK_THAT(run_program(directory, "--version").out, Catch::Matchers::StartsWith("dfdyn "));
@@ -43,7 +43,7 @@ TEST_CASE("help and version end with status 0, and every subcommand shows an exa
     }
 }
 
-TEST_CASE("bad usage and bad input end with status 2 and one line") {
+TEST_CASE("wrong usage and bad input end with status 2 and one line") {
     const TemporaryDirectory directory;
     directory.write("bad.csv", "t,q1,i1\n0,1,2\n0,1,2\n");
     directory.write("bad.json", "{\"schema\": \"dfdyn.model/9\"}");
@@ -80,7 +80,7 @@ TEST_CASE("bad usage and bad input end with status 2 and one line") {
     }
 }
 
-TEST_CASE("train and replay work together for every input, twice with the same bytes") {
+TEST_CASE("train and replay work for every input and repeat byte for byte") {
     const TemporaryDirectory directory;
     const std::string in = directory.path().string();
     const std::string model_and_header = "/a.json --header " + in + "/a.hpp";
@@ -106,7 +106,7 @@ TEST_CASE("train and replay work together for every input, twice with the same b
     }
 }
 
-TEST_CASE("train says which options it ignores, and goes on") {
+TEST_CASE("train reports the options that it ignores and continues") {
     const TemporaryDirectory directory;
     const std::string in = directory.path().string();
     const std::string train = "train --log " + log_file + quick + "-o " + in + "/m.json ";
@@ -131,7 +131,7 @@ TEST_CASE("train says which options it ignores, and goes on") {
     CHECK_THAT(on_a_grid.out, Catch::Matchers::ContainsSubstring("a grid of 169 points\n"));
 }
 
-TEST_CASE("train prints what its physics found") {
+TEST_CASE("train prints the results of its physics") {
     const TemporaryDirectory directory;
     const std::string in = directory.path().string();
     const std::string train = "train --log " + log_file + quick + "--model P --input STD --robot " +
@@ -151,7 +151,7 @@ TEST_CASE("train prints what its physics found") {
                Catch::Matchers::ContainsSubstring("note: --centred is ignored: model P does not read it\n"));
 }
 
-TEST_CASE("a replay of a recording with other outputs than the model's is refused") {
+TEST_CASE("a replay of a recording with other outputs than the model is rejected") {
     const TemporaryDirectory directory;
     const std::string in = directory.path().string();
     REQUIRE(run_program(directory, "train --log " + log_file + quick + "-o " + in + "/m.json").status == 0);
@@ -162,7 +162,7 @@ TEST_CASE("a replay of a recording with other outputs than the model's is refuse
     CHECK(line_count(outcome.error) == 1);
 }
 
-TEST_CASE("simulate writes a recording and the truth, or nothing at all") {
+TEST_CASE("simulate writes a recording and the truth or nothing at all") {
     const TemporaryDirectory directory;
     const std::string in = directory.path().string();
     const std::string data = DFDYN_TEST_DATA_DIR;

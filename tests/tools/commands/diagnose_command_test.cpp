@@ -31,7 +31,7 @@ using nlohmann::json;
 const std::string urdf = DFDYN_TEST_DATA_DIR "/robots/small_arm/small_arm.urdf";
 const std::string arm = " --robot " + urdf + " --tip tool ";
 
-/// 30 s of the small arm with friction, rotors and no flaw else, at DIRECTORY/run.csv.
+/// Simulates 30 s of the small arm with friction and rotors but no other error. Returns DIRECTORY/run.csv.
 std::string simulated(const TemporaryDirectory& directory, int seed = 3) {
     json scenario = json::parse(file_content(DFDYN_TEST_DATA_DIR "/scenarios/small_arm.json"));
     scenario["recording"]["samples"] = 3000;
@@ -46,7 +46,7 @@ std::string simulated(const TemporaryDirectory& directory, int seed = 3) {
     return log;
 }
 
-/// The recording with its columns `q…` times `factor`.
+/// The recording with its columns `q1`, `q2` ... multiplied by `factor`.
 std::string with_positions_times(double factor, const std::string& log, const TemporaryDirectory& directory) {
     std::istringstream lines(file_content(log));
     std::string header;
@@ -94,7 +94,7 @@ double error_at_start(const tools::TrainedModel& model, const tools::Recording& 
     return sum;
 }
 
-TEST_CASE("diagnose names friction and rotors, and writes report, figures and model") {
+TEST_CASE("diagnose names friction and rotors and writes report and figures and model") {
     const TemporaryDirectory directory;
     const std::string log = simulated(directory);
     const std::string folder = directory.path() / "out";
@@ -147,7 +147,7 @@ TEST_CASE("diagnose names friction and rotors, and writes report, figures and mo
     CHECK(std::system(check.c_str()) == 0);
 }
 
-TEST_CASE("the extended model is ahead of the nominal one from its first second on") {
+TEST_CASE("the extended model is more accurate than the nominal one from the first second") {
     const TemporaryDirectory directory;
     const std::string log = simulated(directory, 4);
     tools::ReadRobotOptions chain;
@@ -171,7 +171,7 @@ TEST_CASE("the extended model is ahead of the nominal one from its first second 
     CHECK(tools::model_to_json(tools::model_from_json(text, "m.json")) == text);
 }
 
-TEST_CASE("a recording in degrees is told first, and gets no model") {
+TEST_CASE("a recording in degrees is reported first and gets no model") {
     const TemporaryDirectory directory;
     const std::string log = with_positions_times(57.29578, simulated(directory), directory);
     const std::string folder = directory.path() / "out";
@@ -189,7 +189,7 @@ TEST_CASE("a recording in degrees is told first, and gets no model") {
     CHECK_FALSE(std::filesystem::exists(folder + "/extended_model.json"));
 }
 
-TEST_CASE("currents of unknown torque constants and several recordings are diagnosed") {
+TEST_CASE("currents with unknown torque constants in several recordings are diagnosed") {
     const TemporaryDirectory directory;
     const std::string logs = simulated(directory, 5) + "," + simulated(directory, 6);
     const std::string folder = directory.path() / "out";
@@ -213,7 +213,7 @@ TEST_CASE("currents of unknown torque constants and several recordings are diagn
           0);
 }
 
-TEST_CASE("diagnose refuses what it cannot use, in one line") {
+TEST_CASE("diagnose rejects unusable input with one line") {
     const TemporaryDirectory directory;
     const std::string log = simulated(directory);
     const std::string rest = "--log " + log + " -o " + (directory.path() / "out").string() + " ";

@@ -19,13 +19,13 @@ using dfdyn::tests::TemporaryDirectory;
 using dfdyn::tests::write_small_experiment;
 using nlohmann::json;
 
-/// Runs the plan of `directory` into its folder `out`.
+/// Runs the plan of `directory` with output folder `out`.
 Outcome evaluate(const TemporaryDirectory& directory, const std::string& options) {
     const std::string in = directory.path().string();
     return run_program(directory, "evaluate --plan " + in + "/plan.json -o " + in + "/out " + options);
 }
 
-/// The files of the units, all of which must be whole.
+/// Number of unit files, each of which must be complete.
 std::size_t count_unit_files(const TemporaryDirectory& directory) {
     std::size_t count = 0;
     if (!std::filesystem::exists(directory.path() / "out/cases")) {
@@ -40,7 +40,7 @@ std::size_t count_unit_files(const TemporaryDirectory& directory) {
     return count;
 }
 
-TEST_CASE("evaluate writes its files, silently, and finds them again") {
+TEST_CASE("evaluate writes its files without messages and reuses them") {
     const TemporaryDirectory directory;
     write_small_experiment(directory);
     const Outcome first = evaluate(directory, "--jobs 2");
@@ -55,7 +55,7 @@ TEST_CASE("evaluate writes its files, silently, and finds them again") {
     CHECK_THAT(evaluate(directory, "--fresh").out, ContainsSubstring("(0 found from an earlier run)"));
 }
 
-TEST_CASE("a case that cannot be done gives status 1 and a line that says why") {
+TEST_CASE("a case that cannot be computed gives status 1 and one line with the reason") {
     const TemporaryDirectory directory;
     json plan = small_plan();
     plan["draws"] = 1;
@@ -69,7 +69,7 @@ TEST_CASE("a case that cannot be done gives status 1 and a line that says why") 
     CHECK_THAT(outcome.out, ContainsSubstring("1 of 2 cases x draws done"));
 }
 
-TEST_CASE("a plan with a mistake, or without its recordings, gives status 2 and one line") {
+TEST_CASE("an invalid plan or a missing recording gives status 2 and one line") {
     const TemporaryDirectory directory;
     json plan = small_plan();
     plan["tests"][0]["log"] = "none.csv";
@@ -82,7 +82,7 @@ TEST_CASE("a plan with a mistake, or without its recordings, gives status 2 and 
     CHECK(evaluate(directory, "--jobs 0").status == 2);
 }
 
-TEST_CASE("a run that is ended half-way leaves whole files and goes on from them") {
+TEST_CASE("an interrupted run leaves complete files and continues from them") {
     const TemporaryDirectory directory;
     json plan = small_plan();
     plan["draws"] = 60;
@@ -90,7 +90,7 @@ TEST_CASE("a run that is ended half-way leaves whole files and goes on from them
     write_small_experiment(directory, plan);
     const std::string signal = GENERATE("TERM", "KILL");
     const std::string in = directory.path().string();
-    std::ostringstream script; // ends the program once the fifth unit is there
+    std::ostringstream script; // ends the program after the fifth unit
     script << DFDYN_PROGRAM << " evaluate --plan " << in << "/plan.json -o " << in << "/out --jobs 2 & "
            << "until [ -e " << in << "/out/cases/NP-ML-STD/5.json ]; do sleep 0.001; done; kill -" << signal
            << " $!; wait $!";

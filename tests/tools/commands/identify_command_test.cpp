@@ -31,7 +31,7 @@ Outcome identify(const TemporaryDirectory& directory, const std::string& argumen
     return run_program(directory, "identify " + arguments);
 }
 
-/// 100 Hz, 20 s: each joint of the arm swings at two frequencies about the middle of its range.
+/// 20 s at 100 Hz in which each joint swings with two frequencies about the middle of its range.
 tools::RobotMotion swinging(const tools::Robot& robot) {
     const Eigen::Index rows = 2000;
     tools::RobotMotion motion{Eigen::MatrixXd(rows, 4), Eigen::MatrixXd::Zero(rows, 4),
@@ -53,7 +53,7 @@ tools::RobotMotion swinging(const tools::Robot& robot) {
     return motion;
 }
 
-/// What the sensor measures when the links are heavier by `factor`.
+/// The sensor's recording if all links are heavier by `factor`.
 std::string recording(double factor, bool with_derivatives) {
     const tools::Robot robot = dfdyn::tests::icub_right_arm();
     const tools::RobotMotion motion = swinging(robot);
@@ -80,7 +80,7 @@ std::string recording(double factor, bool with_derivatives) {
     return text.str();
 }
 
-TEST_CASE("identify finds an arm's true parameters, with recorded derivatives and without") {
+TEST_CASE("identify finds the true parameters of an arm with and without recorded derivatives") {
     const TemporaryDirectory directory;
     const std::string in = directory.path().string();
     directory.write("full.csv", recording(1.1, true));
@@ -116,7 +116,7 @@ TEST_CASE("identify finds an arm's true parameters, with recorded derivatives an
     }
 }
 
-TEST_CASE("identify refuses what it cannot use, in one line") {
+TEST_CASE("identify rejects unusable input with one line") {
     const TemporaryDirectory directory;
     const std::string in = directory.path().string();
     const std::string log =

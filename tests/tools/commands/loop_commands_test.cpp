@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `dfdyn loop` and `dfdyn plant` from the command line; over a bus: tests/vcan.
+// `dfdyn loop` and `dfdyn plant` from the command line; tests/vcan has the tests over a bus.
 #include "tests/support/catch.hpp"
 #include "tests/tools/commands/run_program.hpp"
 
@@ -20,7 +20,7 @@ const std::string bus = " --bus " + data + "/can/small_arm_loop.json";
 
 std::string scenario_text() { return file_content(data + "/scenarios/small_arm_loop.json"); }
 
-/// Calls with the small arm and its scenario, in which `from` is `to`.
+/// Runs the program with the small arm and its scenario, in which `from` is replaced with `to`.
 class Bench {
   public:
     explicit Bench(const std::string& from = "", const std::string& to = "") {
@@ -36,7 +36,7 @@ class Bench {
     Outcome loop(const std::string& arguments) const {
         return call("loop" + robot + " --scenario " + path("s.json") + arguments);
     }
-    /// What a loop that is not run says.
+    /// The error of a loop that does not start.
     std::string refusal(const std::string& arguments) const {
         const Outcome outcome = loop(arguments);
         CHECK(outcome.status == 2);
@@ -51,7 +51,7 @@ class Bench {
 
 const std::string simulate = " --simulate --duration 11";
 
-TEST_CASE("a simulated loop is recorded, a model trained on that, and the loop with it tracks better") {
+TEST_CASE("a loop with a model trained on its own simulated recording tracks better") {
     const Bench bench(R"("encoders")",
                       R"("payloads": [{"mass_kg": 0.5, "centre_m": [0, 0, 0]}], "encoders")");
     const Outcome nominal = bench.loop(simulate + bus + " -o " + bench.path("nominal"));
@@ -85,17 +85,17 @@ TEST_CASE("a simulated loop is recorded, a model trained on that, and the loop w
     CHECK_THAT(bench.refusal(simulate + model + " --restore " + log), ContainsSubstring("expected what"));
 }
 
-TEST_CASE("what was learned is saved and restored of a model only") {
+TEST_CASE("a loop without a model cannot save or restore what it learned") {
     const Bench bench;
     CHECK_THAT(bench.refusal(simulate + " --save s.bin"), ContainsSubstring("expected --model, found none"));
 }
 
-TEST_CASE("the same call prints the same") {
+TEST_CASE("the same loop command prints the same text") {
     const Bench bench;
     CHECK(bench.loop(simulate + bus).out == bench.loop(simulate + bus).out);
 }
 
-TEST_CASE("a loop needs to know where its arm is, and for how long a simulated one runs") {
+TEST_CASE("a loop requires a source of positions and a simulated loop a duration") {
     const Bench bench;
     CHECK_THAT(bench.refusal(""), ContainsSubstring("expected one of --simulate and --can, found none"));
     CHECK_THAT(bench.refusal(" --simulate --can can0"), ContainsSubstring("found both"));
@@ -105,7 +105,7 @@ TEST_CASE("a loop needs to know where its arm is, and for how long a simulated o
     CHECK(bench.loop(" --simulate --duration nan").status == 2);
 }
 
-TEST_CASE("a simulated loop that stops by itself says why, with status 1") {
+TEST_CASE("a simulated loop that stops by itself ends with status 1 and the reason") {
     const Bench bench("\"position_gain\": [25, 12]", "\"position_gain\": [-25, -12]");
     const Outcome outcome = bench.loop(simulate + bus);
     CHECK(outcome.status == 1);
@@ -113,7 +113,7 @@ TEST_CASE("a simulated loop that stops by itself says why, with status 1") {
     CHECK_THAT(outcome.out, !ContainsSubstring("tracking error"));
 }
 
-TEST_CASE("a scenario's fault strikes a simulated loop, and strikes it alike when it is called again") {
+TEST_CASE("a fault of the scenario affects a simulated loop in the same way on every run") {
     const std::string place = R"("encoders")";
     const auto with = [&](const std::string& fault) { return R"("faults": [)" + fault + "], " + place; };
     const Bench glitch(
@@ -132,7 +132,7 @@ TEST_CASE("a scenario's fault strikes a simulated loop, and strikes it alike whe
     CHECK_THAT(silence.call("loop --help").out, ContainsSubstring("late_ticks and clock_jump"));
 }
 
-TEST_CASE("limits that are given stop a loop that is beyond them, and those that make no sense are refused") {
+TEST_CASE("given limits stop a loop that exceeds them and invalid limits are rejected") {
     const Bench bench;
     const Outcome error = bench.loop(simulate + bus + " --following-error 0.0001");
     CHECK(error.status == 1);
@@ -147,7 +147,7 @@ TEST_CASE("limits that are given stop a loop that is beyond them, and those that
     CHECK(bench.loop(simulate + " --stop soft").status == 2);
 }
 
-TEST_CASE("an interface that is not there is said, by the loop and by the plant") {
+TEST_CASE("a missing CAN interface is reported by the loop and by the plant") {
     const Bench bench;
     CHECK_THAT(bench.refusal(" --can nosuch0" + bus), ContainsSubstring("nosuch0"));
     const Outcome plant = bench.call("plant" + robot + " --scenario " + bench.path("s.json") + bus +
@@ -157,7 +157,7 @@ TEST_CASE("an interface that is not there is said, by the loop and by the plant"
     CHECK(std::ranges::count(plant.error, '\n') == 1);
 }
 
-TEST_CASE("what does not fit together is said before anything runs") {
+TEST_CASE("arguments of a loop that do not fit together are rejected before anything runs") {
     const Bench bench;
     CHECK_THAT(Bench("feed_forward", "computed_torque").refusal(simulate),
                ContainsSubstring("controller.kind: expected feed_forward"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models with a robot from the command line: simulate, train, replay.
+// Models with a robot from the command line with simulate, train and replay.
 #include "tests/support/catch.hpp"
 #include "tests/tools/commands/run_program.hpp"
 
@@ -23,7 +23,7 @@ const std::string robot = " --robot " + urdf + " --tip tool ";
 const std::string icub =
     " --robot " DFDYN_TEST_DATA_DIR "/robots/icub_right_arm/icub_right_arm.urdf --base chest --tip r_hand ";
 
-/// The rows of a CSV file without the columns for whose names `dropped` is true.
+/// The rows of a CSV file without the columns for whose names `dropped` returns true.
 template <class Dropped>
 std::string without_columns(const std::string& csv, const Dropped& dropped) {
     std::istringstream lines(csv);
@@ -49,7 +49,7 @@ std::string without_columns(const std::string& csv, const Dropped& dropped) {
     return result;
 }
 
-/// A recording of the small arm and a place for models.
+/// A recording of the small arm and a folder for models.
 class Bench {
   public:
     Bench() {
@@ -83,7 +83,7 @@ class Bench {
     TemporaryDirectory directory_;
 };
 
-/// The largest of the figures behind `label` in a summary.
+/// The largest number after `label` in a summary.
 double largest_figure(const std::string& summary, const std::string& label) {
     std::istringstream line(summary.substr(summary.find(label) + label.size()));
     std::string rest;
@@ -98,7 +98,8 @@ double largest_figure(const std::string& summary, const std::string& label) {
 
 struct Call {
     std::string arguments;
-    double error_below; ///< nRMSE of every output over the second half, from what a run reaches, a third more
+    /// limit of the nRMSE of each output over the second half: a third above the value of one run
+    double error_below;
 };
 
 void check_refused(const Outcome& outcome, const std::string& words) {
@@ -111,7 +112,7 @@ void check_refused(const Outcome& outcome, const std::string& words) {
     CHECK_THAT(outcome.error, ContainsSubstring(words));
 }
 
-TEST_CASE("models with a robot are trained and replayed from one command each") {
+TEST_CASE("models with a robot are trained and replayed with one command each") {
     const Bench bench;
     const Call calls[] = {
         {"--outputs tau --model P --input DFSR --effects viscous_friction,coulomb_friction,torque_offset",
@@ -143,7 +144,7 @@ TEST_CASE("models with a robot are trained and replayed from one command each") 
     }
 }
 
-TEST_CASE("a replay compares a model with a rigid body where one was trained, and says once where none was") {
+TEST_CASE("a replay compares a model with its rigid body and mentions once if there is none") {
     const Bench bench;
     const std::string rows = "--rows 300: --frozen";
     REQUIRE(bench.train(robot + "--outputs tau --model P --effects viscous_friction").status == 0);
@@ -165,7 +166,7 @@ TEST_CASE("a replay compares a model with a rigid body where one was trained, an
     CHECK(without.find("rigid body: -") == without.rfind("rigid body: -"));
 }
 
-TEST_CASE("the same model is trained from a robot twice with the same bytes") {
+TEST_CASE("training with a robot repeats byte for byte") {
     const Bench bench;
     const std::string arguments = robot + "--outputs tau --model SPK --own-motion --effects viscous_friction";
     REQUIRE(bench.train(arguments).status == 0);
@@ -174,7 +175,7 @@ TEST_CASE("the same model is trained from a robot twice with the same bytes") {
     CHECK(bench.model()["structure"] == "SPK");
 }
 
-TEST_CASE("what a model with a robot cannot be trained with is refused in one line") {
+TEST_CASE("unusable training options for a robot are rejected with one line") {
     const Bench bench;
     const std::string tau = "--outputs tau --model ";
     const struct {
@@ -209,7 +210,7 @@ TEST_CASE("what a model with a robot cannot be trained with is refused in one li
                   "expected columns qd1… and qdd1… for measured derivatives, found none");
 }
 
-TEST_CASE("a replay of a recording that the model with a robot does not fit is refused in one line") {
+TEST_CASE("a replay of an unsuitable recording is rejected with one line") {
     const Bench bench;
     REQUIRE(bench.train(robot + "--outputs tau --model SP --input STD --derivatives measured").status == 0);
     CHECK(bench.replay(bench.path("run.csv")).status == 0);
@@ -223,7 +224,7 @@ TEST_CASE("a replay of a recording that the model with a robot does not fit is r
     CHECK(bench.replay(bench.path("positions.csv")).status == 0);
 }
 
-TEST_CASE("several models are replayed as one, if they are of the same arm") {
+TEST_CASE("several models of the same arm are replayed as one combination") {
     const Bench bench;
     const std::string start = robot + "--outputs tau --input DFR ";
     REQUIRE(bench.train(start + "--model NP").status == 0);
@@ -247,7 +248,7 @@ TEST_CASE("several models are replayed as one, if they are of the same arm") {
         "expected joints and outputs as in ");
 }
 
-/// The outputs tau1 and tau2 of the rows in reverse order, everything else as it was.
+/// The recording with the outputs tau1 and tau2 in reverse order of rows and everything else unchanged.
 std::string with_reversed_outputs(const std::string& csv) {
     std::istringstream lines(csv);
     std::vector<std::vector<std::string>> rows;
@@ -270,7 +271,7 @@ std::string with_reversed_outputs(const std::string& csv) {
     return result;
 }
 
-TEST_CASE("a frozen replay predicts the same whatever was measured") {
+TEST_CASE("the predictions of a frozen replay do not depend on measured outputs") {
     const Bench bench;
     REQUIRE(bench.train("--outputs tau --model SPK --input DFSR" + robot).status == 0);
     const std::string reversed = with_reversed_outputs(file_content(bench.path("run.csv")));

@@ -7,14 +7,14 @@
 
 namespace dfdyn::tests {
 
-/// What became of a call of the program.
+/// Result of a call of the program.
 struct Outcome {
-    int status; ///< -1: it did not exit by itself
+    int status; ///< -1 if it did not exit by itself
     std::string out;
     std::string error;
 };
 
-/// Runs `dfdyn ARGUMENTS` as a script would, its standard output and error in files of `directory`.
+/// Runs `dfdyn ARGUMENTS` as a script would, with standard output and error in files of `directory`.
 Outcome run_program(const TemporaryDirectory& directory, const std::string& arguments);
 
 } // namespace dfdyn::tests

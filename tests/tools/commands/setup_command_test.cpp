@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Classic mistakes from the command line: named before the work starts, nothing written, exit status 1.
+// Common set-up mistakes from the command line: reported before any work, without output files, with an error
+// status.
 #include "tests/support/catch.hpp"
 #include "tests/tools/commands/run_program.hpp"
 #include "tests/tools/setup_check/mistakes.hpp"
@@ -86,7 +87,7 @@ void check_refused(const Bench& bench, const std::string& arguments, const std::
     CHECK_FALSE(bench.trained());
 }
 
-TEST_CASE("train refuses what the recording alone shows, before it works, with what to do") {
+TEST_CASE("train reports mistakes visible in the recording alone with their remedy before it starts") {
     const auto [mistake, words] = GENERATE(table<std::string, std::string>({
         {"positions in degrees", "looks like degrees; multiply by pi/180"},
         {"time in ms", "column t: expected seconds, found rows"},
@@ -100,7 +101,7 @@ TEST_CASE("train refuses what the recording alone shows, before it works, with w
     check_refused(Bench(mistake), "", words);
 }
 
-TEST_CASE("train refuses exchanged columns and wrong signs that the robot shows, whatever the model") {
+TEST_CASE("train reports exchanged columns and wrong signs by means of the robot for every model") {
     const auto [mistake, words] = GENERATE(table<std::string, std::string>({
         {"outputs 2 and 3 exchanged", "columns i2 and i3"},
         {"sign of one output", "i2: expected the sign of the robot's model"},
@@ -112,7 +113,7 @@ TEST_CASE("train refuses exchanged columns and wrong signs that the robot shows,
     check_refused(bench, robot + "--model NP", words);
 }
 
-TEST_CASE("nanoseconds beyond the range of the clock are named, too") {
+TEST_CASE("nanoseconds beyond the range of the clock are reported as nanoseconds") {
     TemporaryDirectory directory;
     Recording recording = right_recording();
     std::string text = csv(recording);
@@ -125,7 +126,7 @@ TEST_CASE("nanoseconds beyond the range of the clock are named, too") {
                                   ContainsSubstring("(nanoseconds? divide by 1e9)"));
 }
 
-TEST_CASE("a mistaken set-up trains with --no-setup-check, and a right one without any option") {
+TEST_CASE("a recording with a mistake trains with --no-setup-check and a correct one without options") {
     const Bench wrong("outputs in mA");
     const Outcome unchecked = wrong.train("--no-setup-check");
     CAPTURE(unchecked.error);
@@ -140,7 +141,7 @@ TEST_CASE("a mistaken set-up trains with --no-setup-check, and a right one witho
     CHECK_THAT(right.call("train --help").out, ContainsSubstring("--no-setup-check"));
 }
 
-/// What `dfdyn diagnose` prints and writes about the bench's recording.
+/// Runs `dfdyn diagnose` on the recording; returns its output and its JSON.
 std::pair<Outcome, nlohmann::json> diagnose(const Bench& bench, const std::string& option) {
     Outcome outcome = bench.call("diagnose" + robot + "--outputs i --no-held-out --rows :1200 --log " +
                                  bench.path("run.csv") + " -o " + bench.path("out") + " " + option);
@@ -149,24 +150,24 @@ std::pair<Outcome, nlohmann::json> diagnose(const Bench& bench, const std::strin
     return {std::move(outcome), nlohmann::json::parse(file_content(bench.path("out/diagnosis.json")))};
 }
 
-TEST_CASE("diagnose has the same check, and the same option goes on without it") {
+TEST_CASE("diagnose has the same check and the same option to skip it") {
     const Bench bench("outputs in mA");
     const auto [checked, refused] = diagnose(bench, "");
     CHECK_THAT(checked.out, StartsWith("! columns i1, i2, i3, i4, i5, i6: expected A") &&
                                 ContainsSubstring("looks like mA"));
     CHECK(refused["findings"].empty());
     CHECK_FALSE(std::filesystem::exists(bench.path("out/extended_model.json")));
-    const auto [unchecked, next] = diagnose(bench, "--no-setup-check"); // comes to the next reason
+    const auto [unchecked, next] = diagnose(bench, "--no-setup-check"); // reports the next reason
     CHECK_THAT(unchecked.out, !ContainsSubstring("looks like mA") && ContainsSubstring("causes need 10 s"));
 }
 
-TEST_CASE("diagnose names a clock that it cannot work with, also without the check") {
+TEST_CASE("diagnose reports an unusable clock even without the check") {
     const Bench bench("time in ms");
     CHECK_THAT(diagnose(bench, "").first.out, StartsWith("! column t: expected seconds"));
     CHECK_THAT(diagnose(bench, "--no-setup-check").first.out, StartsWith("! rows are 8 s apart"));
 }
 
-TEST_CASE("an output that cannot be written is refused before the recording is read") {
+TEST_CASE("an output that cannot be written is rejected before the recording is read") {
     const Bench bench("");
     const std::string nowhere = bench.path("no_such_folder/out");
     for (const std::string& arguments :
@@ -182,7 +183,7 @@ TEST_CASE("an output that cannot be written is refused before the recording is r
     CHECK_FALSE(std::filesystem::exists(bench.path("m.json")));
 }
 
-TEST_CASE("a replay that predicts nothing ends with status 1 and the reason") {
+TEST_CASE("a replay without any prediction ends with status 1 and the reason") {
     const Bench bench("");
     REQUIRE(bench.train("").status == 0);
     Recording recording = right_recording();
@@ -196,7 +197,8 @@ TEST_CASE("a replay that predicts nothing ends with status 1 and the reason") {
     CHECK_THAT(nothing.error, ContainsSubstring(wrong + ": nothing was predicted: ") &&
                                   ContainsSubstring("check that units, sample period and columns"));
     CHECK(bench.call(replay + bench.path("run.csv")).status == 0);
-    CHECK(bench.call(replay + bench.path("run.csv") + "," + wrong).status == 0); // one of two predicted
+    // one of two recordings is predicted
+    CHECK(bench.call(replay + bench.path("run.csv") + "," + wrong).status == 0);
 }
 
 } // namespace setup_command_test
