@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run of everything with tiny repetitions, and what is written. No time is looked at.
+// A run of all benchmarks with few repetitions, and its output. No times are checked.
 #include "tools/bench/bench_report.hpp"
 
 #include "tests/support/catch.hpp"
@@ -30,7 +30,7 @@ BenchTarget only_target(double measured, bool at_most) { return {"x", measured, 
 
 } // namespace
 
-TEST_CASE("a quick run measures everything, and its JSON has what the schema names") {
+TEST_CASE("a quick run measures everything and its JSON has the fields of the schema") {
     const TemporaryDirectory directory;
     const std::string folder = (directory.path() / "out").string();
     const Outcome outcome = run_program(directory, "bench --quick --hour -o " + folder);
@@ -65,7 +65,7 @@ TEST_CASE("a quick run measures everything, and its JSON has what the schema nam
     CHECK(markup_fault(dfdyn::tests::file_content(folder + "/pictures/tick-time.svg")).empty());
 }
 
-TEST_CASE("a target is met at its limit, on the right side of it") {
+TEST_CASE("a target includes its limit and has a direction") {
     CHECK(only_target(2, true).met());
     CHECK(only_target(1.9, true).met());
     CHECK_FALSE(only_target(2.1, true).met());
@@ -74,7 +74,7 @@ TEST_CASE("a target is met at its limit, on the right side of it") {
     CHECK_FALSE(only_target(1.9, false).met());
 }
 
-TEST_CASE("a wrong learner is shown without a time, and is no peer") {
+TEST_CASE("a wrong learner is shown without a time and is not compared") {
     BenchResults results;
     results.ticks.ticks = {{"dfdyn", "float", Contender::Kind::ours, 100, 1e-6, true, {}},
                            {"quick and wrong", "float", Contender::Kind::covariance, 100, 0.5, false, {}},
@@ -89,14 +89,14 @@ TEST_CASE("a wrong learner is shown without a time, and is no peer") {
     CHECK_FALSE(all["ticks"][1].contains("median_us"));
     const std::vector<BenchTarget> targets = bench_targets(results);
     REQUIRE(targets.size() >= 3);
-    CHECK(targets[0].measured == Approx(9)); // the fastest that is right
+    CHECK(targets[0].measured == Approx(9)); // the fastest of those that are correct
     CHECK(targets[1].measured == Approx(9));
     CHECK(targets[2].measured == Approx(40));
     CHECK(targets[2].limit == 30);
     CHECK_THAT(figure_page_markdown(bench_page(results)), Catch::Matchers::ContainsSubstring("0.5, wrong"));
 }
 
-TEST_CASE("growth is fitted from 200 columns on") {
+TEST_CASE("the growth exponent is fitted from 200 columns on") {
     TickBench bench;
     for (const int columns : {100, 200, 400, 800}) {
         TickResult one{"dfdyn", "float", Contender::Kind::ours, columns, 0, true, {}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every learner that is timed learns what the batch solution says: nothing faster but wrong is shown.
+// Every timed learner must give the batch solution, so that no fast but wrong learner is shown.
 #include "tools/bench/suites/model_bench.hpp"
 #include "tools/bench/suites/tick_bench.hpp"
 
@@ -15,7 +15,7 @@ using namespace dfdyn::tools;
 namespace {
 
 void check_all(const Contenders& contenders, const RegressionTask& task) {
-    constexpr int ticks = 200; // some rows twice
+    constexpr int ticks = 200; // some rows are used twice
     const RegressionTask::Matrix expected = task.batch_predictions(ticks);
     for (const auto& contender : contenders) {
         CAPTURE(contender->name(), contender->scalar());
@@ -24,13 +24,14 @@ void check_all(const Contenders& contenders, const RegressionTask& task) {
         }
         CHECK(relative_error(contender->predictions(), expected) <= tolerated_error(contender->scalar()));
         contender->tick();
-        CHECK(relative_error(contender->predictions(), expected) > 1e-5); // one row more shows
+        // one more row changes the predictions
+        CHECK(relative_error(contender->predictions(), expected) > 1e-5);
     }
 }
 
 } // namespace
 
-TEST_CASE("all learners of the benchmark give the batch solution's predictions") {
+TEST_CASE("all learners of the benchmark give the predictions of the batch solution") {
     const RegressionTask task(100);
     const Contenders ours = our_contenders(task);
     CHECK(ours.size() == 2);
@@ -41,7 +42,7 @@ TEST_CASE("all learners of the benchmark give the batch solution's predictions")
 }
 
 // Independent of the code above: the dual form over the distinct rows.
-TEST_CASE("the batch solution is that of the dual problem") {
+TEST_CASE("the batch solution equals the solution of the dual problem") {
     const RegressionTask task(200);
     const auto& rows = task.rows();
     Eigen::MatrixXd kernel = RegressionTask::prior_variance * rows * rows.transpose();
@@ -50,7 +51,7 @@ TEST_CASE("the batch solution is that of the dual problem") {
     CHECK(relative_error(task.batch_predictions(RegressionTask::distinct_rows), expected) < 1e-9);
 }
 
-TEST_CASE("an error is relative, and what is not finite is infinitely wrong") {
+TEST_CASE("an error is relative and infinite for values that are not finite") {
     RegressionTask::Matrix expected(1, 2);
     expected << 3, -4;
     RegressionTask::Matrix values(1, 2);
@@ -60,7 +61,7 @@ TEST_CASE("an error is relative, and what is not finite is infinitely wrong") {
     CHECK(relative_error(values, expected) == std::numeric_limits<double>::infinity());
 }
 
-TEST_CASE("SPK's fast form and its dense form are the same regression") {
+TEST_CASE("the fast form and the dense form of SPK are the same regression") {
     MultiplyAddProbe probe;
     const RepetitionOptions few{.passes = 1, .repetition_us = 0, .fewest_ticks = 1};
     const ModelBench bench = run_small_model_bench(few, 40, probe);
@@ -69,7 +70,7 @@ TEST_CASE("SPK's fast form and its dense form are the same regression") {
     CHECK(bench.kernel.ticks == 1);
 }
 
-TEST_CASE("the fastest of a kind is the fastest that is right") {
+TEST_CASE("the fastest of a kind is the fastest correct one") {
     const auto result = [](Contender::Kind kind, const std::string& name, double median, bool right) {
         TickResult one{name, "float", kind, 100, 0, right, {}};
         one.times.median = median;

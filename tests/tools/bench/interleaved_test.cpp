@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is counted, and in which order; no time is looked at.
+// The order and the counts of measurements. No times are checked.
 #include "dfdyn/vector.hpp"
 #include "tools/bench/timing/floor.hpp"
 #include "tools/bench/timing/interleaved.hpp"
@@ -24,7 +24,7 @@ class Noting final : public Ticking {
 
 } // namespace
 
-TEST_CASE("subjects take turns, each after two ticks that do not count") {
+TEST_CASE("subjects alternate and the first two ticks of each turn do not count") {
     std::string notes;
     Noting a(notes, 'a');
     Noting b(notes, 'b');
@@ -44,7 +44,7 @@ TEST_CASE("subjects take turns, each after two ticks that do not count") {
     CHECK(probe.best() > 0);
 }
 
-TEST_CASE("repetitions of a disturbed machine do not count, unless nearly all are") {
+TEST_CASE("repetitions on a disturbed machine do not count unless nearly all are disturbed") {
     const std::vector<Repetition> few{
         {1, false, {1, 2, 3}}, {0.9, false, {10}}, {1, true, {20}}, {0.98, false, {4}}};
     const TickTimes undisturbed = summarise_undisturbed(few, 1, 0.97);
@@ -58,7 +58,7 @@ TEST_CASE("repetitions of a disturbed machine do not count, unless nearly all ar
     CHECK(all.accepted == Approx(1.0 / 12));
 }
 
-TEST_CASE("the arithmetic floor is 1.5 p^2 multiply-adds at the probe's rate") {
+TEST_CASE("the arithmetic floor is 1.5 p^2 multiply-adds at the rate of the probe") {
     const double two_vectors = 2;
     const double in_float = arithmetic_floor_us(500, "float", two_vectors);
     CHECK(in_float == Approx(1.5 * 500 * 500 / (2.0 * dfdyn::detail::wide<float>) / 1000));

@@ -10,7 +10,7 @@
 
 using namespace dfdyn::tools;
 
-TEST_CASE("the statistics of ticks are those of their ascending times") {
+TEST_CASE("the statistics of ticks are those of their sorted times") {
     DFDYN_SEEDED_ENGINE(engine);
     std::vector<double> times(1001);
     std::iota(times.begin(), times.end(), 1.0);
@@ -26,14 +26,14 @@ TEST_CASE("the statistics of ticks are those of their ascending times") {
     CHECK(result.accepted == 0.75);
 }
 
-TEST_CASE("no ticks have no times") {
+TEST_CASE("without ticks all statistics are zero") {
     const TickTimes result = summarise({}, 0);
     CHECK(result.ticks == 0);
     CHECK(result.median == 0);
     CHECK(result.most == 0);
 }
 
-TEST_CASE("the exponent of a power law is found, whatever its factor") {
+TEST_CASE("the exponent of a power law is found for any factor") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int turn = 0; turn < 20; ++turn) {
         const double exponent = std::uniform_real_distribution<double>(0, 3)(engine);
@@ -48,7 +48,7 @@ TEST_CASE("the exponent of a power law is found, whatever its factor") {
 }
 
 TEST_CASE("an exponent is fitted to all points") {
-    // y = 0, 1, 3 at x = 0, 1, 2 (logarithms to the base e): slope 1.5
+    // y = 0, 1, 3 at x = 0, 1, 2 (natural logarithms): slope 1.5
     CHECK(fitted_exponent(std::vector<double>{1, std::exp(1), std::exp(2)},
                           std::vector<double>{1, std::exp(1), std::exp(3)}) == Approx(1.5));
 }

@@ -13,7 +13,7 @@ using namespace dfdyn::tools;
 
 } // namespace
 
-TEST_CASE("a timed loop calls each tick once, in order, and tells the time of each") {
+TEST_CASE("a timed loop calls each tick once in order and reports its time") {
     std::vector<std::size_t> called;
     const TimedLoop timed =
         time_loop({.period_s = 0.001, .duration_s = 0.05}, [&](std::size_t tick) { called.push_back(tick); });
@@ -24,24 +24,25 @@ TEST_CASE("a timed loop calls each tick once, in order, and tells the time of ea
     CHECK(timed.pace.ticks == 50);
     REQUIRE(timed.late_us.size() == 50);
     REQUIRE(timed.duration_us.size() == 50);
-    CHECK(*std::ranges::min_element(timed.late_us) >= 0); // none begins before it is due
+    CHECK(*std::ranges::min_element(timed.late_us) >= 0); // no tick begins before it is due
     CHECK(*std::ranges::min_element(timed.duration_us) >= 0);
     CHECK(timed.cores > 0);
     CHECK(static_cast<double>(timed.pace.longest_ns) ==
           Approx(1000 * *std::ranges::max_element(timed.duration_us)));
 }
 
-TEST_CASE("a timed loop refuses times that make none") {
+TEST_CASE("a timed loop rejects a period and duration without ticks or with too many") {
     const auto nothing = [](std::size_t) {};
     CHECK_THROWS_AS(time_loop({.period_s = 0, .duration_s = 1}, nothing), InputError);
     CHECK_THROWS_AS(time_loop({.period_s = 2, .duration_s = 1}, nothing), InputError);
     CHECK_THROWS_AS(time_loop({.period_s = 0.001, .duration_s = 4000}, nothing), InputError);
 }
 
-TEST_CASE("a loop beside a load learns every sample once its window is full, and its quantiles ascend") {
+TEST_CASE(
+    "a loop with a background load learns every sample after the first window and its quantiles increase") {
     const LoopBench bench = run_loop_bench(0.2);
     CHECK(bench.pace.ticks == 200);
-    CHECK(bench.learned == 190); // ten lags first
+    CHECK(bench.learned == 190); // after the first ten lags
     for (const LoopTimes& times : {bench.late, bench.duration}) {
         CHECK(times.median >= 0);
         CHECK(times.p99 >= times.median);
