@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a simulated arm has beyond its description, against closed forms.
+// Compares a simulated arm's deviations from its description with closed forms.
 #include "tests/support/catch.hpp"
 #include "tests/tools/simulation/small_arms.hpp"
 #include "tools/base/text/error.hpp"
@@ -25,7 +25,7 @@ struct SoftJoint {
         actuators.gear = {JointVector::Constant(1, stiffness), JointVector::Zero(1),
                           JointVector::Constant(1, gap)};
         SimulatedArm arm(robot, actuators, JointVector::Zero(1));
-        // a short push on the rotor
+        // A short push on the rotor.
         constexpr double push_s = 1e-6;
         arm.apply(JointVector::Constant(1, rotor * twist_velocity / push_s));
         arm.advance(push_s);
@@ -41,8 +41,7 @@ struct SoftJoint {
     }
 };
 
-TEST_CASE(
-    "rotor and link swing against each other with the two-mass frequency, and keep energy and momentum") {
+TEST_CASE("rotor and link oscillate at the two-mass frequency and conserve energy and momentum") {
     SimulatedArm arm = SoftJoint::arm(0, 2);
     const double start = SoftJoint::energy(arm, 0);
     int crossings = 0;
@@ -67,11 +66,11 @@ TEST_CASE(
     CHECK(momentum == Approx(SoftJoint::rotor * 2).epsilon(1e-6));
 }
 
-TEST_CASE("within its play a rotor turns freely; contact without losses gives all energy back") {
+TEST_CASE("a rotor turns freely within its backlash and lossless contact returns all energy") {
     constexpr double gap = 0.1;
     SimulatedArm arm = SoftJoint::arm(gap, 1);
     const double start = SoftJoint::energy(arm, gap);
-    for (int step = 0; step < 400; ++step) { // 0.04 rad: not through the play of 0.05
+    for (int step = 0; step < 400; ++step) { // 0.04 rad, less than half the gap of 0.1
         arm.advance(1e-4);
     }
     CHECK(arm.state().motor_velocity[0] == Approx(1).epsilon(1e-9));
@@ -85,19 +84,19 @@ TEST_CASE("within its play a rotor turns freely; contact without losses gives al
     CHECK(SoftJoint::energy(arm, gap) == Approx(start).epsilon(1e-4));
 }
 
-TEST_CASE("a gear pushes, and pulls only without play") {
+TEST_CASE("a gear with backlash pushes but never pulls") {
     const GearModel gear{JointVector::Constant(1, 100), JointVector::Constant(1, 10),
                          JointVector::Constant(1, 0.2)};
     CHECK(gear.torque(0, 0.1, 5) == 0);
     CHECK(gear.torque(0, 0.15, 0) == Approx(5));
     CHECK(gear.torque(0, -0.15, 0) == Approx(-5));
-    CHECK(gear.torque(0, 0.15, -1) == 0); // parts that leave each other do not stick
+    CHECK(gear.torque(0, 0.15, -1) == 0); // separating parts do not stick
     GearModel tight = gear;
     tight.gap[0] = 0;
     CHECK(tight.torque(0, 0.1, -2) == Approx(-10));
 }
 
-TEST_CASE("a soft joint needs a rotor and turns") {
+TEST_CASE("a soft joint requires rotor inertia and must be revolute") {
     ActuatorModel actuators = free_actuators(1);
     actuators.gear = {JointVector::Constant(1, 100), JointVector::Zero(1), JointVector::Zero(1)};
     CHECK_THROWS_AS(SimulatedArm(pendulum(1, 1), actuators, JointVector::Zero(1)), InputError);
@@ -119,7 +118,7 @@ TEST_CASE("a load beyond a soft joint hangs at rest from the start") {
     CHECK(std::abs(arm.state().motor_acceleration[0]) < 1e-9);
 }
 
-TEST_CASE("a spring swings its joint, and a push at the tip turns it by its lever") {
+TEST_CASE("a spring makes its joint oscillate and a push at the tip turns it by its lever") {
     Robot robot = pendulum(1, 0.5);
     robot.gravity.setZero();
     JointLoads spring;
@@ -139,8 +138,8 @@ TEST_CASE("a spring swings its joint, and a push at the tip turns it by its leve
     contact.force = Eigen::Vector3d(0, 3, 0);
     push.contacts = {contact};
     SimulatedArm pushed(robot, free_actuators(1), JointVector::Zero(1), push);
-    // the integral of the pulse's torque over a quarter of a second, nearly at rest; +y at z = -0.5 turns
-    // about +x
+    // The integral of the pulse's torque over a quarter of a second, nearly at rest. A force along +y at z =
+    // -0.5 turns the joint about +x.
     for (int step = 0; step < 2500; ++step) {
         pushed.advance(1e-4);
     }
@@ -148,7 +147,7 @@ TEST_CASE("a spring swings its joint, and a push at the tip turns it by its leve
     CHECK(pushed.state().velocity[0] == Approx(impulse / 0.25).epsilon(1e-3));
 }
 
-TEST_CASE("an actuator of limited bandwidth follows its command exponentially, from the first command on") {
+TEST_CASE("an actuator of limited bandwidth approaches its command exponentially from the first command on") {
     ActuatorModel actuators = free_actuators(1);
     actuators.bandwidth_hz = 20;
     SimulatedArm arm(pendulum(1, 0.5), actuators, JointVector::Zero(1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What faults of an arm and of its actuators do, against what mechanics says.
+// Compares the effect of faults of an arm and of its actuators with mechanics.
 #include "tests/support/catch.hpp"
 #include "tests/support/random_robot.hpp"
 #include "tests/support/seed.hpp"
@@ -17,7 +17,7 @@ using namespace dfdyn::tests;
 
 constexpr double mass = 2, length = 0.5, gravity = 9.81, inertia = mass * length * length;
 
-/// The pendulum, at rest at `position`, with these faults of a scenario.
+/// The pendulum at rest at `position`, with the faults of a scenario.
 SimulatedPlant plant_with(const std::string& faults, double position, Scenario scenario = quiet_scenario(1)) {
     scenario.faults = faults_of(faults, 1);
     return {pendulum(mass, length), scenario, JointVector::Constant(1, position)};
@@ -30,7 +30,7 @@ Robot weightless(Robot robot) {
     return robot;
 }
 
-TEST_CASE("friction that becomes twice as large takes twice the torque at the same speed, and for its time") {
+TEST_CASE("doubled friction requires twice the torque at the same speed while the fault acts") {
     Scenario scenario = quiet_scenario(1);
     scenario.actuators.friction[0] = {2000, 0, 2, 1, 1, 0.1};
     scenario.faults = faults_of(R"([{"kind": "friction_step", "factor": 2, "from_s": 4, "for_s": 4}])", 1);
@@ -46,14 +46,14 @@ TEST_CASE("friction that becomes twice as large takes twice the torque at the sa
     CHECK(plant.truth().velocity[0] == Approx(settled(3, 1)).epsilon(1e-3));
 }
 
-TEST_CASE(
-    "an even push accelerates the pendulum by its lever's cross product, between its begin and its end") {
+TEST_CASE("a constant push accelerates the pendulum by lever times force from its start to its end") {
     const double angle = 0.7;
-    const Eigen::Vector3d force(5, 3, -2), lever(0.1, 0.05, -0.3); // in the base's frame; in the link's
+    // force in the frame of the base, lever in that of the link
+    const Eigen::Vector3d force(5, 3, -2), lever(0.1, 0.05, -0.3);
     SimulatedPlant plant = plant_with(R"([{"kind": "push", "force_n": [5, 3, -2], "link": 1,
         "point_m": [0.1, 0.05, -0.3], "from_s": 0.1, "for_s": 0.2}])",
                                       angle);
-    plant.apply(JointVector::Constant(1, mass * gravity * length * std::sin(angle))); // carries the weight
+    plant.apply(JointVector::Constant(1, mass * gravity * length * std::sin(angle))); // balances the weight
     plant.advance_to(0.099);
     CHECK(acceleration(plant) == Approx(0).margin(1e-12));
     plant.advance_to(0.1);
@@ -69,15 +69,15 @@ TEST_CASE(
     CHECK(acceleration(plant) == Approx(expected(0)).epsilon(1e-9));
 }
 
-TEST_CASE("a torque of the surroundings, or a force on the tip, pushes alike") {
+TEST_CASE("an external torque at the joint and a force at the tip are equivalent") {
     SimulatedPlant by_torque = plant_with(R"([{"kind": "push", "joint": 1, "torque_nm": 1.5}])", 0);
     SimulatedPlant by_force = plant_with(R"([{"kind": "push", "force_n": [0, 3, 0]}])", 0); // lever: 0.5 m
     CHECK(acceleration(by_torque) == Approx(1.5 / inertia));
     CHECK(acceleration(by_force) == Approx(1.5 / inertia));
 }
 
-// The torque of a push on joint i is the force along the way that its point goes when the joint turns.
-TEST_CASE("a push on a link of a random arm has its virtual work, and none at the joints beyond") {
+// The torque of a push on joint i is the force times the motion of its point when that joint turns.
+TEST_CASE("a push on a link of a random arm does its virtual work and loads no joint beyond the link") {
     DFDYN_SEEDED_ENGINE(engine);
     const Robot robot = random_robot(engine, 5);
     JointVector position(5);
@@ -106,7 +106,7 @@ TEST_CASE("a push on a link of a random arm has its virtual work, and none at th
     }
 }
 
-TEST_CASE("a force/torque sensor feels a push on the parts beyond it, and no other") {
+TEST_CASE("a force/torque sensor measures only pushes on the parts beyond it") {
     Robot robot = pendulum(mass, length);
     robot.sensor.emplace();
     robot.sensor->link = 1;
@@ -116,14 +116,14 @@ TEST_CASE("a force/torque sensor feels a push on the parts beyond it, and no oth
         SimulatedArm arm(robot, free_actuators(1), JointVector::Zero(1));
         Faults faults(1);
         faults_of(R"([{"kind": "push", )" + place + R"("force_n": [0, 0, 19.62]}])", 1)[0].act(faults);
-        arm.set_faults(faults.arm); // carries the whole weight
+        arm.set_faults(faults.arm); // balances the whole weight
         return arm.wrench();
     };
     CHECK(felt("").norm() < 1e-9);
     CHECK(felt(R"("link": 1, "point_m": [0, 0, -0.5], )")[2] == Approx(mass * gravity));
 }
 
-TEST_CASE("an actuator's gain and its limit act on commands, also on one that was there before") {
+TEST_CASE("an actuator's gain and limit apply to its command even if that came earlier") {
     Scenario scenario = quiet_scenario(1);
     scenario.actuators.torque_limit = JointVector::Constant(1, 10);
     const auto torque_at = [&](const std::string& fault, double command, double time_s) {
@@ -138,7 +138,7 @@ TEST_CASE("an actuator's gain and its limit act on commands, also on one that wa
         R"({"kind": "actuator_gain", "joint": 1, "factor": 0.6, "from_s": 0.1, "for_s": 0.1})";
     CHECK(torque_at(gain, 5, 0.099) == 5);
     CHECK(torque_at(gain, 5, 0.1) == 3);
-    CHECK(torque_at(gain, 20, 0.1) == 6); // of a command that its drive limits
+    CHECK(torque_at(gain, 20, 0.1) == 6); // to a command that its drive limits
     CHECK(torque_at(gain, 5, 0.2) == 5);
     const std::string limit =
         R"({"kind": "actuator_saturation", "joint": [1], "limit_nm": 4, "from_s": 0.1})";
@@ -146,14 +146,14 @@ TEST_CASE("an actuator's gain and its limit act on commands, also on one that wa
     CHECK(torque_at(limit, 5, 0.1) == 4);
     CHECK(torque_at(limit, -5, 0.1) == -4);
     CHECK(torque_at(limit, 3, 0.1) == 3);
-    CHECK(torque_at(gain + "," + limit, 9, 0.1) == 4); // 5.4 N·m but for the limit
+    CHECK(torque_at(gain + "," + limit, 9, 0.1) == 4); // 5.4 N·m without the limit
 }
 
-TEST_CASE("until it begins a fault changes no bit, and one that does nothing never does") {
+TEST_CASE("a fault changes no bit before it begins and a fault without effect changes none at all") {
     Scenario scenario = quiet_scenario(1);
     scenario.encoders.noise = 1e-3;
     scenario.torque_sensor.noise = JointVector::Constant(1, 0.1);
-    scenario.actuators.friction[0] = {2000, 0, 0.5, 1, 1, 0.1, 0, 0.1}; // that its load makes larger
+    scenario.actuators.friction[0] = {2000, 0, 0.5, 1, 1, 0.1, 0, 0.1}; // its load increases the friction
     const auto rows = [&](const std::string& faults) {
         scenario.faults = faults_of(faults, 1);
         Simulation simulation(pendulum(mass, length), scenario);

@@ -21,7 +21,7 @@ EncoderModel perfect(int joints) {
     return model;
 }
 
-TEST_CASE("a 12-bit encoder errs uniformly within one count of 2 pi / 4096") {
+TEST_CASE("the error of a 12-bit encoder is uniform within one count of 2 pi / 4096") {
     EncoderModel model = perfect(1);
     model.bits_per_turn = 12;
     Encoders encoders(model, {false}, 1);
@@ -48,10 +48,10 @@ TEST_CASE("a 12-bit encoder errs uniformly within one count of 2 pi / 4096") {
     for (const int hits : tenths) {
         chi_squared += std::pow(hits - samples / 10, 2) / (samples / 10.0);
     }
-    CHECK(chi_squared < 33); // 9 degrees of freedom: one in ten thousand is above
+    CHECK(chi_squared < 33); // 9 degrees of freedom; exceeded with a probability of 1e-4
 }
 
-TEST_CASE("eccentricity is one cycle per turn, noise has its size, prismatic joints count per metre") {
+TEST_CASE("eccentricity has one cycle per turn and noise its size and prismatic joints count per metre") {
     EncoderModel model = perfect(2);
     model.eccentricity << 0.01, 0;
     model.eccentricity_phase << 0.3, 0;
@@ -74,7 +74,7 @@ TEST_CASE("eccentricity is one cycle per turn, noise has its size, prismatic joi
     CHECK(Encoders(model, {false, true}, 1).count(1) == 1.0 / 1024);
 }
 
-TEST_CASE("velocity and acceleration of a parabola are exact, and 0 until there are readings enough") {
+TEST_CASE("velocity and acceleration of a parabola are exact and 0 until there are enough readings") {
     DerivativeModel model;
     model.noise_bound = 1e-9;
     DerivativeEstimator estimator(model, 1, 1e-3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The faults of a scenario's file, and when they act.
+// Reading the faults of a scenario's file, and the times at which they act.
 #include "tests/support/catch.hpp"
 #include "tests/tools/simulation/read_faults.hpp"
 #include "tools/base/system/read_file.hpp"
@@ -18,7 +18,7 @@ using namespace dfdyn::tests;
 using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::StartsWith;
 
-/// What a three-joint arm's fault with these fields does where it acts.
+/// The effect of a fault with these fields on a three-joint arm while it acts.
 Faults acting(const std::string& fields) {
     Faults faults(3);
     faults_of("[{" + fields + "}]", 3).at(0).act(faults);
@@ -34,7 +34,7 @@ std::string refusal(const std::string& fields) {
     return "none";
 }
 
-TEST_CASE("joints are a number, a list, or all where they are left out") {
+TEST_CASE("joints are one number or a list or all if not given") {
     const auto factors = [](const std::string& joint) {
         return acting(R"("kind": "friction_step", "factor": 3)" + joint).arm.friction_factor;
     };
@@ -43,8 +43,7 @@ TEST_CASE("joints are a number, a list, or all where they are left out") {
     CHECK(factors(R"(, "joint": [3, 1])") == JointVector(Eigen::Vector3d(3, 1, 3)));
 }
 
-TEST_CASE(
-    "faults that act together add up: factors multiply, the least limit counts, losses are independent") {
+TEST_CASE("simultaneous faults combine by product of factors and smallest limit and independent losses") {
     Faults faults(3);
     for (const Fault& fault : faults_of(R"([{"kind": "actuator_gain", "factor": 0.5},
              {"kind": "actuator_gain", "joint": 1, "factor": 0.5}, {"kind": "actuator_saturation", "limit_nm": 9},
@@ -66,7 +65,7 @@ TEST_CASE(
     CHECK(faults.link.bus_set_ns == 1'000'000'000);
 }
 
-TEST_CASE("a fault acts from its begin to before its end, whichever way the time goes") {
+TEST_CASE("a fault acts from its start until its end even if time runs backwards") {
     FaultSchedule schedule(faults_of(R"([{"kind": "cycles_lost", "cycles": 3, "at_s": 0.7},
         {"kind": "torque_bias", "nm": 1, "from_s": 0.702, "for_s": 1}])",
                                      1),
@@ -87,7 +86,7 @@ TEST_CASE("a fault acts from its begin to before its end, whichever way the time
     CHECK(schedule.go_to(0.702));
 }
 
-TEST_CASE("a fault that cannot be is refused, with what was expected and what was found") {
+TEST_CASE("an impossible fault is rejected with the expected and the found value") {
     CHECK_THAT(refusal(R"("kind": "gremlin")"), StartsWith("kind: expected friction_step, push, ") &&
                                                     ContainsSubstring(" or clock_jump, found \"gremlin\""));
     CHECK_THAT(refusal(R"("from_s": 1)"), StartsWith("kind: expected this field, found none"));
@@ -125,8 +124,8 @@ TEST_CASE("a fault that cannot be is refused, with what was expected and what wa
 
 const std::filesystem::path data = DFDYN_TEST_DATA_DIR;
 
-TEST_CASE("the documentation of scenarios has every kind of fault, with its fields") {
-    const std::string text = read_file(data / "../../docs/reference/scenario.md", "cannot be read");
+TEST_CASE("the documentation of scenarios lists every kind of fault with its fields") {
+    const std::string text = read_file(data / "../../docs/scenario.md", "cannot be read");
     for (const FaultKind& kind : fault_catalogue()) {
         CAPTURE(kind.name);
         const std::size_t row = text.find("| `" + std::string(kind.name) + "` |");
@@ -138,7 +137,7 @@ TEST_CASE("the documentation of scenarios has every kind of fault, with its fiel
     }
 }
 
-TEST_CASE("every kind of fault has a scenario for the UR5 that can be read, and that has it") {
+TEST_CASE("every kind of fault has a readable scenario for the UR5 that contains it") {
     std::set<std::string> found;
     for (const auto& entry : std::filesystem::directory_iterator(data / "loop_faults")) {
         if (entry.path().extension() == ".json") {

@@ -21,10 +21,10 @@ LuGreParameters parameters() {
     return result;
 }
 
-TEST_CASE("LuGre friction settles on the Stribeck curve at every velocity, both ways") {
+TEST_CASE("LuGre friction converges to the Stribeck curve at every velocity in both directions") {
     for (const double velocity : {-2.0, -0.1, -0.03, 0.001, 0.02, 0.05, 0.3, 5.0}) {
         LuGreFriction friction(parameters());
-        for (int i = 0; i < 1000; ++i) { // forty times as far as the bristles bend
+        for (int i = 0; i < 1000; ++i) { // forty times the deflection of the bristles
             friction.advance(velocity, 6e-5 / std::abs(velocity));
         }
         const double ratio = velocity / 0.05;
@@ -35,7 +35,7 @@ TEST_CASE("LuGre friction settles on the Stribeck curve at every velocity, both 
     }
 }
 
-TEST_CASE("before it breaks away LuGre friction is a spring of the bristles' stiffness") {
+TEST_CASE("before it breaks away LuGre friction is a spring with the bristles' stiffness") {
     LuGreFriction friction(parameters());
     const double velocity = 1e-4;
     double moved = 0;
@@ -43,17 +43,17 @@ TEST_CASE("before it breaks away LuGre friction is a spring of the bristles' sti
         friction.advance(velocity, 1e-3);
         moved += velocity * 1e-3;
     }
-    // the spring gives way by the ratio of its torque to the break-away torque, to first order
+    // To first order, the spring yields by the ratio of its torque to the break-away torque.
     CHECK(moved < 1e-2 * 1.5 / 1000);
     CHECK(friction.torque(0) == Approx(1000 * moved).epsilon(1e-2));
-    // and it swings back when the joint does
+    // It returns when the joint does.
     for (int i = 0; i < 100; ++i) {
         friction.advance(-velocity, 1e-3);
     }
     CHECK(std::abs(friction.torque(0)) < 1e-2 * 1000 * moved);
 }
 
-TEST_CASE("the bristles' step is exact: one long one is as good as many short ones") {
+TEST_CASE("the integration of the bristles is exact for one long step as for many short ones") {
     LuGreFriction once(parameters());
     LuGreFriction often(parameters());
     once.advance(0.3, 0.01);
@@ -63,7 +63,7 @@ TEST_CASE("the bristles' step is exact: one long one is as good as many short on
     CHECK(once.torque(0.3) == Approx(often.torque(0.3)).epsilon(1e-10));
 }
 
-TEST_CASE("without bristles only viscous friction is left") {
+TEST_CASE("without bristles only viscous friction remains") {
     LuGreParameters viscous;
     viscous.viscous = 0.7;
     LuGreFriction friction(viscous);

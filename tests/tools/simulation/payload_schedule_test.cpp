@@ -14,16 +14,16 @@ using namespace dfdyn::tests;
 
 constexpr double mass = 2, length = 0.5, gravity = 9.81;
 
-/// What the pendulum does without torque, at rest at 0.3 rad.
+/// Acceleration of the pendulum at rest at 0.3 rad without torque.
 double acceleration_of(const SimulatedArm& arm) { return arm.state().acceleration[0]; }
 
 SimulatedArm resting() { return {pendulum(mass, length), free_actuators(1), JointVector::Constant(1, 0.3)}; }
 
-TEST_CASE("a payload moves the arm as one body with its last link: from its time on, and once") {
+TEST_CASE("a payload is attached to the last link as one body once at its time") {
     SimulatedArm arm = resting();
     const double alone = -gravity / length * std::sin(0.3);
     REQUIRE(acceleration_of(arm) == Approx(alone));
-    // at half the length from the joint: in the frame of the tip, half the length back up
+    // At half the length from the joint, which is half the length back from the tip in its frame.
     PayloadSchedule schedule({{1.5, 3, {0, 0, length / 2}}}, pendulum(mass, length));
     schedule.update(1.499, arm);
     CHECK(acceleration_of(arm) == Approx(alone));
@@ -35,7 +35,7 @@ TEST_CASE("a payload moves the arm as one body with its last link: from its time
     }
 }
 
-TEST_CASE("payloads that are due together are all attached; the motion goes on") {
+TEST_CASE("payloads that are due together are all attached without a jump of the motion") {
     SimulatedArm arm = resting();
     arm.advance(0.1);
     const double position = arm.state().position[0], velocity = arm.state().velocity[0];
@@ -44,14 +44,14 @@ TEST_CASE("payloads that are due together are all attached; the motion goes on")
     schedule.update(0.1, arm);
     CHECK(arm.state().position[0] == position);
     CHECK(arm.state().velocity[0] == velocity);
-    // the second is on the axis, where a point has no part in the swing
+    // The second payload is on the axis, where a point mass does not affect the motion.
     CHECK(acceleration_of(arm) == Approx(-gravity / length * std::sin(position)));
     arm.apply(JointVector::Constant(1, 1));
     const double swing = -gravity / length * std::sin(position);
     CHECK(acceleration_of(arm) == Approx(swing + 1 / ((mass + 1) * length * length)));
 }
 
-TEST_CASE("a payload that is taken off leaves the arm as it was before, with what else it carries") {
+TEST_CASE("removing a payload restores the arm with its other payloads") {
     SimulatedArm arm = resting();
     PayloadSchedule schedule({{0, 1, {0, 0, 0}, 2}, {1, 3, {0, 0, length / 2}}, {1.5, 5, {0.1, 0, 0}, 2}},
                              pendulum(mass, length));
@@ -71,7 +71,7 @@ TEST_CASE("a payload that is taken off leaves the arm as it was before, with wha
     CHECK(acceleration_of(other) == before); // bit for bit
 }
 
-TEST_CASE("a plant attaches its payloads as its time comes") {
+TEST_CASE("a plant attaches its payloads at their times") {
     Scenario scenario = quiet_scenario(1);
     scenario.payloads = {{0.25, 3, {0, 0, length / 2}}};
     const JointVector hanging = JointVector::Zero(1);

@@ -8,7 +8,7 @@
 
 namespace dfdyn::tests {
 
-/// The `faults` of a scenario whose loop ticks at 1 kHz, from their JSON.
+/// Reads the JSON `faults` of a scenario whose loop runs at 1 kHz.
 inline std::vector<tools::Fault> faults_of(const std::string& faults, int joints) {
     const nlohmann::json json = tools::parse_json(R"({"faults": )" + faults + "}", "s.json");
     return tools::read_faults({tools::JsonReader(json, "s.json"), joints}, 0.001);

@@ -34,7 +34,7 @@ Scenario read(const json& scenario, const Robot& robot = pendulum(1, 1)) {
     return read_scenario(directory.write("s.json", scenario.dump()), robot);
 }
 
-/// The error of the minimal scenario with `value` at `path`.
+/// The error message for the minimal scenario with `value` at `path`.
 std::string error_with(const std::string& path, const json& value) {
     json scenario = minimal();
     scenario[json::json_pointer(path)] = value;
@@ -47,7 +47,7 @@ std::string error_with(const std::string& path, const json& value) {
     return "none";
 }
 
-TEST_CASE("a scenario's fields arrive, with their defaults, one number for all joints or one each") {
+TEST_CASE("a scenario is read with its defaults and with one number for all joints or one for each") {
     const Scenario scenario = read(minimal());
     CHECK(scenario.integration_rate_hz == 8000);
     CHECK(scenario.recording.samples == 20);
@@ -62,7 +62,7 @@ TEST_CASE("a scenario's fields arrive, with their defaults, one number for all j
     CHECK(std::get<MultisineTask>(scenario.task).amplitude[0] == 0.2);
 }
 
-TEST_CASE("a bad scenario is refused with the path of the field, what was expected and what was found") {
+TEST_CASE("an invalid scenario is rejected with the path of the field and the expected and the found value") {
     using Catch::Matchers::ContainsSubstring;
     using Catch::Matchers::StartsWith;
     CHECK_THAT(error_with("/colour", 3), StartsWith("field \"colour\": expected one of schema, chain, "));
@@ -105,7 +105,7 @@ TEST_CASE("a bad scenario is refused with the path of the field, what was expect
     CHECK_THROWS_WITH(read(missing), ContainsSubstring("controller: expected this field, found none"));
 }
 
-TEST_CASE("the F/T sensor's calibration is read row by row") {
+TEST_CASE("the calibration matrix of the F/T sensor is read row by row") {
     json scenario = minimal();
     std::vector<double> numbers(36);
     std::iota(numbers.begin(), numbers.end(), 0.0);
@@ -119,7 +119,7 @@ TEST_CASE("the F/T sensor's calibration is read row by row") {
                       Catch::Matchers::ContainsSubstring("force_torque.calibration: expected 36 numbers"));
 }
 
-TEST_CASE("what an arm has beyond its description is read, and refused where it cannot be") {
+TEST_CASE("deviations from the robot's description are read or rejected if they are impossible") {
     using Catch::Matchers::StartsWith;
     json scenario = minimal();
     scenario["recording"]["noise"] = {{"torque_nm", 0.2}, {"coefficient", 0.9}};
@@ -172,7 +172,7 @@ TEST_CASE("what an arm has beyond its description is read, and refused where it 
     CHECK_THAT(error_with("/arm", {{"links", {{{"link", 2}}}}}), StartsWith("arm.links[0].link"));
 }
 
-TEST_CASE("payloads that are taken off, and faults in ticks of the controller, are read") {
+TEST_CASE("payloads that are removed and faults in ticks of the controller are read") {
     json scenario = minimal();
     scenario["payloads"] = {{{"mass_kg", 1}, {"centre_m", {0, 0, 0}}, {"attached_s", 2}, {"removed_s", 3}}};
     scenario["faults"] = {{{"kind", "cycles_lost"}, {"at_s", 2}, {"cycles", 3}}};
@@ -189,7 +189,7 @@ TEST_CASE("payloads that are taken off, and faults in ticks of the controller, a
                Catch::Matchers::StartsWith("faults[0].field \"force\": expected one of kind, force_n, "));
 }
 
-TEST_CASE("a file that is no scenario is refused") {
+TEST_CASE("a file that is not a scenario is rejected") {
     const TemporaryDirectory directory;
     CHECK_THROWS_AS(read_scenario_chain(directory.path() / "none.json"), InputError);
     CHECK_THROWS_AS(read_scenario_chain(directory.path()), InputError);

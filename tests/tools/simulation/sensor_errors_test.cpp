@@ -34,7 +34,7 @@ Statistics statistics(const OutputNoiseModel& model) {
     return {std::sqrt(squares / rows), products / squares};
 }
 
-/// Settled at `velocity`.
+/// Friction in steady state at `velocity`.
 double settled(LuGreFriction& friction, double velocity) {
     for (int i = 0; i < 1000; ++i) {
         friction.advance(velocity, 1e-3);
@@ -42,7 +42,7 @@ double settled(LuGreFriction& friction, double velocity) {
     return friction.torque(velocity);
 }
 
-TEST_CASE("friction has a level per direction, one of the load, and a drift") {
+TEST_CASE("friction has a level per direction and a share of the load and a drift") {
     LuGreParameters parameters;
     parameters.stiffness = 1000;
     parameters.coulomb = parameters.breakaway = 1;
@@ -59,11 +59,11 @@ TEST_CASE("friction has a level per direction, one of the load, and a drift") {
     CHECK(settled(friction, -2) > -1e5);
     parameters.drift_per_s = -1;
     LuGreFriction gone(parameters);
-    gone.set_conditions(5, 0); // no friction, rather than one that drives
+    gone.set_conditions(5, 0); // zero friction instead of friction that drives
     CHECK(std::abs(settled(gone, 2)) < 1e-6);
 }
 
-TEST_CASE("a torque reading is the delayed torque over the gain, plus the offset") {
+TEST_CASE("a torque reading is the delayed torque divided by the gain plus the offset") {
     TorqueSensorModel model;
     model.noise = JointVector::Zero(2);
     model.gain = JointVector::Constant(2, 1.25);
@@ -81,7 +81,7 @@ TEST_CASE("a torque reading is the delayed torque over the gain, plus the offset
     CHECK(reading[1] == Approx((110 - 2.5) / 1.25 + 0.5));
 }
 
-TEST_CASE("coloured noise has standard deviation 1 and its coefficient; white noise none") {
+TEST_CASE("coloured noise has standard deviation 1 and its coefficient and white noise has no correlation") {
     OutputNoiseModel model;
     CHECK(statistics(model).deviation == Approx(1).epsilon(0.02));
     CHECK(std::abs(statistics(model).neighbours) < 0.01);
@@ -90,7 +90,7 @@ TEST_CASE("coloured noise has standard deviation 1 and its coefficient; white no
     CHECK(statistics(model).neighbours == Approx(0.9).epsilon(0.01));
 }
 
-TEST_CASE("resampled noise has standard deviation 1 and its series' colour, whatever the series' size") {
+TEST_CASE("resampled noise has standard deviation 1 and the correlation of its series at any scale") {
     OutputNoiseModel coloured;
     coloured.coefficient = 0.8;
     UnitNoise source(coloured, 3, 0);
@@ -106,7 +106,7 @@ TEST_CASE("resampled noise has standard deviation 1 and its series' colour, what
     CHECK_THROWS_AS(UnitNoise(model, 1, 0), InputError);
 }
 
-TEST_CASE("outputs have noise of their own, of their own size") {
+TEST_CASE("each output has independent noise of its own size") {
     OutputNoiseModel model;
     model.torque = JointVector(2);
     model.torque << 0.1, 3;
@@ -124,7 +124,7 @@ TEST_CASE("outputs have noise of their own, of their own size") {
     CHECK(std::abs(products / std::sqrt(squares[0] * squares[1])) < 0.03);
 }
 
-TEST_CASE("errors of links move mass and centre, and keep a mass that can be") {
+TEST_CASE("link errors change mass and centre of mass and must leave a positive mass") {
     RobotErrors errors;
     errors.links = {{0, 0.5, Eigen::Vector3d(0.1, 0, 0)}};
     const Robot real = real_robot(pendulum(1, 0.5), errors);
@@ -136,7 +136,7 @@ TEST_CASE("errors of links move mass and centre, and keep a mass that can be") {
     CHECK_THROWS_WITH(real_robot(pendulum(1, 0.5), errors), Catch::Matchers::ContainsSubstring("link 1"));
 }
 
-TEST_CASE("errors of links change moments of inertia about the centre of mass, as far as a body can") {
+TEST_CASE("link errors change the moments of inertia about the centre of mass within physical limits") {
     RobotErrors errors;
     errors.links = {{0, 0, Eigen::Vector3d::Zero(), Eigen::Vector3d(0, 0.2, 0.2)}};
     const Robot described = pendulum(1, 0.5);
@@ -144,16 +144,16 @@ TEST_CASE("errors of links change moments of inertia about the centre of mass, a
         real_robot(described, errors).joints[0].inertia - described.joints[0].inertia;
     CHECK((change - body_parameters(0, Eigen::Vector3d::Zero(), Eigen::Vector3d(0, 0.2, 0.2).asDiagonal()))
               .norm() < 1e-12);
-    errors.links[0].delta_inertia = {0, 0.2, 0}; // longer than its mass is wide
+    errors.links[0].delta_inertia = {0, 0.2, 0}; // violates the triangle inequality of moments of inertia
     CHECK_THROWS_WITH(real_robot(described, errors), Catch::Matchers::ContainsSubstring("link 1"));
 }
 
-TEST_CASE("a base that is not the root tilts about the root's axes") {
+TEST_CASE("a base that is not the root is tilted about the axes of the root") {
     Robot robot = pendulum(1, 0.5);
-    // the base's x is the root's y, its y the root's -x
+    // The x axis of the base is the y axis of the root, its y axis the root's -x axis.
     robot.base_in_root = Eigen::AngleAxisd(std::acos(-1) / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     RobotErrors errors;
-    errors.tilt_x = 0.3; // about the base's -y
+    errors.tilt_x = 0.3; // about the -y axis of the base
     const Eigen::Vector3d expected = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY()) * robot.gravity;
     CHECK((real_robot(robot, errors).gravity - expected).norm() < 1e-12);
 }

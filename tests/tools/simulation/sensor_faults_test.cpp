@@ -19,7 +19,7 @@ SimulatedPlant falling(const std::string& faults, Scenario scenario = quiet_scen
     return plant;
 }
 
-TEST_CASE("a frozen encoder shows what it showed last, until it shows the position again") {
+TEST_CASE("a frozen encoder repeats its last reading until the fault ends") {
     SimulatedPlant plant =
         falling(R"([{"kind": "encoder_frozen", "joint": 1, "from_s": 0.2, "for_s": 0.1}])");
     plant.advance_to(0.199);
@@ -34,13 +34,13 @@ TEST_CASE("a frozen encoder shows what it showed last, until it shows the positi
     CHECK(plant.position()[0] == plant.truth().position[0]);
 }
 
-TEST_CASE("an encoder that is frozen from the start shows where the arm stood") {
+TEST_CASE("an encoder that is frozen from the start shows the initial position") {
     SimulatedPlant plant = falling(R"([{"kind": "encoder_frozen", "joint": 1}])");
     plant.advance_to(0.5);
     CHECK(plant.position()[0] == 1);
 }
 
-TEST_CASE("an encoder jumps from one reading to the next, for good or for its time; the arm does not") {
+TEST_CASE("a jump of an encoder changes its readings permanently or for a time but not the motion") {
     SimulatedPlant plant = falling(R"([{"kind": "encoder_jump", "joint": 1, "rad": 0.05, "at_s": 0.1},
         {"kind": "encoder_jump", "joint": 1, "rad": -0.2, "at_s": 0.2, "for_s": 0.001}])");
     SimulatedPlant sound = falling("[]");
@@ -57,7 +57,7 @@ TEST_CASE("an encoder jumps from one reading to the next, for good or for its ti
     CHECK(difference(0.201) == Approx(0.05));
 }
 
-TEST_CASE("a torque sensor's reading is scaled and offset, its noise with it; the torque is not") {
+TEST_CASE("scaling and offset of a torque sensor change its reading with noise but not the torque") {
     Scenario scenario = quiet_scenario(1);
     scenario.torque_sensor.noise = JointVector::Constant(1, 0.3);
     SimulatedPlant sound = falling("[]", scenario);

@@ -17,7 +17,7 @@ double energy(const SimulatedArm& arm) {
     return arm.dynamics().energy(arm.configuration(), arm.state().velocity);
 }
 
-/// The largest deviation of the energy, relative to its swing, of an arm that falls freely for 4 s.
+/// Largest relative deviation of the energy of an arm that falls freely for 4 s.
 double energy_error(const Robot& robot, double step_s) {
     const auto n = static_cast<int>(robot.joints.size());
     SimulatedArm arm(robot, free_actuators(n), JointVector::Constant(n, 0.5));
@@ -35,7 +35,7 @@ double energy_error(const Robot& robot, double step_s) {
     return worst / swing;
 }
 
-/// Revolute, with the masses of a real arm: a random chain with prismatic joints falls for ever.
+/// A random revolute chain with the masses of a real arm. A chain with prismatic joints would fall for ever.
 Robot random_swing(std::mt19937_64& engine, int n) {
     Robot robot = random_robot(engine, n);
     for (RobotJoint& joint : robot.joints) {
@@ -44,7 +44,7 @@ Robot random_swing(std::mt19937_64& engine, int n) {
     return robot;
 }
 
-TEST_CASE("a free swing keeps its energy, with an error of the step's fourth order at least") {
+TEST_CASE("a free swing conserves energy with an error of at least fourth order in the step") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int trial = 0; trial < 3; ++trial) {
         const Robot robot = random_swing(engine, 2 + trial);
@@ -64,12 +64,12 @@ TEST_CASE("a pendulum swings with the period of the elliptic integral") {
         arm.advance(1e-4);
         time_s += 1e-4;
     }
-    time_s += arm.state().position[0] / -arm.state().velocity[0]; // back to the crossing
+    time_s += arm.state().position[0] / -arm.state().velocity[0]; // interpolated back to the crossing
     const double quarter = std::comp_ellint_1(std::sin(1.0)) * std::sqrt(1 / 9.81);
     CHECK(time_s == Approx(quarter).epsilon(1e-6));
 }
 
-TEST_CASE("friction takes exactly the energy that is lost, and holds the arm at last") {
+TEST_CASE("friction dissipates exactly the lost energy and holds the arm in the end") {
     ActuatorModel actuators = free_actuators(1);
     actuators.friction[0] = {500, 1, 0.1, 0.5, 0.8, 0.05};
     SimulatedArm arm(pendulum(1, 0.5), actuators, JointVector::Constant(1, 1.2));
@@ -85,14 +85,14 @@ TEST_CASE("friction takes exactly the energy that is lost, and holds the arm at 
     }
     CHECK(energy(arm) - start == Approx(-lost).epsilon(1e-3));
     CHECK(std::abs(arm.state().velocity[0]) < 1e-6);
-    // it stands where friction below the break-away level holds the weight
+    // It rests where friction below the break-away level holds the weight.
     const double weight = 1 * 9.81 * 0.5 * std::sin(arm.state().position[0]);
     CHECK(std::abs(weight) > 1e-3);
     CHECK(std::abs(weight) < 0.8);
     CHECK(arm.state().friction[0] == Approx(-weight).epsilon(1e-3));
 }
 
-TEST_CASE("actuators give no more than their limit") {
+TEST_CASE("actuators do not exceed their torque limit") {
     ActuatorModel actuators = free_actuators(1);
     actuators.torque_limit = JointVector::Constant(1, 2);
     SimulatedArm arm(pendulum(1, 1), actuators, JointVector::Zero(1));

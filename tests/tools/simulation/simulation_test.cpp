@@ -40,7 +40,7 @@ std::string bytes(const Robot& robot, const Scenario& scenario) {
     return recording.str() + truth.str();
 }
 
-TEST_CASE("recorded rate and jitter are the scenario's; the truth has no stamp error") {
+TEST_CASE("rate and jitter of a recording are those of the scenario and the truth has no stamp error") {
     Scenario scenario = quiet_scenario(1);
     scenario.recording.rate_hz = 100;
     scenario.recording.first_at_s = 0.5;
@@ -58,12 +58,12 @@ TEST_CASE("recorded rate and jitter are the scenario's; the truth has no stamp e
         instants += std::pow(sample.truth.time_s - (0.5 + 0.01 * i), 2) / samples;
         stamps += std::pow(sample.time_s - sample.truth.time_s, 2) / samples;
     }
-    // instants are whole steps of the integration
+    // Sample times are whole steps of the integration.
     CHECK(std::sqrt(instants) == Approx(std::hypot(4e-4, 1.25e-4 / std::sqrt(12))).epsilon(0.04));
     CHECK(std::sqrt(stamps) == Approx(2e-4).epsilon(0.04));
 }
 
-TEST_CASE("perfect sensors show what is so, and the torque is inverse dynamics plus friction") {
+TEST_CASE("perfect sensors measure the true values and the torque is inverse dynamics plus friction") {
     Scenario scenario = quiet_scenario(1);
     scenario.actuators.friction[0] = {500, 1, 0.2, 0.4, 0.6, 0.05};
     scenario.actuators.rotor_inertia[0] = 0.05;
@@ -73,7 +73,7 @@ TEST_CASE("perfect sensors show what is so, and the torque is inverse dynamics p
         const SimulatedSample sample = simulation.next();
         const SimulatedTruth& truth = sample.truth;
         REQUIRE(sample.torque[0] == truth.torque[0]);
-        REQUIRE(std::abs(sample.position[0] - truth.position[0]) < 2e-3); // held for up to 1 ms
+        REQUIRE(std::abs(sample.position[0] - truth.position[0]) < 2e-3); // readings are held for up to 1 ms
         const double inertia = 0.25 + 0.05;
         const double expected =
             inertia * truth.acceleration[0] + 9.81 * 0.5 * std::sin(truth.position[0]) + truth.friction[0];
@@ -81,7 +81,7 @@ TEST_CASE("perfect sensors show what is so, and the torque is inverse dynamics p
     }
 }
 
-TEST_CASE("derivatives estimated at a lower rate lag more, and do not change how the arm moves") {
+TEST_CASE("derivatives estimated at a lower rate have more lag and do not change the motion") {
     Scenario scenario = quiet_scenario(1);
     scenario.recording.first_at_s = 2;
     scenario.recording.rate_hz = 50;
@@ -102,23 +102,22 @@ TEST_CASE("derivatives estimated at a lower rate lag more, and do not change how
     CHECK(slow_error > 3 * fast_error);
 }
 
-TEST_CASE("the true acceleration is the derivative of the true velocity between the controller's steps") {
+TEST_CASE("the true acceleration is the derivative of the true velocity within a controller step") {
     Scenario scenario = quiet_scenario(1);
-    scenario.recording.rate_hz = 4000; // every second step
+    scenario.recording.rate_hz = 4000; // every second integration step
     scenario.recording.first_at_s = 2;
     Simulation simulation(pendulum(1, 0.5), scenario);
     SimulatedTruth first = simulation.next().truth;
     for (int i = 0; i < 400; ++i) {
         const SimulatedTruth second = simulation.next().truth;
-        // the torque is constant over it, the acceleration nearly so
+        // The torque is constant over the step and the acceleration nearly constant.
         const double slope = (second.velocity[0] - first.velocity[0]) / (second.time_s - first.time_s);
         REQUIRE(slope == Approx(first.acceleration[0]).margin(0.05));
         first = second;
     }
 }
 
-TEST_CASE(
-    "the iCub's tip goes round its circle of 10 cm, in both planes, nearly but not quite the same way") {
+TEST_CASE("the iCub's tip moves around its circle of 10 cm in both planes with small variations") {
     for (const std::string name : {"icub_xy.json", "icub_xz.json"}) {
         CAPTURE(name);
         const Robot robot = read(name, "icub_right_arm/icub_right_arm.urdf");
@@ -132,7 +131,7 @@ TEST_CASE(
         double radius = 0;
         double turned = 0;
         double past = 0;
-        constexpr int samples = 300; // 15 s: 12 turns
+        constexpr int samples = 300; // 15 s, which are 12 turns
         for (int i = 0; i < samples; ++i) {
             const SimulatedTruth truth = simulation.next().truth;
             const Eigen::Vector3d from_centre = truth.tip - circle.centre;
@@ -153,7 +152,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("robot, scenario and seed determine every byte; another seed changes them") {
+TEST_CASE("robot and scenario and seed determine every byte and another seed changes them") {
     const Robot robot = read("icub_xy.json", "icub_right_arm/icub_right_arm.urdf");
     Scenario scenario = read_scenario(data + "/scenarios/icub_xy.json", robot);
     scenario.recording.samples = 30;
@@ -164,7 +163,7 @@ TEST_CASE("robot, scenario and seed determine every byte; another seed changes t
     CHECK(first != bytes(robot, scenario));
 }
 
-TEST_CASE("the shipped joint-space example runs, and its recording has the columns it names") {
+TEST_CASE("the shipped joint-space example runs and its recording has the columns of the scenario") {
     const Robot robot = read("ur5_multisine.json", "ur5/ur5_robot.urdf");
     Scenario scenario = read_scenario(data + "/scenarios/ur5_multisine.json", robot);
     scenario.recording.samples = 50;
@@ -174,7 +173,7 @@ TEST_CASE("the shipped joint-space example runs, and its recording has the colum
                          "i1,i2,i3,i4,i5,i6\n"));
 }
 
-TEST_CASE("a reference beyond a joint's limit, and an arm out of control, say when") {
+TEST_CASE("a reference beyond a joint limit and an unstable arm are reported with their time") {
     Robot robot = pendulum(1, 0.5);
     robot.joints[0].upper = 0.31;
     Simulation limited(robot, quiet_scenario(1));

@@ -5,7 +5,8 @@
 
 namespace dfdyn::tests {
 
-/// One joint about a horizontal axis with all its mass at `length` from it: a pendulum. Hangs along -z at 0.
+/// A pendulum: one joint about a horizontal axis with all mass at distance `length`. It hangs along -z at 0
+/// rad.
 inline tools::Robot pendulum(double mass, double length) {
     tools::RobotJoint joint;
     joint.name = "swing";
@@ -23,7 +24,7 @@ inline tools::Robot pendulum(double mass, double length) {
     return robot;
 }
 
-/// Actuators without friction, rotors and limits.
+/// Actuators without friction, rotors or limits.
 inline tools::ActuatorModel free_actuators(int joints) {
     tools::ActuatorModel model;
     model.rotor_inertia = tools::JointVector::Zero(joints);
@@ -31,7 +32,7 @@ inline tools::ActuatorModel free_actuators(int joints) {
     return model;
 }
 
-/// A scenario for an arm whose joints all stay near `centre` under a good controller; perfect sensors.
+/// A scenario in which a good controller keeps all joints near `centre`; its sensors are perfect.
 inline tools::Scenario quiet_scenario(int joints) {
     tools::Scenario scenario;
     tools::MultisineTask task;

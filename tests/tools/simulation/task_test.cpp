@@ -37,7 +37,7 @@ Robot icub() {
     return read_robot(DFDYN_TEST_DATA_DIR "/robots/icub_right_arm/icub_right_arm.urdf", options);
 }
 
-/// A circle well within reach.
+/// A circle that is well within reach.
 CircleTask small_circle() {
     CircleTask circle;
     circle.rest_posture = (JointVector(4) << -0.6, 0.6, 0.3, 1.3).finished();
@@ -46,7 +46,7 @@ CircleTask small_circle() {
     return circle;
 }
 
-TEST_CASE("a multisine starts at rest, stays within its amplitude, and its derivatives are right") {
+TEST_CASE("a multisine starts at rest and stays within its amplitude and has correct derivatives") {
     MultisineTask model;
     model.centre = JointVector::Constant(3, 1);
     model.amplitude = JointVector::Constant(3, 0.6);
@@ -61,7 +61,7 @@ TEST_CASE("a multisine starts at rest, stays within its amplitude, and its deriv
     check_derivatives(model, Robot(), 4000);
 }
 
-TEST_CASE("point to point passes each posture in turn, at rest") {
+TEST_CASE("point to point reaches each posture in turn at rest") {
     PointToPointTask model;
     for (const double q : {0.0, 1.0, -0.5}) {
         model.postures.push_back(JointVector::Constant(2, q));
@@ -69,7 +69,7 @@ TEST_CASE("point to point passes each posture in turn, at rest") {
     const std::unique_ptr<Task> task = make_task(model, Robot(), period_s, 1);
     for (int i = 0; i < 6000; ++i) {
         const Reference reference = task->next();
-        if (i % 1500 == 1200) { // moves of 1 s, then 0.5 s of rest
+        if (i % 1500 == 1200) { // moves of 1 s followed by 0.5 s at rest
             const double expected[] = {1.0, -0.5, 0.0, 1.0};
             CHECK(reference.position[0] == expected[i / 1500]);
             CHECK(reference.velocity.norm() == 0);
@@ -78,7 +78,7 @@ TEST_CASE("point to point passes each posture in turn, at rest") {
     check_derivatives(model, Robot(), 4000);
 }
 
-TEST_CASE("the circle's reference runs round the circle, and its derivatives are right") {
+TEST_CASE("the reference of the circle follows the circle with correct derivatives") {
     const Robot robot = icub();
     InverseKinematics kinematics(robot);
     CircleTask circle = small_circle();
@@ -93,7 +93,7 @@ TEST_CASE("the circle's reference runs round the circle, and its derivatives are
         turned += std::remainder(angle - past, 2 * std::acos(-1));
         past = angle;
     }
-    // 12 s, of which the start of 2 s counts half
+    // In 12 s, the start of 2 s counts half.
     CHECK(turned / (2 * std::acos(-1)) == Approx(11).margin(0.01));
     circle.posture_variation = 0.05;
     circle.speed_variation = 0.1;
@@ -101,7 +101,7 @@ TEST_CASE("the circle's reference runs round the circle, and its derivatives are
     check_derivatives(circle, robot, 6000);
 }
 
-TEST_CASE("wandering changes from turn to turn, by about what was asked for") {
+TEST_CASE("the circle varies from turn to turn by about the configured amount") {
     const Robot robot = icub();
     InverseKinematics kinematics(robot);
     CircleTask circle = small_circle();
@@ -117,7 +117,7 @@ TEST_CASE("wandering changes from turn to turn, by about what was asked for") {
     CHECK(std::sqrt(squares) == Approx(0.003).epsilon(0.4));
 }
 
-TEST_CASE("a circle out of reach says where, by how much, and which joint is in the way") {
+TEST_CASE("a circle out of reach is reported with the place and the distance and the limiting joint") {
     const Robot robot = icub();
     CircleTask circle = small_circle();
     circle.centre.x() -= 0.5;

@@ -19,7 +19,7 @@ WrenchSensorModel fine() {
     return model;
 }
 
-/// Size of the reading's sine, relative to that of the wrench, at `frequency_hz`.
+/// Ratio of the amplitude of the reading to that of the wrench, a sine of `frequency_hz`.
 double gain(const WrenchSensorModel& model, double frequency_hz) {
     WrenchSensor sensor(model, period_s, 1);
     double sine = 0;
@@ -28,7 +28,7 @@ double gain(const WrenchSensorModel& model, double frequency_hz) {
     for (int i = 0; i < 2 * steps; ++i) {
         const double angle = 2 * std::numbers::pi * frequency_hz * i * period_s;
         sensor.observe(i * period_s, Wrench::Constant(std::sin(angle)));
-        if (i >= steps && i % 8 == 0) { // the readings' own instants
+        if (i >= steps && i % 8 == 0) { // only at the times of readings
             sine += sensor.reading()[0] * std::sin(angle);
             cosine += sensor.reading()[0] * std::cos(angle);
         }
@@ -36,7 +36,7 @@ double gain(const WrenchSensorModel& model, double frequency_hz) {
     return std::hypot(sine, cosine) / (steps / 16.0);
 }
 
-TEST_CASE("the F/T sensor's -3 dB point is its bandwidth, and its order is the roll-off") {
+TEST_CASE("the F/T sensor's -3 dB frequency is its bandwidth and its order sets the roll-off") {
     WrenchSensorModel model = fine();
     model.bandwidth_hz = 60;
     for (const int order : {1, 2}) {
@@ -49,7 +49,7 @@ TEST_CASE("the F/T sensor's -3 dB point is its bandwidth, and its order is the r
     }
 }
 
-TEST_CASE("the F/T sensor lags by its delay, fractions of a step included") {
+TEST_CASE("the F/T sensor lags by its delay including fractions of a step") {
     WrenchSensorModel model = fine();
     model.rate_hz = 8000;
     for (const double delay_s : {0.0, 0.0009, 0.01001}) {
@@ -63,7 +63,7 @@ TEST_CASE("the F/T sensor lags by its delay, fractions of a step included") {
     }
 }
 
-TEST_CASE("the F/T sensor has bias, drift, noise, 16 bits of its range, and saturates") {
+TEST_CASE("the F/T sensor has bias and drift and noise and 16 bits of its range and saturates") {
     WrenchSensorModel model;
     model.range << 1500, 1500, 2000, 35, 35, 25;
     WrenchSensor quantised(model, period_s, 1);
@@ -76,7 +76,7 @@ TEST_CASE("the F/T sensor has bias, drift, noise, 16 bits of its range, and satu
         CHECK(std::abs(quantised.reading()[axis] - wrench[axis]) <= 0.5 * step[axis] * (1 + 1e-9));
         CHECK(std::abs(std::remainder(quantised.reading()[axis], step[axis])) < 1e-9 * step[axis] + 1e-12);
     }
-    CHECK(quantised.reading()[2] == 2000 - step[2]); // a sixteen-bit word has one value more below zero
+    CHECK(quantised.reading()[2] == 2000 - step[2]); // a 16-bit word has one more value below zero than above
     CHECK(quantised.reading()[3] == -35);
 
     model = fine();
@@ -98,7 +98,7 @@ TEST_CASE("the F/T sensor has bias, drift, noise, 16 bits of its range, and satu
     CHECK(mean_late == Approx(4 + 0.5 * 15).epsilon(0.01));
 }
 
-TEST_CASE("an error of calibration mixes what the F/T sensor reads, and leaves its bias alone") {
+TEST_CASE("a calibration error mixes the axes of the F/T sensor but not its bias") {
     WrenchSensorModel model = fine();
     model.calibration(0, 0) = 1.02;
     model.calibration(4, 2) = -0.001;
@@ -112,8 +112,8 @@ TEST_CASE("an error of calibration mixes what the F/T sensor reads, and leaves i
     CHECK((sensor.reading() - expected).cwiseAbs().maxCoeff() < 1e-6);
 }
 
-TEST_CASE("the F/T sensor holds its reading until the next") {
-    WrenchSensor sensor(fine(), period_s, 1); // 1 kHz: every eighth step
+TEST_CASE("the F/T sensor holds its reading until the next one") {
+    WrenchSensor sensor(fine(), period_s, 1); // at 1 kHz every eighth step
     for (int i = 0; i < 32; ++i) {
         sensor.observe(i * period_s, Wrench::Constant(i));
         CHECK(sensor.reading()[0] == Approx(i - i % 8).margin(1e-6));
