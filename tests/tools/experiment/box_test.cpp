@@ -9,8 +9,8 @@
 
 namespace tools = dfdyn::tools;
 
-TEST_CASE("a box has the quantiles of its values, whatever their order") {
-    // 0 … 100, of which the quantile at a share is 100 times it
+TEST_CASE("a box contains the quantiles of its values in any order") {
+    // The values 0 to 100, whose quantile at a share is 100 times that share.
     std::vector<double> values;
     for (int i = 0; i <= 100; ++i) {
         values.push_back((37 * i) % 101);
@@ -36,7 +36,7 @@ TEST_CASE("quantiles are interpolated between order statistics") {
     CHECK(tools::median({4, 1}) == Approx(2.5));
 }
 
-TEST_CASE("NaN do not count, infinite values do") {
+TEST_CASE("NaN is ignored and infinite values count") {
     const double infinite = std::numeric_limits<double>::infinity();
     const tools::Box box = tools::box_of({2, std::nan(""), 4});
     CHECK(box.count == 2);

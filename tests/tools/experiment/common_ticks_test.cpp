@@ -18,7 +18,7 @@ constexpr std::size_t rows = 60;
 constexpr std::size_t horizon = 5;
 const double infinite = std::numeric_limits<double>::infinity();
 
-/// Windows of 4 and of 7 lags; outputs that are not 0.
+/// A plan with windows of 4 and of 7 lags whose outputs are never 0.
 Plan plan_with_windows() {
     Plan plan = two_case_plan(1);
     plan.horizon = horizon;
@@ -47,12 +47,12 @@ std::vector<bool> ticks_from_to(std::size_t first, std::size_t last) {
     return ticks;
 }
 
-TEST_CASE("ticks are scored from the largest window on, up to the last whole horizon") {
+TEST_CASE("ticks are scored after the largest window until the last complete horizon") {
     CHECK(common_ticks(plan_with_windows(), data_of_three_subsets(), 0, 1) ==
           ticks_from_to(7, rows - horizon));
 }
 
-TEST_CASE("a gap begins the window again, and no horizon reaches across it") {
+TEST_CASE("a gap restarts the window and no horizon extends across it") {
     PlanData data = data_of_three_subsets();
     data.subsets[1].gap_before[30] = 1;
     std::vector<bool> expected = ticks_from_to(7, 30 - horizon);
@@ -61,27 +61,27 @@ TEST_CASE("a gap begins the window again, and no horizon reaches across it") {
     CHECK(common_ticks(plan_with_windows(), data, 0, 0) == ticks_from_to(7, rows - horizon));
 }
 
-TEST_CASE("a subset that is shorter than window and horizon has no common ticks") {
+TEST_CASE("a subset shorter than window and horizon has no common ticks") {
     Plan plan = plan_with_windows();
     plan.horizon = rows;
     CHECK(common_ticks(plan, data_of_three_subsets(), 0, 0) == std::vector<bool>(rows, false));
 }
 
-TEST_CASE("where an output of the group rests at 0 there is no error relative to it") {
+TEST_CASE("ticks without a relative error because an output is zero are not scored") {
     Plan plan = plan_with_windows();
     PlanData data = data_of_three_subsets();
     for (std::size_t row = 20; row < 28; ++row) {
         data.subsets[0].output.values[2 * row + 1] = 0;
     }
     std::vector<bool> expected = ticks_from_to(7, rows - horizon);
-    expected[19] = expected[20] = expected[21] = expected[22] = false; // whose next five are all 0
+    expected[19] = expected[20] = expected[21] = expected[22] = false; // an output is 0 at the next five rows
     CHECK(common_ticks(plan, data, 1, 0) == expected);
     CHECK(common_ticks(plan, data, 0, 0) == ticks_from_to(7, rows - horizon));
     plan.error_scale = ErrorScale::variance;
     CHECK(common_ticks(plan, data, 1, 0) == ticks_from_to(7, rows - horizon));
 }
 
-TEST_CASE("errors of other ticks are no errors, and missing ones of common ticks are infinite") {
+TEST_CASE("errors of other ticks are dropped and missing errors of common ticks are infinite") {
     DFDYN_SEEDED_ENGINE(engine);
     std::vector<UnitResult> units{unit_at("A", 1, 1, engine), unit_at("B", 1, 1, engine)};
     units[0].error[1][2][6] = 0.5;

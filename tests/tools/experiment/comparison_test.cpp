@@ -14,7 +14,7 @@ using namespace dfdyn::tools;
 using dfdyn::tests::two_case_plan;
 using dfdyn::tests::unit_at;
 
-/// A errs `ratio` times as much as B in each of the draws.
+/// Units in which the errors of A are `ratio` times those of B in each draw.
 std::vector<UnitResult> units_with(double ratio, std::size_t draws, std::mt19937_64& engine) {
     std::vector<UnitResult> units;
     for (std::size_t seed = 1; seed <= draws; ++seed) {
@@ -26,7 +26,7 @@ std::vector<UnitResult> units_with(double ratio, std::size_t draws, std::mt19937
 
 const double infinite = std::numeric_limits<double>::infinity();
 
-/// Makes one tick of `name`'s first group in every subset infinite, in the draws up to `last`.
+/// Makes one tick of the first group of `name` infinite in every subset of the draws up to `last`.
 void lose(std::vector<UnitResult>& units, const std::string& name, std::size_t tick,
           std::uint64_t last = 100) {
     for (UnitResult& unit : units) {
@@ -38,7 +38,7 @@ void lose(std::vector<UnitResult>& units, const std::string& name, std::size_t t
 
 const Comparison a_is_less{"A", "B", "force", Phase::steady, 0};
 
-TEST_CASE("a clear difference in every draw holds, and its opposite is contradicted") {
+TEST_CASE("a clear difference in every draw holds and the opposite claim is contradicted") {
     DFDYN_SEEDED_ENGINE(engine);
     const Plan plan = two_case_plan(10);
     const std::vector<UnitResult> units = units_with(0.6, 10, engine);
@@ -53,7 +53,7 @@ TEST_CASE("a clear difference in every draw holds, and its opposite is contradic
     CHECK(compare({"B", "A", "force", Phase::steady, 0}, plan, units).verdict == Verdict::contradicted);
 }
 
-TEST_CASE("the gain is part of the claim") {
+TEST_CASE("a comparison holds only with its claimed gain") {
     DFDYN_SEEDED_ENGINE(engine);
     const Plan plan = two_case_plan(10);
     const std::vector<UnitResult> units = units_with(0.8, 10, engine);
@@ -66,7 +66,7 @@ TEST_CASE("the gain is part of the claim") {
     CHECK(with_gain("B", "A", -0.4) == Verdict::holds); // 25 % more is at most 40 % more
 }
 
-TEST_CASE("too few draws, draws that disagree and draws that are missing decide nothing") {
+TEST_CASE("too few or contradictory or missing draws leave a comparison undecided") {
     DFDYN_SEEDED_ENGINE(engine);
     CHECK(compare(a_is_less, two_case_plan(4), units_with(0.1, 4, engine)).verdict == Verdict::undecided);
     CHECK(compare(a_is_less, two_case_plan(5), units_with(0.1, 5, engine)).verdict == Verdict::holds);
@@ -85,7 +85,7 @@ TEST_CASE("too few draws, draws that disagree and draws that are missing decide 
     CHECK(std::isnan(missing.median_ratio));
 }
 
-TEST_CASE("a difference that only one subset shows does not hold") {
+TEST_CASE("a difference in only one subset does not hold") {
     DFDYN_SEEDED_ENGINE(engine);
     std::vector<UnitResult> units = units_with(1.05, 10, engine);
     for (UnitResult& unit : units) {
@@ -112,7 +112,7 @@ TEST_CASE("a case that loses ticks loses the draw") {
         CHECK(outcome.subsets_agree == 0);
         CHECK(outcome.median_ratio == infinite);
         CHECK(outcome.verdict == Verdict::contradicted);
-        CHECK(compare(a_is_less, plan, units).verdict == Verdict::holds); // no tick of this phase
+        CHECK(compare(a_is_less, plan, units).verdict == Verdict::holds); // no tick of this phase was lost
     }
     SECTION("the better one in some draws") {
         lose(units, "A", 4, 4);
@@ -142,7 +142,7 @@ TEST_CASE("a case that loses ticks loses the draw") {
     }
 }
 
-TEST_CASE("the spread of a comparison's ratio is its quartiles over the draws") {
+TEST_CASE("the spread of a comparison is the quartiles of its ratio over the draws") {
     DFDYN_SEEDED_ENGINE(engine);
     std::vector<UnitResult> units;
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -155,12 +155,12 @@ TEST_CASE("the spread of a comparison's ratio is its quartiles over the draws") 
     CHECK(outcome.upper_ratio == Approx(0.4).epsilon(0.1));
 }
 
-TEST_CASE("the draws are paired by their seed, not by their order") {
+TEST_CASE("the draws are paired by their seed and not by their order") {
     DFDYN_SEEDED_ENGINE(engine);
     std::vector<UnitResult> units = units_with(0.9, 10, engine);
     std::ranges::reverse(units);
     std::swap(units[0], units[7]);
-    // unpaired, the draws' levels 1 … 10 would drown the difference
+    // Without pairing, the levels 1 to 10 of the draws would hide the difference.
     CHECK(compare(a_is_less, two_case_plan(10), units).draws_agree == 10);
 }
 
@@ -184,7 +184,7 @@ TEST_CASE("the verdict on a finding follows from its comparisons") {
     CHECK(verdict({undecided}) == FindingVerdict::undecided);
 }
 
-TEST_CASE("ratios are said in words") {
+TEST_CASE("ratios are formatted in words") {
     CHECK(ratio_text(0.83) == "17 % less");
     CHECK(ratio_text(1.12) == "12 % more");
     CHECK(ratio_text(4.2) == "4.2 times as much");

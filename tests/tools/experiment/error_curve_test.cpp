@@ -18,7 +18,7 @@ using dfdyn::tests::unit_at;
 
 const double infinite = std::numeric_limits<double>::infinity();
 
-/// Three draws with gaps: no subset begins before tick 2, one ends early, one value is infinite.
+/// Three draws with gaps: no subset begins before tick 2, one ends early, and one value is infinite.
 std::vector<UnitResult> draws_with_gaps(std::mt19937_64& engine) {
     std::vector<UnitResult> draws;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -38,7 +38,7 @@ std::vector<const UnitResult*> pointers(const std::vector<UnitResult>& draws) {
     return all;
 }
 
-/// The mean of one draw's subsets, written out.
+/// The mean over the subsets of one draw, computed explicitly.
 double draw_mean(const UnitResult& draw, std::size_t tick) {
     double sum = 0;
     int count = 0;
@@ -51,7 +51,7 @@ double draw_mean(const UnitResult& draw, std::size_t tick) {
     return sum / count;
 }
 
-TEST_CASE("the curve is the mean over subsets, then over draws, with the draws' quartiles") {
+TEST_CASE("the curve is the mean over subsets and then over draws with the quartiles of the draws") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::vector<UnitResult> draws = draws_with_gaps(engine);
     const ErrorCurve curve = error_curve(pointers(draws), 1);
@@ -74,7 +74,7 @@ TEST_CASE("the curve is the mean over subsets, then over draws, with the draws' 
     }
 }
 
-TEST_CASE("a thinned curve averages each stretch of its logarithmic axis once") {
+TEST_CASE("a thinned curve averages each interval of its logarithmic axis once") {
     ErrorCurve curve;
     for (int tick = 0; tick < 1000; ++tick) {
         curve.time_s.push_back(0.1 * tick);
@@ -88,7 +88,7 @@ TEST_CASE("a thinned curve averages each stretch of its logarithmic axis once") 
     CHECK(thin.time_s.front() == Approx(0.5));
     CHECK(std::ranges::is_sorted(thin.time_s));
     for (std::size_t i = 0; i < thin.time_s.size(); ++i) {
-        // of a straight line, the mean is its value at the mean time
+        // The mean over a straight line is its value at the mean time.
         CHECK(thin.mean[i] == Approx(1 + 10 * thin.time_s[i]));
         CHECK(thin.low[i] == Approx(0.5 * thin.mean[i]));
         CHECK(thin.high[i] == Approx(2 * thin.mean[i]));
@@ -96,10 +96,10 @@ TEST_CASE("a thinned curve averages each stretch of its logarithmic axis once") 
     CHECK(thin.time_s.back() > 80);
     curve.mean[10] = infinite; // t = 1
     const auto lost = std::ranges::count(thinned(curve, 10).mean, infinite);
-    CHECK(lost == 1); // a break in the line, not a better point
+    CHECK(lost == 1); // interrupts the line instead of looking like a better point
 }
 
-TEST_CASE("the phases part at the settling time") {
+TEST_CASE("the transient and the steady phase are separated at the settling time") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::vector<UnitResult> draws = draws_with_gaps(engine);
     const UnitResult& draw = draws.front();

@@ -26,7 +26,7 @@ struct Evaluation {
     EvaluationResults results;
 };
 
-/// A errs half as much as B in six draws.
+/// An evaluation in which A's errors are half of B's in six draws.
 Evaluation evaluation() {
     std::mt19937_64 engine(1);
     Evaluation one;
@@ -47,7 +47,7 @@ void write(const TemporaryDirectory& directory, const Evaluation& one) {
     write_evaluation(directory.path(), one.plan, one.data, one.results);
 }
 
-TEST_CASE("an evaluation writes page, tables, findings, figures and pictures") {
+TEST_CASE("an evaluation writes page and tables and findings and figures and pictures") {
     const TemporaryDirectory directory;
     write(directory, evaluation());
     const std::string html = file_content(directory.path() / "report.html");
@@ -74,7 +74,7 @@ TEST_CASE("an evaluation writes page, tables, findings, figures and pictures") {
     }
 }
 
-TEST_CASE("the page needs no network and no script") {
+TEST_CASE("the page needs neither network nor script") {
     const TemporaryDirectory directory;
     write(directory, evaluation());
     const std::string html = file_content(directory.path() / "report.html");
@@ -85,7 +85,7 @@ TEST_CASE("the page needs no network and no script") {
     }
 }
 
-TEST_CASE("the results have one row per case, draw and group") {
+TEST_CASE("the results have one row per case and draw and group") {
     const TemporaryDirectory directory;
     write(directory, evaluation());
     const std::string csv = file_content(directory.path() / "results.csv");
@@ -97,7 +97,7 @@ TEST_CASE("the results have one row per case, draw and group") {
     CHECK_THAT(csv, ContainsSubstring("\nB,6,torque,"));
 }
 
-TEST_CASE("opponents stand below the cases in the table and in the results") {
+TEST_CASE("opponents follow the cases in the table and in the results") {
     Evaluation one = evaluation();
     const TemporaryDirectory directory;
     write(directory, one);
@@ -118,7 +118,7 @@ TEST_CASE("opponents stand below the cases in the table and in the results") {
     CHECK_THAT(csv, ContainsSubstring(",nan,0.25,0.5,nan,"));
 }
 
-TEST_CASE("lost ticks and cases without draws are said beside the table") {
+TEST_CASE("lost ticks and cases without draws are mentioned with the table") {
     Evaluation one = evaluation();
     const TemporaryDirectory directory;
     write(directory, one);
@@ -152,12 +152,12 @@ TEST_CASE("the tables show the spread over the draws") {
     }
     const TemporaryDirectory directory;
     write(directory, one);
-    // mean and median over everything are 2, of the draws 1, 2 and 3
+    // The mean and the median over all draws 1, 2 and 3 are 2.
     CHECK_THAT(file_content(directory.path() / "tables.md"),
                ContainsSubstring("| A | 2 | 1.5–2.5 | 2 | 2 | 2 | 1.5–2.5 | 1 | 3 | 1 | 3 |"));
 }
 
-TEST_CASE("what could not be done is said, and the rest shown") {
+TEST_CASE("failed cases are reported and the others are shown") {
     Evaluation one = evaluation();
     std::erase_if(one.results.units, [](const UnitResult& unit) { return unit.case_name == "B"; });
     one.results.failed = {{"B", 1, "training: <no> likelihood"}};
@@ -169,7 +169,7 @@ TEST_CASE("what could not be done is said, and the rest shown") {
     CHECK_THAT(html, ContainsSubstring("A wins: undecided"));
 }
 
-TEST_CASE("no text of a plan can leave its place in the page") {
+TEST_CASE("texts of a plan are escaped in the page") {
     const std::string hostile = "</title><script>alert(\"'&{{facts}}\")</script>";
     Evaluation one = evaluation();
     one.plan.title = one.plan.figures[0].title = one.plan.findings[0].statement = hostile;

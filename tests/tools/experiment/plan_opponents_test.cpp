@@ -20,7 +20,7 @@ PlanOpponents opponents_of(const TemporaryDirectory& directory, const json& cont
     return plan_opponents(plan, load_plan_data(plan));
 }
 
-TEST_CASE("persistence in a plan has the error of its definition over all subsets") {
+TEST_CASE("the error of persistence in a plan follows its definition over all subsets") {
     const TemporaryDirectory directory;
     const Plan plan = read_plan(write_small_experiment(directory));
     const PlanData data = load_plan_data(plan);
@@ -30,7 +30,7 @@ TEST_CASE("persistence in a plan has the error of its definition over all subset
     std::vector<double> measured;
     double square = 0;
     for (const Recording& subset : data.subsets) {
-        for (std::size_t row = 4; row < subset.row_count(); ++row) { // the window of four lags
+        for (std::size_t row = 4; row < subset.row_count(); ++row) { // after the window of four lags
             measured.push_back(subset.output.row(row)[1]);
             square += std::pow(measured.back() - subset.output.row(row - 1)[1], 2);
         }
@@ -48,7 +48,7 @@ TEST_CASE("persistence in a plan has the error of its definition over all subset
     CHECK(opponents.errors[1].normalised_error[1] < opponents.errors[0].normalised_error[1]);
 }
 
-TEST_CASE("a plan without a robot has no rigid body, and says why") {
+TEST_CASE("a plan without a robot has no rigid body and gives the reason") {
     const TemporaryDirectory directory;
     const PlanOpponents opponents = opponents_of(directory, small_plan());
     CHECK(opponents.no_rigid_body == "the plan has no robot");
@@ -71,7 +71,7 @@ TEST_CASE("the rigid bodies of a plan are fitted to its training log") {
     for (const std::size_t opponent : {2U, 3U}) {
         for (const double error : torques.errors[opponent].normalised_error) {
             CHECK(std::isfinite(error));
-            CHECK(error < 1.5); // the torques of small_recording() are no robot's
+            CHECK(error < 1.5); // small_recording() does not contain the torques of this robot
         }
     }
 }

@@ -30,7 +30,7 @@ std::vector<std::string> case_names(const Plan& plan) {
     return names;
 }
 
-TEST_CASE("a plan is read with its defaults, its paths from its own folder") {
+TEST_CASE("a plan is read with its defaults and with paths relative to its folder") {
     const TemporaryDirectory directory;
     const Plan plan = read_plan(directory.write("plan.json", small_plan().dump()));
     CHECK(plan.training_log == directory.path() / "train.csv");
@@ -41,7 +41,7 @@ TEST_CASE("a plan is read with its defaults, its paths from its own folder") {
     CHECK(plan.tests[0].count == 2);
     CHECK(plan.seeds == std::vector<std::uint64_t>{1, 2});
     CHECK(plan.error_scale == ErrorScale::horizon);
-    REQUIRE(plan.figures.size() == 1); // by default one with all cases
+    REQUIRE(plan.figures.size() == 1); // one figure with all cases by default
     CHECK(plan.figures[0].cases == case_names(plan));
     CHECK(plan.cases[0].lags == 4);
     CHECK(plan.cases[0].feature_count == 10);
@@ -49,7 +49,7 @@ TEST_CASE("a plan is read with its defaults, its paths from its own folder") {
     CHECK(plan.cases[0].physics_input == "same");
 }
 
-TEST_CASE("lists of a case multiply, and name the cases") {
+TEST_CASE("lists in a case give all combinations and name the cases") {
     json content = small_plan();
     content["cases"] = json::parse(R"([
         {"model": ["NP", "SPK"], "input": ["STD", "DFR"]},
@@ -67,7 +67,7 @@ TEST_CASE("lists of a case multiply, and name the cases") {
     CHECK(plan.cases[7].lags == 4);
 }
 
-TEST_CASE("comparisons multiply over lists, and over all groups where none is named") {
+TEST_CASE("comparisons give all combinations of lists and of groups if none is named") {
     json content = small_plan();
     content["findings"] = json::parse(R"([{"name": "n", "statement": "s", "comparisons": [
         {"better": ["NP-ML-STD", "NP-ML-DFR"], "worse": "NP-ML-STD", "phase": "steady", "gain": 0.1},
@@ -83,7 +83,7 @@ TEST_CASE("comparisons multiply over lists, and over all groups where none is na
     CHECK(comparisons[4].gain == 0);
 }
 
-TEST_CASE("a comparison may name the cases without a suffix as a set") {
+TEST_CASE("a comparison can refer to all cases without suffix as a set") {
     json content = small_plan();
     content["more_cases"] = {{{"input", {"STD", "DF"}}, {"suffix", "-own"}}};
     content["comparisons"] = json::parse(R"([
@@ -101,7 +101,7 @@ TEST_CASE("a comparison may name the cases without a suffix as a set") {
                                                                     {"NP-ML-DF-own", "NP-ML-STD-own"}});
 }
 
-TEST_CASE("more figures are added to the one that is there by default") {
+TEST_CASE("additional figures follow the default one") {
     json content = small_plan();
     content["more_figures"] = {{{"title", "One"}, {"cases", {"NP-ML-DFR"}}}};
     const Plan plan = plan_of(content);
@@ -127,7 +127,7 @@ TEST_CASE("the settings of training and of the robot are read") {
     CHECK(plan.robot.torque_constants == std::vector<double>{10, 7.5});
 }
 
-TEST_CASE("a mistake in a plan is named by its field") {
+TEST_CASE("an error in a plan is reported with its field") {
     struct Mistake {
         std::function<void(json&)> make;
         std::string message;
@@ -212,14 +212,14 @@ TEST_CASE("a mistake in a plan is named by its field") {
     CHECK_THROWS_WITH(plan_of(content), ContainsSubstring(mistake.message));
 }
 
-TEST_CASE("a plan that is not there, or is no JSON, is an error in one line") {
+TEST_CASE("a missing plan or one that is not JSON is an error of one line") {
     const TemporaryDirectory directory;
     CHECK_THROWS_AS(read_plan(directory.path() / "none.json"), InputError);
     CHECK_THROWS_WITH(read_plan(directory.write("plan.json", "{\"schema\": ")),
                       ContainsSubstring("plan.json: byte"));
 }
 
-TEST_CASE("the recordings of a plan are cut as it says") {
+TEST_CASE("the recordings of a plan are cut as configured") {
     const TemporaryDirectory directory;
     const Plan plan = read_plan(dfdyn::tests::write_small_experiment(directory));
     const PlanData data = load_plan_data(plan);
@@ -241,7 +241,7 @@ TEST_CASE("the recordings of a plan are cut as it says") {
     CHECK(data.output_variance[1] == Approx(square - mean * mean));
 }
 
-TEST_CASE("recordings that do not hold what the plan asks for are refused") {
+TEST_CASE("recordings without the rows or columns of the plan are rejected") {
     const TemporaryDirectory directory;
     json content = small_plan();
     content["tests"][0]["count"] = 3;
@@ -255,7 +255,7 @@ TEST_CASE("recordings that do not hold what the plan asks for are refused") {
                       ContainsSubstring("group \"both\": expected outputs among tau1, tau2, found \"tau3\""));
 }
 
-TEST_CASE("a quick plan has the same cases and claims, and less of everything else") {
+TEST_CASE("a quick plan has the same cases and claims with less effort") {
     json content = small_plan();
     content["training"]["start_rows"] = 1000;
     content["training"]["rows"] = 9000;
@@ -276,7 +276,7 @@ TEST_CASE("a quick plan has the same cases and claims, and less of everything el
     CHECK(quick.cases.front().lags == plan.cases.front().lags);
 }
 
-TEST_CASE("a plan takes the fields that it lacks from the one that it is like") {
+TEST_CASE("a plan takes missing fields from the plan that it is based on") {
     const TemporaryDirectory directory;
     directory.write("base.json", small_plan().dump());
     const auto like_base = [&directory](const std::string& fields) {
@@ -288,12 +288,12 @@ TEST_CASE("a plan takes the fields that it lacks from the one that it is like") 
     CHECK(plan.title == "A small experiment");
     CHECK(plan.cases.size() == 2);
     CHECK(plan.cases[0].feature_count == 20);
-    CHECK(plan.cases[0].lags == 10); // "defaults" as a whole is this plan's
+    CHECK(plan.cases[0].lags == 10); // "defaults" is replaced as a whole
     CHECK_THROWS_AS(like_base(R"("nmae": "other")"), InputError);
     CHECK_THROWS_AS(read_plan(directory.write("plan.json", R"({"like": "none.json"})")), InputError);
 }
 
-TEST_CASE("the plans of tools/reproduce.sh are valid, and encode the same findings for both robots") {
+TEST_CASE("the plans of tools/reproduce.sh are valid and have the same findings for both robots") {
     const std::filesystem::path folder = DFDYN_TEST_DATA_DIR "/../../tools/experiment/plans";
     const Plan icub = read_plan(folder / "icub.json");
     const Plan ur5 = read_plan(folder / "ur5.json");

@@ -23,7 +23,7 @@ using nlohmann::json;
 
 void ignore(double /*share*/) {}
 
-/// Reads and runs the plan that is in `directory`; the results are in its folder `out`.
+/// Reads and runs the plan in `directory`; the results are in its folder `out`.
 EvaluationResults run(const TemporaryDirectory& directory, int jobs = 1) {
     const Plan plan = read_plan(directory.path() / "plan.json");
     const PlanData data = load_plan_data(plan);
@@ -38,7 +38,7 @@ CaseMemories empty_memories(const Plan& plan) {
     return memories;
 }
 
-/// Everything but the times.
+/// All results except the times.
 json without_times(const EvaluationResults& results) {
     json all = json::array();
     for (const UnitResult& unit : results.units) {
@@ -48,7 +48,7 @@ json without_times(const EvaluationResults& results) {
     return all;
 }
 
-TEST_CASE("a run does every case with every draw, and finds its results again") {
+TEST_CASE("a run computes every case with every draw and reuses its results") {
     const TemporaryDirectory directory;
     write_small_experiment(directory);
     const EvaluationResults first = run(directory);
@@ -59,7 +59,7 @@ TEST_CASE("a run does every case with every draw, and finds its results again") 
     CHECK(first.units[1].seed == 2);
     CHECK(first.units[2].case_name == "NP-ML-DFR");
     CHECK(first.units[2].columns == 20);
-    CHECK(first.units[0].error != first.units[1].error); // other features
+    CHECK(first.units[0].error != first.units[1].error); // the draws have different features
     const std::filesystem::path file = directory.path() / "out/cases/NP-ML-DFR/2.json";
     const auto written = std::filesystem::last_write_time(file);
     const EvaluationResults second = run(directory);
@@ -69,7 +69,7 @@ TEST_CASE("a run does every case with every draw, and finds its results again") 
     CHECK(again == without_times(first));
 }
 
-TEST_CASE("only units whose inputs changed run again") {
+TEST_CASE("only units with changed inputs run again") {
     const TemporaryDirectory directory;
     write_small_experiment(directory);
     run(directory);
@@ -129,9 +129,9 @@ TEST_CASE("only units whose inputs changed run again") {
     }
 }
 
-TEST_CASE("a unit's inputs hold the program's checksum") {
+TEST_CASE("the inputs of a unit contain the program's checksum") {
     const TemporaryDirectory directory;
-    // the check value of CRC-32
+    // The standard check value of CRC-32.
     CHECK(file_checksum(directory.write("text", "123456789")) == "cbf43926, 9 bytes");
     const Plan plan = read_plan(write_small_experiment(directory));
     const std::string program = unit_inputs(plan, load_plan_data(plan), plan.cases[0], 1)["program"];
@@ -139,7 +139,7 @@ TEST_CASE("a unit's inputs hold the program's checksum") {
     CHECK_THAT(program, ContainsSubstring(file_checksum("/proc/self/exe")));
 }
 
-TEST_CASE("a unit that learned no tick, or lost some, is read as it was written") {
+TEST_CASE("a unit without learned ticks or with lost ticks is read back as written") {
     const TemporaryDirectory directory;
     UnitResult unit;
     unit.case_name = "A";
@@ -155,20 +155,20 @@ TEST_CASE("a unit that learned no tick, or lost some, is read as it was written"
     CHECK(read->error[0][0][2] == 0.5);
 }
 
-TEST_CASE("the first draws of all cases come before any second") {
+TEST_CASE("the first draws of all cases run before any second draw") {
     const TemporaryDirectory directory;
     write_small_experiment(directory);
     run(directory);
     const auto written = [&directory](const std::string& file) {
         return std::filesystem::last_write_time(directory.path() / "out/cases" / file);
     };
-    // a clock tick may hold several that have nothing to tune, not the tuning of DFR
+    // Several cases without tuning may have equal file times; the tuning of DFR takes longer.
     CHECK(written("NP-ML-STD/1.json") < written("NP-ML-DFR/1.json"));
     CHECK(written("NP-ML-DFR/1.json") <= written("NP-ML-STD/2.json"));
     CHECK(written("NP-ML-STD/2.json") <= written("NP-ML-DFR/2.json"));
 }
 
-TEST_CASE("several jobs give what one gives, in the same order") {
+TEST_CASE("several jobs give the same results in the same order as one") {
     const TemporaryDirectory serial;
     const TemporaryDirectory parallel;
     json plan = small_plan();
@@ -180,7 +180,7 @@ TEST_CASE("several jobs give what one gives, in the same order") {
     CHECK(without_times(results) == without_times(run(serial, 1)));
 }
 
-TEST_CASE("a case that cannot be done does not stop the others, and is tried again") {
+TEST_CASE("a case that fails does not stop the others and is tried again") {
     const TemporaryDirectory directory;
     json plan = small_plan();
     plan["cases"].push_back({{"model", "NP"}, {"input", "DFR"}, {"rows_per_joint", 9}, {"suffix", "-wide"}});
@@ -212,7 +212,7 @@ TEST_CASE("all cases are scored at the same ticks") {
     }
 }
 
-TEST_CASE("a unit is the protocol, written out") {
+TEST_CASE("a unit equals the written-out protocol") {
     const TemporaryDirectory directory;
     const Plan plan = read_plan(write_small_experiment(directory));
     const PlanData data = load_plan_data(plan);
@@ -229,7 +229,7 @@ TEST_CASE("a unit is the protocol, written out") {
         const ReplayedRecording replayed =
             replay(*estimator, {&model, 1}, data.subsets[subset], plan.horizon, [](std::size_t) {});
         REQUIRE(replayed.horizon.size() == 100 - 4 - 5);
-        CHECK(std::isnan(unit.error[1][subset][3])); // the window is filling
+        CHECK(std::isnan(unit.error[1][subset][3])); // the window is still filling
         for (const HorizonIndex& index : replayed.horizon) {
             CHECK(unit.error[0][subset][index.tick] == index.epsilon[0]);
             CHECK(unit.error[1][subset][index.tick] == Approx((index.epsilon[0] + index.epsilon[1]) / 2));
@@ -237,7 +237,7 @@ TEST_CASE("a unit is the protocol, written out") {
     }
 }
 
-TEST_CASE("relative to the variance, the error is the horizon's squared error over it") {
+TEST_CASE("the error relative to the variance is the squared error of the horizon divided by it") {
     const TemporaryDirectory directory;
     json content = small_plan();
     const Plan relative = read_plan(write_small_experiment(directory, content));
@@ -258,7 +258,7 @@ TEST_CASE("relative to the variance, the error is the horizon's squared error ov
     }
 }
 
-TEST_CASE("which draw tunes the hyperparameters does not matter") {
+TEST_CASE("the result does not depend on the draw that tunes the hyperparameters") {
     const TemporaryDirectory directory;
     const Plan plan = read_plan(write_small_experiment(directory));
     const PlanData data = load_plan_data(plan);
@@ -273,7 +273,7 @@ TEST_CASE("which draw tunes the hyperparameters does not matter") {
     CHECK(a.start.weights == b.start.weights);
 }
 
-TEST_CASE("a combination of cases is the combination of their models, and runs again when a member changes") {
+TEST_CASE("a combination of cases combines their models and runs again if a member changes") {
     const TemporaryDirectory directory;
     json plan = small_plan();
     plan["cases"].push_back({{"combine", {"NP-ML-STD", "NP-ML-DFR"}}, {"name", "both-of-them"}});
@@ -283,7 +283,8 @@ TEST_CASE("a combination of cases is the combination of their models, and runs a
     const UnitResult& combined = results.units[4];
     CHECK(combined.case_name == "both-of-them");
     CHECK(combined.columns == 40);
-    for (const std::size_t group : {0U, 1U}) { // of two members the error of the mean is below the mean's
+    // the error of the mean of two members is below the mean of their errors
+    for (const std::size_t group : {0U, 1U}) {
         const auto sum_of = [group](const UnitResult& unit) {
             double sum = 0;
             for (const double error : unit.error[group][0]) {

@@ -11,7 +11,7 @@
 
 namespace dfdyn::tests {
 
-/// A recording of two joints every 50 ms, whose torques depend on the motion and on its past.
+/// A recording of two joints every 50 ms, whose torques depend on the present and the past motion.
 inline std::string small_recording(int rows, double speed) {
     std::string text = "t,q1,q2,tau1,tau2\n";
     for (int row = 0; row < rows; ++row) {
@@ -28,7 +28,7 @@ inline std::string small_recording(int rows, double speed) {
     return text;
 }
 
-/// A plan over two such recordings, `train.csv` and `test.csv`, that takes a fraction of a second.
+/// A plan for two such recordings, `train.csv` and `test.csv`, that runs in a fraction of a second.
 inline nlohmann::json small_plan() {
     return nlohmann::json::parse(R"({
         "schema": "dfdyn.plan/1", "name": "small", "title": "A small experiment", "outputs": "tau",
@@ -41,7 +41,7 @@ inline nlohmann::json small_plan() {
     })");
 }
 
-/// Writes plan and recordings; returns the plan's path.
+/// Writes the plan and its recordings; returns the path of the plan.
 inline std::filesystem::path write_small_experiment(const TemporaryDirectory& directory,
                                                     const nlohmann::json& plan = small_plan()) {
     directory.write("train.csv", small_recording(300, 2));

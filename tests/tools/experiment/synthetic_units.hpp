@@ -8,7 +8,7 @@
 
 namespace dfdyn::tests {
 
-/// A plan of two cases, A and B, and two groups, without files; steady after 2 s.
+/// A plan of two cases, A and B, and two groups, without files. It is steady after 2 s.
 inline tools::Plan two_case_plan(std::size_t draws) {
     tools::Plan plan;
     plan.name = std::string("plan");
@@ -26,7 +26,7 @@ inline tools::Plan two_case_plan(std::size_t draws) {
     return plan;
 }
 
-/// A unit whose errors are `level` times random ones about 1, every 0.1 s; three subsets of 60 ticks.
+/// A unit with random errors about `level`, every 0.1 s, in three subsets of 60 ticks.
 inline tools::UnitResult unit_at(const std::string& name, std::uint64_t seed, double level,
                                  std::mt19937_64& engine) {
     std::lognormal_distribution<double> spread(0, 0.1);

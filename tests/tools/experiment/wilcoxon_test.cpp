@@ -11,7 +11,8 @@ namespace wilcoxon_test {
 
 namespace tools = dfdyn::tools;
 
-/// 1 … n with their own ranks, of which those that add up to `positive_sum` are positive, the largest first.
+/// The numbers 1 to n, which are their own ranks. Those that sum to `positive_sum` are positive, largest
+/// first.
 std::vector<double> differences_with(int n, int positive_sum) {
     std::vector<double> differences;
     for (int rank = n; rank >= 1; --rank) {
@@ -23,7 +24,7 @@ std::vector<double> differences_with(int n, int positive_sum) {
     return differences;
 }
 
-/// The mean rank of |d|: one plus those below, plus half of the others that equal it.
+/// The mean rank of |d|: one plus the number below it plus half the number of others that equal it.
 double rank_of(double difference, const std::vector<double>& all) {
     double rank = 0.5;
     for (const double other : all) {
@@ -37,7 +38,7 @@ struct Enumerated {
     double sum, p_negative, p_positive;
 };
 
-/// Tries every choice of signs.
+/// Enumerates every choice of signs.
 Enumerated enumerate(const std::vector<double>& differences) {
     std::vector<double> ranks;
     double observed = 0;
@@ -77,7 +78,7 @@ TEST_CASE("the signed-rank test has the probabilities of the published tables") 
     CHECK(test.p_negative == Approx(probability).margin(6e-5));
 }
 
-TEST_CASE("the signed-rank test is the enumeration of all signs, ties included") {
+TEST_CASE("the signed-rank test equals the enumeration of all signs including ties") {
     DFDYN_SEEDED_ENGINE(engine);
     std::uniform_int_distribution<int> coarse(-4, 4);
     for (int trial = 0; trial < 60; ++trial) {
@@ -96,7 +97,7 @@ TEST_CASE("the signed-rank test is the enumeration of all signs, ties included")
     }
 }
 
-TEST_CASE("differences of zero say nothing") {
+TEST_CASE("differences of zero are ignored") {
     const std::vector<double> with_zeros{0, -1, 0, -2, 3, 0};
     const tools::SignedRankTest test = tools::signed_rank_test(with_zeros);
     CHECK(test.count == 3);
