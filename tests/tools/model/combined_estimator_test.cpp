@@ -17,7 +17,7 @@ using namespace dfdyn::tools;
 using dfdyn::tests::small_model;
 using dfdyn::tests::small_physics_model;
 
-/// A sample of a motion and of outputs that depend on it.
+/// A sample of a motion with outputs that depend on it.
 struct MotionTick {
     explicit MotionTick(int tick) : number(tick) {
         const double t = 0.004 * tick;
@@ -51,7 +51,7 @@ std::vector<TrainedModel> two_models(std::mt19937_64& engine) {
 
 } // namespace
 
-TEST_CASE("a combination of an estimator with itself is that estimator") {
+TEST_CASE("a combination of an estimator with itself equals that estimator") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::vector<TrainedModel> twice(2, small_model(engine, InputKind::DFR));
     const auto combined = make_estimator(twice, false);
@@ -60,7 +60,7 @@ TEST_CASE("a combination of an estimator with itself is that estimator") {
     CHECK(combined->cost().learn > 2 * single->cost().learn);
 }
 
-/// Members beside each other, combined by hand.
+/// Independent members, combined by the test itself.
 class ByHand {
   public:
     using Combination = dfdyn::ForecastCombination<float, 2, 6>;
@@ -74,7 +74,7 @@ class ByHand {
         }
     }
 
-    /// The combined prediction of a tick; the combination learns its sample if any member did.
+    /// The combined prediction of a tick. The combination learns its sample if any member did.
     std::array<float, 6> tick(const MotionTick& motion, dfdyn::Budget budget = dfdyn::Budget::unlimited()) {
         std::array<float, 12> predictions{}, ahead{}, deviations{};
         std::array<float, 6> result{}, measured{};
@@ -121,17 +121,17 @@ class ByHand {
 
     std::array<std::unique_ptr<HostEstimator>, 2> members_;
     Combination combination_;
-    std::array<std::array<std::vector<float>, 2>, 2> held_; ///< the newer copy, then the older
+    std::array<std::array<std::vector<float>, 2>, 2> held_; ///< the newer copy, then the older one
     int ticks_ = 0;
 };
 
-/// The library's and the test's own compilation contract multiply-adds differently.
+/// The library and the test may contract multiply-adds differently.
 bool same_but_for_rounding(std::span<const float> one, std::span<const float> other) {
     return std::ranges::equal(
         one, other, [](float a, float b) { return std::abs(a - b) <= 1e-5F * std::max(1.0F, std::abs(b)); });
 }
 
-TEST_CASE("a combined estimator is its members side by side, and what combines them") {
+TEST_CASE("a combined estimator equals its separate members plus the combination") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::vector<TrainedModel> models = two_models(engine);
     const auto combined = make_estimator(models, false);
@@ -143,10 +143,11 @@ TEST_CASE("a combined estimator is its members side by side, and what combines t
         REQUIRE(result.status.predicted() == (tick >= 4));
         REQUIRE(same_but_for_rounding(result.prediction, expected));
     }
-    CHECK(by_hand.weight() != Approx(0.5)); // it has chosen
+    CHECK(by_hand.weight() != Approx(0.5)); // it prefers one member
 }
 
-TEST_CASE("until errors are known, deviations weigh as calibrated ones if those of all members are") {
+TEST_CASE(
+    "until errors are known the deviations set the weights and count as calibrated if all members are") {
     DFDYN_SEEDED_ENGINE(engine);
     using Combination = ByHand::Combination;
     std::vector<TrainedModel> models = two_models(engine);
@@ -170,7 +171,7 @@ TEST_CASE("until errors are known, deviations weigh as calibrated ones if those 
     CHECK(differs);
 }
 
-/// The combination's mean square errors, and those of the members' weights that follow.
+/// The mean square errors of the combination and of the weights that follow from them.
 std::vector<float> numbers_of(const HostEstimator& estimator) {
     std::vector<float> numbers(estimator.weight_count());
     estimator.copy_weights(numbers);
@@ -181,19 +182,19 @@ bool same_errors(const std::vector<float>& one, const std::vector<float>& other)
     return std::equal(one.begin(), one.begin() + 12, other.begin());
 }
 
-/// Whether the combination's own part of the snapshots differs: a header, a count and 12 mean squares.
+/// Whether the combination's part of the snapshots differs: a header, a count and 12 mean squares.
 bool combination_learned(const std::vector<std::byte>& before, const std::vector<std::byte>& after) {
     constexpr std::size_t bytes = sizeof(dfdyn::SnapshotHeader) + 13 * sizeof(float);
     return !std::equal(before.begin(), before.begin() + bytes, after.begin());
 }
 
-TEST_CASE("a combination learns its weights unless every member refuses the sample") {
+TEST_CASE("a combination learns its weights unless every member rejects the sample") {
     DFDYN_SEEDED_ENGINE(engine);
     const bool all = GENERATE(false, true);
     std::vector<TrainedModel> models = two_models(engine);
     for (TrainedModel& model : models) {
         if (all || &model == &models[1]) {
-            model.limits.innovation = 1e-6; // contradicted by everything
+            model.limits.innovation = 1e-6; // every sample contradicts it
             model.limits.innovation_patience = 1'000'000;
         }
     }
@@ -206,7 +207,7 @@ TEST_CASE("a combination learns its weights unless every member refuses the samp
     CHECK(combination_learned(before_snapshot, combined->snapshot()) != all);
 }
 
-TEST_CASE("a combination learns its weights while its members learn in slices, not with no budget") {
+TEST_CASE("a combination learns its weights while its members learn in slices but not without a budget") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto combined = make_estimator(two_models(engine), false);
     predictions(*combined, 0, 50);
@@ -226,7 +227,7 @@ TEST_CASE("a combination learns its weights while its members learn in slices, n
     CHECK(combined->snapshot() == learned);
 }
 
-TEST_CASE("without a prediction of every member a combination predicts zero, with infinite deviation") {
+TEST_CASE("a combination lacking a member's prediction predicts zero with infinite deviation") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto combined = make_estimator(two_models(engine), false);
     predictions(*combined, 0, 50);
@@ -239,7 +240,7 @@ TEST_CASE("without a prediction of every member a combination predicts zero, wit
     CHECK(std::isinf(result.standard_deviation[0]));
 }
 
-TEST_CASE("a combination's weights, copied before a tick, predict what the tick does") {
+TEST_CASE("weights copied before a tick give the prediction of that tick") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::vector<TrainedModel> models = two_models(engine);
     const auto combined = make_estimator(models, false);
@@ -258,7 +259,7 @@ TEST_CASE("a combination's weights, copied before a tick, predict what the tick 
     }
 }
 
-TEST_CASE("a combination goes on from its snapshot as it did when it was taken, and takes no other") {
+TEST_CASE("a combination continues from its snapshot and rejects any other") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::vector<TrainedModel> models = two_models(engine);
     const auto combined = make_estimator(models, false);
@@ -272,7 +273,7 @@ TEST_CASE("a combination goes on from its snapshot as it did when it was taken, 
 
     const std::vector<std::byte> before = combined->snapshot();
     std::vector<std::byte> broken = snapshot;
-    broken.back() ^= std::byte{1}; // of the last member: the first are sound
+    broken.back() ^= std::byte{1}; // in the last member; the first members are valid
     CHECK_FALSE(combined->restore(broken));
     CHECK_FALSE(combined->restore({}));
     CHECK(combined->snapshot() == before);

@@ -17,7 +17,7 @@ using dfdyn::tests::small_physics_model;
 using Outputs = std::array<double, 6>;
 
 struct Replayed {
-    std::vector<float> predictions; ///< and standard deviations, tick by tick
+    std::vector<float> predictions; ///< with standard deviations, tick by tick
     std::vector<float> innovations; ///< normalised, squared
     int learned = 0;
 };
@@ -54,7 +54,7 @@ std::vector<Outputs> random_outputs(std::mt19937_64& engine) {
     return outputs;
 }
 
-/// One in two values replaced by what no sensor should give.
+/// Replaces every other value, on average, by one that no sensor should give.
 std::vector<Outputs> corrupted(std::vector<Outputs> outputs, std::mt19937_64& engine) {
     constexpr std::array absurd{std::numeric_limits<double>::quiet_NaN(),
                                 std::numeric_limits<double>::infinity(), -1e30, 50.0};
@@ -70,12 +70,12 @@ std::vector<std::vector<TrainedModel>> models_of_each_kind(std::mt19937_64& engi
     const TrainedModel features = small_model(engine, InputKind::DFR);
     const TrainedModel both = small_physics_model(engine, "SPK", InputKind::DF, true);
     TrainedModel narrow = features;
-    narrow.limits.innovation = 2; // contradicted by many samples
+    narrow.limits.innovation = 2; // many samples contradict it
     narrow.limits.innovation_patience = 3;
     return {{features}, {both}, {narrow}, {features, both}};
 }
 
-TEST_CASE("a frozen estimator predicts the same, bit for bit, whatever is measured") {
+TEST_CASE("the predictions of a frozen estimator do not depend on the measured outputs bit for bit") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const std::vector<TrainedModel>& models : models_of_each_kind(engine)) {
         const std::vector<Outputs> outputs = random_outputs(engine);
@@ -93,7 +93,7 @@ TEST_CASE("a frozen estimator predicts the same, bit for bit, whatever is measur
     }
 }
 
-TEST_CASE("a frozen estimator reports the innovations of what it does not learn") {
+TEST_CASE("a frozen estimator reports innovations although it does not learn") {
     DFDYN_SEEDED_ENGINE(engine);
     const TrainedModel model = small_model(engine, InputKind::DFR);
     const auto estimator = frozen(make_estimator(model, false));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model of one run on other runs of the same real arm, which nobody touched: it refuses no good sample.
+// A model of one run, applied to other undisturbed runs of the same real arm, rejects no good sample.
 #include "tools/replay/contradiction.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/training/model_training.hpp"
@@ -47,7 +47,7 @@ Outcome replayed(const TrainedModel& model, const std::string& file) {
             find_contradictions(result, model.limits.innovation).size()};
 }
 
-TEST_CASE("a UR5 refuses no good sample of another motion, and a person's pushes still contradict") {
+TEST_CASE("a UR5 rejects no good sample of another motion but reports a person's pushes") {
     const TrainedModel model = trained_on("ur5_kufieta/Movement_No6_Acc_slow_Verify_Model.csv");
     for (const char* motion : {"No7_Acc_slow_Verify_Model_short", "No9_Singularity_Free_NoDist"}) {
         CAPTURE(motion);
@@ -58,7 +58,7 @@ TEST_CASE("a UR5 refuses no good sample of another motion, and a person's pushes
     CHECK(pushed.contradictions >= 3); // of five pushes
 }
 
-TEST_CASE("a servo refuses no good sample at other gains and along other motions") {
+TEST_CASE("a servo rejects no good sample at other gains and along other motions") {
     const TrainedModel model = trained_on("xl330_bam/00_sin_sin_kp100.csv");
     for (const char* run : {"04_sin_sin_kp200", "08_sin_sin_kp400", "12_sin_sin_kp800",
                             "14_up_and_down_kp800", "15_sin_time_square_kp800"}) {

@@ -16,7 +16,7 @@ using namespace dfdyn::tools;
 using dfdyn::tests::small_model;
 using dfdyn::tests::small_physics_model;
 
-/// Ticks `first` … `last` - 1 of a motion; the predictions of all of them, one after the other.
+/// Runs the ticks `first` to `last` - 1 of a motion; returns the predictions of all of them.
 std::vector<float> run(HostEstimator& estimator, int first, int last) {
     std::vector<float> predictions;
     for (int tick = first; tick < last; ++tick) {
@@ -35,7 +35,7 @@ std::vector<float> run(HostEstimator& estimator, int first, int last) {
 
 } // namespace
 
-TEST_CASE("an estimator goes on from its snapshot as it did when it was taken") {
+TEST_CASE("an estimator continues from its snapshot as it did when the snapshot was taken") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto kind =
         GENERATE(InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR);
@@ -57,7 +57,7 @@ TEST_CASE("an estimator goes on from its snapshot as it did when it was taken") 
     CHECK(run(*other, 200, 300) == expected);
 }
 
-TEST_CASE("learning in slices ends where learning at once does") {
+TEST_CASE("learning in slices gives the same result as learning at once") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::string structure = GENERATE("NP", "P", "SP", "SPK");
     const TrainedModel model = structure == "NP"
@@ -83,7 +83,7 @@ TEST_CASE("learning in slices ends where learning at once does") {
     CHECK(sliced->snapshot() == at_once->snapshot());
 }
 
-TEST_CASE("a snapshot of another model changes nothing") {
+TEST_CASE("a snapshot of another model is rejected and changes nothing") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto estimator = make_estimator(small_model(engine, InputKind::DFR), false);
     const auto other = make_estimator(small_model(engine, InputKind::DFR), false);

@@ -21,7 +21,7 @@ using dfdyn::tests::small_physics_model;
 constexpr InputKind all_inputs[] = {InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR,
                                     InputKind::DFSR};
 
-/// What is said about `text`; nothing when it is a model.
+/// The error message for `text`, or nothing if it is a valid model.
 std::optional<std::string> refusal(const std::string& text) {
     try {
         model_from_json(text, "m.json");
@@ -31,7 +31,7 @@ std::optional<std::string> refusal(const std::string& text) {
     }
 }
 
-/// The same for a good model of input DFR in which the field at `pointer` is replaced.
+/// The error message for a valid model of input DFR in which the field at `pointer` is replaced.
 std::optional<std::string> refusal_with(const std::string& pointer, const nlohmann::json& value) {
     std::mt19937_64 engine(1);
     nlohmann::json json = nlohmann::json::parse(model_to_json(small_model(engine, InputKind::DFR)));
@@ -41,7 +41,7 @@ std::optional<std::string> refusal_with(const std::string& pointer, const nlohma
 
 } // namespace
 
-TEST_CASE("a model with physics reads back, whatever its structure") {
+TEST_CASE("a model with physics of any structure reads back") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const char* structure : {"P", "SP", "SP2", "SPK"}) {
         for (const bool wrench : {false, true}) {
@@ -54,7 +54,7 @@ TEST_CASE("a model with physics reads back, whatever its structure") {
     }
 }
 
-TEST_CASE("a model keeps the rigid bodies that it is compared with, and older files have none") {
+TEST_CASE("a model keeps the rigid bodies that it is compared with and older files have none") {
     DFDYN_SEEDED_ENGINE(engine);
     TrainedModel model = small_physics_model(engine, "P", InputKind::DFR, false);
     CHECK(model_from_json(model_to_json(model), "m.json").physics->rigid_body.empty());
@@ -67,7 +67,7 @@ TEST_CASE("a model keeps the rigid bodies that it is compared with, and older fi
     const TrainedModel read = model_from_json(text, "m.json");
     REQUIRE(read.physics->rigid_body.size() == 2);
     CHECK(read.physics->rigid_body[1].identified);
-    CHECK(read.physics->rigid_body[1].inertia == model.physics->rigid_body[1].inertia); // in double
+    CHECK(read.physics->rigid_body[1].inertia == model.physics->rigid_body[1].inertia); // in double precision
     CHECK(model_to_json(read) == text);
     nlohmann::json wrong = nlohmann::json::parse(text);
     wrong["physics"]["rigid_body"][0]["friction"].erase(0);
@@ -75,7 +75,7 @@ TEST_CASE("a model keeps the rigid bodies that it is compared with, and older fi
                Catch::Matchers::StartsWith("m.json: physics.rigid_body[0].friction: expected"));
 }
 
-TEST_CASE("a model with physics that cannot be is refused") {
+TEST_CASE("an impossible model with physics is rejected") {
     std::mt19937_64 engine(1);
     const nlohmann::json good =
         nlohmann::json::parse(model_to_json(small_physics_model(engine, "SPK", InputKind::DFR, false)));
@@ -126,7 +126,7 @@ TEST_CASE("a model reads back bit for bit in single precision") {
     }
 }
 
-TEST_CASE("what a model knows away from its data reads back; a model without it stays without") {
+TEST_CASE("the extrapolation data of a model read back and a model without them stays without") {
     DFDYN_SEEDED_ENGINE(engine);
     TrainedModel model = small_model(engine, InputKind::DFR);
     CHECK_FALSE(model_from_json(model_to_json(model), "m.json").extrapolation.has_value());
@@ -143,7 +143,7 @@ TEST_CASE("what a model knows away from its data reads back; a model without it 
     CHECK(refusal(model_to_json(model)).has_value());
 }
 
-TEST_CASE("a bound of the predictions reads back, and a model without one stays as it was") {
+TEST_CASE("the prediction limits of a model read back and a model without them is unchanged") {
     std::mt19937_64 engine(1);
     TrainedModel model = small_model(engine, InputKind::DFR);
     const auto without = model_identity(model);
@@ -155,7 +155,7 @@ TEST_CASE("a bound of the predictions reads back, and a model without one stays 
     CHECK(refusal_with("/limits/prediction", {1, -1}).has_value());
 }
 
-TEST_CASE("what a model knows of its physics' parameters reads back; without it their variance counts once") {
+TEST_CASE("the parameter uncertainty of a model reads back and without it the variance counts once") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const char* structure : {"P", "SPK"}) {
         CAPTURE(structure);
@@ -180,7 +180,7 @@ TEST_CASE("what a model knows of its physics' parameters reads back; without it 
     }
 }
 
-TEST_CASE("models that differ in one number differ in identity") {
+TEST_CASE("models that differ in one number have different identities") {
     std::mt19937_64 engine(1);
     TrainedModel model = small_model(engine, InputKind::DFR);
     const auto identity = model_identity(model);
@@ -188,7 +188,7 @@ TEST_CASE("models that differ in one number differ in identity") {
     CHECK(model_identity(model) != identity);
 }
 
-TEST_CASE("every truncation of a model file is refused in one line") {
+TEST_CASE("every truncation of a model file is rejected with one line") {
     std::mt19937_64 engine(1);
     const std::string text = model_to_json(small_model(engine, InputKind::DFSR));
     for (std::size_t length = 0; length + 2 < text.size(); ++length) {
@@ -199,7 +199,7 @@ TEST_CASE("every truncation of a model file is refused in one line") {
     }
 }
 
-TEST_CASE("what is wrong with a model is said with the field, the expected and the found") {
+TEST_CASE("an error in a model is reported with the field and the expected and the found value") {
     const std::pair<std::pair<std::string, nlohmann::json>, std::string> cases[] = {
         {{"/schema", "dfdyn.model/2"}, "m.json: schema: expected \"dfdyn.model/1\", found \"dfdyn.model/2\""},
         {{"/structure", "XP"}, "m.json: structure: expected NP, P, SP, SP2 or SPK, found \"XP\""},
@@ -247,7 +247,7 @@ TEST_CASE("what is wrong with a model is said with the field, the expected and t
     }
 }
 
-TEST_CASE("a model without one of its fields is refused by the field's name") {
+TEST_CASE("a model that lacks a field is rejected with the name of the field") {
     std::mt19937_64 engine(1);
     const nlohmann::json good = nlohmann::json::parse(model_to_json(small_model(engine, InputKind::DFSR)));
     for (const auto& [name, value] : good.items()) {
@@ -257,7 +257,7 @@ TEST_CASE("a model without one of its fields is refused by the field's name") {
     }
 }
 
-TEST_CASE("files that are no JSON objects are refused") {
+TEST_CASE("files that are not JSON objects are rejected") {
     CHECK(refusal("[1]") == "m.json: expected a JSON object, found an array");
     CHECK(refusal("\x89PNG") == "m.json: byte 1: expected JSON, found something else or the end of the file");
     CHECK(refusal("{\"schema\": 1e999}") ==
@@ -265,7 +265,7 @@ TEST_CASE("files that are no JSON objects are refused") {
     CHECK(refusal(std::string(100000, '[')).has_value());
 }
 
-TEST_CASE("a model file that cannot be read is named with the reason") {
+TEST_CASE("a model file that cannot be read is reported with the reason") {
     const dfdyn::tests::TemporaryDirectory directory;
     const std::string missing = directory.path() / "none.json";
     CHECK_THROWS_WITH(read_model(missing),

@@ -21,8 +21,8 @@ using dfdyn::tests::small_model;
 using dfdyn::tests::small_physics_model;
 using dfdyn::tests::TemporaryDirectory;
 
-/// A program that ticks the estimator of the header over a fixed motion and prints every prediction and
-/// deviation.
+/// A program that runs the estimator of the header over a fixed motion and prints all predictions and
+/// deviations.
 constexpr const char* program = R"(
 #include "m.hpp"
 #include <cstdio>
@@ -95,8 +95,8 @@ std::vector<double> run_host(const TrainedModel& model) {
     return values;
 }
 
-/// The header's predictions and deviations against the model file's. Two builds with other flags may round
-/// differently, at most a few units in the last place per operation.
+/// Compares the predictions and deviations of the header with those of the model file. Builds with different
+/// flags may differ in rounding by a few units in the last place per operation.
 void check_header(const TrainedModel& written) {
     const TrainedModel model = model_from_json(model_to_json(written), "m.json");
     const TemporaryDirectory directory;
@@ -111,7 +111,7 @@ void check_header(const TrainedModel& written) {
 
 } // namespace
 
-TEST_CASE("the header compiles without exceptions, and predicts as the model file does") {
+TEST_CASE("the header compiles without exceptions and predicts as the model file does") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const InputKind kind :
          {InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR}) {
@@ -120,7 +120,7 @@ TEST_CASE("the header compiles without exceptions, and predicts as the model fil
     }
 }
 
-TEST_CASE("so does the header of a model with physics") {
+TEST_CASE("the header of a model with physics predicts as the model file does") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const bool wrench : {false, true}) {
         for (const char* structure : {"P", "SP", "SPK"}) {
@@ -131,7 +131,7 @@ TEST_CASE("so does the header of a model with physics") {
     check_header(small_physics_model(engine, "SPK", InputKind::STD, true));
 }
 
-TEST_CASE("the header knows what the model file does of the outputs away from the data") {
+TEST_CASE("the header contains the extrapolation data of the model file") {
     DFDYN_SEEDED_ENGINE(engine);
     TrainedModel model = small_model(engine, InputKind::DFR);
     const std::vector<double> without = run_host(model);
@@ -148,7 +148,7 @@ TEST_CASE("the header knows what the model file does of the outputs away from th
     check_header(with_physics);
 }
 
-TEST_CASE("hostile names do not leave their comment") {
+TEST_CASE("hostile names do not escape from their comment") {
     std::mt19937_64 engine(1);
     TrainedModel model = small_model(engine, InputKind::DF);
     model.training.recordings = {"a\nint x;\\"};
@@ -157,7 +157,7 @@ TEST_CASE("hostile names do not leave their comment") {
     CHECK(header.find("a?int x;?") != std::string::npos);
 }
 
-TEST_CASE("any file stem becomes an identifier") {
+TEST_CASE("any file stem becomes a valid identifier") {
     CHECK(to_identifier("model") == "model");
     CHECK(to_identifier("my-arm 2") == "my_arm_2");
     CHECK(to_identifier("2dof") == "model_2dof");
