@@ -17,8 +17,8 @@ using dfdyn::tests::small_physics_model;
 
 constexpr int ticks = 8000;
 
-/// A sample of a motion and of noisy outputs that depend on it; half of the way a sudden offset, and now and
-/// then a fault.
+/// Samples of a motion and of noisy outputs that depend on it. The outputs have a sudden offset half way and
+/// occasional faults.
 class Samples {
   public:
     explicit Samples(std::size_t outputs) : outputs_(outputs) {}
@@ -48,7 +48,7 @@ class Samples {
 
 } // namespace
 
-TEST_CASE("a monitor changes nothing of what is predicted and learned", "[monitor]") {
+TEST_CASE("a monitor does not change predictions and learning", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     const bool wrench = GENERATE(false, true);
     const TrainedModel model = small_physics_model(engine, "SPK", InputKind::DFR, wrench);
@@ -72,7 +72,7 @@ TEST_CASE("a monitor changes nothing of what is predicted and learned", "[monito
     CHECK(plain->snapshot() == watched->snapshot());
 }
 
-TEST_CASE("what a monitor finds is kept without the heap until somebody asks", "[monitor]") {
+TEST_CASE("findings of a monitor are stored without the heap until they are read", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     const TrainedModel model = small_physics_model(engine, "SPK", InputKind::DFR, false);
     const auto plain = make_estimator(model, false);
@@ -91,7 +91,7 @@ TEST_CASE("what a monitor finds is kept without the heap until somebody asks", "
         most = std::max(most, with - std::min(with, alone));
     }
     CAPTURE(by_plain, by_watched);
-    CHECK(most <= 1); // a rigid body whose size is known at run time only, as in `plain`
+    CHECK(most <= 1); // from a rigid body whose size is known only at run time, as in `plain`
     CHECK(watched->changes().size() == watched->take_changes().size());
     CHECK(watched->changes().empty());
 }

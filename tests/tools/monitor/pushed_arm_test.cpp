@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A real UR5, undisturbed for two minutes, then pushed three times by a person.
+// A real UR5 that is undisturbed for two minutes and is then pushed by a person.
 #include "tools/monitor/monitored_estimator.hpp"
 #include "tools/replay/contradiction.hpp"
 #include "tools/replay/replay.hpp"
@@ -28,7 +28,7 @@ Recording recording(const std::string& name) {
                           options);
 }
 
-/// Rigid body and friction, as `dfdyn train` makes it of docs/guide/monitor.md's options.
+/// Rigid body and friction, as `dfdyn train` computes them with the options in docs/monitor.md.
 TrainedModel trained(const Recording& data, const Robot& robot) {
     ModelTraining training;
     training.options.model = ModelClass::P;
@@ -48,7 +48,7 @@ TrainedModel trained(const Recording& data, const Robot& robot) {
 
 } // namespace
 
-TEST_CASE("a real arm's monitor is silent for two minutes and finds the pushes of a person", "[monitor]") {
+TEST_CASE("a real arm's monitor is silent for two minutes and then finds three of five pushes", "[monitor]") {
     const Robot robot = ur5();
     const Recording first = recording("No6_Acc_slow_Verify_Model");
     const TrainedModel model = trained(first, robot);
@@ -67,7 +67,7 @@ TEST_CASE("a real arm's monitor is silent for two minutes and finds the pushes o
         changes_in(recording("No7_Acc_slow_Verify_Model_short_with_disturbance"));
     CAPTURE(onsets);
     REQUIRE(onsets.size() == 3);
-    CHECK(onsets[0] == Approx(8.4).margin(0.4)); // of the pushes: 8.5, 11.6, 14.0, 15.8, 18.8 s
+    CHECK(onsets[0] == Approx(8.4).margin(0.4)); // the pushes are at 8.5, 11.6, 14.0, 15.8 and 18.8 s
     CHECK(onsets[1] == Approx(11.7).margin(0.4));
     CHECK(onsets[2] == Approx(15.7).margin(0.4));
 }
