@@ -10,7 +10,8 @@ namespace horizon_error_test {
 
 using namespace dfdyn::tools;
 
-/// Stands for a model: two outputs, prediction = weight · column, all of them prescribed.
+/// A substitute for a model with two outputs. Its prediction is weight · column, and the test prescribes all
+/// of these.
 class PrescribedEstimator final : public HostEstimator {
   public:
     std::vector<float> weights{0, 0};
@@ -48,7 +49,7 @@ std::vector<Step> random_steps(std::mt19937_64& engine, std::size_t count) {
     return steps;
 }
 
-/// Eq. pred_error, word for word.
+/// The relative prediction error over a horizon as the paper defines it.
 double epsilon(const std::vector<Step>& steps, std::size_t t, std::size_t k, std::size_t horizon) {
     double error = 0;
     double power = 0;
@@ -65,13 +66,13 @@ std::vector<HorizonIndex> indices_of(const std::vector<Step>& steps, std::size_t
     HorizonError errors(horizon, 2, 2);
     for (const Step& step : steps) {
         estimator.column = step.column;
-        estimator.weights = step.weights; // what has been learned after this sample
+        estimator.weights = step.weights; // weights after learning this sample
         errors.add(estimator, step.measured);
     }
     return errors.indices();
 }
 
-TEST_CASE("the horizon index is the paper's") {
+TEST_CASE("the horizon index is that of the paper") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::vector<Step> steps = random_steps(engine, 40);
     for (const std::size_t horizon : {std::size_t{1}, std::size_t{7}, std::size_t{25}}) {
@@ -85,7 +86,7 @@ TEST_CASE("the horizon index is the paper's") {
     }
 }
 
-TEST_CASE("no horizon reaches across a tick without a prediction") {
+TEST_CASE("no horizon extends across a tick without a prediction") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::vector<Step> steps = random_steps(engine, 10);
     PrescribedEstimator estimator;
@@ -104,7 +105,7 @@ TEST_CASE("no horizon reaches across a tick without a prediction") {
     CHECK(ticks == std::vector<std::size_t>{0, 1, 6});
 }
 
-TEST_CASE("an output that rests at zero has no relative error") {
+TEST_CASE("an output that stays at zero has no relative error") {
     PrescribedEstimator estimator;
     HorizonError errors(1, 2, 2);
     const std::vector<double> measured{0, 1};

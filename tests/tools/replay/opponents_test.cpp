@@ -20,7 +20,7 @@ using dfdyn::tests::small_physics_model;
 constexpr std::size_t ticks = 3000;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// Two outputs that are an AR(2) with a mean of 3, predicted from tick 10 on as that mean.
+/// Two AR(2) outputs with mean 3; the predictions from tick 10 on are this mean.
 ReplayedRecording autoregressive_outputs(std::mt19937_64& engine) {
     std::normal_distribution<double> normal;
     ReplayedRecording replayed;
@@ -40,13 +40,13 @@ ReplayedRecording autoregressive_outputs(std::mt19937_64& engine) {
     return replayed;
 }
 
-TEST_CASE("persistence is the last measurement, whatever was missing in between") {
+TEST_CASE("persistence is the last measurement even after missing ones") {
     ReplayedRecording replayed;
     replayed.measured = {1, 10, none, 20, 3, none, 4, 40};
     CHECK(persistence(replayed, 2) == Forecasts{0, 0, 1, 10, 1, 20, 3, 20});
 }
 
-TEST_CASE("the autoregression finds the coefficients, and uses nothing of its own tick") {
+TEST_CASE("the autoregression finds the coefficients without the measurement of the same tick") {
     DFDYN_SEEDED_ENGINE(engine);
     ReplayedRecording replayed = autoregressive_outputs(engine);
     const Forecasts forecasts = autoregression(replayed, 2);
@@ -60,7 +60,7 @@ TEST_CASE("the autoregression finds the coefficients, and uses nothing of its ow
     CHECK(persistence(replayed, 2)[2 * ticks - 2] == replayed.measured[2 * ticks - 4]);
 }
 
-/// What the coefficients of [last, the one before, 1] are by all samples before `tick`, with the prior.
+/// Coefficients of [last value, value before, 1] from all samples before `tick`, with the prior.
 Eigen::Vector3d batch_coefficients(const std::vector<double>& series, std::size_t tick) {
     Eigen::Matrix3d information = Eigen::Matrix3d::Identity() * 1e-6;
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -90,8 +90,7 @@ TEST_CASE("every forecast of the autoregression is the batch solution of the sam
     }
 }
 
-TEST_CASE(
-    "no forecast uses a measurement of its own tick or a later one, and the next forecast does use it") {
+TEST_CASE("a forecast uses only earlier measurements and the next forecast uses the present one") {
     DFDYN_SEEDED_ENGINE(engine);
     const TrainedModel model = small_physics_model(engine, "P", InputKind::DFR, false);
     const ReplayedRecording replayed = autoregressive_outputs(engine);
@@ -115,7 +114,7 @@ TEST_CASE(
     check("residual state", [&](const ReplayedRecording& one) { return with_residual_state(one, model); });
 }
 
-TEST_CASE("opponents are judged at the ticks that the model predicted, and no others") {
+TEST_CASE("opponents are scored only at the ticks that the model predicted") {
     DFDYN_SEEDED_ENGINE(engine);
     const TrainedModel model = small_physics_model(engine, "P", InputKind::DFR, false);
     ReplayedRecording replayed = autoregressive_outputs(engine);
@@ -126,7 +125,8 @@ TEST_CASE("opponents are judged at the ticks that the model predicted, and no ot
     CHECK(state < errors[1].normalised_error[0]);
     CHECK(state < 1.1 * errors[2].normalised_error[0]);
     CHECK(errors[2].normalised_error[0] < errors[1].normalised_error[0]);
-    for (std::size_t tick = 0; tick < 7; ++tick) { // not predicted, nor a forecast's last two values
+    // neither predictions nor the last two values of a forecast
+    for (std::size_t tick = 0; tick < 7; ++tick) {
         replayed.measured[2 * tick] += tick % 2 == 0 ? 1e-3 : -1e-3;
     }
     const std::vector<OpponentErrors> other = opponent_errors(replayed, model);

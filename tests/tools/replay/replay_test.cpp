@@ -17,7 +17,7 @@ namespace replay_test {
 using namespace dfdyn::tools;
 using dfdyn::tests::small_model;
 
-/// `rows` samples every 4 ms of two joints in motion and six outputs that follow them.
+/// `rows` samples, 4 ms apart, of two moving joints and six outputs that follow them.
 Recording moving_arm(std::size_t rows) {
     Recording recording;
     recording.source = "run.csv";
@@ -50,7 +50,7 @@ ReplayedRecording with_innovations(const std::vector<float>& innovations) {
     return replayed;
 }
 
-TEST_CASE("a replay predicts once the window is full, again after a gap, and learns") {
+TEST_CASE("a replay predicts once the window is full and again after a gap and learns") {
     DFDYN_SEEDED_ENGINE(engine);
     const TrainedModel model = small_model(engine, InputKind::DFR);
     Recording recording = moving_arm(200);
@@ -66,7 +66,7 @@ TEST_CASE("a replay predicts once the window is full, again after a gap, and lea
     CHECK(replayed.horizon.size() == 2 * (96 - 3));
 }
 
-TEST_CASE("a recording that does not fit the model is refused") {
+TEST_CASE("a recording that does not fit the model is rejected") {
     std::mt19937_64 engine(1);
     const TrainedModel model = small_model(engine, InputKind::DF);
     Recording other = moving_arm(10);
@@ -78,7 +78,7 @@ TEST_CASE("a recording that does not fit the model is refused") {
                       "run.csv: expected positions of 2 joints as the model has, found 3");
 }
 
-TEST_CASE("a replay without end keeps its last ticks, counts and hands on all, in the memory of its start") {
+TEST_CASE("an endless replay keeps its last ticks and passes all on without further memory") {
     class Counter final : public TickSink {
       public:
         void take(const ReplayedRecording& replayed, std::size_t tick) override {
@@ -98,7 +98,7 @@ TEST_CASE("a replay without end keeps its last ticks, counts and hands on all, i
     const auto estimator = make_estimator(model, true);
     Counter counter;
     Replayer replayer(*estimator, "can0", 6, 0, {100, &counter});
-    std::uint64_t allocations = 0; // the estimator's own, for each tick, are released with it
+    std::uint64_t allocations = 0; // the estimator's own allocations, which it releases in the same tick
     std::uint64_t releases = 0;
     for (std::size_t row = 0; row < recording.row_count(); ++row) {
         const dfdyn::tests::AllocationGuard guard;
@@ -108,7 +108,7 @@ TEST_CASE("a replay without end keeps its last ticks, counts and hands on all, i
             replayer.tick(recording.time_s[row], sample_at(recording, row), dfdyn::hal::Reason::ok);
         }
         const dfdyn::tests::HeapCalls calls = guard.calls();
-        allocations += row > 20 ? calls.allocations : 0; // by then every reason has been seen
+        allocations += row > 20 ? calls.allocations : 0; // by then every reason has occurred
         releases += row > 20 ? calls.releases : 0;
     }
     CHECK(allocations == releases);
@@ -147,20 +147,21 @@ TEST_CASE("a replay of bounded length keeps the indices of its last ticks") {
     }
 }
 
-TEST_CASE("the normalised error is that of its definition, over predicted ticks only") {
+TEST_CASE("the normalised error follows its definition over predicted ticks only") {
     ReplayedRecording replayed;
     replayed.measured = {1, 3, 5, 7};
     replayed.predicted = {std::nanf(""), 2, 5, 9};
-    // errors 1, 0, -2 over the outputs 3, 5, 7 of mean 5: rms² 5/3, variance 8/3
+    // Errors 1, 0, -2 over the outputs 3, 5, 7 with mean 5: mean square 5/3, variance 8/3.
     CHECK(normalised_error(replayed, 1, 0, 0, 4) == Approx(std::sqrt(5.0 / 8.0)));
     CHECK(std::isnan(normalised_error(replayed, 1, 0, 0, 1)));
 }
 
-TEST_CASE("contradictions are stretches above the limit") {
+TEST_CASE("contradictions are intervals above the limit") {
     const float none = std::nanf("");
     const auto found =
         find_contradictions(with_innovations({none, 9, 1, 9, 8, 7, 1, 1, 1, 1, 9, 1, 1, 1, 6, 12}), 5);
-    REQUIRE(found.size() == 2); // 0.1 to 0.5 s as one; the single tick at 1.0 s is none; 1.4 to 1.5 s
+    // 0.1 to 0.5 s is one and 1.4 to 1.5 s another; the single tick at 1.0 s is none
+    REQUIRE(found.size() == 2);
     CHECK(found[0].start_s == Approx(0.1));
     CHECK(found[0].end_s == Approx(0.5));
     CHECK(found[0].peak == 9);
@@ -168,7 +169,7 @@ TEST_CASE("contradictions are stretches above the limit") {
     CHECK(found[1].peak == 12);
 }
 
-TEST_CASE("the innovation limit follows the larger innovations of the halves, each after the other") {
+TEST_CASE("the innovation limit follows the larger innovations of the two halves") {
     DFDYN_SEEDED_ENGINE(engine);
     TrainedModel model = small_model(engine, InputKind::DFR);
     const std::vector<Recording> recordings{moving_arm(2000)};
@@ -195,7 +196,7 @@ TEST_CASE("the innovation limit follows the larger innovations of the halves, ea
     CHECK(model.limits.innovation == Approx(3 * ordinary));
 }
 
-TEST_CASE("the CSV of a replay has the columns that scripts rely on") {
+TEST_CASE("the CSV of a replay has the columns that scripts use") {
     std::mt19937_64 engine(1);
     const TrainedModel model = small_model(engine, InputKind::DF);
     const std::vector<ReplayedRecording> replayed{replay_of(model, moving_arm(6), 0)};

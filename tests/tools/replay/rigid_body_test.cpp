@@ -23,7 +23,7 @@ constexpr double gravity = 9.81;
 constexpr double sign_velocity = 0.05;
 constexpr double period_s = 0.008;
 
-/// Two joints, each on a sum of two sines of random frequency and phase.
+/// Two joints that each move along a sum of two sines of random frequency and phase.
 class TwoJointMotion {
   public:
     explicit TwoJointMotion(std::mt19937_64& engine) {
@@ -34,7 +34,7 @@ class TwoJointMotion {
         }
     }
 
-    /// Derivative 0, 1 or 2 of the joint's position.
+    /// Derivative of order 0, 1 or 2 of the joint's position.
     double at(std::size_t joint, double t, int derivative) const {
         double sum = 0;
         for (const Sine& sine : {sines_[2 * joint], sines_[2 * joint + 1]}) {
@@ -51,7 +51,7 @@ class TwoJointMotion {
     std::array<Sine, 4> sines_{};
 };
 
-/// Positions, velocities and accelerations of a motion; the outputs are still to be filled in.
+/// Positions, velocities and accelerations of a motion, without outputs.
 Recording recording_of(const TwoJointMotion& motion, int rows) {
     Recording recording;
     recording.source = "run.csv";
@@ -74,9 +74,8 @@ Recording recording_of(const TwoJointMotion& motion, int rows) {
     return recording;
 }
 
-/// The textbook's equations of the planar arm with links of length 1: both torques are linear in the inertia
-/// about the joint and the first moments of each link, of the first link with the second one's mass at its
-/// end.
+/// Textbook equations of the planar arm with links of length 1. Both torques are linear in the inertia about
+/// the joint and the first moments of each link; the first link includes the mass of the second at its end.
 Eigen::Matrix<double, 2, 6> planar_columns(const Recording& recording, std::size_t row) {
     const auto q = recording.position.row(row);
     const auto v = recording.velocity.row(row);
@@ -91,7 +90,7 @@ Eigen::Matrix<double, 2, 6> planar_columns(const Recording& recording, std::size
     return columns;
 }
 
-/// Those of planar_arm(): each link has 1 kg at (0.5, 0.1) m and 0.1 kg·m² about its centre of mass.
+/// Parameters of planar_arm(): each link has 1 kg at (0.5, 0.1) m and 0.1 kg·m² about its centre of mass.
 VectorXd planar_parameters() {
     VectorXd parameters(6);
     parameters << 0.36 + 1, 0.5 + 1, 0.1, 0.36, 0.5, 0.1;
@@ -104,7 +103,7 @@ Eigen::RowVector3d friction_columns(const Recording& recording, std::size_t row,
     return {velocity, std::tanh(velocity / sign_velocity), 1};
 }
 
-/// Fills in the torques of another planar arm with friction, and noise of different sizes.
+/// Adds the torques of another planar arm with friction, and noise of different sizes.
 void measure(Recording& recording, double noise, std::mt19937_64& engine) {
     std::normal_distribution<double> normal;
     VectorXd inertia = planar_parameters();
@@ -131,7 +130,7 @@ Forecasts forecasts_of(const RigidBodyFit& fit, const Recording& recording) {
                                 recording);
 }
 
-/// Both joints' rows of [inertia's columns, friction of joint 1, friction of joint 2].
+/// Rows of both joints: [columns of the inertia, friction of joint 1, friction of joint 2].
 MatrixXd joint_rows(const Recording& recording, std::size_t joint) {
     MatrixXd rows = MatrixXd::Zero(static_cast<Index>(recording.row_count()), 12);
     for (std::size_t row = 0; row < recording.row_count(); ++row) {
@@ -150,7 +149,8 @@ VectorXd measured(const Recording& recording, std::size_t joint) {
     return values;
 }
 
-/// Least squares of all parameters by one QR decomposition; each joint's rows divided by its deviation.
+/// Least squares of all parameters by one QR decomposition, with the rows of each joint divided by its
+/// deviation.
 VectorXd weighted_solution(const Recording& recording, const std::array<double, 2>& deviation) {
     const auto rows = static_cast<Index>(recording.row_count());
     MatrixXd columns(2 * rows, 12);
@@ -165,7 +165,7 @@ std::array<double, 2> left_over(const Recording& recording, const VectorXd& para
             (joint_rows(recording, 1) * parameters - measured(recording, 1)).norm()};
 }
 
-TEST_CASE("the identified rigid body is the least-squares solution of the textbook's equations") {
+TEST_CASE("the identified rigid body is the least-squares solution of the textbook equations") {
     DFDYN_SEEDED_ENGINE(engine);
     Recording training = recording_of(TwoJointMotion(engine), 700);
     measure(training, 0.5, engine);
@@ -185,7 +185,7 @@ TEST_CASE("the identified rigid body is the least-squares solution of the textbo
     }
 }
 
-TEST_CASE("with the robot file's inertia, gain and friction are the least-squares solution of each joint") {
+TEST_CASE("with the inertia of the robot's file gain and friction are each joint's least-squares solution") {
     DFDYN_SEEDED_ENGINE(engine);
     Recording training = recording_of(TwoJointMotion(engine), 700);
     measure(training, 0.5, engine);
@@ -244,7 +244,7 @@ TEST_CASE("a wrench is forecast from the part of the arm beyond the sensor") {
     CHECK(fits[0].friction[3 * 4 + 2] == Approx(4).epsilon(1e-6));
 }
 
-TEST_CASE("without velocities they come from the positions around a row, and nothing comes over a gap") {
+TEST_CASE("missing velocities are computed from the positions around a row but not across a gap") {
     DFDYN_SEEDED_ENGINE(engine);
     Recording training = recording_of(TwoJointMotion(engine), 700);
     measure(training, 0, engine);
@@ -268,14 +268,14 @@ TEST_CASE("without velocities they come from the positions around a row, and not
     CHECK(std::isnan(forecasts_of(fit, positions)[0])); // one row has no motion
 }
 
-TEST_CASE("columns of rounding error give no parameter that another motion would show") {
+TEST_CASE("columns of rounding errors give no parameter that another motion would reveal") {
     DFDYN_SEEDED_ENGINE(engine);
     const TwoJointMotion motion(engine);
     std::normal_distribution<double> normal;
     Recording training = recording_of(motion, 700);
     measure(training, 0.1, engine);
     for (std::size_t row = 0; row < 700;
-         ++row) { // the second joint is held; a derivative of its position is not
+         ++row) { // the second joint is held, but the derivative of its position is not zero
         training.position.values[2 * row + 1] = 0.4;
         training.velocity.values[2 * row + 1] = 1e-14 * normal(engine);
         training.acceleration.values[2 * row + 1] = 1e-13 * normal(engine);
@@ -286,12 +286,12 @@ TEST_CASE("columns of rounding error give no parameter that another motion would
     for (const RigidBodyFit& fit : fit_planar(training)) {
         CAPTURE(fit.identified);
         for (const double forecast : forecasts_of(fit, other)) {
-            REQUIRE(std::abs(forecast) < 1000); // N·m; the arm's own torques reach 60
+            REQUIRE(std::abs(forecast) < 1000); // N·m; the arm's own torques are at most 60
         }
     }
 }
 
-TEST_CASE("a training without a stretch that is long enough has no rigid body") {
+TEST_CASE("training data without a long enough segment give no rigid body") {
     DFDYN_SEEDED_ENGINE(engine);
     Recording training = recording_of(TwoJointMotion(engine), 10);
     training.velocity = training.acceleration = {};
