@@ -42,7 +42,7 @@ std::string line_of(const std::string& svg) {
     return match[1];
 }
 
-TEST_CASE("a chart of curves shows each with its name, and its points where they belong") {
+TEST_CASE("a chart of curves shows each with its name and with points at the right places") {
     const std::string svg = curve_chart("Title", "x", "y", {curve("a", {1, 10, 100}), curve("b", {2, 3, 4})});
     CHECK(markup_fault(svg).empty());
     CHECK(occurrences(svg, "<path class=\"line\"") == 2);
@@ -50,7 +50,7 @@ TEST_CASE("a chart of curves shows each with its name, and its points where they
     CHECK_THAT(svg, ContainsSubstring(">b</text>"));
     CHECK_THAT(svg, ContainsSubstring("class=\"curve c0 dash0\""));
     CHECK_THAT(svg, ContainsSubstring("class=\"curve c1 dash0\""));
-    // x from 1 to 5 over pixels 66 … 586, y from 0.5 to 200 over 364 … 34
+    // x from 1 to 5 is at pixels 66 to 586, y from 0.5 to 200 at pixels 364 to 34.
     CHECK_THAT(line_of(svg), Catch::Matchers::StartsWith("M66.0 "));
     std::smatch match;
     const std::string line = line_of(svg);
@@ -85,7 +85,7 @@ TEST_CASE("eight curves differ in colour or dashes") {
     }
 }
 
-TEST_CASE("a box chart draws boxes, and only a name where there is no distribution") {
+TEST_CASE("a box chart draws boxes and only the name if there is no distribution") {
     const double none = std::nan("");
     const std::string svg = box_chart(
         "t", "y", {{"wide", 0.01, 0.1, 1, 10, 100, 3}, {"none", none, none, none, none, none, none}});
@@ -94,19 +94,20 @@ TEST_CASE("a box chart draws boxes, and only a name where there is no distributi
     CHECK(occurrences(svg, "class=\"median\"") == 1);
     CHECK_THAT(svg, ContainsSubstring(">none</text>"));
     CHECK(svg.find("nan") == std::string::npos);
-    // from 0.01 to 100 over 520 pixels right of the names: the median in the middle, the box half as wide
+    // 0.01 to 100 spans 520 pixels to the right of the names: the median is in the middle, the box has half
+    // that width.
     CHECK_THAT(svg, ContainsSubstring("width=\"260.0\" height=\"14.0\""));
     CHECK_THAT(svg, ContainsSubstring("class=\"median\" x1=\"301.6\""));
 }
 
-TEST_CASE("names are escaped, and a chart without anything is a chart") {
+TEST_CASE("names are escaped and a chart without data is valid") {
     CHECK_THAT(curve_chart("<b>", "x", "y", {curve("</svg>", {1, 2})}), ContainsSubstring("&lt;/svg&gt;"));
     CHECK(markup_fault(curve_chart("<b>", "x<", "y&", {curve("</svg>", {1, 2})})).empty());
     CHECK(markup_fault(curve_chart("t", "x", "y", {})).empty());
     CHECK(markup_fault(box_chart("t", "y", {})).empty());
 }
 
-TEST_CASE("a chart of its own brings its style along") {
+TEST_CASE("a standalone chart includes its style") {
     const std::string svg = standalone_chart(curve_chart("t", "x", "y", {curve("a", {1, 2})}));
     CHECK(markup_fault(svg).empty());
     CHECK_THAT(svg, ContainsSubstring("<style>"));

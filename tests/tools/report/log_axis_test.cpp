@@ -21,7 +21,7 @@ std::vector<std::string> labels_of(const tools::LogAxis& axis) {
     return labels;
 }
 
-TEST_CASE("an axis ends at round numbers about its values") {
+TEST_CASE("an axis ends at round numbers around its values") {
     const tools::LogAxis axis = tools::log_axis({0.03, 7, 0.5}, 0, 1);
     CHECK(axis.low == Approx(0.02));
     CHECK(axis.high == Approx(10));
@@ -41,7 +41,7 @@ TEST_CASE("an axis ends at round numbers about its values") {
     }
 }
 
-TEST_CASE("what a logarithmic axis cannot show does not stretch it") {
+TEST_CASE("values that a logarithmic axis cannot show do not extend it") {
     const double infinite = std::numeric_limits<double>::infinity();
     const tools::LogAxis axis = tools::log_axis({0, -1, std::nan(""), infinite, 2, 4}, 0, 1);
     CHECK(axis.low == Approx(2));
@@ -50,7 +50,7 @@ TEST_CASE("what a logarithmic axis cannot show does not stretch it") {
     CHECK(tools::log_axis({1}, 0, 1).low < tools::log_axis({1}, 0, 1).high);
 }
 
-TEST_CASE("equal ratios are equal distances, and nothing leaves the axis") {
+TEST_CASE("equal ratios have equal distances and all values stay within the axis") {
     const tools::LogAxis axis{0.1, 10, 300, 100};
     CHECK(axis.pixel(0.1) == 300);
     CHECK(axis.pixel(1) == Approx(200));
@@ -60,7 +60,7 @@ TEST_CASE("equal ratios are equal distances, and nothing leaves the axis") {
     CHECK(axis.pixel(-1) == 300);
 }
 
-TEST_CASE("powers of ten are labelled, and 2 and 5 where there is room") {
+TEST_CASE("powers of ten are labelled and 2 and 5 as well if there is room") {
     CHECK(labels_of({0.1, 100, 0, 1}) == std::vector<std::string>{"0.1", "1", "10", "100"});
     CHECK(labels_of({0.02, 1, 0, 1}) == std::vector<std::string>{"0.02", "0.05", "0.1", "0.2", "0.5", "1"});
     CHECK(labels_of({1e-6, 1e-3, 0, 1}).front() == "10<tspan dy=\"-5\" font-size=\"9\">-6</tspan>");

@@ -13,7 +13,7 @@
 
 namespace tools = dfdyn::tools;
 
-TEST_CASE("escape_html escapes what means something in HTML and nothing else") {
+TEST_CASE("escape_html escapes only characters with a meaning in HTML") {
     CHECK(tools::escape_html("</script>\"a' & b") == "&lt;/script&gt;&quot;a&#39; &amp; b");
     CHECK(tools::escape_html("&amp;&&") == "&amp;amp;&amp;&amp;");
     CHECK(tools::escape_html("±2σ N·m") == "±2σ N·m");
@@ -32,7 +32,7 @@ TEST_CASE("script_json replaces bytes that are not UTF-8") {
     CHECK(nlohmann::json::parse(text)["name"] == "log_\uFFFD.csv");
 }
 
-TEST_CASE("base64 is of the little-endian bytes, padded") {
+TEST_CASE("base64 encodes the little-endian bytes with padding") {
     CHECK(tools::base64_floats({}).empty());
     CHECK(tools::base64_floats(std::array{1.0F}) == "AACAPw==");
     CHECK(tools::base64_floats(std::array{1.0F, -2.5F}) == "AACAPwAAIMA=");
@@ -41,11 +41,11 @@ TEST_CASE("base64 is of the little-endian bytes, padded") {
     CHECK(tools::base64_doubles(std::array{1.0}) == "AAAAAAAA8D8=");
 }
 
-TEST_CASE("fill_page fills every place once and does not search what it filled in") {
+TEST_CASE("fill_page fills every place once and does not search the inserted text") {
     CHECK(tools::fill_page("<{{a}}|{{b}}|{{a}}>", {{"a", "{{b}}"}, {"b", "}}{{"}}) == "<{{b}}|}}{{|{{b}}>");
     CHECK(tools::fill_page("plain", {}) == "plain");
 }
 
-TEST_CASE("fill_page refuses a name without a text") {
+TEST_CASE("fill_page rejects a name without a text") {
     CHECK_THROWS_AS(tools::fill_page("{{unknown}}", {{"a", "b"}}), std::out_of_range);
 }

@@ -70,7 +70,7 @@ std::string decode_base64(const std::string& text) {
     return bytes;
 }
 
-/// The numbers in `packed`; on a little-endian host, like all that the tests run on.
+/// The numbers in `packed`, on a little-endian host like those that run the tests.
 template <typename Number>
 std::vector<Number> numbers_in(const json& packed) {
     const std::string bytes = decode_base64(packed.get<std::string>());
@@ -96,7 +96,7 @@ std::size_t occurrences(std::string_view text, std::string_view wanted) {
     return count;
 }
 
-TEST_CASE("the page holds the numbers of the series, time and innovation exactly") {
+TEST_CASE("the page contains the exact numbers of series and time and innovation") {
     const Report report = small_report();
     const json data = data_of(tools::render_report(report));
     CHECK(numbers_in<double>(data["time_s"]) == report.time_s);
@@ -113,7 +113,7 @@ TEST_CASE("the page holds the numbers of the series, time and innovation exactly
     CHECK(data["innovation"]["threshold_label"] == "99 %");
 }
 
-TEST_CASE("the page holds intervals, marks and recordings") {
+TEST_CASE("the page contains intervals and marks and recordings") {
     const json data = data_of(tools::render_report(small_report()));
     CHECK(data["intervals"] == json::parse(R"([{"start_s": 0.1, "end_s": 0.2, "label": "push"}])"));
     CHECK(data["marks"] == json::parse(R"([{"time_s": 0.15, "label": "event"}])"));
@@ -121,7 +121,7 @@ TEST_CASE("the page holds intervals, marks and recordings") {
                                                 {"start_s": 0.2, "first_t_s": 7.0, "name": "b.csv"}])"));
 }
 
-TEST_CASE("title, summary, tables and facts can be read without the script") {
+TEST_CASE("title and summary and tables and facts are readable without the script") {
     const std::string page = tools::render_report(small_report());
     CHECK_THAT(page, ContainsSubstring("<title>A replay</title>"));
     CHECK_THAT(page, ContainsSubstring("<h1>A replay</h1>"));
@@ -144,13 +144,13 @@ TEST_CASE("the page needs no network") {
                                        "script-src 'unsafe-inline'\""));
 }
 
-TEST_CASE("the page carries the licence of the library inside") {
+TEST_CASE("the page contains the licence of its library") {
     const std::string page = tools::render_report(small_report());
     CHECK_THAT(page, ContainsSubstring("The MIT License (MIT)"));
     CHECK_THAT(page, ContainsSubstring("Copyright (c) 2022 Leon Sorokin"));
 }
 
-TEST_CASE("no text of a report can leave its place in the page") {
+TEST_CASE("texts of a report are escaped in the page") {
     const std::string hostile = "</script><script>alert(\"'&{{data}}\")</script><!--";
     const Report harmless = small_report();
     const auto place = GENERATE(
@@ -179,13 +179,13 @@ TEST_CASE("no text of a report can leave its place in the page") {
     }
 }
 
-TEST_CASE("a name in the page's data is the name that was given") {
+TEST_CASE("a name in the page's data equals the given name") {
     Report report = small_report();
     report.recordings[0].name = "</script>\"'&\\.csv";
     CHECK(data_of(tools::render_report(report))["recordings"][0]["name"] == "</script>\"'&\\.csv");
 }
 
-TEST_CASE("numbers that are not finite do not break the page's data") {
+TEST_CASE("numbers that are not finite keep the page's data valid") {
     Report report = small_report();
     const float infinity = std::numeric_limits<float>::infinity();
     for (tools::ReportSeries& series : report.series) {
@@ -200,7 +200,7 @@ TEST_CASE("numbers that are not finite do not break the page's data") {
     check_same_numbers(data["innovation"]["normalised_squared"], report.innovation->normalised_squared);
 }
 
-TEST_CASE("an empty report is a page") {
+TEST_CASE("an empty report is a valid page") {
     const json data = data_of(tools::render_report({}));
     CHECK(data["time_s"].get<std::string>().empty());
     CHECK(data["series"] == json::array());
@@ -208,7 +208,7 @@ TEST_CASE("an empty report is a page") {
     CHECK(data["intervals"] == json::array());
 }
 
-TEST_CASE("a report that contradicts itself is refused by the name of the field") {
+TEST_CASE("an inconsistent report is rejected with the name of the field") {
     struct Mistake {
         std::function<void(Report&)> make;
         std::string message;

@@ -22,7 +22,7 @@ std::vector<std::string> labels(const LinearAxis& axis) {
     return texts;
 }
 
-TEST_CASE("a linear axis has room at its ends and round labels") {
+TEST_CASE("a linear axis has margins and round labels") {
     const LinearAxis axis = linear_axis({-1, 1, std::nan("")}, 100, 200);
     CHECK(axis.low == Approx(-1.06));
     CHECK(axis.pixel(0) == Approx(150));
@@ -33,7 +33,7 @@ TEST_CASE("a linear axis has room at its ends and round labels") {
     CHECK(labels({123456, 123457}).size() >= 2);
 }
 
-TEST_CASE("an axis of one value, of none or of infinities is an axis") {
+TEST_CASE("an axis of one value or none or of infinities is valid") {
     const double infinite = std::numeric_limits<double>::infinity();
     for (const std::vector<double>& values : {std::vector<double>{}, {3}, {0, 0}, {infinite, std::nan("")}}) {
         const LinearAxis axis = linear_axis(values, 0, 1);
@@ -42,7 +42,7 @@ TEST_CASE("an axis of one value, of none or of infinities is an axis") {
     }
 }
 
-TEST_CASE("a chart shows dots, bins and lines where they belong, each with its name") {
+TEST_CASE("a chart shows dots and bins and lines at the right places with their names") {
     XyChart chart{"Title", "x", "y"};
     chart.reference = {"measured", {0, 10}, {0, 10}};
     chart.points = {"samples", {0, 5, 10, std::nan("")}, {0, 5, 10, 1}};
@@ -53,7 +53,7 @@ TEST_CASE("a chart shows dots, bins and lines where they belong, each with its n
     for (const char* name : {"samples", "means", "fit", "other", "measured"}) {
         CHECK_THAT(svg, ContainsSubstring(std::string(">").append(name).append("</text>")));
     }
-    // x and y from -0.3 to 10.3: over 66 … 586, and over 364 … 34
+    // x and y from -0.3 to 10.3 are at pixels 66 to 586 and 364 to 34.
     CHECK_THAT(svg, ContainsSubstring("d=\"M80.7 354.7h0M326.0 199.0h0M571.3 43.3h0\""));
     CHECK_THAT(svg, ContainsSubstring("d=\"M80.7 354.7M571.3 43.3\""));
     CHECK_THAT(svg, ContainsSubstring("<circle cx=\"178.8\" cy=\"292.4\""));
@@ -63,14 +63,14 @@ TEST_CASE("a chart shows dots, bins and lines where they belong, each with its n
     CHECK(svg.find("nan") == std::string::npos);
 }
 
-TEST_CASE("texts of a linear chart are escaped, and one without anything is a chart") {
+TEST_CASE("texts of a linear chart are escaped and a chart without data is valid") {
     const std::string svg = xy_chart({"<b>", "x<", "y&", {}, {"</svg>", {1}, {1}}});
     CHECK(markup_fault(svg).empty());
     CHECK_THAT(svg, ContainsSubstring("&lt;/svg&gt;"));
     CHECK(markup_fault(xy_chart({"t", "x", "y"})).empty());
 }
 
-TEST_CASE("bins hold equally many points, and points of one x stay together") {
+TEST_CASE("bins contain equal numbers of points and points of equal x stay together") {
     const XyBins bins = binned("b", {4, 1, 2, 3, std::nan("")}, {40, 10, 20, 30, 0}, 2);
     CHECK(bins.x == std::vector<double>{1.5, 3.5});
     CHECK(bins.mean == std::vector<double>{15, 35});
