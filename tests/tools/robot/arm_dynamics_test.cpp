@@ -19,7 +19,7 @@ JointVector random_joints(std::mt19937_64& engine, int n) {
     return JointVector::NullaryExpr(n, [&] { return uniform(engine, -2, 2); });
 }
 
-TEST_CASE("forward dynamics undo inverse dynamics, and the mass matrix is their linear part") {
+TEST_CASE("forward dynamics invert inverse dynamics and the mass matrix is its linear part") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int trial = 0; trial < 100; ++trial) {
         const int n = 1 + trial % 7;
@@ -39,7 +39,7 @@ TEST_CASE("forward dynamics undo inverse dynamics, and the mass matrix is their 
     }
 }
 
-TEST_CASE("a pendulum's torque and energy are the textbook's") {
+TEST_CASE("torque and energy of a pendulum are those of the textbook") {
     const double mass = 2;
     const double length = 0.7;
     const double rotor = 0.3;
@@ -77,7 +77,7 @@ TEST_CASE("the tip's Jacobian is the derivative of the tip") {
     }
 }
 
-TEST_CASE("the iCub's arm at rest hangs on its sensor with the weight of 1.93 kg, whatever its posture") {
+TEST_CASE("the iCub's arm at rest loads its sensor with the weight of 1.93 kg in any posture") {
     ReadRobotOptions options;
     options.tip = "r_hand";
     Robot robot = read_robot(DFDYN_TEST_DATA_DIR "/robots/icub_right_arm/icub_right_arm.urdf", options);
@@ -91,7 +91,7 @@ TEST_CASE("the iCub's arm at rest hangs on its sensor with the weight of 1.93 kg
         arm.configure(q, configuration);
         const Wrench wrench = arm.wrench(configuration, still, still);
         CHECK(wrench.head<3>().norm() == Approx(1.9323 * 9.81).epsilon(1e-3));
-        // the child pulls the parent down: child to parent is the robot's direction
+        // The child pulls the parent down, and child to parent is the direction of this robot's sensor.
         const Eigen::Isometry3d frame = configuration.place[2] * robot.sensor->placement;
         CHECK((frame.linear() * wrench.head<3>()).z() == Approx(-wrench.head<3>().norm()));
 
@@ -101,7 +101,7 @@ TEST_CASE("the iCub's arm at rest hangs on its sensor with the weight of 1.93 kg
     }
 }
 
-TEST_CASE("chains that the simulation cannot hold, and negative masses, are refused") {
+TEST_CASE("chains too long for the simulation and negative masses are rejected") {
     CHECK_THROWS_AS(ArmDynamics(Robot(), JointVector()), InputError);
     Robot robot = pendulum(1, 1);
     robot.joints.resize(13, robot.joints[0]);

@@ -21,7 +21,7 @@ inline tools::Robot ur5() {
     return tools::read_robot(DFDYN_TEST_DATA_DIR "/robots/ur5/ur5_robot.urdf", options);
 }
 
-/// Two links of length 1 m that turn about z; gravity along −y, or none.
+/// Two links of length 1 m that turn about z, with the given gravity along -y.
 inline tools::Robot planar_arm(double gravity) {
     tools::Robot robot;
     robot.joints.resize(2);

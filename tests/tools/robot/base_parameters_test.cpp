@@ -23,23 +23,24 @@ tools::BaseParameters base_of(const tools::Robot& robot, OutputKind outputs) {
 
 } // namespace
 
-TEST_CASE("arms have as many base parameters as theory says") {
-    // Planar arm: first moments (2 each) where gravity acts, and the inertias about the joints; without
-    // gravity the first link's moments do nothing.
+TEST_CASE("arms have the number of base parameters that theory predicts") {
+    // Planar arm: two first moments per link if gravity acts, and the inertias about the joints. Without
+    // gravity the moments of the first link have no effect.
     CHECK(base_of(dfdyn::tests::planar_arm(9.81), OutputKind::joint_torque).count() == 6);
     CHECK(base_of(dfdyn::tests::planar_arm(0), OutputKind::joint_torque).count() == 4);
-    // Six turning joints, the first one upright, the second and third parallel: 1 + 7 + ... with one first
-    // moment less for each joint that is parallel to its predecessor.
+    // Six revolute joints, the first vertical, the second and third parallel: 1 + 7 + ... with one first
+    // moment fewer for each joint parallel to its predecessor.
     const tools::BaseParameters ur5 = base_of(dfdyn::tests::ur5(), OutputKind::joint_torque);
     CHECK(ur5.count() == 36);
     CHECK(ur5.gap > 1e6);
-    // A wrench: all ten of what moves in space with the sensor, and seven for each turning link after it.
+    // Wrench: all ten parameters of the body that moves with the sensor, and seven for each revolute link
+    // after it.
     const tools::BaseParameters wrench = base_of(dfdyn::tests::icub_right_arm(), OutputKind::wrench);
     CHECK(wrench.count() == 17);
     CHECK(wrench.gap > 1e6);
 }
 
-TEST_CASE("base parameters explain all outputs, in states that did not make them") {
+TEST_CASE("base parameters explain all outputs in states that were not used to find them") {
     for (const OutputKind outputs : {OutputKind::joint_torque, OutputKind::wrench}) {
         const tools::Robot robot = dfdyn::tests::icub_right_arm();
         const tools::BaseParameters base = base_of(robot, outputs);
@@ -51,7 +52,7 @@ TEST_CASE("base parameters explain all outputs, in states that did not make them
     }
 }
 
-TEST_CASE("any columns will do: dependent, zero, and independent ones") {
+TEST_CASE("base parameters are found among dependent and zero and independent columns") {
     DFDYN_SEEDED_ENGINE(engine);
     std::normal_distribution<double> normal;
     MatrixXd columns = MatrixXd::NullaryExpr(40, 5, [&] { return normal(engine); });
@@ -66,7 +67,7 @@ TEST_CASE("any columns will do: dependent, zero, and independent ones") {
     CHECK(tools::find_base_parameters(MatrixXd::Zero(9, 3)).count() == 0);
 }
 
-TEST_CASE("a base parameter is named by what it stands for") {
+TEST_CASE("a base parameter is named by its linear combination") {
     tools::BaseParameters base;
     base.independent = {0, 3};
     base.combination = MatrixXd{{1, 0.39225, -1, 0}, {0, -2, 0, 1}};
@@ -74,7 +75,7 @@ TEST_CASE("a base parameter is named by what it stands for") {
     CHECK(names == std::vector<std::string>{"a + 0.392·b - c", "d - 2·b"});
 }
 
-TEST_CASE("random states keep within the limits, the same each time") {
+TEST_CASE("random states stay within the limits and are deterministic") {
     const tools::Robot robot = dfdyn::tests::icub_right_arm();
     const tools::RobotMotion motion = tools::random_motion(robot, 200, 3);
     for (Eigen::Index i = 0; i < 4; ++i) {

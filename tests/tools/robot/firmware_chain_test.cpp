@@ -44,12 +44,12 @@ TEST_CASE("at rest the sensor carries the weight beyond it") {
         sensor = sensor * robot.joints[i].placement * Eigen::AngleAxisd(at_rest[3 * i], robot.joints[i].axis);
     }
     sensor = sensor * robot.sensor->placement;
-    // Child to parent: what hangs beyond the sensor pulls it down, along −y of the chest.
+    // Child to parent: the weight beyond the sensor pulls it down, along -y of the chest.
     const Eigen::Vector3d weight(0, -9.81 * 1.9322575, 0);
     CHECK((sensor.linear() * wrench.head<3>() - weight).norm() < 1e-12);
 }
 
-TEST_CASE("a chain of fixed sizes has the dynamic one's constants") {
+TEST_CASE("a chain of fixed sizes has the constants of the dynamic one") {
     const tools::Robot robot = icub();
     const std::vector<double> xi{-0.5, 1, 2, 0.6, -1, 3, 0.3, 2, 1, 0.9, 0.5, -1};
     using Fixed = dfdyn::Chain<4, dfdyn::WrenchAtSensor<2>>;
@@ -75,7 +75,7 @@ TEST_CASE("the parameters of a wrench are those of the bodies beyond the sensor"
     CHECK(names.back() == "link4 Izz");
     CHECK(tools::parameter_units(robot, tools::OutputKind::wrench).size() == 20);
     CHECK(tools::nominal_parameters(robot, tools::OutputKind::joint_torque).size() == 40);
-    robot.sensor->link = 0; // on the base: all that moves is beyond it
+    robot.sensor->link = 0; // a sensor on the base measures everything that moves
     CHECK(tools::nominal_parameters(robot, tools::OutputKind::wrench).size() == 40);
     CHECK(tools::nominal_parameters(robot, tools::OutputKind::wrench).head<10>() == robot.joints[0].inertia);
     robot.sensor.reset();

@@ -16,7 +16,7 @@ using tools::OutputKind;
 
 namespace {
 
-/// Measurements of an arm whose bodies are not the nominal ones.
+/// Measurements of an arm whose parameters differ from the nominal ones.
 struct Experiment {
     tools::FitData data;
     VectorXd truth;
@@ -53,7 +53,7 @@ bool all_consistent(const VectorXd& parameters) {
 
 } // namespace
 
-TEST_CASE("without noise the base parameters are the true ones, of the whole arm and beyond a sensor") {
+TEST_CASE("without noise the base parameters are exact for the whole arm and for the part beyond a sensor") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const OutputKind outputs : {OutputKind::joint_torque, OutputKind::wrench}) {
         const Experiment made = experiment(dfdyn::tests::icub_right_arm(), outputs, 300, 0, engine);
@@ -66,19 +66,20 @@ TEST_CASE("without noise the base parameters are the true ones, of the whole arm
     }
 }
 
-TEST_CASE("the deviations are those of the estimates") {
+TEST_CASE("the standard deviations match the errors of the estimates") {
     DFDYN_SEEDED_ENGINE(engine);
     const Experiment made = experiment(dfdyn::tests::ur5(), OutputKind::joint_torque, 400, 0.5, engine);
     const tools::BaseFit fit = tools::fit_base_parameters(made.data, made.base);
     const VectorXd ratio = (fit.value - made.base.combination * made.truth).cwiseQuotient(fit.deviation);
-    // 36 squared standard normals: mean 1, deviation 0.24 (correlated: somewhat more).
+    // The squares of 36 standard normal variables have mean 1 and deviation 0.24, slightly more if
+    // correlated.
     CHECK(ratio.squaredNorm() / static_cast<double>(ratio.size()) == Approx(1).margin(0.9));
     CHECK(fit.noise.deviation.minCoeff() == Approx(0.5).epsilon(0.15));
     CHECK(fit.noise.correlation_length.maxCoeff() < 1.5);
     CHECK(fit.condition > 1);
 }
 
-TEST_CASE("correlated noise makes the deviations larger") {
+TEST_CASE("correlated noise increases the standard deviations") {
     DFDYN_SEEDED_ENGINE(engine);
     std::normal_distribution<double> normal;
     Experiment made = experiment(dfdyn::tests::planar_arm(9.81), OutputKind::joint_torque, 2000, 0, engine);
@@ -96,10 +97,10 @@ TEST_CASE("correlated noise makes the deviations larger") {
     CHECK((after.deviation.cwiseQuotient(before)).mean() == Approx(std::sqrt(19)).epsilon(0.25));
 }
 
-TEST_CASE("what the motion does not excite stays nominal and is not determined") {
+TEST_CASE("parameters that the motion does not excite stay nominal and are reported as undetermined") {
     const tools::Robot robot = dfdyn::tests::planar_arm(9.81);
     tools::RobotMotion motion = tools::random_motion(robot, 200, 2);
-    motion.velocity.setZero(); // at rest: gravity alone tells nothing of inertias
+    motion.velocity.setZero(); // at rest gravity alone does not determine inertias
     motion.acceleration.setZero();
     const VectorXd nominal = tools::nominal_parameters(robot, OutputKind::joint_torque);
     const MatrixXd regressor = tools::stacked_regressor(robot, OutputKind::joint_torque, motion);
@@ -122,7 +123,7 @@ TEST_CASE("what the motion does not excite stays nominal and is not determined")
     CHECK(inertias == 2);
 }
 
-TEST_CASE("consistent parameters are consistent, and predict as least squares do") {
+TEST_CASE("consistent parameters are physical and predict as well as least squares") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const OutputKind outputs : {OutputKind::joint_torque, OutputKind::wrench}) {
         const Experiment made = experiment(dfdyn::tests::icub_right_arm(), outputs, 400, 0.05, engine);
@@ -139,7 +140,7 @@ TEST_CASE("consistent parameters are consistent, and predict as least squares do
     }
 }
 
-TEST_CASE("few noisy samples: least squares give bodies that cannot be, the consistent fit does not") {
+TEST_CASE("for few noisy samples least squares give impossible bodies and the consistent fit does not") {
     DFDYN_SEEDED_ENGINE(engine);
     const Experiment made = experiment(dfdyn::tests::ur5(), OutputKind::joint_torque, 12, 5, engine);
     const tools::BaseFit fit = tools::fit_base_parameters(made.data, made.base);
@@ -152,7 +153,7 @@ TEST_CASE("few noisy samples: least squares give bodies that cannot be, the cons
           (elsewhere * (fit.parameters - made.truth)).norm());
 }
 
-TEST_CASE("where the data say nothing, consistent parameters are the nominal ones") {
+TEST_CASE("consistent parameters without informative data are the nominal ones") {
     const tools::Robot robot = dfdyn::tests::icub_right_arm();
     const VectorXd nominal = tools::nominal_parameters(robot, OutputKind::wrench);
     const tools::FitData data{MatrixXd::Zero(60, nominal.size()), MatrixXd::Zero(10, 6), nominal};

@@ -7,9 +7,9 @@
 
 namespace tools = dfdyn::tools;
 
-// The figures below are those of the whole robot's file, not of the cut: computed once by a separate program
-// (matrices in plain Python) that walks the original from `chest`, joints outside the chain at zero, and sums
-// its links' masses, first moments and inertias.
+// The numbers below belong to the whole robot's file, not to the cut. A separate program (matrices in plain
+// Python) computed them once: it follows the original from `chest` with all joints outside the chain at zero,
+// and sums the masses, first moments and inertias of the links.
 
 namespace {
 
@@ -34,7 +34,7 @@ tools::InertialParameters parameters(const std::vector<double>& values) {
 
 } // namespace
 
-TEST_CASE("the cut of the iCub has the arm's joints, limits and sensor") {
+TEST_CASE("the cut of the iCub has the joints and limits and sensor of the arm") {
     const tools::Robot robot = right_arm();
     REQUIRE(robot.joints.size() == 4);
     CHECK(robot.joints[0].name == "r_shoulder_pitch");
@@ -52,7 +52,7 @@ TEST_CASE("the cut of the iCub has the arm's joints, limits and sensor") {
     CHECK((robot.gravity - Eigen::Vector3d(0, -9.81, 0)).norm() < 1e-12);
 }
 
-TEST_CASE("the cut of the iCub moves as the whole robot's right arm") {
+TEST_CASE("the cut of the iCub moves like the right arm of the whole robot") {
     const tools::Robot robot = right_arm();
     const auto deviation = [&robot](const std::vector<double>& q, const Eigen::Vector3d& position,
                                     const Eigen::Vector3d& first_axis) {
@@ -67,7 +67,7 @@ TEST_CASE("the cut of the iCub moves as the whole robot's right arm") {
                     {0.460910146532864, -0.8822875555688175, 0.09555368183097296}) < 1e-12);
 }
 
-TEST_CASE("the cut of the iCub weighs what the whole robot's right arm weighs") {
+TEST_CASE("the cut of the iCub has the mass of the right arm of the whole robot") {
     const tools::Robot robot = right_arm();
     CHECK(robot.sensor->inertia_beyond[0] + robot.joints[3].inertia[0] == Approx(1.9322575).epsilon(1e-12));
     const auto link2 =

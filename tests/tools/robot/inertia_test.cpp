@@ -25,7 +25,7 @@ std::vector<Point> random_points(std::mt19937_64& engine, int count) {
     return points;
 }
 
-/// Mass, first moment and inertia by their definitions, as sums over points.
+/// Mass, first moment and inertia by definition, as sums over points.
 tools::InertialParameters summed(const std::vector<Point>& points) {
     tools::InertialParameters sum = tools::InertialParameters::Zero();
     for (const auto& [m, x] : points) {
@@ -44,7 +44,7 @@ Eigen::Isometry3d some_placement() {
 
 } // namespace
 
-TEST_CASE("a moved body has the parameters of its moved points") {
+TEST_CASE("a displaced body has the parameters of its displaced points") {
     DFDYN_SEEDED_ENGINE(engine);
     std::vector<Point> points = random_points(engine, 6);
     const tools::InertialParameters before = summed(points);
@@ -54,7 +54,7 @@ TEST_CASE("a moved body has the parameters of its moved points") {
     CHECK((tools::moved(before, some_placement()) - summed(points)).norm() < 1e-12);
 }
 
-TEST_CASE("the pseudo-inertia is the second moment of the points, and converts back") {
+TEST_CASE("the pseudo-inertia is the second moment of the points and converts back") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::vector<Point> points = random_points(engine, 5);
     Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
@@ -66,25 +66,25 @@ TEST_CASE("the pseudo-inertia is the second moment of the points, and converts b
     CHECK((tools::parameters_of(moments) - parameters).norm() < 1e-12);
 }
 
-TEST_CASE("a body's parameters come from its mass, centre and inertia about the centre") {
+TEST_CASE("the parameters of a body follow from mass and centre and inertia about the centre") {
     const Eigen::Vector3d centre(0.1, -0.2, 0.3);
     const Eigen::Matrix3d inertia = Eigen::Vector3d(0.02, 0.03, 0.04).asDiagonal();
     const tools::InertialParameters parameters = tools::body_parameters(2, centre, inertia);
     CHECK((parameters.segment<3>(1) - 2 * centre).norm() < 1e-15);
     CHECK(parameters[4] == Approx(0.02 + 2 * (0.04 + 0.09)));
-    CHECK(parameters[5] == Approx(2 * 0.1 * 0.2)); // the product is minus the integral of xy
+    CHECK(parameters[5] == Approx(2 * 0.1 * 0.2)); // the product of inertia is minus the integral of xy
     CHECK(parameters[9] == Approx(0.04 + 2 * (0.01 + 0.04)));
 }
 
-TEST_CASE("what no body can have is found, in any frame") {
+TEST_CASE("physically impossible parameters are detected in any frame") {
     const auto fault = [](double mass, double xx, double yy, double zz) {
         const Eigen::Matrix3d inertia = Eigen::Vector3d(xx, yy, zz).asDiagonal();
         return tools::inertia_fault(
             tools::moved(tools::body_parameters(mass, {0.1, 0.2, 0.3}, inertia), some_placement()));
     };
     CHECK_FALSE(fault(1, 0.01, 0.02, 0.025));
-    CHECK_FALSE(fault(1, 0.01, 0.02, 0.03)); // flat
-    CHECK_FALSE(fault(1, 0, 0, 0));          // a point
+    CHECK_FALSE(fault(1, 0.01, 0.02, 0.03)); // a flat body
+    CHECK_FALSE(fault(1, 0, 0, 0));          // a point mass
     CHECK_FALSE(tools::inertia_fault(tools::InertialParameters::Zero()));
     CHECK_THAT(fault(-1, 0.01, 0.02, 0.025).value_or(""), Catch::Matchers::ContainsSubstring("mass -1 kg"));
     CHECK_THAT(fault(0, 0.01, 0.02, 0.025).value_or(""), Catch::Matchers::ContainsSubstring("mass 0 kg"));

@@ -34,7 +34,7 @@ TEST_CASE("coordinates and parameters of a body convert into each other") {
     }
 }
 
-TEST_CASE("whatever the coordinates, the body can be") {
+TEST_CASE("any coordinates give a physically possible body") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int i = 0; i < 100; ++i) {
         const tools::InertialParameters body = tools::parameters_from(random_coordinates(engine));
@@ -44,7 +44,7 @@ TEST_CASE("whatever the coordinates, the body can be") {
     }
 }
 
-TEST_CASE("the slope of the parameters is that of differences") {
+TEST_CASE("the derivative of the parameters equals finite differences") {
     DFDYN_SEEDED_ENGINE(engine);
     const tools::LogCholesky at = random_coordinates(engine);
     const Eigen::Matrix<double, 10, 10> slope = tools::parameters_slope(at);
@@ -52,11 +52,12 @@ TEST_CASE("the slope of the parameters is that of differences") {
         const tools::LogCholesky step = 1e-6 * tools::LogCholesky::Unit(j);
         const tools::InertialParameters difference =
             (tools::parameters_from(at + step) - tools::parameters_from(at - step)) / 2e-6;
-        CHECK((slope.col(j) - difference).norm() < 1e-8 * tools::parameters_from(at).norm()); // rounding
+        // rounding errors
+        CHECK((slope.col(j) - difference).norm() < 1e-8 * tools::parameters_from(at).norm());
     }
 }
 
-TEST_CASE("bodies that cannot be are replaced by near ones, others kept") {
+TEST_CASE("impossible bodies are replaced by close possible ones and others are kept") {
     DFDYN_SEEDED_ENGINE(engine);
     const tools::InertialParameters body = dfdyn::tests::random_body(engine).parameters();
     CHECK(tools::made_consistent(body, 0.1) == body);

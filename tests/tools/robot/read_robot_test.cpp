@@ -48,7 +48,7 @@ std::string ft_sensor(const std::string& at, const std::string& direction = "") 
 
 } // namespace
 
-TEST_CASE("fixed joints are merged, and branches count into the link they hang on") {
+TEST_CASE("fixed joints are merged and branches belong to the link that carries them") {
     const tools::Robot robot = read(arm());
     CHECK(robot.name == "arm");
     CHECK(robot.base == "root");
@@ -57,7 +57,7 @@ TEST_CASE("fixed joints are merged, and branches count into the link they hang o
     CHECK(robot.joints[0].inertia[3] == Approx(0 + 1 + 2));
     CHECK(robot.joints[1].inertia[0] == Approx(2)); // three, thumb
     CHECK(robot.joints[1].prismatic);
-    CHECK(robot.joints[1].placement.translation().z() == Approx(2)); // over the flange
+    CHECK(robot.joints[1].placement.translation().z() == Approx(2)); // including the flange
     CHECK(robot.joints[1].axis == Eigen::Vector3d::UnitY());
     CHECK(robot.tip_placement.translation().z() == Approx(1));
     CHECK(robot.joints[0].lower == Approx(-1));
@@ -66,7 +66,7 @@ TEST_CASE("fixed joints are merged, and branches count into the link they hang o
     CHECK(robot.notes.empty());
 }
 
-TEST_CASE("gravity is turned from the root's frame into the base's") {
+TEST_CASE("gravity is rotated from the root's frame into the base's frame") {
     const std::string turned = "<robot name='r'><link name='world'/>" + body("root") + body("one") +
                                "<joint name='w' type='revolute'><parent link='world'/><child link='root'/>"
                                "<origin rpy='1.5707963267948966 0 0'/><axis xyz='1 0 0'/>"
@@ -80,7 +80,7 @@ TEST_CASE("gravity is turned from the root's frame into the base's") {
     CHECK((read(turned, options).gravity - Eigen::Vector3d(1, 3, -2)).norm() < 1e-12);
 }
 
-TEST_CASE("the F/T sensor is found where the file declares it, with its direction") {
+TEST_CASE("the F/T sensor is read from its declaration with its direction") {
     const tools::Robot robot = read(arm(ft_sensor("flange", "parent_to_child") + ft_sensor("a")));
     REQUIRE(robot.sensor);
     CHECK(robot.sensor->joint == "flange");
@@ -99,7 +99,7 @@ TEST_CASE("the F/T sensor is found where the file declares it, with its directio
     CHECK_FALSE(other.sensor->parent_to_child);
 }
 
-TEST_CASE("the F/T sensor is found by its joint's name, or named by an option") {
+TEST_CASE("the F/T sensor is found by the name of its joint or by an option") {
     const auto renamed = [](const std::string& name) {
         std::string text = arm();
         const std::string old = "'flange'";
@@ -122,7 +122,7 @@ TEST_CASE("the F/T sensor is found by its joint's name, or named by an option") 
     CHECK_THAT(two.notes[0], ContainsSubstring("flange, end"));
 }
 
-TEST_CASE("what is odd but usable is noted, with its link or joint") {
+TEST_CASE("unusual but usable properties are noted with their link or joint") {
     std::string text = arm("<joint name='m' type='revolute'><parent link='tip'/><child link='x'/>"
                            "<limit effort='1' velocity='1'/><axis xyz='1 0 0'/><mimic joint='a'/></joint>" +
                            body("x", "-1") + body("y", "1", "0.1") + joint("f", "fixed", "x", "y"));

@@ -30,7 +30,7 @@ std::string joint(int number, const std::string& type = "continuous", const std:
 
 std::string robot(const std::string& content) { return "<robot name='r'>" + content + "</robot>"; }
 
-/// The message with which the file is refused, empty when it is not.
+/// The error message for the file, empty if it is accepted.
 std::string refusal(const std::string& text, const tools::ReadRobotOptions& options) {
     const dfdyn::tests::TemporaryDirectory directory;
     try {
@@ -49,7 +49,7 @@ std::string refusal(const std::string& text, const std::string& tip = "l1") {
 
 } // namespace
 
-TEST_CASE("a file that is no URDF is refused in one line that names it") {
+TEST_CASE("a file that is not URDF is rejected with one line that names it") {
     const std::string files[] = {
         "",
         "not XML",
@@ -73,7 +73,7 @@ TEST_CASE("a file that is no URDF is refused in one line that names it") {
     CHECK_THAT(refusal("<robot name='r'>\n<link"), ContainsSubstring("r.urdf:2: expected XML"));
 }
 
-TEST_CASE("a link with two parents, or in a loop, is refused") {
+TEST_CASE("a link with two parents or in a loop is rejected") {
     const std::string second = "<joint name='k' type='fixed'><parent link='l0'/><child link='l2'/></joint>";
     CHECK_THAT(refusal(robot(links(2) + joint(1) + joint(2) + second)),
                ContainsSubstring("\"l2\" is the child of joint"));
@@ -81,7 +81,7 @@ TEST_CASE("a link with two parents, or in a loop, is refused") {
     CHECK_THAT(refusal(robot(links(2) + joint(2) + loop), "l2"), ContainsSubstring("\"l1\" is in a loop"));
 }
 
-TEST_CASE("links, joints and sensors that cannot be are named") {
+TEST_CASE("missing links and joints and sensors are named") {
     const std::string chain = robot(links(3) + joint(1) + joint(2, "fixed") + joint(3));
     CHECK_THAT(refusal(chain, "l9"), ContainsSubstring("expected a link \"l9\", found l0, l1, l2, l3"));
     tools::ReadRobotOptions options;
@@ -105,7 +105,7 @@ TEST_CASE("links, joints and sensors that cannot be are named") {
                ContainsSubstring("\"j2\"") && ContainsSubstring("\"sideways\""));
 }
 
-TEST_CASE("joints that a chain cannot have are named") {
+TEST_CASE("joints of unsupported types are named") {
     CHECK_THAT(refusal(robot(links(1) + joint(1, "planar"))),
                ContainsSubstring("\"j1\"") && ContainsSubstring("planar"));
     CHECK_THAT(refusal(robot(links(1) + joint(1, "floating"))),
