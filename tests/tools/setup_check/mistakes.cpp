@@ -24,7 +24,7 @@ void scale(Columns& columns, double factor) {
     }
 }
 
-/// Moves the boundary into the middle of each joint's range, so that every joint that moves is wrapped.
+/// Moves the wrap into the middle of each joint's range, so that every moving joint is wrapped.
 void wrap(Recording& recording, std::size_t joint) {
     const std::size_t count = recording.joint_count();
     double least = recording.position.values[joint];
@@ -100,7 +100,7 @@ std::vector<Mistake> classic_mistakes(std::size_t joints, OutputKind outputs) {
         {"time in ms", SetupFault::time_unit, [](Recording& recording) { scale_clock(recording, 1e3); }},
         {"time in µs", SetupFault::time_unit, [](Recording& recording) { scale_clock(recording, 1e6); }},
         {"time in ns", SetupFault::time_unit,
-         [](Recording& recording) { // as far as the time of a recording reaches
+         [](Recording& recording) { // the longest time that a recording may have
              const double duration = recording.time_s.back() - recording.time_s.front();
              if (duration > 9) {
                  const auto rows = static_cast<double>(recording.row_count());

@@ -11,17 +11,17 @@
 
 namespace dfdyn::tests {
 
-/// A mistake that somebody can make with a right recording.
+/// A mistake that a user can make with a correct recording.
 struct Mistake {
     std::string name;
     tools::SetupFault fault;
     std::function<void(tools::Recording&)> make;
 };
 
-/// The classic ones. Of one joint: joint 2, where there are several. `outputs` decides about mA and mN·m.
+/// Common mistakes. Mistakes of one joint affect joint 2 if there are several. `outputs` selects mA or mN·m.
 std::vector<Mistake> classic_mistakes(std::size_t joints, tools::OutputKind outputs);
 
-/// Every `stride`-th of the rows from `first` to `last` (not included).
+/// Every `stride`-th row from `first` to `last` (excluded).
 tools::Recording cut(const tools::Recording& recording, std::size_t first, std::size_t last,
                      std::size_t stride);
 
@@ -30,14 +30,14 @@ struct Cut {
     tools::Recording recording;
 };
 
-/// A recording as users cut it: whole, its halves, 20 s in the middle, every fifth row.
+/// Parts of a recording as users cut it: the whole, its halves, 20 s in the middle, every fifth row.
 std::vector<Cut> cuts_of(const tools::Recording& recording);
 
-/// Changes every row's positions (outputs) in place.
+/// Changes the positions or the outputs of every row in place.
 void change_positions(tools::Recording& recording, const std::function<void(double*)>& change);
 void change_outputs(tools::Recording& recording, const std::function<void(double*)>& change);
 
-/// Multiplies the times.
+/// Multiplies the times by `factor`.
 void scale_clock(tools::Recording& recording, double factor);
 
 } // namespace dfdyn::tests

@@ -16,7 +16,7 @@ using namespace dfdyn::tests;
 using Catch::Matchers::ContainsSubstring;
 constexpr double pi = std::numbers::pi;
 
-/// Two joints that swing at up to `speed`, 2,000 rows, with torques or currents that follow them.
+/// 2,000 rows of two joints that swing at up to `speed` (rad/s), with torques or currents that follow them.
 Recording swinging(double rate_hz = 100, double speed = 1.2, const std::string& output = "tau") {
     Recording recording;
     recording.source = "run.csv";
@@ -46,7 +46,7 @@ Recording with_clock(Recording recording, double factor) {
     return recording;
 }
 
-TEST_CASE("clocks in milliseconds, microseconds and nanoseconds are mistakes, from 50 Hz to 5 kHz") {
+TEST_CASE("clocks in milliseconds and microseconds and nanoseconds are mistakes from 50 Hz to 5 kHz") {
     const double rate_hz = GENERATE(50.0, 100.0, 500.0, 1000.0, 5000.0);
     const double speed = GENERATE(0.2, 3.0);
     CAPTURE(rate_hz, speed);
@@ -60,19 +60,19 @@ TEST_CASE("clocks in milliseconds, microseconds and nanoseconds are mistakes, fr
     }
 }
 
-TEST_CASE("slow rows and slow motions are no mistake in the clock") {
+TEST_CASE("neither slow rows nor slow motions are mistakes of the clock") {
     CHECK(check_clock(swinging(20)).empty());
     CHECK(check_clock(swinging(100, 0.001)).empty()); // 1 mrad/s
     CHECK(check_clock(swinging(5, 0.1)).front().severity == Severity::warning);
     CHECK(check_clock(swinging(1, 0.1)).front().severity == Severity::warning);
 }
 
-TEST_CASE("a clock in something longer than seconds is a mistake") {
+TEST_CASE("a clock in units longer than seconds is a mistake") {
     check_single(check_clock(with_clock(swinging(1000), 1.0 / 3600)), Severity::mistake,
                  "does not look like seconds");
 }
 
-TEST_CASE("angles wrapped at half a turn are named with column and time, in radians and in degrees") {
+TEST_CASE("angles wrapped at half a turn are reported with column and time in radians and degrees") {
     for (const double turn : {2 * pi, 360.0}) {
         CAPTURE(turn);
         Recording wrapped = swinging();
@@ -90,7 +90,7 @@ TEST_CASE("angles wrapped at half a turn are named with column and time, in radi
     }
 }
 
-TEST_CASE("a joint may turn on, fast or across a gap, without being wrapped") {
+TEST_CASE("several turns or fast motion or a gap are not reported as wrapping") {
     Recording turning = swinging();
     change_positions(turning, [](double* q) { q[0] *= 20; });
     CHECK(check_wrapping(turning).empty());
@@ -102,13 +102,13 @@ TEST_CASE("a joint may turn on, fast or across a gap, without being wrapped") {
     Recording marked = gap;
     marked.gap_before[1000] = 1;
     CHECK(check_wrapping(marked).empty());
-    for (std::size_t row = 1000; row < gap.row_count(); ++row) { // ten seconds without a sample
+    for (std::size_t row = 1000; row < gap.row_count(); ++row) { // a gap of ten seconds
         gap.time_ns[row] += 10'000'000'000;
     }
     CHECK(check_wrapping(gap).empty());
 }
 
-TEST_CASE("an output with one value is a dead channel where its joint moves and others vary") {
+TEST_CASE("a constant output is a dead channel if its joint moves and other outputs vary") {
     Recording dead = swinging();
     change_outputs(dead, [](double* tau) { tau[1] = 0.25; });
     check_single(check_dead_outputs(dead, OutputKind::joint_torque, nullptr), Severity::mistake,
@@ -119,13 +119,13 @@ TEST_CASE("an output with one value is a dead channel where its joint moves and 
     Recording off = dead;
     change_outputs(off, [](double* tau) { tau[0] = 0; });
     const SetupFindings all_off = check_dead_outputs(off, OutputKind::joint_torque, nullptr);
-    REQUIRE(all_off.size() == 2); // motors without power
+    REQUIRE(all_off.size() == 2); // the motors have no power
     CHECK_FALSE(any_mistake(all_off));
     dead.output.values[1] = 0.26;
     CHECK(check_dead_outputs(dead, OutputKind::joint_torque, nullptr).empty());
 }
 
-TEST_CASE("a joint that moves nothing with mass has no dead output") {
+TEST_CASE("a joint that moves no mass has no dead output") {
     Recording dead = swinging();
     change_outputs(dead, [](double* tau) { tau[1] = 0; });
     Robot robot;
@@ -136,7 +136,7 @@ TEST_CASE("a joint that moves nothing with mass has no dead output") {
     CHECK(any_mistake(check_dead_outputs(dead, OutputKind::joint_torque, &robot)));
 }
 
-TEST_CASE("outputs that no arm has are mA or mN·m; whole numbers above 200 are a warning") {
+TEST_CASE("impossibly large outputs are mA or mN·m and whole numbers above 200 are a warning") {
     Recording current = swinging(100, 1.2, "i");
     CHECK(check_output_unit(current, OutputKind::motor_current).empty());
     for (double& value : current.output.values) {
@@ -148,7 +148,7 @@ TEST_CASE("outputs that no arm has are mA or mN·m; whole numbers above 200 are 
         value = std::round(0.04 * value);
     }
     check_single(check_output_unit(current, OutputKind::motor_current), Severity::warning, "looks like mA");
-    current.output.values[0] += 0.5; // 300.5 A of a press are possible
+    current.output.values[0] += 0.5; // 300.5 A is possible for a press
     CHECK(check_output_unit(current, OutputKind::motor_current).empty());
     Recording torque = swinging();
     for (double& value : torque.output.values) {
@@ -157,7 +157,7 @@ TEST_CASE("outputs that no arm has are mA or mN·m; whole numbers above 200 are 
     check_single(check_output_unit(torque, OutputKind::joint_torque), Severity::mistake, "looks like mN·m");
 }
 
-/// Two joints with limits, or continuous ones.
+/// Two joints with limits, or continuous joints.
 Robot with_limits(double lower, double upper) {
     Robot robot;
     robot.joints.resize(2);
@@ -168,7 +168,7 @@ Robot with_limits(double lower, double upper) {
     return robot;
 }
 
-TEST_CASE("positions far beyond the joints' limits are degrees or thousandths") {
+TEST_CASE("positions far beyond the joint limits are degrees or thousandths") {
     const Robot robot = with_limits(-3, 3);
     CHECK(check_position_unit(swinging(), &robot).empty());
     Recording degrees = swinging();
@@ -184,7 +184,7 @@ TEST_CASE("positions far beyond the joints' limits are degrees or thousandths") 
     check_single(check_position_unit(degrees, &robot), Severity::mistake, "looks like thousandths");
 }
 
-TEST_CASE("limits that mean nothing refuse nothing") {
+TEST_CASE("meaningless joint limits do not cause a rejection") {
     Recording turning = swinging(); // many turns of a continuous joint
     change_positions(turning, [](double* q) { q[0] *= 100; });
     const Robot continuous = [] {

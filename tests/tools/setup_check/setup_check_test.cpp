@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mistakes made with real recordings are found, and none where there is none.
+// Mistakes in real recordings are found, and correct recordings are accepted.
 #include "tools/setup_check/setup_check.hpp"
 
 #include "tests/support/catch.hpp"
@@ -33,7 +33,7 @@ Robot arm_of(const std::string& file, const std::string& base, const std::string
     return read_robot(data + "/robots/" + file, options);
 }
 
-/// The texts of mistakes, one per line.
+/// The texts of all mistakes, one per line.
 std::string mistakes_in(const Recording& recording, const SetupQuestion& question) {
     std::string texts;
     for (const SetupFinding& finding : check_setup(recording, question)) {
@@ -42,7 +42,7 @@ std::string mistakes_in(const Recording& recording, const SetupQuestion& questio
     return texts;
 }
 
-TEST_CASE("a right recording is accepted, however it is cut, with and without a robot") {
+TEST_CASE("a correct recording is accepted however it is cut with and without a robot") {
     const Robot robot = ur5();
     const std::string file = GENERATE("ur5_kufieta/Movement_No5_Acc_slow_no_disturbance.csv",
                                       "ur5_kufieta/Movement_No7_Acc_slow_Verify_Model_short_with_"
@@ -58,7 +58,7 @@ TEST_CASE("a right recording is accepted, however it is cut, with and without a 
     }
 }
 
-/// Runs of random arms and motions with random loads; each is right.
+/// Checks correct recordings of random arms, motions and loads.
 void check_right_runs(int count, std::mt19937_64& engine) {
     const std::vector<Robot> robots{ur5(),
                                     arm_of("small_arm/small_arm.urdf", "base", "tool"),
@@ -79,12 +79,12 @@ void check_right_runs(int count, std::mt19937_64& engine) {
     }
 }
 
-TEST_CASE("right runs are accepted: slow, loaded, without gravity, joints that stand, torques and wrenches") {
+TEST_CASE("correct runs are accepted with slow motion or loads or resting joints or without gravity") {
     DFDYN_SEEDED_ENGINE(engine);
     check_right_runs(25, engine);
 }
 
-TEST_CASE("two thousand right runs are accepted", "[.long]") {
+TEST_CASE("two thousand correct runs are accepted", "[.long]") {
     DFDYN_SEEDED_ENGINE(engine);
     check_right_runs(2000, engine);
 }
@@ -105,7 +105,7 @@ Recording with_mistake(Recording recording, const std::string& name) {
     return recording;
 }
 
-TEST_CASE("a real recording with a classic mistake is refused with what to do, without a robot") {
+TEST_CASE("a common mistake in a real recording is rejected with its remedy without a robot") {
     const Expected expected =
         GENERATE(Expected{"positions in degrees", "multiply by pi/180"},
                  Expected{"time in ms", "milliseconds; divide t by 1000"},
@@ -121,7 +121,7 @@ TEST_CASE("a real recording with a classic mistake is refused with what to do, w
                ContainsSubstring(expected.words));
 }
 
-TEST_CASE("with a robot, signs and exchanged columns of a real recording are refused by name") {
+TEST_CASE("with a robot wrong signs and exchanged columns of a real recording are rejected by name") {
     const Expected expected =
         GENERATE(Expected{"sign of one output", "i2: expected the sign of the robot's model"},
                  Expected{"sign of all outputs", "expected the sign of the robot's model"},
@@ -134,7 +134,7 @@ TEST_CASE("with a robot, signs and exchanged columns of a real recording are ref
                ContainsSubstring(expected.words));
 }
 
-TEST_CASE("gravity upside down is named, not the sign of the outputs") {
+TEST_CASE("inverted gravity is reported as such and not as the sign of the outputs") {
     Robot robot = ur5();
     robot.gravity *= -1;
     const Recording right = currents("ur5_nist/halfspeed_payload_0p726kg.csv");
@@ -144,7 +144,7 @@ TEST_CASE("gravity upside down is named, not the sign of the outputs") {
     CHECK_THAT(findings.front().text, ContainsSubstring("--gravity"));
 }
 
-TEST_CASE("torques in N·cm are another unit, whatever the payload") {
+TEST_CASE("torques in N·cm are reported as another unit with any payload") {
     DFDYN_SEEDED_ENGINE(engine);
     const Robot robot = ur5();
     RunKind kind;
@@ -158,7 +158,7 @@ TEST_CASE("torques in N·cm are another unit, whatever the payload") {
     CHECK_THAT(mistakes_in(recording, {kind.outputs, &robot}), ContainsSubstring("another unit"));
 }
 
-TEST_CASE("a wrench of the wrong sign is refused with --wrench-direction") {
+TEST_CASE("a wrench of the wrong sign is rejected with a reference to --wrench-direction") {
     DFDYN_SEEDED_ENGINE(engine);
     const Robot robot = icub_right_arm();
     RunKind kind;
@@ -172,7 +172,7 @@ TEST_CASE("a wrench of the wrong sign is refused with --wrench-direction") {
     CHECK_THAT(mistakes_in(recording, {kind.outputs, &robot}), ContainsSubstring("--wrench-direction"));
 }
 
-TEST_CASE("a robot or torque constants that do not fit leave the check to the recording alone") {
+TEST_CASE("an unsuitable robot or torque constants restrict the check to the recording alone") {
     const Robot small = arm_of("small_arm/small_arm.urdf", "base", "tool");
     const Robot robot = ur5();
     const Recording right = currents("ur5_kufieta/Movement_No3_Acc.csv");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of docs/guide/setup-check.md: mistakes x recordings, and right recordings that are refused.
+// The table of docs/setup-check.md: mistakes by recordings, and correct recordings that are rejected.
 #include "tools/setup_check/setup_check.hpp"
 
 #include "tests/support/catch.hpp"
@@ -24,7 +24,7 @@ struct Family {
     std::string urdf, base, tip;
 };
 
-/// The counts of a cell, over recordings and cuts.
+/// Counts of one cell over recordings and their parts.
 struct Cell {
     int refused = 0, refused_as_other = 0, warned = 0, passed = 0;
 
@@ -59,7 +59,7 @@ std::vector<Recording> recordings_in(const Family& family) {
     return recordings;
 }
 
-/// One row per mistake, the right recordings first; without and with the robot.
+/// Prints one row per mistake, after the correct recordings, without and with the robot.
 void print_family(const Family& family) {
     ReadRobotOptions chain;
     chain.base = family.base;
@@ -92,7 +92,7 @@ void print_family(const Family& family) {
     }
 }
 
-TEST_CASE("mistakes x recordings: no right recording is refused", "[.long][setup-table]") {
+TEST_CASE("no correct recording is rejected in the table of mistakes by recordings", "[.long][setup-table]") {
     print_family({"UR5", "ur5_kufieta", OutputKind::motor_current, "robots/ur5/ur5_robot.urdf", "base_link",
                   "ee_link"});
     print_family({"UR5 of another laboratory", "ur5_nist", OutputKind::motor_current,

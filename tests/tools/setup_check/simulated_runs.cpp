@@ -30,7 +30,7 @@ double uniform(std::mt19937_64& engine, double low, double high) {
 
 bool chance(std::mt19937_64& engine, double probability) { return uniform(engine, 0, 1) < probability; }
 
-/// Three tones per joint, their speeds about `speed` in sum.
+/// Three tones per joint, with speeds that sum to about `speed`.
 RobotMotion multisine(Index joints, const RunKind& kind, std::mt19937_64& engine) {
     const auto rows = static_cast<Index>(kind.duration_s * kind.rate_hz);
     const Eigen::ArrayXd time = VectorXd::LinSpaced(rows, 0, static_cast<double>(rows - 1) / kind.rate_hz);

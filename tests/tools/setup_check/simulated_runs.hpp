@@ -11,28 +11,28 @@
 
 namespace dfdyn::tests {
 
-/// How a recording that is right was made.
+/// Properties of a correct recording.
 struct RunKind {
     tools::OutputKind outputs = tools::OutputKind::joint_torque;
-    double speed = 1;              ///< rad/s, about
-    double rate_hz = 100;          ///< of the rows
-    std::vector<bool> moving = {}; ///< which joints move; empty: all
-    double payload_kg = 0;         ///< at the tip, up to 0.2 m from it in any direction
-    double friction = 0;           ///< Coulomb friction over the largest rigid torque of the joint
-    double noise = 0;              ///< of the outputs, over their deviation
-    double position_noise = 1e-5;  ///< rad
+    double speed = 1;              ///< approximate speed of the joints, rad/s
+    double rate_hz = 100;          ///< rows per second
+    std::vector<bool> moving = {}; ///< whether each joint moves; empty if all do
+    double payload_kg = 0;         ///< at up to 0.2 m from the tip in a random direction
+    double friction = 0;          ///< Coulomb friction relative to the largest rigid-body torque of the joint
+    double noise = 0;             ///< of the outputs, relative to their standard deviation
+    double position_noise = 1e-5; ///< standard deviation, rad
     double duration_s = 30;
 
     std::string describe() const;
 };
 
-/// Multisine motion of a rigid body with payload, friction and noise; the robot's file does not know the
-/// payload. Currents have a random torque constant per joint, 0.5 to 20 N·m/A. Everything is determined by
-/// the arguments and the engine.
+/// Multisine motion of a rigid body with payload, friction and noise; the robot's file lacks the payload.
+/// Currents have a random torque constant per joint of 0.5 to 20 N·m/A. Equal arguments and engines give
+/// equal recordings.
 tools::Recording simulated_run(const tools::Robot& robot, const RunKind& kind, std::mt19937_64& engine);
 
-/// A random kind of run for a robot: slow or fast, 40 Hz to 1 kHz, with joints that stand, payloads, with and
-/// without friction and noise.
+/// A random run for a robot: slow or fast, 40 Hz to 1 kHz, some joints at rest, with and without payload,
+/// friction and noise.
 RunKind random_kind(const tools::Robot& robot, tools::OutputKind outputs, std::mt19937_64& engine);
 
 } // namespace dfdyn::tests
