@@ -8,7 +8,7 @@ namespace model_needs_test {
 
 namespace tools = dfdyn::tools;
 
-/// Numbers only; the sizes are what counts.
+/// A model whose numbers are arbitrary; only its sizes matter.
 tools::TrainedModel sized_model(int joints, int outputs, int lags, int rows, int features) {
     tools::TrainedModel model;
     model.joints = joints;
@@ -45,7 +45,7 @@ void compare() {
     CHECK(needs.tick_operations == cost.predict + cost.learn);
 }
 
-TEST_CASE("the needs of a model bound those of its firmware") {
+TEST_CASE("the needs of a model are upper bounds for its firmware") {
     compare<6, 10, 3, 25>();
     compare<6, 10, 3, 100>();
     compare<6, 399, 3, 63>();
@@ -53,14 +53,14 @@ TEST_CASE("the needs of a model bound those of its firmware") {
     compare<7, 20, 4, 160>();
 }
 
-TEST_CASE("forgetting costs operations") {
+TEST_CASE("forgetting increases the number of operations") {
     tools::TrainedModel model = sized_model(2, 2, 4, 3, 20);
     const auto without = tools::needs_of(model).tick_operations;
     model.forgetting_factor = 0.999;
     CHECK(tools::needs_of(model).tick_operations > without);
 }
 
-TEST_CASE("a budget is held by each of its numbers") {
+TEST_CASE("a budget limits each of the three needs") {
     const tools::ModelNeeds needs{100, 200, 300};
     CHECK(tools::fits(needs, {}));
     CHECK(tools::fits(needs, {100, 200, 300}));

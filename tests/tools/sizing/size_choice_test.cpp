@@ -12,7 +12,7 @@ namespace size_choice_test {
 
 using namespace dfdyn::tools;
 
-/// One joint that swings, and a torque with inertia, gravity and friction.
+/// A swinging joint whose torque has inertia, gravity and friction.
 Recording swinging(int rows, double period_s) {
     std::mt19937_64 engine(1);
     std::normal_distribution<double> noise(0, 0.01);
@@ -44,7 +44,7 @@ SizeChoice choose(const TargetBudget& budget, const FreeSizes& free = {}, double
     return choose_sizes({&recording, 1}, OutputKind::joint_torque, training, free, budget);
 }
 
-TEST_CASE("a choice stays within the budget, and more room does not make it worse") {
+TEST_CASE("the choice stays within the budget and a larger budget does not increase the error") {
     double error = 1e9;
     for (const std::int64_t operations : {2'000, 8'000, 40'000}) {
         TargetBudget budget;
@@ -62,7 +62,7 @@ TEST_CASE("a choice stays within the budget, and more room does not make it wors
     }
 }
 
-TEST_CASE("the same data give the same choice") {
+TEST_CASE("equal data give equal choices") {
     TargetBudget budget;
     budget.ram_bytes = 16 * 1024;
     std::ostringstream first, second;
@@ -71,7 +71,7 @@ TEST_CASE("the same data give the same choice") {
     CHECK(first.str() == second.str());
 }
 
-TEST_CASE("sizes that the caller gives stay as they are") {
+TEST_CASE("sizes given by the caller are kept") {
     TargetBudget budget;
     budget.tick_operations = 40'000;
     const TrainingOptions chosen = choose(budget, {false, false, false, false}).chosen.options;
@@ -81,7 +81,7 @@ TEST_CASE("sizes that the caller gives stay as they are") {
     CHECK(chosen.forgetting_factor == 1);
 }
 
-TEST_CASE("a budget that holds no model is refused with what the smallest takes") {
+TEST_CASE("a budget too small for any model is rejected with the needs of the smallest") {
     TargetBudget budget;
     budget.ram_bytes = 1000;
     CHECK_THROWS_WITH(choose(budget),

@@ -9,8 +9,8 @@
 
 namespace dfdyn::tests {
 
-/// What is wrong with the nesting of the elements in `markup` (HTML or SVG as this program writes it); empty
-/// if nothing is.
+/// Describes the first error in the nesting of the elements of `markup` (HTML or SVG as this program writes
+/// it). Returns an empty text if there is none.
 inline std::string markup_fault(std::string_view markup) {
     constexpr std::array<std::string_view, 3> without_end{"meta", "br", "!DOCTYPE"};
     std::vector<std::string> open;

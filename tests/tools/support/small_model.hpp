@@ -19,7 +19,7 @@ std::vector<double> numbers(std::mt19937_64& engine, std::size_t count, Distribu
     return values;
 }
 
-/// A model of two joints and a wrench with random content that is valid throughout; 2d = 6 columns.
+/// A valid model of two joints and a wrench with random numbers; 2d = 6 columns.
 inline tools::TrainedModel small_model(std::mt19937_64& engine, tools::InputKind kind) {
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> positive(0.5, 2);
@@ -51,7 +51,7 @@ inline tools::TrainedModel small_model(std::mt19937_64& engine, tools::InputKind
     return model;
 }
 
-/// Lets the model know something of the outputs away from its data.
+/// Adds random data on the outputs away from the training data.
 inline void add_extrapolation(tools::TrainedModel& model, std::mt19937_64& engine) {
     std::uniform_real_distribution<double> positive(0.5, 2);
     const std::size_t outputs = model.outputs.names.size();
@@ -59,8 +59,9 @@ inline void add_extrapolation(tools::TrainedModel& model, std::mt19937_64& engin
         positive(engine), numbers(engine, outputs, positive), numbers(engine, outputs, positive), {}, 1};
 }
 
-/// The same model with physics: `structure` is P, SP, SP2 or SPK; the outputs are a wrench at a sensor on
-/// link 1, or the two joints' torques. The motion is DFR, or with input STD the measured derivatives.
+/// The same model with physics. `structure` is P, SP, SP2 or SPK; the outputs are a wrench at a sensor on
+/// link 1, or the torques of the two joints. The motion comes from DFR, or with input STD from measured
+/// derivatives.
 inline tools::TrainedModel small_physics_model(std::mt19937_64& engine, const std::string& structure,
                                                tools::InputKind kind, bool wrench) {
     tools::TrainedModel model = small_model(engine, kind);
