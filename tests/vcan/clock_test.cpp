@@ -29,7 +29,7 @@ void set_wall_clock_by(std::int64_t seconds) {
 
 } // namespace
 
-TEST_CASE("a wall clock that is set does not move the stamps") {
+TEST_CASE("setting the wall clock does not change the stamps") {
     if (std::getenv("DFDYN_VCAN_OWN_MACHINE") == nullptr) {
         WARN("not run: the clock of this machine is not ours to set");
         return;
@@ -39,7 +39,7 @@ TEST_CASE("a wall clock that is set does not move the stamps") {
     SocketCanBus bus(on_vcan0());
     SocketCanBus peer(on_vcan0());
     empty(bus);
-    std::array<std::int64_t, 4> sent_ns{}; // before and after each of the frames
+    std::array<std::int64_t, 4> sent_ns{}; // before the first frame and after each
     sent_ns[0] = bus.now_ns();
     peer.send(Frame{});
     sent_ns[1] = bus.now_ns();
@@ -49,7 +49,7 @@ TEST_CASE("a wall clock that is set does not move the stamps") {
     sent_ns[3] = bus.now_ns();
     const std::vector<Frame> frames = receive(bus, 2);
     REQUIRE(frames.size() == 2);
-    // Both clocks are read one after the other, so a stamp is off by the time between.
+    // The two clocks are read one after the other, so a stamp is wrong by at most the time in between.
     constexpr std::int64_t between_ns = 1'000'000;
     for (std::size_t index = 0; index < 2; ++index) {
         CHECK(frames[index].stamp_source == StampSource::kernel);
@@ -59,8 +59,7 @@ TEST_CASE("a wall clock that is set does not move the stamps") {
     set_wall_clock_by(-step_s);
 }
 
-TEST_CASE(
-    "F22: frames that wait together have each its own stamp, not the last one's or that of the reading") {
+TEST_CASE("F22: frames that wait together keep their own stamps") {
     SocketCanBus bus(on_vcan0());
     SocketCanBus peer(on_vcan0());
     empty(bus);

@@ -41,21 +41,21 @@ Logged count(const std::string& log) {
 
 constexpr std::size_t flood = 2000;
 
-/// Floods `interface` while `bus` does not read it, then reads what is left. Returns how many of the `flood`
-/// frames those were.
+/// Floods `interface` while `bus` is not read, then reads the rest. Returns the number of `flood` frames that
+/// were read.
 std::size_t overrun(SocketCanBus& bus, const std::string& interface) {
     run("cangen " + interface + " -g 0 -n " + std::to_string(flood));
     static std::array<Frame, flood> room;
     const std::size_t waiting = bus.drain(room).size();
     CHECK(waiting < flood);
-    run("cansend " + interface + " 001#"); // the next frame brings the news of those lost before
+    run("cansend " + interface + " 001#"); // the count of lost frames arrives with the next frame
     CHECK(receive(bus, 1).size() == 1);
     return waiting;
 }
 
 } // namespace
 
-TEST_CASE("frames that nobody read in time are counted, as candump counts them") {
+TEST_CASE("frames that were not read in time are counted as candump counts them") {
     SocketCanBus bus(on_vcan0());
     const Background candump("candump -L -d vcan0");
     candump.signal(SIGSTOP);
@@ -70,7 +70,7 @@ TEST_CASE("frames that nobody read in time are counted, as candump counts them")
     CHECK(logged.frames + logged.dropped == flood + 2);
 }
 
-TEST_CASE("frames that were lost are counted once, and anew after the interface was down") {
+TEST_CASE("lost frames are counted once and the count continues after the interface was down") {
     run("ip link add dev vcan4 type vcan && ip link set vcan4 up");
     SocketCanBus bus({.interface = "vcan4", .filters = {}, .receive_own = false});
     std::size_t read = overrun(bus, "vcan4");
@@ -85,7 +85,7 @@ TEST_CASE("frames that were lost are counted once, and anew after the interface 
     run("ip link del vcan4");
 }
 
-TEST_CASE("a drain ends at its bound while frames keep coming, and says that some were left") {
+TEST_CASE("a drain ends at its bound while frames keep arriving and reports that some are left") {
     constexpr std::size_t bound = 8;
     SocketCanBus bus(on_vcan0());
     const Background cangen("cangen vcan0 -g 0", Background::Ready::at_once);
@@ -105,7 +105,7 @@ TEST_CASE("a drain ends at its bound while frames keep coming, and says that som
     CHECK(bus.counters().saturated_drains > 0);
 }
 
-TEST_CASE("a full queue refuses a frame at once and counts it") {
+TEST_CASE("a full queue rejects a frame at once and counts it") {
     run("ip link add dev vcan2 type vcan && ip link set vcan2 up && "
         "tc qdisc add dev vcan2 root netem delay 60s limit 5");
     SocketCanBus bus({.interface = "vcan2", .filters = {}, .receive_own = false});

@@ -36,7 +36,7 @@ using dfdyn::tests::wait_for;
 
 static_assert(dfdyn::hal::Bus<SocketCanBus>);
 
-/// Frames that one can send, of all kinds.
+/// Random frames of all kinds that can be sent.
 std::vector<Frame> random_frames(std::mt19937_64& engine, std::size_t count) {
     std::vector<Frame> frames;
     while (frames.size() < count) {
@@ -65,7 +65,7 @@ Frame classic(std::uint32_t id) {
 
 } // namespace
 
-TEST_CASE("what cansend sends, the bus hands out, stamped by the kernel") {
+TEST_CASE("frames from cansend are received and stamped by the kernel") {
     SocketCanBus bus(on_vcan0());
     const std::string texts[] = {
         "123#DEADBEEF", "7FF#",   "00000001#0011223344556677",      "1FFFFFFF#01",         "123#R",
@@ -88,7 +88,7 @@ TEST_CASE("what cansend sends, the bus hands out, stamped by the kernel") {
     CHECK(bus.counters().dropped == 0);
 }
 
-TEST_CASE("what the bus sends, candump prints as our writer writes it") {
+TEST_CASE("candump prints sent frames as the candump writer does") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::vector<Frame> sent = random_frames(engine, 100);
     SocketCanBus bus(on_vcan0());
@@ -104,14 +104,14 @@ TEST_CASE("what the bus sends, candump prints as our writer writes it") {
         const CandumpLine read = dfdyn::hal::parse_candump_line(lines[index]);
         REQUIRE(read.kind == CandumpLine::Kind::frame);
         CHECK(content(read.frame) == content(sent[index]));
-        if (!read.frame.fd) { // newer kernels mark CAN FD in its flags too
+        if (!read.frame.fd) { // newer kernels also mark CAN FD in its flags
             CandumpText text{};
             CHECK(write_candump_line(read.frame, "vcan0", StampDecimals::microseconds, text) == lines[index]);
         }
     }
 }
 
-TEST_CASE("what our writer writes, canplayer plays, and candump -x tells who sent it") {
+TEST_CASE("canplayer plays a written log and candump -x shows the sender") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::vector<Frame> frames = random_frames(engine, 100);
     std::string log;
@@ -135,7 +135,7 @@ TEST_CASE("what our writer writes, canplayer plays, and candump -x tells who sen
     }
 }
 
-TEST_CASE("a bus sees its own frames only when told to, and knows them from another program's") {
+TEST_CASE("a bus receives its own frames only on request and marks them") {
     SocketCanBus silent(on_vcan0());
     dfdyn::hal::SocketCanOptions options = on_vcan0();
     options.receive_own = true;
@@ -155,7 +155,7 @@ TEST_CASE("a bus sees its own frames only when told to, and knows them from anot
     CHECK(silent.drain(room).empty());
 }
 
-TEST_CASE("filters pass what they name, of the kind of identifier they name") {
+TEST_CASE("filters pass only matching identifiers of their kind") {
     dfdyn::hal::SocketCanOptions options = on_vcan0();
     options.filters = {{.id = 0x120, .mask = 0x7f0, .extended = false},
                        {.id = 0x12345, .mask = 0x1fffffff, .extended = true}};
@@ -169,7 +169,7 @@ TEST_CASE("filters pass what they name, of the kind of identifier they name") {
     CHECK(frames[3].id == 0x123);
 }
 
-TEST_CASE("error frames pass every filter, and move state and counters") {
+TEST_CASE("error frames pass every filter and update state and counters") {
     dfdyn::hal::SocketCanOptions options = on_vcan0();
     options.filters = {{.id = 0x7ff, .mask = 0x7ff, .extended = false}};
     SocketCanBus bus(options);
@@ -198,7 +198,7 @@ TEST_CASE("error frames pass every filter, and move state and counters") {
     CHECK(bus.counters().controller_overruns == 1);
 }
 
-TEST_CASE("what a bus cannot carry is not sent") {
+TEST_CASE("frames that the bus cannot carry are not sent") {
     SocketCanBus bus(on_vcan0());
     Frame error = classic(0x40);
     error.error = true;
@@ -226,7 +226,7 @@ TEST_CASE("no call uses the heap once the bus is open") {
         peer.send(classic(id));
         received += bus.drain(room).size();
     }
-    // A busy kernel hands the frames over later, from a thread of its own.
+    // A busy kernel delivers the frames later from a thread of its own.
     wait_for([&] {
         received += bus.drain(room).size();
         return received >= 100;

@@ -20,7 +20,7 @@ using dfdyn::hal::SocketCanOptions;
 using dfdyn::tests::receive;
 using dfdyn::tests::run;
 
-/// An interface of the test's own.
+/// A virtual CAN interface that only this test uses.
 class Interface {
   public:
     Interface() { add(); }
@@ -59,7 +59,7 @@ BusState state_after_drain(SocketCanBus& bus) {
     return bus.state();
 }
 
-/// Whether `bus` hands out 123, and not 456, of the two that cansend sends.
+/// Whether `bus` receives 123 but not 456, both sent by cansend.
 bool receives_what_its_filter_passes(SocketCanBus& bus) {
     run("cansend vcan3 456# && cansend vcan3 123#");
     const std::vector<Frame> frames = receive(bus, 1);
@@ -73,7 +73,7 @@ std::size_t open_files() {
 
 } // namespace
 
-TEST_CASE("an interface that goes down is told from a silent one, and the bus comes back with it") {
+TEST_CASE("an interface that goes down is distinguished from a silent one and the bus returns with it") {
     Interface interface;
     SocketCanBus bus(on_vcan3());
     CHECK(state_after_drain(bus) == BusState::active);
@@ -92,7 +92,7 @@ TEST_CASE("an interface that goes down is told from a silent one, and the bus co
     CHECK(open_files() == files);
 }
 
-TEST_CASE("frames that wait while the interface goes down are still handed out") {
+TEST_CASE("frames that wait while the interface goes down are still received") {
     Interface interface;
     SocketCanBus bus(on_vcan3());
     run("cansend vcan3 121# && cansend vcan3 122#");
@@ -102,7 +102,7 @@ TEST_CASE("frames that wait while the interface goes down are still handed out")
     CHECK(bus.state() == BusState::interface_down);
 }
 
-TEST_CASE("a bus-off that waits while the interface goes down does not hide that it is down") {
+TEST_CASE("a bus-off that waits while the interface goes down does not hide that") {
     Interface interface;
     SocketCanBus bus(on_vcan3());
     dfdyn::tests::RawSocket("vcan3").send(0x20000040, {0, 0, 0, 0, 0, 0, 0, 0});
@@ -113,7 +113,7 @@ TEST_CASE("a bus-off that waits while the interface goes down does not hide that
     CHECK(state_after_drain(bus) == BusState::active);
 }
 
-TEST_CASE("a send that meets an interface that is down says so") {
+TEST_CASE("sending on an interface that is down returns that reason") {
     Interface interface;
     SocketCanBus bus(on_vcan3());
     Interface::down();
@@ -124,7 +124,7 @@ TEST_CASE("a send that meets an interface that is down says so") {
     CHECK(bus.send(Frame{}) == SendResult::sent);
 }
 
-TEST_CASE("an interface that is unplugged and plugged in again is opened anew, without the heap") {
+TEST_CASE("an interface that is unplugged and plugged in again is reopened without the heap") {
     Interface interface;
     SocketCanBus bus(on_vcan3());
     interface.remove();
@@ -140,7 +140,7 @@ TEST_CASE("an interface that is unplugged and plugged in again is opened anew, w
     CHECK(receives_what_its_filter_passes(bus));
 }
 
-TEST_CASE("a bus opens on an interface that is down, and receives when it comes up") {
+TEST_CASE("a bus opens on an interface that is down and receives after it comes up") {
     Interface interface;
     Interface::down();
     SocketCanBus bus(on_vcan3());
@@ -152,7 +152,7 @@ TEST_CASE("a bus opens on an interface that is down, and receives when it comes 
     CHECK(receives_what_its_filter_passes(bus));
 }
 
-TEST_CASE("an interface that cannot be opened is refused with its name and the reason") {
+TEST_CASE("an interface that cannot be opened is rejected with its name and the reason") {
     using Catch::Matchers::Message;
     const auto open = [](const std::string& name) {
         SocketCanBus({.interface = name, .filters = {}, .receive_own = false});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A live replay as a program that somebody leaves alone for a week, or kills.
+// A live replay that runs unattended for a long time, or is killed.
 #include "tests/support/catch.hpp"
 #include "tests/tools/can/bus_support.hpp"
 #include "tests/vcan/peer.hpp"
@@ -22,7 +22,7 @@ using namespace dfdyn::tools;
 using dfdyn::tests::file_content;
 using dfdyn::tests::IcubLog;
 
-/// Replays what comes over vcan0 until it is killed.
+/// Replays the frames on vcan0 until it is killed.
 [[noreturn]] void replay_for_ever(const IcubLog& log, const std::filesystem::path& csv,
                                   const std::filesystem::path& record) {
     const std::atomic<bool> stop = false;
@@ -34,7 +34,7 @@ using dfdyn::tests::IcubLog;
 
 } // namespace
 
-TEST_CASE("what a live replay wrote before it was killed is there, whole but for its last line") {
+TEST_CASE("the output of a killed live replay is complete except for its last line") {
     const IcubLog log(100, 100); // 1 s
     const auto csv = log.directory.path() / "out.csv";
     const auto record = log.directory.path() / "recorded.log";
@@ -68,5 +68,5 @@ TEST_CASE("a live replay on a silent bus sleeps") {
                     InputError);
     rusage after{};
     ::getrusage(RUSAGE_THREAD, &after);
-    CHECK(after.ru_nvcsw - before.ru_nvcsw < 50); // ten a second
+    CHECK(after.ru_nvcsw - before.ru_nvcsw < 50); // ten wake-ups a second
 }

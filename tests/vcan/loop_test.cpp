@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop and the arm as two programs with a bus between them, at 100 Hz: the rate that a booted kernel
+// The loop and the arm as two programs with a bus between them, at the rate of 100 Hz that a booted kernel
 // keeps.
 #include "tests/support/catch.hpp"
 #include "tests/vcan/peer.hpp"
@@ -27,33 +27,33 @@ const std::string data = DFDYN_TEST_DATA_DIR;
 const std::string robot = " --robot " + data + "/robots/small_arm/small_arm.urdf";
 const std::string bus = " --bus " + data + "/can/small_arm_loop.json";
 
-/// A call with the small arm; `scenario`: none for its own.
+/// A command line with the small arm. Its own scenario is used if `scenario` is empty.
 std::string call(const std::string& arguments, const std::string& scenario = "") {
     return std::string(DFDYN_PROGRAM) + " " + arguments + robot + bus + " --scenario " +
            (scenario.empty() ? data + "/scenarios/small_arm_loop.json" : scenario);
 }
 
-/// The small arm's scenario with another field, as a file in `directory`.
+/// Writes the small arm's scenario with an additional field to a file in `directory`.
 std::string scenario_with(const TemporaryDirectory& directory, const std::string& field) {
     std::string text = file_content(data + "/scenarios/small_arm_loop.json");
     text.insert(text.find(R"("encoders")"), field + ", ");
     return directory.write("s.json", text);
 }
 
-/// Both programs print so many lines when they end.
+/// Number of lines that each program prints when it ends.
 constexpr std::size_t loop_lines = 4, plant_lines = 2;
 
 void pause(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
 
-/// Whether the loop that says this was stopped by one of these causes.
+/// Whether the loop with this output was stopped by one of `causes`.
 bool stopped_by(const std::string& said, const std::vector<std::string>& causes) {
     return std::ranges::any_of(causes, [&](const std::string& cause) {
         return said.find("stopped (" + cause + ")") != std::string::npos;
     });
 }
 
-/// What a loop says that the machine did not disturb: one that stalls for longer than the loop's patience
-/// stops it, by one of these causes, as it should; then the loop is tried again.
+/// Output of a loop that the machine did not disturb. A machine that stalls for longer than the loop's
+/// patience stops the loop, correctly, by one of these causes. The attempt is then repeated.
 std::string undisturbed(const std::function<std::string()>& attempt,
                         const std::vector<std::string>& stalls = {"no_position", "missed_deadlines"}) {
     std::string said = attempt();
@@ -65,7 +65,7 @@ std::string undisturbed(const std::function<std::string()>& attempt,
 
 } // namespace
 
-TEST_CASE("a loop moves the arm of another program for as long as it is asked to", "[virtual_time]") {
+TEST_CASE("a loop moves the arm of another program for the requested duration", "[virtual_time]") {
     std::string plant_said;
     const std::string said = undisturbed([&] {
         const Background plant(call("plant --can vcan0"));
@@ -77,12 +77,12 @@ TEST_CASE("a loop moves the arm of another program for as long as it is asked to
     CAPTURE(said, plant_said);
     CHECK_THAT(said, ContainsSubstring("stopped (requested)"));
     CHECK_THAT(said, ContainsSubstring("; 0 command frames refused"));
-    CHECK(number_after(said, "ticks, ") > 100);               // followed the reference
+    CHECK(number_after(said, "ticks, ") > 100);               // ticks in which it followed the reference
     CHECK(number_after(plant_said, "plant: ") > 200);         // command frames of two drives
-    CHECK(number_after(plant_said, "command frames, ") <= 5); // silences: stalls, and after its end
+    CHECK(number_after(plant_said, "command frames, ") <= 5); // silences: stalls, and the time after its end
 }
 
-TEST_CASE("a loop that is interrupted stops by its ramp, and says so", "[virtual_time]") {
+TEST_CASE("a loop that is interrupted stops with its ramp and reports that", "[virtual_time]") {
     const std::string said = undisturbed([] {
         const Background plant(call("plant --can vcan0"));
         const Background loop(call("loop --can vcan0"));
@@ -95,7 +95,7 @@ TEST_CASE("a loop that is interrupted stops by its ramp, and says so", "[virtual
     CHECK(number_after(said, "ticks, ") > 50);
 }
 
-TEST_CASE("a loop whose arm falls silent stops by itself, and says why", "[virtual_time]") {
+TEST_CASE("a loop whose arm falls silent stops and reports the reason", "[virtual_time]") {
     const std::string said = undisturbed(
         [] {
             const Background plant(call("plant --can vcan0"));
@@ -113,7 +113,7 @@ TEST_CASE("a loop whose arm falls silent stops by itself, and says why", "[virtu
     CHECK_THAT(said, ContainsSubstring("status 1"));
 }
 
-TEST_CASE("a plant loses the frames that its scenario's faults say, from their time on", "[virtual_time]") {
+TEST_CASE("a plant loses the frames of its scenario's faults from their time on", "[virtual_time]") {
     const TemporaryDirectory directory;
     const std::string scenario =
         scenario_with(directory, R"("faults": [{"kind": "cycles_lost", "cycles": 1000, "at_s": 1.5}])");
@@ -125,10 +125,11 @@ TEST_CASE("a plant loses the frames that its scenario's faults say, from their t
         {"missed_deadlines"});
     CAPTURE(said);
     CHECK_THAT(said, ContainsSubstring("stopped (no_position)"));
-    CHECK(std::abs(number_after(said, "ticks, ") - 155) < 15); // followed the reference, at 100 Hz
+    // ticks at 100 Hz in which it followed the reference
+    CHECK(std::abs(number_after(said, "ticks, ") - 155) < 15);
 }
 
-TEST_CASE("over three lost cycles and a loop that is late no command steps by a tenth of its limit",
+TEST_CASE("over three lost cycles and late ticks of the loop no command steps by a tenth of its limit",
           "[virtual_time]") {
     const TemporaryDirectory directory;
     const std::string scenario =
@@ -138,7 +139,7 @@ TEST_CASE("over three lost cycles and a loop that is late no command steps by a 
         const Background loop(call("loop --can vcan0", scenario));
         pause(2000);
         loop.signal(SIGSTOP);
-        pause(25); // two and a half of its periods
+        pause(25); // two and a half periods of the loop
         loop.signal(SIGCONT);
         pause(1000);
         loop.signal(SIGINT);
@@ -146,12 +147,12 @@ TEST_CASE("over three lost cycles and a loop that is late no command steps by a 
     });
     CAPTURE(said);
     CHECK_THAT(said, ContainsSubstring("stopped (requested)"));
-    CHECK(number_after(said, "with joints missing, ") >= 3); // ticks whose sample was not believed
-    CHECK(number_after(said, "from tick to tick, by ") < 8); // limits: 80 and 40 N·m
+    CHECK(number_after(said, "with joints missing, ") >= 3); // ticks whose sample was rejected
+    CHECK(number_after(said, "from tick to tick, by ") < 8); // the limits are 80 and 40 N·m
     CHECK(number_after(said, ", ", "by ") < 4);
 }
 
-TEST_CASE("a signal takes what a loop has learned out, and puts it back", "[virtual_time]") {
+TEST_CASE("a signal disables what a loop has learned and another enables it again", "[virtual_time]") {
     const std::string said = undisturbed([] {
         const Background plant(call("plant --can vcan0"));
         const Background loop(call("loop --can vcan0"));
@@ -164,10 +165,11 @@ TEST_CASE("a signal takes what a loop has learned out, and puts it back", "[virt
         return loop.output(loop_lines);
     });
     CAPTURE(said);
-    CHECK_THAT(said, ContainsSubstring("stopped (requested)")); // whose default is to end a program
+    // the default action of that signal would end the program
+    CHECK_THAT(said, ContainsSubstring("stopped (requested)"));
 }
 
-TEST_CASE("a loop whose interface goes down stops by itself, and says why", "[virtual_time]") {
+TEST_CASE("a loop whose interface goes down stops and reports the reason", "[virtual_time]") {
     const std::string said = undisturbed([] {
         run("ip link add dev vcan4 type vcan && ip link set vcan4 up");
         std::string loop_said;
@@ -184,7 +186,7 @@ TEST_CASE("a loop whose interface goes down stops by itself, and says why", "[vi
     CHECK_THAT(said, ContainsSubstring("stopped (bus_lost)"));
 }
 
-TEST_CASE("beside a flood a tick reads no more than its bound; the loop goes on, or stops with a reason") {
+TEST_CASE("during a flood a tick reads a bounded number of frames and the loop runs or stops with a reason") {
     const Background plant(call("plant --can vcan0"));
     const Background loop(call("loop --can vcan0"));
     pause(800);
@@ -197,7 +199,7 @@ TEST_CASE("beside a flood a tick reads no more than its bound; the loop goes on,
     CHECK(stopped_by(said, {"requested", "no_position", "missed_deadlines"}));
 }
 
-TEST_CASE("over the bus a loop learns the payload of the arm that it moves", "[virtual_time]") {
+TEST_CASE("over the bus a loop learns the payload of its arm", "[virtual_time]") {
     const TemporaryDirectory directory;
     const auto path = [&](const std::string& name) { return (directory.path() / name).string(); };
     const std::string scenario =
@@ -214,10 +216,10 @@ TEST_CASE("over the bus a loop learns the payload of the arm that it moves", "[v
             run(call("loop --can vcan0 --from-prior --duration 10.5 --model " + path("m.json"), scenario) +
                 " || true");
         kept_time = stopped_by(learned, {"requested"}) && number_after(learned, "ticks, ", "pace: ") < 20 &&
-                    number_after(learned, "at most ", "pace: ") < 3000; // us late; a period is 10 ms
+                    number_after(learned, "at most ", "pace: ") < 3000; // µs late; a period is 10 ms
     }
     CAPTURE(nominal, learned);
-    CHECK(number_after(learned, " samples, ") > 50); // learned
+    CHECK(number_after(learned, " samples, ") > 50); // number of learned samples
     REQUIRE((kept_time || !dfdyn::tests::virtual_time()));
     if (!kept_time) {
         WARN("the machine was too late for the tracking error to mean something: " + learned);

@@ -15,18 +15,18 @@
 
 namespace dfdyn::tests {
 
-/// Runs a shell command to its end and returns what it printed, standard error included. Throws
-/// std::runtime_error with that when its status is not 0.
+/// Runs a shell command and returns its output including standard error. Throws std::runtime_error with the
+/// output if its status is not 0.
 std::string run(const std::string& command);
 
-/// The number that follows `words` in `text`, from where `begin` is. Throws std::runtime_error if they are
-/// not there.
+/// The number after `words` in `text`, searched from `begin` on. Throws std::runtime_error if they are
+/// missing.
 double number_after(const std::string& text, const std::string& words, const std::string& begin = "");
 
-/// Whether the clock stands still while programs run: then nothing is ever late, and every run is the same.
+/// Whether the clock stops while programs run. Then nothing is ever late, and every run is the same.
 bool virtual_time();
 
-/// Calls `done` until it is true, for at most 5 s; whether it became true.
+/// Calls `done` until it returns true, for at most 5 s. Returns whether it did.
 template <class Condition>
 bool wait_for(Condition done) {
     for (int round = 0; round < 2500; ++round) {
@@ -38,26 +38,26 @@ bool wait_for(Condition done) {
     return done();
 }
 
-/// How many raw CAN sockets receive from an interface, in the whole network namespace.
+/// Number of raw CAN sockets that receive from an interface, in the whole network namespace.
 long receivers();
-/// Waits until there are more than `more_than`, for some seconds at most; whether there are.
+/// Waits some seconds until there are more than `more_than` of them. Returns whether there are.
 bool wait_for_receivers(long more_than);
 
-/// A program that runs beside the test, such as candump, with its output in a file.
+/// A background program such as candump, with its output in a file.
 class Background {
   public:
     enum class Ready { at_once, when_it_receives };
 
-    /// `command` without shell syntax but for quotes. Returns at once, or when the program receives from a
-    /// CAN interface or has ended; throws std::runtime_error when neither happens.
+    /// Starts `command`, which may contain quotes but no other shell syntax. Returns at once, or when the
+    /// program receives from a CAN interface or has ended. Throws std::runtime_error if neither happens.
     explicit Background(const std::string& command, Ready ready = Ready::when_it_receives);
-    /// Ends it by SIGTERM.
+    /// Ends the program with SIGTERM.
     ~Background();
     Background(const Background&) = delete;
     Background& operator=(const Background&) = delete;
 
     void signal(int number) const;
-    /// Its output so far, once that has `lines` lines, or what there is after some seconds.
+    /// Output of the program. Waits some seconds until it has `lines` lines.
     std::string output(std::size_t lines) const;
 
   private:
@@ -65,7 +65,7 @@ class Background {
     pid_t pid_;
 };
 
-/// A raw socket with none of our code between it and the kernel.
+/// A raw socket, used directly without the bus layer.
 class RawSocket {
   public:
     explicit RawSocket(const std::string& interface);
@@ -73,18 +73,18 @@ class RawSocket {
     RawSocket(const RawSocket&) = delete;
     RawSocket& operator=(const RawSocket&) = delete;
 
-    /// Sends a classic frame of 8 bytes with these 32 bits as identifier and flags. Whether the kernel took
-    /// it.
+    /// Sends a classic frame of 8 bytes with these 32 bits of identifier and flags. Returns whether the
+    /// kernel accepted it.
     bool send(std::uint32_t can_id, const std::array<std::uint8_t, 8>& data) const;
 
   private:
     int descriptor_;
 };
 
-/// What `bus` drains until `count` frames came, or for some seconds.
+/// Drains `bus` for some seconds until `count` frames have arrived, and returns them.
 std::vector<hal::Frame> receive(hal::SocketCanBus& bus, std::size_t count);
 
-/// Drains and drops what waits.
+/// Drains the waiting frames and drops them.
 void empty(hal::SocketCanBus& bus);
 
 /// A bus on vcan0.

@@ -54,7 +54,7 @@ std::vector<Frame> frames_of(const std::string& log) {
 
 } // namespace
 
-TEST_CASE("what dfdyn play plays, candump sees: the same frames in order, at the log's pace or another") {
+TEST_CASE("candump receives what dfdyn play sends in order and at the pace of the log or another") {
     DFDYN_SEEDED_ENGINE(engine);
     std::vector<Frame> played;
     std::vector<Frame> on_the_wire;
@@ -80,7 +80,7 @@ TEST_CASE("what dfdyn play plays, candump sees: the same frames in order, at the
     for (std::size_t index = 0; index < seen.size(); ++index) {
         CHECK(content(seen[index]) == content(on_the_wire[index]));
     }
-    // From the first to the last it takes the log's time over the rate, but for what the machine delayed.
+    // The duration is that of the log divided by the rate, plus the delays of the machine.
     const double late_s = 1e-6 * dfdyn::tests::number_after(report, "us, worst ");
     const double log_s =
         1e-9 * static_cast<double>(on_the_wire.back().stamp_ns - on_the_wire.front().stamp_ns);
@@ -88,7 +88,7 @@ TEST_CASE("what dfdyn play plays, candump sees: the same frames in order, at the
     CHECK(std::abs(seen_s - log_s / rate) < late_s + 0.02);
 }
 
-TEST_CASE("Ctrl-C ends dfdyn play before the log's end, and it says what it did") {
+TEST_CASE("Ctrl-C ends dfdyn play before the end of the log and it reports what it did") {
     const TemporaryDirectory directory;
     const std::string log =
         directory.write("run.log", "(1.000000) can0 123#\n(9999.000000) can0 456#\n").string();

@@ -19,7 +19,7 @@ bool same_bits(const std::vector<float>& one, const std::vector<float>& other, s
                       [](float a, float b) { return std::bit_cast<int>(a) == std::bit_cast<int>(b); });
 }
 
-/// What was predicted while `dfdyn play` sent the log, and from the recording made of that.
+/// Predictions made while `dfdyn play` sent the log, and predictions from the recording of those frames.
 struct LiveAndReplayed {
     ReplayedRecording live;
     ReplayedBus again;
@@ -36,7 +36,7 @@ LiveAndReplayed live_and_replayed(const IcubLog& log) {
     std::thread player([&] {
         dfdyn::tests::wait_for_receivers(receivers);
         dfdyn::tests::run(std::string(DFDYN_PROGRAM) + " play --log " + log.path.string() + " --can vcan0");
-        std::this_thread::sleep_for(std::chrono::milliseconds(200)); // what was sent is delivered
+        std::this_thread::sleep_for(std::chrono::milliseconds(200)); // the last frames are delivered
         stop = true;
     });
     const auto live_estimator = make_estimator(log.model, true);
@@ -49,14 +49,14 @@ LiveAndReplayed live_and_replayed(const IcubLog& log) {
 
 } // namespace
 
-TEST_CASE("what is predicted on a live bus, its recording replayed in-process predicts bit for bit",
-          "[virtual_time]") {
-    // Without virtual time at 100 Hz: at 1 kHz a booted kernel gave too few valid ticks to learn from.
+TEST_CASE("predictions on a live bus equal those from its recording bit for bit", "[virtual_time]") {
+    // Real time uses 100 Hz, because a booted kernel gave too few valid ticks at 1 kHz.
     const int rate_hz = dfdyn::tests::virtual_time() ? 1000 : 100;
     const int rows = 2 * rate_hz;
     const IcubLog log(rows, rate_hz);
     LiveAndReplayed both = live_and_replayed(log);
-    // In real time, ticks that a busy machine delays are refused: then the run says little.
+    // In real time, a busy machine delays ticks, which are then rejected. A run with many of them is
+    // repeated.
     for (int attempt = 0; attempt < 3 && !dfdyn::tests::virtual_time() && both.learned() <= rows / 2;
          ++attempt) {
         both = live_and_replayed(log);
@@ -64,11 +64,11 @@ TEST_CASE("what is predicted on a live bus, its recording replayed in-process pr
     const auto& [live, again] = both;
     const ReplayedRecording& replayed = again.replayed;
 
-    CHECK(again.bus.frames == static_cast<std::uint64_t>(4 * rows + 6)); // and the sensor's full scales
+    CHECK(again.bus.frames == static_cast<std::uint64_t>(4 * rows + 6)); // plus the full scales of the sensor
     const std::size_t ticks = replayed.status.size();
     REQUIRE(ticks > static_cast<std::size_t>(rows * 3 / 4));
-    REQUIRE(live.status.size() >= ticks);  // the silence after the last frame is not in the recording
-    constexpr int before_learning = 9 + 4; // readings until an encoder is believed, then the lags
+    REQUIRE(live.status.size() >= ticks);  // the recording lacks the silence after the last frame
+    constexpr int before_learning = 9 + 4; // readings until an encoder qualifies, plus the lags
     CAPTURE(both.learned());
     CHECK((dfdyn::tests::virtual_time() ? both.learned() == rows - before_learning
                                         : both.learned() > rows / 2));
