@@ -24,7 +24,7 @@ VectorXd to_eigen(const std::vector<double>& values) {
     return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
 
-/// psi of the selected parameters, in units of scale and noise, rows × m p.
+/// psi of the selected parameters in units of scale and noise, rows x m p.
 MatrixXd physics_columns(const tools::TrainedModel& model, const tools::TrainingData& data,
                          const tools::RowList& rows) {
     const tools::PhysicsModel& physics = *model.physics;

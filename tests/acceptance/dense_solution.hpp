@@ -11,25 +11,25 @@
 
 namespace dfdyn::tests {
 
-/// The regression of a model written out as the paper has it, in double: output k at row t is
-/// x_(k,t)' [w_1 … w_m, pi] + mean_(k,t) in units of its noise, whatever the structure: NP has no pi, P no w,
-/// SP and SP2 have their pi in the mean.
+/// The regression of a model as the paper defines it, in double precision. Output k at row t is x_(k,t)' [w_1
+/// … w_m, pi] + mean_(k,t) in units of its noise for every structure: NP has no pi, P has no w, and SP and
+/// SP2 have their pi in the mean.
 class DenseRegression {
   public:
-    /// The columns of `model` at all rows of `data`, whose derivatives are those that the model would see.
+    /// Computes the columns of `model` at all rows of `data`, with the derivatives that the model would use.
     DenseRegression(const tools::TrainedModel& model, const tools::TrainingData& data);
 
-    /// x of output `k` at `row`.
+    /// The vector x of output `k` at `row`.
     [[nodiscard]] Eigen::VectorXd unknowns_row(Eigen::Index row, Eigen::Index k) const;
     [[nodiscard]] double mean(Eigen::Index row, Eigen::Index k) const { return means_(row, k); }
     [[nodiscard]] double target(Eigen::Index row, Eigen::Index k) const { return targets_(row, k); }
     [[nodiscard]] Eigen::Index outputs() const { return targets_.cols(); }
     [[nodiscard]] Eigen::Index unknowns() const { return outputs() * features_.cols() + parameters_; }
 
-    /// Of each unknown.
+    /// Prior standard deviation of each unknown.
     [[nodiscard]] Eigen::VectorXd prior_deviation() const;
 
-    /// The same regression's predictions by a model's own start, in units of the noise.
+    /// Prediction of the same regression by the model's own start, in units of the noise.
     [[nodiscard]] double predicted_by_start(const tools::TrainedModel& model, Eigen::Index row,
                                             Eigen::Index k) const;
 
@@ -45,13 +45,13 @@ class DenseRegression {
     double parameter_variance_ = 0;
 };
 
-/// Its regularised least-squares solution over some rows, all unknowns at once, by Householder QR.
+/// Regularised least-squares solution over some rows for all unknowns at once, by Householder QR.
 class DenseSolution {
   public:
     DenseSolution(const DenseRegression& regression, const tools::RowList& rows);
 
     [[nodiscard]] double prediction(Eigen::Index row, Eigen::Index k) const;
-    /// Of the measurement about the prediction.
+    /// Standard deviation of the measurement about the prediction.
     [[nodiscard]] double standard_deviation(Eigen::Index row, Eigen::Index k) const;
 
   private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A loop that learns the arm it moves, over the frames of its devices: tracking against the nominal rigid
-// body's.
+// Tracking of a loop that learns its arm over the frames of the arm's devices, compared with the nominal
+// rigid body.
 #include "tests/support/catch.hpp"
 #include "tools/commands/options/robot_options.hpp"
 #include "tools/control/closed_loop.hpp"
@@ -23,7 +23,7 @@ struct Setting {
     BusDescription bus;
 };
 
-/// `name`: of scenario and bus description.
+/// Reads the robot `robot`, and the scenario and the bus description called `name`.
 Setting setting(const std::string& robot, const std::string& name) {
     const std::string data = DFDYN_TEST_DATA_DIR;
     const std::string scenario = data + "/scenarios/" + name;
@@ -37,8 +37,8 @@ Setting setting(const std::string& robot, const std::string& name) {
 Setting ur5_loop() { return setting("ur5/ur5_robot.urdf", "ur5_loop.json"); }
 Setting icub_loop() { return setting("icub_right_arm/icub_right_arm.urdf", "icub_loop.json"); }
 
-/// Half a minute of the arm without payload, on another motion, under the nominal rigid body: for the
-/// hyperparameters. A row per 8 ms.
+/// Records half a minute of the arm without payload on another motion with the nominal rigid body, at one row
+/// per 8 ms. The hyperparameters are trained on it.
 Recording commissioning(const Setting& setting) {
     Scenario scenario = setting.scenario;
     scenario.payloads.clear();
@@ -103,7 +103,7 @@ LoopLimits without_observer() {
     return limits;
 }
 
-/// A payload from the begin, another one in mid-motion.
+/// Checks the tracking with one payload from the start and another one from the middle of the motion.
 void check_tracking(const Setting& arm) {
     REQUIRE(arm.scenario.payloads.size() == 2);
     REQUIRE(arm.scenario.payloads[1].attached_s == 65);
@@ -130,7 +130,7 @@ Scenario with_fault(const Setting& ur5, const std::string& fault) {
     return read_scenario(std::string(DFDYN_TEST_DATA_DIR) + "/loop_faults/" + fault + ".json", ur5.robot);
 }
 
-/// Second by second, with a fault at 40 s; `model` knows nothing of the scenario.
+/// Checks every second of a run with a fault at 40 s. `model` was not trained on the scenario.
 void check_fault(const Setting& arm, const LoopModel& model, double largest_rad_a_second_later) {
     const std::vector<TrackingWindow> nominal =
         tracked(arm, "nominal", nullptr, without_observer(), 60.001, 1).windows;
@@ -145,33 +145,32 @@ void check_fault(const Setting& arm, const LoopModel& model, double largest_rad_
 
 } // namespace
 
-TEST_CASE("the UR5 under a loop that begins with nothing learned tracks twenty times better after a minute") {
+TEST_CASE("the UR5 in a loop with an untrained model tracks twenty times better after a minute") {
     check_tracking(ur5_loop());
 }
 
-TEST_CASE("the iCub's arm under such a loop tracks twenty times better after a minute") {
+TEST_CASE("the iCub's arm in a loop with an untrained model tracks twenty times better after a minute") {
     check_tracking(icub_loop());
 }
 
 TEST_CASE(
-    "after friction has tripled the UR5 tracks within 3 mrad a second later, and never worse than nominal") {
+    "after friction has tripled the UR5 tracks within 3 mrad a second later and never worse than nominal") {
     Setting arm = ur5_loop();
     const LoopModel model = trained(arm);
     arm.scenario = with_fault(arm, "friction_step");
     check_fault(arm, model, 3e-3);
 }
 
-TEST_CASE(
-    "after friction has tripled the iCub's arm tracks within 3 mrad a second later, and never worse than "
-    "nominal") {
+TEST_CASE("after friction has tripled the iCub's arm tracks within 3 mrad a second later and never worse "
+          "than nominal") {
     Setting arm = icub_loop();
     const LoopModel model = trained(arm);
     arm.scenario.faults = with_fault(ur5_loop(), "friction_step").faults;
     check_fault(arm, model, 3e-3);
 }
 
-TEST_CASE("after a payload was taken off the UR5 tracks within 3 mrad a second later, and never worse than "
-          "nominal") {
+TEST_CASE(
+    "after removal of a payload the UR5 tracks within 3 mrad a second later and never worse than nominal") {
     Setting arm = ur5_loop();
     const LoopModel model = trained(arm);
     arm.scenario = with_fault(arm, "payload_removed");

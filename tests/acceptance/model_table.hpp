@@ -20,7 +20,7 @@ inline tools::Robot small_arm() {
     return tools::read_robot(DFDYN_TEST_DATA_DIR "/robots/small_arm/small_arm.urdf", options);
 }
 
-/// What the sensors of the small arm show in a few seconds of motion.
+/// Readings of the small arm's sensors over a few seconds of motion.
 class SimulatedRecording {
   public:
     explicit SimulatedRecording(const tools::Robot& robot) {
@@ -62,7 +62,8 @@ inline std::string name(const Combination& one) {
            (one.hyper == tools::HyperMethod::ML ? " ML" : " CV");
 }
 
-/// CV exists for NP, P and SP2 with STD, DF and DFSR; STD with derivatives measured and estimated.
+/// All combinations. CV exists for NP, P and SP2 with STD, DF and DFSR; STD has measured or estimated
+/// derivatives.
 inline std::vector<Combination> table() {
     std::vector<Combination> rows;
     for (const tools::ModelClass model : {tools::ModelClass::NP, tools::ModelClass::P, tools::ModelClass::SP,
@@ -101,7 +102,7 @@ inline tools::ModelTraining training_of(const Combination& one, tools::OutputKin
     options.evaluations_per_start = 30;
     options.refinement_evaluations = 0;
     options.threads = 1;
-    options.shrinkage = false; // the paper's prior and deviations are what the table compares with
+    options.shrinkage = false; // compared with the prior and the deviations of the paper
     training.physics = tools::RobotPhysics{robot, {"ft_bias"}, 0.1, {}};
     if (outputs == tools::OutputKind::joint_torque) {
         training.physics->effects = {"viscous_friction", "coulomb_friction", "torque_offset"};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every model × input × tuning of the paper: trained, run by the embedded estimator in float, and compared
-// with the solution of its regression over all samples so far at once, in double.
+// Every model, input and tuning of the paper: trained, run by the embedded estimator in float, and compared
+// with the batch solution of its regression over all samples so far, in double.
 #include "tests/acceptance/dense_solution.hpp"
 #include "tests/acceptance/model_table.hpp"
 #include "tests/support/catch.hpp"
@@ -41,12 +41,12 @@ PreparedTraining prepared_for(const TrainedModel& model, const ModelTraining& tr
 }
 
 struct Disagreement {
-    double prediction = 0;         ///< largest, in deviations of the output
-    double standard_deviation = 0; ///< largest, relative
-    double start = 0;              ///< of restart_model()'s predictions, in deviations of the output
+    double prediction = 0;         ///< largest difference, in standard deviations of the output
+    double standard_deviation = 0; ///< largest relative difference
+    double start = 0; ///< of the predictions of restart_model(), in standard deviations of the output
 };
 
-/// One row of the table: the estimator runs on from where training left it.
+/// One row of the table. The estimator continues from the result of training.
 class Row {
   public:
     Row(const Combination& one, OutputKind outputs, const Robot& robot, const SimulatedRecording& recording)
@@ -56,7 +56,7 @@ class Row {
           model_(trained()), data_(prepared_for(model_, training_, recordings_).data),
           regression_(model_, data_), rows_(usable()), estimator_(make_estimator(model_, false)) {}
 
-    /// Compares after each of the `checkpoints`, numbers of online rows learned.
+    /// Compares the solutions after each of the `checkpoints`, which are numbers of learned rows.
     Disagreement run(const std::vector<std::size_t>& checkpoints) {
         estimator_->begin_recording();
         std::optional<DenseSolution> solution;
@@ -90,7 +90,8 @@ class Row {
         TrainedModel model = train_model(prepare_training({&recordings_[0], 1}, training_), outputs_,
                                          training_, [](const TrainingProgress&) {})
                                  .model;
-        model.limits.innovation = static_cast<double>(std::numeric_limits<float>::max()); // learn everything
+        // accept every sample
+        model.limits.innovation = static_cast<double>(std::numeric_limits<float>::max());
         return model;
     }
 
@@ -101,7 +102,8 @@ class Row {
 
     RowList until(Index row) const { return {rows_.begin(), std::ranges::lower_bound(rows_, row)}; }
 
-    /// Training leaves out the first `lags` rows also where the model needs no window: measured derivatives.
+    /// Training leaves out the first `lags` rows even if the model needs no window because derivatives are
+    /// measured.
     RowList learned_until(Index row) const {
         return {std::ranges::lower_bound(rows_, Index{training_.options.lags}),
                 std::ranges::lower_bound(rows_, row)};
@@ -115,7 +117,7 @@ class Row {
                 recording.acceleration.row(online), recording.output.row(online)};
     }
 
-    /// Exactly the rows with a whole window are predicted, and all of those are learned.
+    /// Checks that exactly the rows with a complete window are predicted and learned.
     void check(const Tick& tick, Index row) const {
         const bool usable = std::ranges::binary_search(rows_, row);
         if (tick.status.predicted() != usable || tick.status.learned() != usable) {
@@ -148,7 +150,7 @@ class Row {
         }
     }
 
-    /// The start that training would compute over the same rows.
+    /// Compares the start that training would compute over the same rows.
     void compare_start(std::size_t online) {
         const DenseSolution solution(regression_, until(row_of(online)));
         TrainedModel restarted = model_;
@@ -167,7 +169,7 @@ class Row {
     const SimulatedRecording& recording_;
     OutputKind outputs_;
     ModelTraining training_;
-    std::vector<Recording> recordings_; ///< to train on, to run over
+    std::vector<Recording> recordings_; ///< one for training, one for the run
     TrainedModel model_;
     TrainingData data_;
     DenseRegression regression_;
@@ -176,9 +178,10 @@ class Row {
     Disagreement worst_;
 };
 
-/// What float can keep. The worst are NP with DF and DFW, whose likelihood here grows up to the largest rho^2
-/// / sigma^2 there is, 1e6: weights 1e3 times the noise meet features that float knows to 1e-7. Next is
-/// physics on accelerations from differences of positions at 100 Hz: 4e-5. All others stay below 2e-5.
+/// Accuracy of float. The least accurate are NP with DF and DFW, whose likelihood increases here up to the
+/// largest allowed rho^2 / sigma^2 of 1e6: weights of 1e3 times the noise multiply features with an error of
+/// 1e-7. Next is physics with accelerations from differences of positions at 100 Hz, with 4e-5. All others
+/// are below 2e-5.
 constexpr double prediction_tolerance = 5e-4;
 constexpr double deviation_tolerance = 2e-5;
 constexpr double start_tolerance = 1e-8;
@@ -197,10 +200,10 @@ void check_table(OutputKind outputs) {
 
 } // namespace
 
-TEST_CASE("every model, input and tuning predicts joint torques as the batch solution does") {
+TEST_CASE("every model and input and tuning predicts joint torques like the batch solution") {
     check_table(OutputKind::joint_torque);
 }
 
-TEST_CASE("every model, input and tuning predicts a wrench as the batch solution does") {
+TEST_CASE("every model and input and tuning predicts a wrench like the batch solution") {
     check_table(OutputKind::wrench);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the project promises on the recordings that it carries, measured on what the demo writes.
+// The guarantees for the recordings in this project, measured on the output of the demo.
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tools/base/recording/recording.hpp"
@@ -24,7 +24,7 @@ struct Tick {
 
 using Ticks = std::vector<Tick>;
 
-/// The recordings in a replay's CSV: a new one begins where t does not increase.
+/// The recordings in a replay's CSV. A new one begins where t does not increase.
 std::vector<Ticks> read_replay(const std::filesystem::path& path) {
     std::ifstream file(path);
     std::string line;
@@ -49,7 +49,7 @@ std::vector<Ticks> read_replay(const std::filesystem::path& path) {
     return recordings;
 }
 
-/// Runs the demo and holds its outcome.
+/// Runs the demo and contains its results.
 struct Demo {
     TemporaryDirectory directory;
     dfdyn::tools::TrainedModel model;
@@ -98,9 +98,8 @@ long longest_run_of_contradictions(const Demo& demo, const Ticks& ticks, std::si
     return longest;
 }
 
-/// How far the two runs' currents are apart at the same time, in standard deviations of the undisturbed run,
-/// averaged over 0.1 s, the largest over the joints: what a person sees who lays the curves over each other.
-/// No model is involved.
+/// Difference of the two runs' currents at the same time, in standard deviations of the undisturbed run. It
+/// is averaged over 0.1 s, and is the largest over the joints. No model is involved.
 std::vector<double> difference_of_runs(const Ticks& pushed, const Ticks& undisturbed) {
     const std::size_t ticks = std::min(pushed.size(), undisturbed.size());
     std::vector<double> largest(ticks, 0);
@@ -124,7 +123,7 @@ std::vector<double> difference_of_runs(const Ticks& pushed, const Ticks& undistu
     return largest;
 }
 
-/// The largest difference of the runs within 0.15 s of a row: a contact does not end in one tick.
+/// Largest difference of the runs within 0.15 s of a row, because a contact lasts for more than one tick.
 double difference_near(const std::vector<double>& difference, std::size_t row) {
     constexpr std::size_t reach = 18;
     const std::size_t first = row > reach ? row - reach : 0;
@@ -134,7 +133,7 @@ double difference_near(const std::vector<double>& difference, std::size_t row) {
 }
 
 void check_errors(const Demo& demo) {
-    // What a plain random-feature RLS with 400 features and 8 lags reached; positions only.
+    // Errors of a plain random-feature RLS with 400 features and 8 lags from positions only.
     constexpr std::array<double, 6> reference{.24, .13, .14, .25, .33, .42};
     REQUIRE(demo.slow().size() == 10264);
     REQUIRE(2 * demo.model.features.count <= 800);
@@ -169,7 +168,7 @@ void check_silence(const Demo& demo) {
 
 } // namespace
 
-TEST_CASE("UR5 motor currents, from positions") {
+TEST_CASE("UR5 motor currents are predicted from positions with innovations that rise only at pushes") {
     const Demo demo(1);
     INFO("one-step errors over the second half of No6");
     check_errors(demo);
@@ -179,7 +178,7 @@ TEST_CASE("UR5 motor currents, from positions") {
     check_silence(demo);
 }
 
-TEST_CASE("UR5 motor currents do not hang on the draw of the random features", "[.long]") {
+TEST_CASE("the results for the UR5's motor currents do not depend on the random features", "[.long]") {
     for (int seed = 2; seed <= 6; ++seed) {
         CAPTURE(seed);
         const Demo demo(seed);

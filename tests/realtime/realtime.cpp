@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What runs in the control loop's period, as functions that may not block: a compiler that knows
-// [[clang::nonblocking]] refuses whatever they call that allocates, locks, throws or waits
-// (-Wfunction-effects), and RealtimeSanitizer stops the program where one of them does so after all. With the
-// argument `block` the program does what must be caught.
+// Functions that run in the control loop's period and therefore must not block. A compiler that supports
+// [[clang::nonblocking]] rejects calls that allocate, lock, throw or wait (-Wfunction-effects).
+// RealtimeSanitizer stops the program at such a call at run time. With the argument `block` the program does
+// what must be detected.
 #include "dfdyn/dfdyn.hpp"
 #include "firmware_lib/examples/ur5_model.hpp"
 #include "firmware_lib/examples/ur5_ticks.hpp"
@@ -17,7 +17,8 @@
 #include <memory>
 #include <random>
 
-// The C library says nothing of its functions; of these it is known that they compute and return.
+// The headers of the C library do not declare these functions as nonblocking, but they only compute and
+// return.
 extern "C" {
 double exp(double) noexcept [[clang::nonblocking]];
 double log(double) noexcept [[clang::nonblocking]];
@@ -33,7 +34,7 @@ namespace {
 
 using namespace dfdyn;
 
-/// What an estimator does within a period.
+/// One period of an estimator.
 template <class Model>
 bool tick(Estimator<Model>& estimator, const typename Model::Sample& sample, Budget budget) noexcept
     [[clang::nonblocking]] {
@@ -48,7 +49,7 @@ SnapshotResult pass_on(const Estimator<Model>& from, Estimator<Model>& to, std::
     return taken == SnapshotResult::ok ? to.restore(room) : taken;
 }
 
-/// What the receive path does within a period, for an arm of every kind of device.
+/// One period of the receive path, for an arm with every kind of device.
 bool receive(tests::EveryArm& arms, const hal::Frame& frame, std::int64_t now_ns) noexcept
     [[clang::nonblocking]] {
     return arms.take(frame, now_ns);
@@ -59,7 +60,7 @@ bool receive(tests::EveryArm& arms, const hal::Frame& frame, std::int64_t now_ns
     std::free(room);
 }
 
-/// Hidden from the compiler's check by a pointer; the sanitizer sees it.
+/// Blocks through a pointer, which the compiler cannot check but the sanitizer can.
 void block_after_all(void (*call)(int)) noexcept [[clang::nonblocking]] {
 #pragma clang diagnostic push
 #pragma clang diagnostic ignored "-Wfunction-effects"
@@ -98,7 +99,7 @@ bool run_model() {
     return predicted > 100 && pass_on(*estimator, *other, room) == SnapshotResult::ok;
 }
 
-/// Frames that the devices send, and in their midst such of every kind and identifier, whole and broken.
+/// Receives frames of the devices, mixed with frames of every kind and identifier, valid and broken.
 bool run_receive() {
     std::mt19937_64 engine(1);
     const auto arms = std::make_unique<tests::EveryArm>();
@@ -127,7 +128,7 @@ bool run_receive() {
 int main(int count, char** arguments) {
     if (count > 1 && std::strcmp(arguments[1], "block") == 0) {
         block_after_all(allocate);
-        return 0; // not to be reached
+        return 0; // must not be reached
     }
     using Input = DerivativeFreeReduced<6, 3>;
     const bool models = run_model<tests::TestModel<float>>() &&

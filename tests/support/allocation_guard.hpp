@@ -5,16 +5,16 @@
 
 namespace dfdyn::tests {
 
-/// Calls to the heap, of the whole process.
+/// Numbers of heap calls in the whole process.
 struct HeapCalls {
     std::uint64_t allocations =
-        0; ///< malloc, calloc, realloc, memalign and their kin, and what ends there: operator new
-    std::uint64_t releases = 0; ///< free and realloc of something that was not null
+        0; ///< malloc, calloc, realloc, memalign and similar, and through them operator new
+    std::uint64_t releases = 0; ///< free and realloc of a pointer that was not null
 };
 
-/// Counts every call to the heap while it lives, by any thread and any library of the process: the test
-/// program's own malloc stands before the C library's (under AddressSanitizer: its hooks). Guards may nest.
-/// Take the counts before an assertion of Catch2, which itself allocates.
+/// Counts every heap call during its lifetime, by any thread and any library of the process. The test
+/// program's own malloc replaces that of the C library (under AddressSanitizer: through its hooks). Guards
+/// may nest. Read the counts before an assertion of Catch2, which itself allocates.
 ///
 ///     const AllocationGuard guard;
 ///     estimator.tick(sample, budget);
@@ -24,7 +24,7 @@ class AllocationGuard {
   public:
     AllocationGuard() noexcept;
 
-    /// The calls since the guard was made.
+    /// The calls since the guard was created.
     HeapCalls calls() const noexcept;
 
   private:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The one Catch2 header that tests include: version 2 or 3, whichever is installed, spelt the same way in
-// both: `Approx`, and matchers as `Catch::Matchers::...`.
+// The only Catch2 header that tests include. It supports versions 2 and 3 with the same names: `Approx`, and
+// matchers as `Catch::Matchers::...`.
 
 #if __has_include(<catch2/catch_all.hpp>)
 #include <catch2/catch_all.hpp>
@@ -15,7 +15,7 @@ using Catch::Approx;
 
 namespace Catch::Matchers {
 
-/// Version 3's name of the matcher that version 2 calls Contains.
+/// Name in version 3 of the matcher that version 2 calls Contains.
 // NOLINTNEXTLINE(readability-identifier-naming)
 inline StdString::ContainsMatcher ContainsSubstring(const std::string& text) { return Contains(text); }
 

@@ -8,7 +8,7 @@
 
 namespace dfdyn::tests {
 
-/// A frame of any kind, received or sent by this host, from a log.
+/// A random frame of any kind, received or sent by this host or read from a log.
 inline hal::Frame random_frame(std::mt19937_64& engine) {
     const auto below = [&](std::uint64_t end) {
         return std::uniform_int_distribution<std::uint64_t>(0, end - 1)(engine);

@@ -31,10 +31,10 @@ inline Eigen::Isometry3d random_placement(std::mt19937_64& engine) {
     return placement;
 }
 
-/// A body as a mechanic describes it.
+/// A body by mass, centre and central inertia.
 struct Body {
     double mass;
-    Eigen::Vector3d centre;          ///< of mass
+    Eigen::Vector3d centre;          ///< centre of mass
     Eigen::Matrix3d central_inertia; ///< about the centre of mass
 
     [[nodiscard]] tools::InertialParameters parameters() const {
@@ -48,7 +48,7 @@ struct Body {
     }
 };
 
-/// The body of these parameters.
+/// The body with these parameters.
 inline Body body_of(const tools::InertialParameters& parameters) {
     const double mass = parameters[0];
     const Eigen::Vector3d centre = parameters.segment<3>(1) / mass;
@@ -60,7 +60,7 @@ inline Body body_of(const tools::InertialParameters& parameters) {
                 mass * (centre.squaredNorm() * Eigen::Matrix3d::Identity() - centre * centre.transpose())};
 }
 
-/// A body that can exist: its second moments of mass are positive along any axis.
+/// A physically possible random body: its second moments of mass are positive along any axis.
 inline Body random_body(std::mt19937_64& engine) {
     const Eigen::Vector3d moments = Eigen::Vector3d::NullaryExpr([&] { return uniform(engine, 0.01, 0.2); });
     const Eigen::Matrix3d axes = random_rotation(engine);
@@ -69,7 +69,7 @@ inline Body random_body(std::mt19937_64& engine) {
             second_moments.trace() * Eigen::Matrix3d::Identity() - second_moments};
 }
 
-/// n joints, revolute and prismatic, anywhere; gravity in any direction.
+/// n revolute and prismatic joints in random places, and gravity in a random direction.
 inline tools::Robot random_robot(std::mt19937_64& engine, int n) {
     tools::Robot robot;
     robot.gravity = random_vector(engine, 9.81);
@@ -86,7 +86,7 @@ inline tools::Robot random_robot(std::mt19937_64& engine, int n) {
     return robot;
 }
 
-/// (q, q̇, q̈) of n joints.
+/// Random (q, q̇, q̈) of n joints.
 inline Eigen::VectorXd random_motion(std::mt19937_64& engine, int n) {
     return Eigen::VectorXd::NullaryExpr(3L * n, [&] { return uniform(engine, -3, 3); });
 }
@@ -98,7 +98,7 @@ inline Placement<double> placement_of(const Eigen::Isometry3d& isometry) {
     return placement;
 }
 
-/// The firmware's constants of a robot, but for those of the output.
+/// The firmware's constants of a robot, except those of the output.
 template <class Arm>
 typename Arm::template Constants<double> chain_of(const tools::Robot& robot) {
     typename Arm::template Constants<double> chain{};

@@ -7,7 +7,7 @@
 
 namespace dfdyn::tests {
 
-/// All of `frame` but its stamp, as text that differs where frames differ.
+/// All of `frame` except its stamp and origin, as text that differs if frames differ.
 inline std::string content(hal::Frame frame) {
     frame.stamp_ns = 0;
     frame.origin = hal::Origin::remote;
@@ -15,7 +15,7 @@ inline std::string content(hal::Frame frame) {
     return std::string(hal::write_candump_line(frame, "bus", hal::StampDecimals::microseconds, text));
 }
 
-/// Whether every member is the same.
+/// Whether all members are equal.
 inline bool same(const hal::Frame& one, const hal::Frame& other) {
     return one.stamp_ns == other.stamp_ns && one.id == other.id && one.extended == other.extended &&
            one.remote == other.remote && one.error == other.error && one.fd == other.fd &&

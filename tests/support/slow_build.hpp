@@ -3,7 +3,8 @@
 
 namespace dfdyn::tests {
 
-/// Whether this build checks every access and is some twenty times slower: the longest tests then do less.
+/// Whether this build checks every access and is about twenty times slower, so that the longest tests do
+/// less.
 #if defined(__SANITIZE_ADDRESS__)
 inline constexpr bool slow_build = true;
 #elif defined(__has_feature)

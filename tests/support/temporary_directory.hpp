@@ -12,7 +12,7 @@
 
 namespace dfdyn::tests {
 
-/// A new empty directory, removed with all that is in it at the end of its scope.
+/// A new empty directory, removed with its contents at the end of the scope.
 class TemporaryDirectory {
   public:
     TemporaryDirectory() {
@@ -33,7 +33,7 @@ class TemporaryDirectory {
 
     const std::filesystem::path& path() const noexcept { return path_; }
 
-    /// Writes `content`, whatever bytes it has, to the file `name` and returns its path.
+    /// Writes `content` (any bytes) to the file `name` and returns its path.
     std::filesystem::path write(const std::string& name, std::string_view content) const {
         std::ofstream file(path_ / name, std::ios::binary);
         file.write(content.data(), static_cast<std::streamsize>(content.size()));
@@ -43,7 +43,7 @@ class TemporaryDirectory {
         return path_ / name;
     }
 
-    /// How many files are in it.
+    /// Number of files in the directory.
     std::size_t file_count() const {
         const std::filesystem::directory_iterator files(path_);
         return static_cast<std::size_t>(std::distance(begin(files), end(files)));
@@ -53,7 +53,7 @@ class TemporaryDirectory {
     std::filesystem::path path_;
 };
 
-/// The whole content of the file `path`; empty when there is none.
+/// Contents of the file `path`, empty if it does not exist.
 inline std::string file_content(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

@@ -20,14 +20,14 @@ dart::dynamics::Inertia dart_inertia(const Body& body) {
     return {body.mass, body.centre, body.central_inertia};
 }
 
-/// The same body, described in a frame that sits at `placement` in its own.
+/// The same body, described in a frame that is at `placement` in its own.
 Body seen_from(const Eigen::Isometry3d& placement, const Body& body) {
     const Eigen::Matrix3d rotation = placement.linear();
     return {body.mass, placement.inverse() * body.centre,
             rotation.transpose() * body.central_inertia * rotation};
 }
 
-/// DART prints a line for every name given twice, that of a new body included.
+/// Adds a joint with unique names, because DART prints a line for every repeated name.
 template <class Joint>
 std::pair<Joint*, BodyNode*> add_named(Skeleton& skeleton, BodyNode* parent, const std::string& name) {
     typename Joint::Properties joint;
@@ -52,8 +52,8 @@ BodyNode* add_sensor(Skeleton& skeleton, BodyNode* parent, const tools::ForceTor
     return body;
 }
 
-/// A skeleton whose link that carries the sensor is two bodies, welded at the sensor; returns the one whose
-/// joint transmits what the sensor measures.
+/// Builds a skeleton in which the link that carries the sensor consists of two bodies, welded at the sensor.
+/// Returns the body whose joint transmits the sensor's wrench.
 BodyNode* build(Skeleton& skeleton, const tools::Robot& robot) {
     BodyNode* measured = nullptr;
     BodyNode* parent = nullptr;

@@ -7,12 +7,12 @@ namespace dfdyn::tests {
 
 using Wrench = Eigen::Matrix<double, 6, 1>;
 
-/// Force and torque that the base's side of the robot's sensor exerts on the tip's side in a motion, in the
-/// sensor's frame, by DART.
+/// Force and torque that the base side of the robot's sensor exerts on the tip side during a motion, in the
+/// sensor's frame, computed by DART.
 Wrench dart_wrench(const tools::Robot& robot, const Eigen::VectorXd& xi);
 
-/// Joint accelerations under these torques, by DART. The body that carries the robot's sensor has the mass of
-/// `inertia_beyond` on top of its own; the robot must have a sensor.
+/// Joint accelerations under these torques, computed by DART. The robot must have a sensor. The body that
+/// carries it has the mass of `inertia_beyond` in addition to its own.
 Eigen::VectorXd dart_acceleration(const tools::Robot& robot, const Eigen::VectorXd& position,
                                   const Eigen::VectorXd& velocity, const Eigen::VectorXd& torque);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The regressor of joint torques against the recursive Newton-Euler algorithm of the Orocos project.
+// Compares the regressor of joint torques with the recursive Newton-Euler algorithm of the Orocos project.
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/truth/regressor.hpp"
@@ -30,7 +30,7 @@ KDL::RigidBodyInertia kdl_inertia(const tools::InertialParameters& parameters) {
 KDL::Chain kdl_chain(const tools::Robot& robot) {
     KDL::Chain chain;
     for (const tools::RobotJoint& joint : robot.joints) {
-        // the axis is given in the frame before the joint
+        // The axis is given in the frame before the joint.
         const Eigen::Vector3d axis = joint.placement.linear() * joint.axis;
         const KDL::Joint moving(kdl_vector(joint.placement.translation()), kdl_vector(axis),
                                 joint.prismatic ? KDL::Joint::TransAxis : KDL::Joint::RotAxis);
@@ -67,7 +67,7 @@ Eigen::VectorXd all_parameters(const tools::Robot& robot) {
 
 } // namespace
 
-TEST_CASE("torques of any chain in any state are those of recursive Newton-Euler") {
+TEST_CASE("torques of any chain in any state equal those of recursive Newton-Euler") {
     DFDYN_SEEDED_ENGINE(engine);
     using Arm = Chain<dynamic>;
     for (int trial = 0; trial < 1000; ++trial) {

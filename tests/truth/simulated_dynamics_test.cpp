@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simulation's rigid-body dynamics against DART, on random chains of revolute and prismatic joints.
+// Compares the rigid-body dynamics of the simulation with DART on random chains of revolute and prismatic
+// joints.
 #include "tests/support/catch.hpp"
 #include "tests/support/random_robot.hpp"
 #include "tests/support/seed.hpp"
@@ -18,7 +19,7 @@ tools::Robot random_robot_with_sensor(std::mt19937_64& engine, int n) {
     robot.sensor.emplace();
     robot.sensor->link = std::uniform_int_distribution<std::size_t>(0, static_cast<std::size_t>(n))(engine);
     robot.sensor->placement = random_placement(engine);
-    if (robot.sensor->link > 0) { // a part of the base beyond it would be no part of DART's chain
+    if (robot.sensor->link > 0) { // DART's chain does not include a part of the base beyond the sensor
         robot.sensor->inertia_beyond = random_body(engine).parameters();
     }
     return robot;
@@ -30,7 +31,7 @@ JointVector every_third(const Eigen::VectorXd& xi, Eigen::Index first) {
 
 } // namespace
 
-TEST_CASE("the simulation's wrench at a sensor on any link, or on the base, is DART's") {
+TEST_CASE("the simulated wrench at a sensor on any link or on the base equals DART's") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int trial = 0; trial < 300; ++trial) {
         const int n = 1 + trial % 7;
@@ -46,12 +47,12 @@ TEST_CASE("the simulation's wrench at a sensor on any link, or on the base, is D
     }
 }
 
-TEST_CASE("the simulation's forward dynamics are DART's") {
+TEST_CASE("the forward dynamics of the simulation equal DART's") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int trial = 0; trial < 300; ++trial) {
         const int n = 1 + trial % 7;
         const tools::Robot robot = random_robot_with_sensor(engine, n);
-        tools::Robot whole = robot; // DART's skeleton has the part beyond the sensor as a body of its own
+        tools::Robot whole = robot; // DART's skeleton has the part beyond the sensor as a separate body
         if (robot.sensor->link > 0) {
             whole.joints[robot.sensor->link - 1].inertia += robot.sensor->inertia_beyond;
         }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots as read_robot makes them against what kdl_parser and Orocos' dynamics make of the same files.
+// Compares robots read by read_robot with those that kdl_parser and the dynamics of Orocos make of the same
+// files.
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/robot/urdf/read_robot.hpp"
 
@@ -71,7 +72,7 @@ Eigen::Isometry3d tip_at(const tools::Robot& robot, const Eigen::VectorXd& xi) {
 
 } // namespace
 
-TEST_CASE("forward kinematics of a robot that was read are KDL's") {
+TEST_CASE("forward kinematics of a robot read from URDF equal KDL's") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const Case& each : cases) {
         CAPTURE(each.file, each.base, each.tip);
@@ -94,7 +95,7 @@ TEST_CASE("forward kinematics of a robot that was read are KDL's") {
     }
 }
 
-TEST_CASE("regressor times nominal parameters of a robot that was read are KDL's inverse dynamics") {
+TEST_CASE("regressor times nominal parameters of a robot read from URDF equal KDL's inverse dynamics") {
     DFDYN_SEEDED_ENGINE(engine);
     using Arm = dfdyn::Chain<dfdyn::dynamic>;
     for (const Case& each : cases) {

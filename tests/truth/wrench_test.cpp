@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The regressor of the wrench at a sensor against DART, where the sensor is a weld between two bodies.
+// Compares the regressor of the wrench at a sensor with DART, in which the sensor is a weld between two
+// bodies.
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/truth/dart_wrench.hpp"
@@ -43,7 +44,7 @@ Eigen::VectorXd wrench(const tools::Robot& robot, double sign, const Eigen::Vect
 
 } // namespace
 
-TEST_CASE("the wrench at a sensor on any link, or on the base, is DART's, in both directions") {
+TEST_CASE("the wrench at a sensor on any link or on the base equals DART's in both directions") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int trial = 0; trial < 500; ++trial) {
         const int n = 1 + trial % 7;
