@@ -78,9 +78,9 @@ void add_buscheck_command(CLI::App& app, Command& chosen) {
     CLI::App* command = app.add_subcommand(
         "buscheck", "Looks at a CAN bus, or a log of one: who sends, how steadily, what is wrong");
     command
-        ->add_option(
-            "--bus", options->bus,
-            "What should be there: docs/reference/can.md. Without: counts, timing, losses and error frames only")
+        ->add_option("--bus", options->bus,
+                     "What should be there: docs/reference/can.md. Without: counts, timing, losses and error "
+                     "frames only")
         ->type_name("B.json");
     command->add_option("--can", options->interface, "Look there; nothing is sent")->type_name("IFACE");
     command->add_option("--log", options->log, "Or into a log of candump -L")->type_name("L.log");

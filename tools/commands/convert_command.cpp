@@ -37,7 +37,9 @@ void add_convert_command(CLI::App& app, Command& chosen) {
     CLI::App* command = app.add_subcommand(
         "convert", "Writes a CSV recording as the frames that an arm's devices would have sent on a CAN bus");
     command->add_option("--log", options->recording, "The recording")->required()->type_name("L.csv");
-    command->add_option("--bus", options->bus, "The devices: docs/reference/can.md")->required()->type_name("B.json");
+    command->add_option("--bus", options->bus, "The devices: docs/reference/can.md")
+        ->required()
+        ->type_name("B.json");
     command->add_option("-o,--output", options->log, "As of candump -L, with nanoseconds")
         ->required()
         ->type_name("L.log");

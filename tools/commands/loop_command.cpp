@@ -323,7 +323,8 @@ void add_loop_command(CLI::App& app, Command& chosen) {
         ->required()
         ->type_name("S.json");
     add_model(*command, *options);
-    command->add_option("--bus", options->bus, "Devices on the bus: docs/reference/can.md")->type_name("bus.json");
+    command->add_option("--bus", options->bus, "Devices on the bus: docs/reference/can.md")
+        ->type_name("bus.json");
     command->add_option("--can", options->interface, "The arm is here")->type_name("IFACE");
     command->add_flag("--simulate", options->simulate, "The arm is simulated, in simulated time");
     command->add_option("--duration", options->duration_s, "Seconds; with --can none: until Ctrl-C")

@@ -47,7 +47,9 @@ void add_plant_command(CLI::App& app, Command& chosen) {
                      "Friction, payloads, sensors, faults, and where it stands: docs/reference/scenario.md")
         ->required()
         ->type_name("S.json");
-    command->add_option("--bus", options->bus, "Its devices: docs/reference/can.md")->required()->type_name("bus.json");
+    command->add_option("--bus", options->bus, "Its devices: docs/reference/can.md")
+        ->required()
+        ->type_name("bus.json");
     command->add_option("--can", options->interface, "Where")->required()->type_name("IFACE");
     command->add_option("--duration", options->duration_s, "Seconds; none: until Ctrl-C")
         ->check(CLI::PositiveNumber)

@@ -243,8 +243,9 @@ void add_replay_command(CLI::App& app, Command& chosen) {
     options->recordings.add_to(*command);
     command->get_option("--log")->required(false);
     command
-        ->add_option("--bus", options->bus,
-                     "The devices on a CAN bus (docs/reference/can.md): recordings are candump logs, or --can")
+        ->add_option(
+            "--bus", options->bus,
+            "The devices on a CAN bus (docs/reference/can.md): recordings are candump logs, or --can")
         ->type_name("B.json");
     command
         ->add_option("--from", options->log_interface,

@@ -20,8 +20,6 @@ namespace {
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
 
-const std::filesystem::path project = std::filesystem::path(DFDYN_TEST_DATA_DIR) / "../..";
-
 /// Parameters as documented, for example `amplitude (N·m), phase (rad)`. Names of the same unit share one
 /// unit.
 std::string listed(const std::vector<ParameterKind>& parameters) {
@@ -38,70 +36,6 @@ std::string listed(const std::vector<ParameterKind>& parameters) {
 std::string documented_row(const Effect& effect) {
     return std::string("| `") + effect.name + "` | " + effect.where + " | " + listed(effect.parameters) +
            effect.remark + " | " + effect.in_extended_model + " |\n";
-}
-
-bool is_word_character(char character) {
-    return std::isalnum(static_cast<unsigned char>(character)) != 0 || character == '_';
-}
-
-/// Contents of the string literals of a C++ file, without those in comments.
-std::vector<std::string> string_literals(const std::string& code) {
-    std::vector<std::string> literals;
-    for (std::size_t i = 0; i < code.size(); ++i) {
-        if (code.compare(i, 2, "//") == 0) {
-            i = code.find('\n', i);
-        } else if (code[i] == '\'' && !is_word_character(code[i - 1])) { // not in 1'000
-            i = code.find('\'', code[i + 1] == '\\' ? i + 3 : i + 1);
-        } else if (code[i] == '"') {
-            std::string text;
-            for (++i; i < code.size() && code[i] != '"'; ++i) {
-                text += code[i] == '\\' ? code[++i] : code[i];
-            }
-            literals.push_back(text);
-        }
-        if (i == std::string::npos) {
-            break;
-        }
-    }
-    return literals;
-}
-
-/// Whether a literal contains the name of an effect. A name of one word must be the whole literal, because
-/// messages use such words too.
-bool has_name(const std::string& literal, const std::string& name) {
-    if (name.find('_') == std::string::npos) {
-        return literal == name;
-    }
-    for (std::size_t at = literal.find(name); at != std::string::npos; at = literal.find(name, at + 1)) {
-        const std::size_t end = at + name.size();
-        if ((at == 0 || !is_word_character(literal[at - 1])) &&
-            (end == literal.size() || !is_word_character(literal[end]))) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/// Files of the product with a literal that contains an effect's name, and these names.
-std::map<std::string, std::set<std::string>> files_with_names() {
-    std::map<std::string, std::set<std::string>> files;
-    for (const char* const folder : {"tools", "hal", "firmware_lib/include"}) {
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(project / folder)) {
-            const std::string extension = entry.path().extension().string();
-            if (extension != ".cpp" && extension != ".hpp") {
-                continue;
-            }
-            for (const std::string& literal : string_literals(read_file(entry.path()))) {
-                for (const Effect& effect : effect_catalogue()) {
-                    if (has_name(literal, effect.name)) {
-                        files[std::filesystem::relative(entry.path(), project).generic_string()].insert(
-                            effect.name);
-                    }
-                }
-            }
-        }
-    }
-    return files;
 }
 
 } // namespace
@@ -130,7 +64,7 @@ TEST_CASE("the name of an effect is a literal only in its own file and in the ca
 }
 
 TEST_CASE("the table of effects in the documentation equals the catalogue") {
-    const std::string text = read_file(project / "docs/diagnosis.md");
+    const std::string text = read_file(project / "docs/guide/diagnosis.md");
     const std::string rule = "| --- | --- | --- | --- |\n";
     const std::size_t first = text.find(rule, text.find("| effect | where |")) + rule.size();
     std::string expected;

@@ -28,7 +28,7 @@ Recording recording(const std::string& name) {
                           options);
 }
 
-/// Rigid body and friction, as `dfdyn train` computes them with the options in docs/monitor.md.
+/// Rigid body and friction, as `dfdyn train` computes them with the options in docs/guide/monitor.md.
 TrainedModel trained(const Recording& data, const Robot& robot) {
     ModelTraining training;
     training.options.model = ModelClass::P;

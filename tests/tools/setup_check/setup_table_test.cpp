@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of docs/setup-check.md: mistakes by recordings, and correct recordings that are rejected.
+// The table of docs/guide/setup-check.md: mistakes by recordings, and correct recordings that are rejected.
 #include "tools/setup_check/setup_check.hpp"
 
 #include "tests/support/catch.hpp"

@@ -125,7 +125,7 @@ TEST_CASE("an impossible fault is rejected with the expected and the found value
 const std::filesystem::path data = DFDYN_TEST_DATA_DIR;
 
 TEST_CASE("the documentation of scenarios lists every kind of fault with its fields") {
-    const std::string text = read_file(data / "../../docs/scenario.md", "cannot be read");
+    const std::string text = read_file(data / "../../docs/reference/scenario.md", "cannot be read");
     for (const FaultKind& kind : fault_catalogue()) {
         CAPTURE(kind.name);
         const std::size_t row = text.find("| `" + std::string(kind.name) + "` |");

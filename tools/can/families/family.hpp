@@ -12,7 +12,8 @@
 
 namespace dfdyn::tools {
 
-/// A field of bus.json. `meaning` follows the name in docs/reference/can.md: range, unit, what it is without the field.
+/// A field of bus.json. `meaning` follows the name in docs/reference/can.md: range, unit, what it is without
+/// the field.
 struct FamilyField {
     std::string_view name;
     std::string_view meaning;

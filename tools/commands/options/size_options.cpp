@@ -39,7 +39,8 @@ void SizeOptions::add_to(CLI::App& command) {
         ->group(group);
     command
         .add_option("--tick-operations", tick_operations,
-                    "Multiply-adds of a tick that predicts and learns (docs/reference/performance.md has instructions "
+                    "Multiply-adds of a tick that predicts and learns (docs/reference/performance.md has "
+                    "instructions "
                     "and times of them)")
         ->check(CLI::PositiveNumber)
         ->type_name("N")

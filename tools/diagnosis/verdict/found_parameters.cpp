@@ -88,7 +88,7 @@ std::vector<FoundParameter> found_parameters(const Explanation& explanation, std
 
 double reach_of_95(double deviation, double effect) {
     constexpr double coloured =
-        1.7; // measured ratio of interval widths to their formula: docs/diagnosis-panel.md
+        1.7; // measured ratio of interval widths to their formula: docs/results/diagnosis-panel.md
     constexpr double model_error = 0.04; // relative model error of large effects, measured as well
     return deviations_of_95 * std::hypot(coloured * deviation, model_error * effect);
 }

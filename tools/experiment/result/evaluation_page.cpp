@@ -51,9 +51,7 @@ class EvaluationPage {
     }
 
     /// The verdicts, and the reasons why findings are not reproduced.
-    FigurePage verdicts() const {
-        return {plan_.title, protocol_sentence(), verdict_sections(), {}};
-    }
+    FigurePage verdicts() const { return {plan_.title, protocol_sentence(), verdict_sections(), {}}; }
 
     std::string tables_markdown() const {
         std::string text;

@@ -32,7 +32,7 @@ struct RecordingModel {
     std::vector<std::string> columns; ///< some of q, qd, qdd, tau, i, wrench
 };
 
-/// All inputs of a simulation except the robot. File format: docs/scenario.md.
+/// All inputs of a simulation except the robot. File format: docs/reference/scenario.md.
 struct Scenario {
     std::uint64_t seed = 1;
     double integration_rate_hz = 8000; ///< a multiple of every sensor's and the controller's rate
