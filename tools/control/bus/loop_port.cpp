@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/control/bus/loop_port.hpp"
 
-#include "tools/control/safe_stop.hpp"
+#include "tools/control/loop/safe_stop.hpp"
 
 #include <algorithm>
 #include <cmath>
