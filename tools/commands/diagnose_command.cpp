@@ -125,7 +125,7 @@ int run(const DiagnoseOptions& options) {
     }
     print_diagnosis(std::cout, work.diagnosis, extension.carried);
     std::cout << "report: " << options.page().string() << '\n';
-    return 0;
+    return refused(work.diagnosis) ? 1 : 0;
 }
 
 } // namespace
@@ -160,8 +160,9 @@ void add_diagnose_command(CLI::App& app, Command& chosen) {
     command->footer(
         "Example:\n  dfdyn diagnose --robot arm.urdf --tip tool0 --log run.csv --outputs tau -o diagnosis\n"
         "  dfdyn replay --model diagnosis/extended_model.json --log other.csv\n"
-        "A recording that cannot answer gets a report that says why, and no model. Exit status: 0 the report "
-        "is written, whether or not it names a cause; 2 bad usage or input.");
+        "Exit status: 0 the report is written, whether or not it names a cause; 1 refused: the set-up is "
+        "wrong "
+        "or the recording cannot answer (the report says why, and there is no model); 2 bad usage or input.");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }
 

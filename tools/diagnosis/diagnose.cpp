@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -40,15 +41,24 @@ Eigen::VectorXd torque_gains(const DiagnosisSignals& signals, const DiagnosisOpt
     return gains;
 }
 
-/// Adds the findings of the set-up check, mistakes first. Returns true if there is a mistake.
-bool suspect_setup(const Robot& robot, const Recording& recording, const DiagnosisOptions& options,
-                   std::vector<std::string>& suspicions) {
+/// Returns the suspicions about the set-up, mistakes first.
+std::vector<Suspicion> suspicions_of_setup(const Robot& robot, const Recording& recording,
+                                           const DiagnosisOptions& options) {
     SetupFindings findings = check_setup(recording, {options.outputs, &robot, options.torque_constants});
     std::ranges::stable_sort(findings, std::ranges::greater(), &SetupFinding::severity);
+    std::vector<Suspicion> suspicions;
     for (const SetupFinding& finding : findings) {
-        suspicions.push_back(finding.text);
+        const bool mistake = finding.severity == Severity::mistake;
+        suspicions.push_back({finding.text, mistake ? std::string(name_of(finding.fault)) : "",
+                              mistake ? finding.columns : ""});
     }
-    return any_mistake(findings);
+    return suspicions;
+}
+
+/// Adds suspicions. Returns whether the diagnosis is refused.
+bool suspect(Diagnosis& diagnosis, std::vector<Suspicion> suspicions) {
+    std::ranges::move(suspicions, std::back_inserter(diagnosis.suspicions));
+    return refused(diagnosis);
 }
 
 } // namespace
@@ -56,13 +66,10 @@ bool suspect_setup(const Robot& robot, const Recording& recording, const Diagnos
 DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const DiagnosisOptions& options) {
     DiagnosisWork work;
     work.diagnosis.output_names = recording.output.names;
-    if (options.check_setup && suspect_setup(robot, recording, options, work.diagnosis.suspicions)) {
+    if (options.check_setup && suspect(work.diagnosis, suspicions_of_setup(robot, recording, options))) {
         return work;
     }
-    Suspicions suspicions = suspicions_of_file(recording);
-    work.diagnosis.suspicions.insert(work.diagnosis.suspicions.end(), suspicions.sentences.begin(),
-                                     suspicions.sentences.end());
-    if (suspicions.fatal) {
+    if (suspect(work.diagnosis, suspicions_of_file(recording))) {
         return work;
     }
     auto signals = std::make_shared<DiagnosisSignals>(
@@ -72,10 +79,7 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     work.measured = signals->measured.outputs * work.torque_gains.cwiseInverse().asDiagonal();
     const bool gains_known =
         options.outputs != OutputKind::motor_current || !options.torque_constants.empty();
-    suspicions = suspicions_of_motion(*signals, work.measured);
-    work.diagnosis.suspicions.insert(work.diagnosis.suspicions.end(), suspicions.sentences.begin(),
-                                     suspicions.sentences.end());
-    if (suspicions.fatal) {
+    if (suspect(work.diagnosis, suspicions_of_motion(*signals, work.measured, recording))) {
         measure_from(work, 0, work.explanation); // without effects
         return work;
     }

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -25,6 +26,13 @@ struct FoundParameter {
 
 struct OtherCause {
     std::string effect, where, why_not;
+};
+
+/// A reason why a recording may be unsuitable.
+struct Suspicion {
+    std::string text;       ///< one sentence
+    std::string code = {};  ///< as in `refusals` of diagnosis.json if nothing can be named for it; else empty
+    std::string where = {}; ///< with a code: names of the columns concerned
 };
 
 /// Upper frequency limit for the error that a cause reduces.
@@ -72,14 +80,20 @@ struct ErrorMeasure {
 /// Result of comparing a recording with a robot's model. Interfaces: diagnosis.json.
 struct Diagnosis {
     std::vector<std::string> output_names;
-    std::vector<std::string> suspicions; ///< reasons why the recording may be unsuitable; one sentence each
-    ErrorMeasure nominal, extended;      ///< on the held-out time, or over the whole recording without one
+    std::vector<Suspicion> suspicions;
+    ErrorMeasure nominal, extended; ///< on the held-out time, or over the whole recording without one
     Eigen::VectorXd standing_share; ///< m: share of the rows of these errors that `moving_nrmse` excludes
     double heldout_from_s = 0, heldout_to_s = 0;
     std::vector<Finding> findings; ///< in descending order of gain
     std::vector<GrantedQuantity> granted;
     std::vector<Unexplained> unexplained;
 };
+
+/// Whether nothing is named, because of the set-up or because the recording cannot answer.
+inline bool refused(const Diagnosis& diagnosis) {
+    return std::ranges::any_of(diagnosis.suspicions,
+                               [](const Suspicion& suspicion) { return !suspicion.code.empty(); });
+}
 
 struct DiagnosisOptions {
     OutputKind outputs = OutputKind::joint_torque;

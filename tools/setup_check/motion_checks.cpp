@@ -65,6 +65,7 @@ SetupFindings check_friction_sign(const Recording& recording, const RecordedMoti
             const auto index = static_cast<std::size_t>(joint);
             findings.push_back(
                 {SetupFault::torque_sign, Severity::mistake,
+                 recording.position.names[index] + ", " + recording.output.names[index],
                  "columns " + recording.position.names[index] + " and " + recording.output.names[index] +
                      ": expected an output that overcomes the joint's friction, found one that "
                      "falls when the joint begins to move: multiply one of the two by -1, or "
@@ -84,7 +85,7 @@ SetupFindings check_degrees_by_gravity(const Recording& recording, const Recorde
     if (!(degrees < 0.5 * radians)) {
         return {};
     }
-    return {{SetupFault::position_unit, Severity::mistake,
+    return {{SetupFault::position_unit, Severity::mistake, listed(recording.position.names),
              "columns " + listed(recording.position.names) + ": expected rad, found up to " +
                  rounded_text(position.cwiseAbs().maxCoeff()) + ": looks like degrees (" + percent(degrees) +
                  " of the outputs' variance left instead of " + percent(radians) + "); multiply by pi/180"}};

@@ -74,8 +74,8 @@ SetupFindings check_output_size(const ArmRecording& arm) {
         return {};
     }
     const bool certain = several || arm.wrench() || arm.counted() == 1; // a payload can rule one joint
-    return {
-        {SetupFault::output_unit, certain ? Severity::mistake : Severity::warning, unit_text(arm, factor)}};
+    return {{SetupFault::output_unit, certain ? Severity::mistake : Severity::warning,
+             listed(arm.recording.output.names), unit_text(arm, factor)}};
 }
 
 } // namespace dfdyn::tools

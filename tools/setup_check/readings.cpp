@@ -109,6 +109,7 @@ std::optional<Reading> exchange(const ArmRecording& arm, bool positions, Index o
         positions ? arm.recording.position.names : arm.recording.output.names;
     const std::string pair = std::to_string(one + 1) + " and " + std::to_string(other + 1);
     return Reading{{{SetupFault::joint_order, certain ? Severity::mistake : Severity::warning,
+                     name(names, one) + ", " + name(names, other),
                      (positions ? "positions " : "outputs ") + pair + " look exchanged: columns " +
                          name(names, one) + " and " + name(names, other) +
                          ": expected the order of the robot's joints, found that the other way round the "
@@ -157,7 +158,7 @@ void try_degrees(const ArmRecording& arm, const VectorXd& now, std::optional<Rea
     }
     const double then = own_shares_left(arm, motion).mean();
     if (now.mean() > least_unexplained && then < far_better * now.mean()) {
-        keep(best, {{{SetupFault::position_unit, Severity::mistake,
+        keep(best, {{{SetupFault::position_unit, Severity::mistake, listed(arm.recording.position.names),
                       "columns " + listed(arm.recording.position.names) +
                           ": expected rad, found what looks like degrees: with degrees the model " +
                           comparison_text(then, now.mean()) + "; multiply by pi/180"}},
@@ -182,6 +183,7 @@ void try_reversed_positions(const ArmRecording& arm, const VectorXd& now, std::o
             const bool certain = friction_sign(arm.recorded, joint) == FrictionSign::drives;
             keep(best,
                  {{{SetupFault::torque_sign, certain ? Severity::mistake : Severity::warning,
+                    name(arm.recording.position.names, joint),
                     "column " + name(arm.recording.position.names, joint) +
                         ": expected the direction of the robot's joint, found the opposite: the other way "
                         "round the model " +
@@ -299,6 +301,7 @@ void try_reversed_outputs(const ArmRecording& arm, const RigidParts& parts, cons
                 return !arm.wrench() && friction_sign(arm.recorded, k) == FrictionSign::drives;
             });
         keep(best, {{{SetupFault::torque_sign, certain ? Severity::mistake : Severity::warning,
+                      column_names(arm, votes.reversed),
                       "columns " + column_names(arm, votes.reversed) +
                           ": expected the sign of the robot's model, found the opposite in gravity and "
                           "friction: multiply by -1, or turn the sign of the joint's position"}},
@@ -316,7 +319,7 @@ void try_reversed_outputs(const ArmRecording& arm, const RigidParts& parts, cons
         : friction_is_right ? "gravity upside down (--gravity), or the zeros of joints"
                             : "multiply by -1, or see --gravity and the zeros of the joints";
     keep(best, {{{friction_is_right ? SetupFault::gravity : SetupFault::torque_sign,
-                  most_agree(arm, votes) ? Severity::mistake : Severity::warning,
+                  most_agree(arm, votes) ? Severity::mistake : Severity::warning, column_names(arm, opposite),
                   "columns " + column_names(arm, opposite) +
                       ": expected gravity as in the robot's model, found the opposite: " + cause}},
                 left_with_reversed(arm, parts, now, opposite)});

@@ -103,12 +103,12 @@ bool moves_mass(const Robot* robot, std::size_t joint) {
                        [](const RobotJoint& one) { return !one.inertia.isZero(0); });
 }
 
-std::string joint_list(const std::vector<std::size_t>& joints) {
-    std::string text;
-    for (const std::size_t joint : joints) {
-        text += (text.empty() ? "" : ", ") + std::to_string(joint + 1);
+std::string names_of(const Columns& columns, const std::vector<std::size_t>& indices) {
+    std::vector<std::string> names;
+    for (const std::size_t index : indices) {
+        names.push_back(columns.names[index]);
     }
-    return text;
+    return listed(names);
 }
 
 struct BeyondLimits {
@@ -142,14 +142,14 @@ SetupFindings check_limits(const Recording& recording, const Robot& robot) {
     if (beyond.joints.empty()) {
         return {};
     }
-    std::string text = "positions of joint " + joint_list(beyond.joints) + " are up to " +
+    std::string text = "positions of joint " + counted_from_one(beyond.joints) + " are up to " +
                        rounded_text(beyond.factor) + " times beyond the joints' limits: ";
     text += !beyond.certain ? "another zero, other limits or another robot"
             : beyond.factor > 2 * degrees_per_radian
                 ? "expected rad (m), found what looks like thousandths (mrad, mm); divide by 1000"
                 : "expected rad, found what looks like degrees; multiply by pi/180";
-    return {
-        {SetupFault::position_unit, beyond.certain ? Severity::mistake : Severity::warning, std::move(text)}};
+    return {{SetupFault::position_unit, beyond.certain ? Severity::mistake : Severity::warning,
+             names_of(recording.position, beyond.joints), std::move(text)}};
 }
 
 } // namespace
@@ -176,7 +176,7 @@ SetupFindings check_clock(const Recording& recording) {
     const double step = recording.row_count() < 2 ? 1e-3 : median_step_s(recording);
     const auto finding = [](bool mistake, std::string text) {
         return SetupFindings{
-            {SetupFault::time_unit, mistake ? Severity::mistake : Severity::warning, std::move(text)}};
+            {SetupFault::time_unit, mistake ? Severity::mistake : Severity::warning, "t", std::move(text)}};
     };
     if (step >= suspicious_step_s) {
         const bool creeping = largest_travel(recording) > 0 && speed_of_fastest(recording) < slowest_joint;
@@ -203,7 +203,7 @@ SetupFindings check_wrapping(const Recording& recording) {
             const std::vector<std::size_t> rows = jumps(recording, joint, turn, longest_s);
             if (!rows.empty()) {
                 findings.push_back(
-                    {SetupFault::wrapped_position, Severity::mistake,
+                    {SetupFault::wrapped_position, Severity::mistake, recording.position.names[joint],
                      "column " + recording.position.names[joint] + ": expected a continuous angle, found " +
                          std::to_string(rows.size()) + (rows.size() == 1 ? " jump" : " jumps") +
                          " of one turn (" + (turn > two_turns ? "360" : "2 pi") +
@@ -238,6 +238,7 @@ SetupFindings check_dead_outputs(const Recording& recording, OutputKind outputs,
         const bool certain = !wrench && dead.size() < columns.names.size() &&
                              travel(recording.position, output) > least_travel;
         findings.push_back({SetupFault::dead_output, certain ? Severity::mistake : Severity::warning,
+                            columns.names[output],
                             "column " + columns.names[output] + ": expected values that vary, found " +
                                 number_text(value(columns, 0, output)) +
                                 " in every row: a dead channel; check its sensor and its name"});
@@ -263,6 +264,7 @@ SetupFindings check_output_unit(const Recording& recording, OutputKind outputs) 
         return {};
     }
     return {{SetupFault::output_unit, certain ? Severity::mistake : Severity::warning,
+             listed(recording.output.names),
              "columns " + listed(recording.output.names) + ": expected " + (current ? "A" : "N·m") +
                  ", found up to " + rounded_text(largest) + ": " +
                  (current ? "looks like mA" : "another unit, looks like mN·m") + "; divide by 1000"}};
@@ -285,7 +287,7 @@ SetupFindings check_position_unit(const Recording& recording, const Robot* robot
     if (any_mistake(findings) || beyond.size() < 3 || 2 * beyond.size() < recording.joint_count()) {
         return findings;
     }
-    return {{SetupFault::position_unit, Severity::mistake,
+    return {{SetupFault::position_unit, Severity::mistake, listed(beyond),
              "columns " + listed(beyond) + ": expected rad, found up to " + rounded_text(largest) +
                  ": looks like degrees; multiply by pi/180"}};
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -19,6 +20,29 @@ enum class SetupFault {
     gravity,
 };
 
+/// Name of a fault, as in `refusals` of diagnosis.json.
+constexpr std::string_view name_of(SetupFault fault) {
+    switch (fault) {
+    case SetupFault::time_unit:
+        return "time_unit";
+    case SetupFault::position_unit:
+        return "position_unit";
+    case SetupFault::wrapped_position:
+        return "wrapped_position";
+    case SetupFault::dead_output:
+        return "dead_output";
+    case SetupFault::output_unit:
+        return "output_unit";
+    case SetupFault::joint_order:
+        return "joint_order";
+    case SetupFault::torque_sign:
+        return "torque_sign";
+    case SetupFault::gravity:
+        break;
+    }
+    return "gravity";
+}
+
 enum class Severity {
     warning, ///< likely; a right recording of an unusual arm could show it, too
     mistake, ///< the evidence is overwhelming
@@ -27,7 +51,8 @@ enum class Severity {
 struct SetupFinding {
     SetupFault fault;
     Severity severity;
-    std::string text; ///< one line: column, what was expected, what was found, what to do
+    std::string columns; ///< names of the columns concerned, separated by commas
+    std::string text;    ///< one line: column, what was expected, what was found, what to do
 };
 
 using SetupFindings = std::vector<SetupFinding>;

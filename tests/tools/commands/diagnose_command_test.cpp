@@ -111,6 +111,8 @@ TEST_CASE("diagnose names friction and rotors and writes report and figures and 
     CHECK(diagnosis["schema"] == "dfdyn.diagnosis/1");
     CHECK(diagnosis["outputs"] == json({"tau1", "tau2"}));
     CHECK(diagnosis["suspicions"].empty());
+    CHECK(diagnosis["refused"] == false);
+    CHECK(diagnosis["refusals"].empty());
     CHECK(found(diagnosis, "rotor_inertia", "joint1"));
     CHECK(found(diagnosis, "viscous_friction", "joint2"));
     CHECK(double(diagnosis["heldout"]["from"]) < double(diagnosis["heldout"]["to"]));
@@ -179,11 +181,16 @@ TEST_CASE("a recording in degrees is reported first and gets no model") {
     directory.write("out/extended_model.json", "of an earlier run");
     const Outcome outcome = diagnose(directory, "--log " + log + " --outputs tau -o " + folder);
     CAPTURE(outcome.out, outcome.error);
-    CHECK(outcome.status == 0);
+    CHECK(outcome.status == 1);
     CHECK_THAT(outcome.out,
                StartsWith("! positions of joint 1, 2") && ContainsSubstring("looks like degrees"));
     const json diagnosis = json::parse(file_content(folder + "/diagnosis.json"));
     REQUIRE(diagnosis["suspicions"].size() == 1);
+    CHECK(diagnosis["refused"] == true);
+    REQUIRE(diagnosis["refusals"].size() == 1);
+    CHECK(diagnosis["refusals"][0]["code"] == "position_unit");
+    CHECK(diagnosis["refusals"][0]["where"] == "q1, q2");
+    CHECK(diagnosis["refusals"][0]["text"] == diagnosis["suspicions"][0]);
     CHECK(diagnosis["findings"].empty());
     CHECK_THAT(file_content(folder + "/report.html"), ContainsSubstring("looks like degrees"));
     CHECK_FALSE(std::filesystem::exists(folder + "/extended_model.json"));

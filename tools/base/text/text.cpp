@@ -50,6 +50,14 @@ std::string listed(std::span<const std::string> names) {
     return out;
 }
 
+std::string counted_from_one(std::span<const std::size_t> indices) {
+    std::string text;
+    for (const std::size_t index : indices) {
+        text += (text.empty() ? "" : ", ") + std::to_string(index + 1);
+    }
+    return text;
+}
+
 std::string_view trimmed(std::string_view text) noexcept {
     const std::size_t first = text.find_first_not_of(" \t");
     if (first == std::string_view::npos) {

@@ -21,6 +21,9 @@ std::string shown(const std::filesystem::path& path);
 /// all)` after the first 30.
 std::string listed(std::span<const std::string> names);
 
+/// Returns indices, such as of joints, for a message: counted from 1, separated by `, `.
+std::string counted_from_one(std::span<const std::size_t> indices);
+
 /// Returns a view of `text` without the spaces and tabs at its ends.
 std::string_view trimmed(std::string_view text) noexcept;
 

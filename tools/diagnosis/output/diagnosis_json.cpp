@@ -73,12 +73,32 @@ ordered_json to_json(const Finding& finding, const std::string& output) {
         {"confirm", finding.confirm}};
 }
 
+ordered_json texts(const std::vector<Suspicion>& suspicions) {
+    ordered_json json = ordered_json::array();
+    for (const Suspicion& suspicion : suspicions) {
+        json.push_back(suspicion.text);
+    }
+    return json;
+}
+
+ordered_json refusals(const std::vector<Suspicion>& suspicions) {
+    ordered_json json = ordered_json::array();
+    for (const Suspicion& suspicion : suspicions) {
+        if (!suspicion.code.empty()) {
+            json.push_back({{"code", suspicion.code}, {"where", suspicion.where}, {"text", suspicion.text}});
+        }
+    }
+    return json;
+}
+
 } // namespace
 
 std::string diagnosis_to_json(const Diagnosis& diagnosis) {
     ordered_json json{{"schema", "dfdyn.diagnosis/1"},
                       {"outputs", diagnosis.output_names},
-                      {"suspicions", diagnosis.suspicions},
+                      {"suspicions", texts(diagnosis.suspicions)},
+                      {"refused", refused(diagnosis)},
+                      {"refusals", refusals(diagnosis.suspicions)},
                       {"nominal", to_json(diagnosis.nominal)},
                       {"extended", to_json(diagnosis.extended)},
                       {"heldout",

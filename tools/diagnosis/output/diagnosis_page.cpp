@@ -109,8 +109,8 @@ std::string summary(const DiagnosisCase& one) {
 
 PageSection suspicion_section(const Diagnosis& diagnosis) {
     PageSection section{"First of all: is the recording what it should be?", {}, {}, {}};
-    for (const std::string& suspicion : diagnosis.suspicions) {
-        section.paragraphs.push_back("Suspicion: " + suspicion + ".");
+    for (const Suspicion& suspicion : diagnosis.suspicions) {
+        section.paragraphs.push_back("Suspicion: " + suspicion.text + ".");
     }
     return section;
 }

@@ -18,8 +18,8 @@ constexpr std::size_t most_experiments = 3;
 constexpr double sure = 0.9;
 
 void print_suspicions(std::ostream& out, const Diagnosis& diagnosis) {
-    for (const std::string& suspicion : diagnosis.suspicions) {
-        out << "! " << suspicion << '\n';
+    for (const Suspicion& suspicion : diagnosis.suspicions) {
+        out << "! " << suspicion.text << '\n';
     }
     if (!diagnosis.suspicions.empty()) {
         out << '\n';

@@ -84,12 +84,12 @@ void suspect_poor_extension(Diagnosis& diagnosis) {
         if (reason.empty()) {
             worse.append(worse.empty() ? "" : ", ").append(name);
         } else {
-            diagnosis.suspicions.push_back(std::string(lead).append(name).append(", ").append(reason));
+            diagnosis.suspicions.push_back({std::string(lead).append(name).append(", ").append(reason)});
         }
     }
     if (!worse.empty()) {
         diagnosis.suspicions.push_back(
-            lead + worse + ": this recording is too short, or too little like itself, for these causes");
+            {lead + worse + ": this recording is too short, or too little like itself, for these causes"});
     }
 }
 

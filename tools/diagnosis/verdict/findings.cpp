@@ -22,7 +22,7 @@ constexpr double tie = 3; ///< log-odds of 20 to 1: causes with a smaller margin
 constexpr double price_of_shapes = 6; ///< Occam factor of the three coefficients of a centre of mass
 /// of the evidence: below it, the difference between payload and last link is within model errors
 constexpr double same_body_share = 0.02;
-constexpr std::size_t listed = 3; ///< maximum number of alternatives of a finding
+constexpr std::size_t most_alternatives = 3; ///< of a finding
 
 /// Determines the alternatives to a chosen effect, and their odds.
 void weigh_alternatives(Finding& finding, const Explanation& explanation, const Neighbours& near,
@@ -46,7 +46,7 @@ void weigh_alternatives(Finding& finding, const Explanation& explanation, const 
             continue;
         }
         finding.margin_to_others = std::min(finding.margin_to_others, margin);
-        if (finding.alternatives.size() < listed && margin < finding.margin_to_nothing) {
+        if (finding.alternatives.size() < most_alternatives && margin < finding.margin_to_nothing) {
             const double gap = finding.margin_to_nothing - margin;
             cause.why_not = "explains " + rounded_text(100 * std::max(0.0, gap) / finding.margin_to_nothing) +
                             " % of what this cause does";

@@ -4,6 +4,7 @@
 #include "tools/base/numerics/linear_algebra.hpp"
 #include "tools/base/recording/stretches.hpp"
 #include "tools/base/text/number.hpp"
+#include "tools/base/text/text.hpp"
 
 #include <utility>
 
@@ -14,39 +15,31 @@ namespace {
 constexpr double least_travel = 0.05; ///< rad (m): a joint with less travel counts as stationary
 constexpr double least_duration_s = 10;
 
-std::string joint_list(const std::vector<std::size_t>& joints) {
-    std::string text;
-    for (const std::size_t joint : joints) {
-        text += (text.empty() ? "" : ", ") + std::to_string(joint + 1);
-    }
-    return text;
-}
-
 /// The diagnosis filters at a few Hz and needs a sufficient sampling rate.
-void suspect_rate(const Recording& recording, Suspicions& result) {
+void suspect_rate(const Recording& recording, std::vector<Suspicion>& result) {
     constexpr double longest_step_s = 0.2;
     constexpr double shortest_step_s = 2e-5;
     const double step = recording.row_count() < 2 ? longest_step_s : median_step_s(recording);
     if (step > longest_step_s || step < shortest_step_s) {
-        result.fatal = true;
-        result.sentences.push_back("rows are " + rounded_text(step) + " s apart: causes need " +
-                                   rounded_text(shortest_step_s) + " to " + rounded_text(longest_step_s) +
-                                   " s");
+        result.push_back({"rows are " + rounded_text(step) + " s apart: causes need " +
+                              rounded_text(shortest_step_s) + " to " + rounded_text(longest_step_s) + " s",
+                          "clock", "t"});
     }
 }
 
-void suspect_duration(const Recording& recording, Suspicions& result) {
+void suspect_duration(const Recording& recording, std::vector<Suspicion>& result) {
     const double duration_s =
         recording.row_count() == 0 ? 0 : recording.time_s.back() - recording.time_s.front();
     if (duration_s < least_duration_s) {
-        result.fatal = true;
-        result.sentences.push_back(std::string("the recording is ") + rounded_text(duration_s) +
-                                   " s long: causes need " + rounded_text(least_duration_s) +
-                                   " s at least, better 60");
+        result.push_back({std::string("the recording is ") + rounded_text(duration_s) +
+                              " s long: causes need " + rounded_text(least_duration_s) +
+                              " s at least, better 60",
+                          "too_little_information", "t"});
     }
 }
 
-void suspect_standstill(const DiagnosisSignals& signals, Suspicions& result) {
+void suspect_standstill(const DiagnosisSignals& signals, const Recording& recording,
+                        std::vector<Suspicion>& result) {
     std::vector<std::size_t> standing;
     for (std::size_t joint = 0; joint < signals.joints(); ++joint) {
         const auto column = signals.measured.motion.position.col(static_cast<Eigen::Index>(joint));
@@ -55,15 +48,14 @@ void suspect_standstill(const DiagnosisSignals& signals, Suspicions& result) {
         }
     }
     if (standing.size() == signals.joints()) {
-        result.fatal = true;
-        result.sentences.emplace_back(
-            "the arm stands still: no cause that depends on motion can be told from another");
+        result.push_back({"the arm stands still: no cause that depends on motion can be told from another",
+                          "standing", listed(recording.position.names)});
     } else if (signals.joints() > 1 && standing.size() + 1 >= signals.joints()) {
-        result.sentences.emplace_back(
-            "only one joint moves: causes at the others cannot be seen, and many look the same");
+        result.push_back(
+            {"only one joint moves: causes at the others cannot be seen, and many look the same"});
     } else if (!standing.empty()) {
-        result.sentences.push_back("joint " + joint_list(standing) +
-                                   " hardly moves: its own causes cannot be seen");
+        result.push_back(
+            {"joint " + counted_from_one(standing) + " hardly moves: its own causes cannot be seen"});
     }
 }
 
@@ -88,31 +80,33 @@ double foreign_share(const DiagnosisSignals& signals, const Eigen::MatrixXd& mea
     return share / static_cast<double>(measured.cols());
 }
 
-void suspect_robot(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured, Suspicions& result) {
+void suspect_robot(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
+                   const Recording& recording, std::vector<Suspicion>& result) {
     const double left = foreign_share(signals, measured);
     if (left > 0.6) {
-        result.fatal = true;
-        result.sentences.push_back(
-            "the robot's model, with friction, has next to nothing in common with the outputs (" +
-            rounded_text(100 * left) +
-            " % of their variance is left): another robot, tip, base, mounting or output");
+        result.push_back(
+            {"the robot's model, with friction, has next to nothing in common with the outputs (" +
+                 rounded_text(100 * left) +
+                 " % of their variance is left): another robot, tip, base, mounting or output",
+             "wrong_robot", listed(recording.output.names)});
     }
 }
 
 } // namespace
 
-Suspicions suspicions_of_file(const Recording& recording) {
-    Suspicions result;
+std::vector<Suspicion> suspicions_of_file(const Recording& recording) {
+    std::vector<Suspicion> result;
     suspect_rate(recording, result);
     suspect_duration(recording, result);
     return result;
 }
 
-Suspicions suspicions_of_motion(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured) {
-    Suspicions result;
-    suspect_standstill(signals, result);
-    if (!result.fatal) {
-        suspect_robot(signals, measured, result);
+std::vector<Suspicion> suspicions_of_motion(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
+                                            const Recording& recording) {
+    std::vector<Suspicion> result;
+    suspect_standstill(signals, recording, result);
+    if (result.empty() || result.front().code.empty()) {
+        suspect_robot(signals, measured, recording, result);
     }
     return result;
 }

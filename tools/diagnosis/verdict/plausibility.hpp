@@ -1,24 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/diagnosis/signals/signals.hpp"
+#include "tools/diagnosis/diagnosis.hpp"
 
-#include <string>
 #include <vector>
 
 namespace dfdyn::tools {
 
-/// Reasons why a recording with a correct set-up is unsuitable: too little motion, another robot, too short a
-/// time. Mistakes in the set-up: tools/setup_check. One sentence each, the most serious first.
-struct Suspicions {
-    std::vector<std::string> sentences;
-    bool fatal = false; ///< findings would not be credible
-};
+// Reasons why a recording with a correct set-up is unsuitable: too little motion, another robot, too short a
+// time. Mistakes in the set-up: tools/setup_check. The most serious reason is the first.
 
 /// Checks the file, before the motion is computed.
-Suspicions suspicions_of_file(const Recording& recording);
+std::vector<Suspicion> suspicions_of_file(const Recording& recording);
 
 /// Checks the motion and the rigid body's outputs along it. `measured`: T x m, as torques.
-Suspicions suspicions_of_motion(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured);
+std::vector<Suspicion> suspicions_of_motion(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
+                                            const Recording& recording);
 
 } // namespace dfdyn::tools
