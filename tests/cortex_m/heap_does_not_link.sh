@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# heap_does_not_link.sh COMPILER IMAGE_FOLDER: an image links as it is, and not with a heap or exceptions in it, even where
-# somebody supplies the system calls that these need.
+# heap_does_not_link.sh COMPILER IMAGE_FOLDER: an image links unchanged, but not with a heap or exceptions, even if the system
+# calls that these need are supplied.
 set -euo pipefail
 compiler=$1 images=$2
 scratch=$(mktemp -d)
@@ -12,14 +12,14 @@ for part in startup semihosting; do
     "$compiler" "${flags[@]}" -fno-exceptions -fno-rtti -c "$images/$part.cpp" -o "$scratch/$part.o"
 done
 
-# link NAME: an image of the program on standard input.
+# link NAME: links an image of the program on standard input.
 link() {
     cat >"$scratch/$1.cpp"
     "$compiler" "${flags[@]}" "$scratch/$1.cpp" "$scratch/startup.o" "$scratch/semihosting.o" -nostartfiles "-T$images/image.ld" \
         -Wl,--gc-sections --specs=nosys.specs -o "$scratch/$1.elf" 2>"$scratch/$1.txt"
 }
 
-# refused NAME MESSAGE: the program on standard input does not link, for this reason.
+# refused NAME MESSAGE: checks that the program on standard input does not link, with this message.
 refused() {
     if link "$1"; then
         echo "an image with $1 links"

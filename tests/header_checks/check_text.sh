@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_text.sh INCLUDE_DIR HEADER...: fails when one of these headers below INCLUDE_DIR uses a forbidden keyword or type, or
+# check_text.sh INCLUDE_DIR HEADER...: fails if one of these headers below INCLUDE_DIR uses a forbidden keyword or type, or
 # includes a header that poison.hpp does not include. Comments and string literals do not count.
 set -euo pipefail
 
@@ -15,7 +15,7 @@ forbidden+="|\b(Matrix|Vector|RowVector|Array|ArrayX)[0-9]?X[0-9]?[a-z]*\b|\bEig
 
 allowed_includes=$(sed -n 's/^#include <\(.*\)>$/\1/p' "$here/poison.hpp")
 
-# The text of $1 as "line: text" without comments, the insides of string literals and deleted functions.
+# The text of $1 as "line: text", without comments, contents of string literals and deleted functions.
 code_of() {
     perl -0777 -pe 's{
             (^[ \t]*\#[ \t]*include[ \t]*[<"][^>"\n]*[>"])
@@ -26,7 +26,7 @@ code_of() {
         s{=\s*delete\b}{}g; my $line = 0; s{^}{++$line . ": "}gme' "$1"
 }
 
-# The includes of $1 that are neither allowed nor our own.
+# The includes of $1 that are neither allowed nor from this project.
 foreign_includes_of() {
     sed -nE 's/^[0-9]+: *# *include *[<"]([^>"]*)[>"].*/\1/p' <<<"$1" |
         awk 'NR == FNR { allowed[$0]; next } !($0 in allowed) && !/^dfdyn\//' <(echo "$allowed_includes") -

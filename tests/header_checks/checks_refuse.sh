@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# checks_refuse.sh COMPILER INCLUDE_DIRS: proves that the checks of firmware headers refuse each forbidden thing and accept a
-# harmless header. INCLUDE_DIRS, separated by colons, are where Eigen is found.
+# checks_refuse.sh COMPILER INCLUDE_DIRS: proves that the checks of firmware headers reject each forbidden construct and accept a
+# valid header. INCLUDE_DIRS are the folders of Eigen, separated by colons.
 set -euo pipefail
 
 compiler=$1
@@ -10,7 +10,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 bad=0
 
-# All errors, not only the first few, which is clang's default.
+# Reports all errors; clang's default is the first few.
 error_limit=-fmax-errors=0
 if "$compiler" --version | grep -q clang; then
     error_limit=-ferror-limit=0
@@ -21,7 +21,7 @@ for include_dir in "${include_dirs[@]}"; do
     flags+=(-isystem "$include_dir")
 done
 
-# expect accepts|refuses CODE: what check_text.sh is to say to it.
+# expect accepts|refuses CODE: checks the result of check_text.sh for this code.
 expect() {
     printf '#pragma once\n%s\n' "$2" >"$scratch/include/sample.hpp"
     local outcome=refuses
@@ -54,12 +54,12 @@ inline char quote() { return '\''"'\''; } inline int many = 1'\''000; // new
     rm "$scratch/include/sample.hpp"
 }
 
-# Compiles $1 as a firmware header would be; its messages are in the log.
+# Compiles $1 like a firmware header; the messages are in the log.
 compile() {
     ! "$compiler" "${flags[@]}" -fsyntax-only "$1" >"$scratch/log" 2>&1
 }
 
-# Each poisoned name on a line of its own has to be an error on that line.
+# Each poisoned name, on a line of its own, must be an error on that line.
 check_poison() {
     local names name line=1
     names=$(sed -n 's/^#pragma GCC poison //p' "$here/poison.hpp")
@@ -77,7 +77,7 @@ check_poison() {
     done
 }
 
-# The flags that firmware is compiled with refuse what firmware may not use.
+# The compiler flags of the firmware reject language features that it may not use.
 check_flags() {
     cat >"$scratch/flags.cpp" <<'CODE'
 #include <typeinfo>

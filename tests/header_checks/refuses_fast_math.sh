@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# refuses_fast_math.sh COMPILER INCLUDE_DIRS HEADER...: fails when a translation unit that includes one of these headers would
-# compile with flags under which the library is wrong without a sign of it (dfdyn/strict_math.hpp). INCLUDE_DIRS, separated by
-# colons, are where the headers are. A header without floating-point numbers need not refuse.
+# refuses_fast_math.sh COMPILER INCLUDE_DIRS HEADER...: fails if a translation unit that includes one of these headers compiles
+# with flags under which the library would silently be wrong (dfdyn/strict_math.hpp). INCLUDE_DIRS are the folders of the headers,
+# separated by colons. A header without floating-point numbers need not be rejected.
 set -euo pipefail
 
 compiler=$1
@@ -12,7 +12,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 bad=0
 
-# message FLAG...: what the compiler says of a translation unit that needs nothing but the check.
+# message FLAG...: the compiler's messages for a translation unit that contains only the check.
 message() {
     echo '#include "dfdyn/strict_math.hpp"' >"$scratch/unit.cpp"
     "$compiler" -std=c++20 "${include_dirs[@]/#/-I}" -w "$@" -fsyntax-only "$scratch/unit.cpp" 2>&1 || true
@@ -40,12 +40,12 @@ expect accepts -ffast-math -fno-fast-math
 expect refuses -ffast-math
 expect refuses -Ofast
 expect refuses -O1 -ffinite-math-only
-if ! "$compiler" --version | grep -q clang; then # which has no macro for it
+if ! "$compiler" --version | grep -q clang; then # clang has no macro for it
     expect refuses -ffast-math -fno-finite-math-only
     expect refuses -funsafe-math-optimizations
 fi
 
-# Every header reaches the check through our own includes.
+# Every header includes the check through headers of this project.
 if ! perl -e '
     my ($dirs, @headers) = @ARGV;
     my (%text, %reaches);

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_realtime.sh SOURCE_FOLDER: nothing that runs within the control loop's period blocks: by clang's check of function
-# effects when compiling, and by RealtimeSanitizer when running; and both find what does. Needs clang 20 or later with its
-# runtime; where there is none it says so and checks nothing.
+# check_realtime.sh SOURCE_FOLDER: checks that functions within the control loop's period do not block, with clang's function
+# effects at compile time and RealtimeSanitizer at run time, and that both detect a function that blocks. Needs clang 20 or later
+# with its runtime; without it the script reports that and checks nothing.
 set -euo pipefail
 cd "$1"
 scratch=$(mktemp -d)

@@ -80,7 +80,7 @@ TEST_CASE("candump receives what dfdyn play sends in order and at the pace of th
     for (std::size_t index = 0; index < seen.size(); ++index) {
         CHECK(content(seen[index]) == content(on_the_wire[index]));
     }
-    // The duration is that of the log divided by the rate, plus the delays of the machine.
+    // The run takes as long as the log divided by the rate, plus the delays of the machine.
     const double late_s = 1e-6 * dfdyn::tests::number_after(report, "us, worst ");
     const double log_s =
         1e-9 * static_cast<double>(on_the_wire.back().stamp_ns - on_the_wire.front().stamp_ns);

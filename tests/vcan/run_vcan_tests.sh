@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# run_vcan_tests.sh PROGRAM [ARGUMENT...]: runs PROGRAM as root where it has the CAN interface vcan0 to itself: in a network
-# namespace of its own where this machine's kernel can make one with a virtual CAN interface, else in a user-mode Linux that is
-# booted for it, for DFDYN_VCAN_SECONDS (170) at most. With DFDYN_VIRTUAL_TIME=KERNEL (virtual_time/build_kernel.sh) in that one,
-# where time stands still while programs run and jumps over sleeps. Prints what it prints; ends with its status. No status is a
-# failure.
+# run_vcan_tests.sh PROGRAM [ARGUMENT...]: runs PROGRAM as root with the CAN interface vcan0 for its exclusive use. It runs in a
+# network namespace of its own if this machine's kernel supports one with a virtual CAN interface. Otherwise it runs in a user-mode
+# Linux that is booted for it, for at most DFDYN_VCAN_SECONDS (170). With DFDYN_VIRTUAL_TIME=KERNEL (virtual_time/build_kernel.sh)
+# it runs in that kernel, whose time stops while programs run and jumps over sleeps. Prints the output of PROGRAM and ends with its
+# exit status; a missing status is a failure.
 set -euo pipefail
 
 boot_and_run_s=${DFDYN_VCAN_SECONDS:-170}
@@ -14,8 +14,8 @@ trap 'rm -rf "$scratch"' EXIT
 mkdir "$scratch/uml"
 printf '%q ' "$@" >"$scratch/command"
 
-# boot KERNEL [PARAMETER...]. Pinned to one core, the last that we may use: a system call costs a sixth of what it costs on a
-# machine that moves between two.
+# boot KERNEL [PARAMETER...]: pinned to one core, the last available one. A system call then costs a sixth of its cost on a
+# machine that moves between two cores.
 boot() {
     local core
     core=$(taskset --cpu-list --pid $$ | sed -E 's/.*[^0-9]([0-9]+)$/\1/')
@@ -33,7 +33,7 @@ elif [[ $(id -u) -eq 0 ]] && unshare --net ip link add dev vcan0 type vcan 2>/de
     unshare --net timeout --kill-after=5 "$boot_and_run_s" "$here/with_vcan.sh" "$scratch" || true
 elif command -v linux.uml >/dev/null; then
     echo "vcan: user-mode Linux"
-    # What the kernel leaves out is not needed here and takes longer than the tests.
+    # Parts that the kernel skips are not needed here and would take longer than the tests.
     boot linux.uml initcall_blacklist=raid6_select_algo,calibrate_xor_blocks,init_btrfs_fs cryptomgr.notests
 else
     echo "vcan: neither can this kernel make a vcan interface (as root), nor is there linux.uml (package user-mode-linux)" >&2

@@ -7,12 +7,12 @@ export PATH=/usr/sbin:/usr/bin:/sbin:/bin
     mount -t proc proc /proc
     mount -t sysfs sysfs /sys
     modules=/usr/lib/uml/modules/$(uname -r)/kernel
-    if [[ -d $modules ]]; then # else it has them built in
+    if [[ -d $modules ]]; then # otherwise they are built in
         for module in net/can/can net/can/can-raw drivers/net/can/dev/can-dev drivers/net/can/vcan net/sched/sch_netem; do
             insmod "$modules/$module.ko"
         done
     fi
-    # The tests set the clock, which only a machine of their own may suffer.
+    # The tests set the clock, which is allowed only on a machine of their own.
     DFDYN_VCAN_OWN_MACHINE=1 "$(dirname "$0")/with_vcan.sh" "$DFDYN_VCAN_SCRATCH"
 } >"$DFDYN_VCAN_SCRATCH/init_log" 2>&1
-perl -e 'syscall(169, 0xfee1dead, 672274793, 0x4321fedc, 0)' # reboot(2): power off; the first process must not end
+perl -e 'syscall(169, 0xfee1dead, 672274793, 0x4321fedc, 0)' # reboot(2) with power off, because the first process must not end

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# build_kernel.sh FOLDER: builds FOLDER/linux.uml, a user-mode Linux with CAN whose time can stand still while programs run
-# (time-travel=inf-cpu), from the package linux-source-6.12 and kernel.config. Some 5 minutes and 2 GB of disk while it builds;
-# nothing where it was built of the same before. Installs the packages that it needs.
+# build_kernel.sh FOLDER: builds FOLDER/linux.uml, a user-mode Linux with CAN whose time can stop while programs run
+# (time-travel=inf-cpu), from the package linux-source-6.12 and kernel.config. Takes about 5 minutes and 2 GB of disk, and no
+# time if it was built from the same sources before. Installs the packages that it needs.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
