@@ -54,7 +54,7 @@ TEST_CASE("after a torque step the error has the feedback's poles and one at the
     CHECK(std::abs(joint.position()) < 1e-3 * largest);
 }
 
-TEST_CASE("an estimate stays within its limit and does not grow against the command's limit") {
+TEST_CASE("an estimate stays within its limit and does not wind up at the command's limit") {
     DFDYN_SEEDED_ENGINE(engine);
     std::normal_distribution<double> size(0, 50);
     Observer observer({}, {1e-3, {{bandwidth}}, {{3}}});
@@ -72,7 +72,7 @@ TEST_CASE("an estimate stays within its limit and does not grow against the comm
     }
     CHECK(observer.estimate()[0] == 0);
     const double back = -push;
-    observer.update(&back, &none, &none, &excess); // away from the limit it may change
+    observer.update(&back, &none, &none, &excess); // inside the limit it may change
     CHECK(observer.estimate()[0] < 0);
 }
 

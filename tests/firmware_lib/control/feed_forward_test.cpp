@@ -21,7 +21,7 @@ constexpr std::int64_t period_ns = 2'000'000;
 constexpr double period_s = 2e-3;
 constexpr int ticks_per_sample = 4;
 
-/// A learner with predictions set by the test, which records its calls.
+/// A learner whose predictions the test sets, and which records its calls.
 struct ToldLearner {
     using Scalar = double;
     static constexpr int outputs = 1;
@@ -100,7 +100,7 @@ TEST_CASE("a wrong learner is excluded within a second, and included when it is 
     run.learner.forecast = 50;
     run.go(3, 10, 50);
     REQUIRE(run.forward.share()[0] > 0.99);
-    run.learner.forecast = -30; // an error of 80 N·m; that of the nominal torque is 40
+    run.learner.forecast = -30; // an error of 80 N·m; the nominal torque has an error of 40
     run.go(1, 10, 50);
     CHECK(run.forward.share()[0] < 0.1);
     run.learner.forecast = 50;
@@ -108,7 +108,7 @@ TEST_CASE("a wrong learner is excluded within a second, and included when it is 
     CHECK(run.forward.share()[0] > 0.9);
 }
 
-TEST_CASE("switching off and on causes no step, and learning continues in between") {
+TEST_CASE("disabling and enabling cause no step and learning continues in between") {
     Run run;
     run.learner.forecast = 50;
     run.go(3, 10, 50);
@@ -124,7 +124,7 @@ TEST_CASE("switching off and on causes no step, and learning continues in betwee
     CHECK(run.largest_step <= 40 * period_s / 0.2 + 1e-9);
 }
 
-TEST_CASE("torque, learned part and its rate stay within their limits") {
+TEST_CASE("torque and learned part and its rate stay within their limits") {
     DFDYN_SEEDED_ENGINE(engine);
     std::normal_distribution<double> size(0, 200);
     std::bernoulli_distribution rarely(0.01);
@@ -210,7 +210,8 @@ class LoadedJoint {
     std::int64_t tick_ = 0;
 };
 
-TEST_CASE("in a closed loop a correct forecast is used, and a wrong or swaying one excluded in a second") {
+TEST_CASE("a correct forecast is used in a closed loop and a wrong or oscillating one is excluded within a "
+          "second") {
     const auto right = [](double /*time_s*/) { return LoadedJoint::load; };
     const auto biased = [](double /*time_s*/) { return LoadedJoint::load + 40; };
     const auto swaying = [](double time_s) {
@@ -220,7 +221,7 @@ TEST_CASE("in a closed loop a correct forecast is used, and a wrong or swaying o
     joint.go(3, right);
     CHECK(joint.share() > 0.95);
     joint.go(1, right);
-    const double sag = LoadedJoint::load / 800; // with feedback alone
+    const double sag = LoadedJoint::load / 800; // the sag with feedback alone
     CHECK(joint.largest_error < sag / 10);
     for (const auto& wrong :
          {std::function<double(double)>(biased), std::function<double(double)>(swaying)}) {
@@ -228,7 +229,7 @@ TEST_CASE("in a closed loop a correct forecast is used, and a wrong or swaying o
         other.go(3, right);
         other.go(1, wrong);
         CHECK(other.share() < 0.2);
-        CHECK(other.largest_error < 40.0 / 800 + sag); // the largest effect of the wrong torque
+        CHECK(other.largest_error < 40.0 / 800 + sag); // plus the largest effect of the wrong torque
         other.go(1, wrong);
         CHECK(other.largest_error < 3 * sag);
     }

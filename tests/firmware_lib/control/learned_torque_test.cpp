@@ -43,8 +43,8 @@ std::unique_ptr<LearnedTorque<Model>> learner_of(const typename Model::Constants
 }
 
 // The reference is the estimator's own prediction for the measured window.
-TEMPLATE_TEST_CASE("for the measured motion the prediction equals the estimator's", "", Features, Physical,
-                   Mean, Kernel, KernelDouble) {
+TEMPLATE_TEST_CASE("the prediction for the measured motion equals the estimator's prediction", "", Features,
+                   Physical, Mean, Kernel, KernelDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<TestType>(engine);
     Estimator<TestType> estimator(constants);
@@ -142,13 +142,13 @@ TEST_CASE("a NaN reference is reported, and has no effect after one window") {
     REQUIRE(learned->predict(period_ns, rest, torque));
     CHECK_FALSE(learned->predict(2 * period_ns, nothing, torque));
     CHECK(torque[0] == 0);
-    constexpr int window = 7; // six lags
+    constexpr int window = 7; // six lags and the present value
     for (int t = 0; t < window; ++t) {
         CHECK(learned->predict((3 + t) * period_ns, rest, torque) == (t == window - 1));
     }
 }
 
-TEST_CASE("the learned state can be saved and restored after a restart") {
+TEST_CASE("the learned state can be saved and then restored after a restart") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<Kernel>(engine);
     const auto learned = learner_of<Kernel>(constants, engine);

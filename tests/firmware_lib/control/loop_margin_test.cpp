@@ -21,7 +21,7 @@ JointLoop<double> random_loop(std::mt19937_64& engine) {
     std::uniform_real_distribution<double> unit(0, 1);
     JointLoop<double> loop{};
     loop.inertia = std::pow(10, -2 + 3 * unit(engine));
-    const double frequency = 10 + 20 * unit(engine); // of PD alone, rad/s
+    const double frequency = 10 + 20 * unit(engine); // rad/s, for PD alone
     const double damping = 0.7 + 0.8 * unit(engine);
     loop.position_gain = loop.inertia * frequency * frequency;
     loop.velocity_gain = 2 * damping * loop.inertia * frequency;
@@ -30,7 +30,7 @@ JointLoop<double> random_loop(std::mt19937_64& engine) {
     return loop;
 }
 
-/// Returns the largest position in the first and in the last tenth of 10 s after a small impulse.
+/// Returns the largest position in the first and in the last tenth of the 10 s after a small impulse.
 std::pair<double, double> after_a_blow(const JointLoop<double>& loop, double observer_inertia,
                                        double bandwidth) {
     ServoJoint joint(loop, step_s);
@@ -56,7 +56,8 @@ TEST_CASE("a joint with pure damping has the phase margin of the closed form") {
     const double crossover = loop.velocity_gain / loop.inertia;
     const LoopMargin<double> margin(loop, loop.inertia);
     CHECK(margin.phase(0) == Approx(std::numbers::pi / 2 - crossover * loop.delay_s).margin(1e-6));
-    // An observer of bandwidth b with the correct inertia adds b to the crossover of D/J, all of it damping.
+    // An observer of bandwidth b with the correct inertia adds b, which acts as damping, to the crossover
+    // D/J.
     const double b = 10;
     loop.velocity_gain = 0;
     loop.position_gain = 1e-9;
@@ -64,7 +65,7 @@ TEST_CASE("a joint with pure damping has the phase margin of the closed form") {
           Approx(std::numbers::pi / 2 - b * loop.delay_s).margin(1e-6));
 }
 
-TEST_CASE("a joint settles if the phase margin is positive and oscillates if it is negative") {
+TEST_CASE("a joint converges if the phase margin is positive and oscillates if it is negative") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int trial = 0; trial < 12; ++trial) {
         const JointLoop<double> loop = random_loop(engine);

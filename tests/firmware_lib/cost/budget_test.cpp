@@ -19,7 +19,7 @@ TEST_CASE("a budget affords a cost completely or not at all") {
     CHECK(budget.spend(0));
 }
 
-TEST_CASE("an unlimited budget affords everything and a budget for prediction nothing") {
+TEST_CASE("an unlimited budget affords everything and a budget for prediction affords nothing") {
     CHECK_FALSE(Budget::predict_only().affords(1));
     CHECK(Budget::unlimited().affords(std::int64_t{1} << 62));
 }

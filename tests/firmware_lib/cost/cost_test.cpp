@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the cost functions with the operations done, using a scalar that counts them.
+// Compares the cost functions with the operations performed, measured with a scalar that counts them.
 #include "dfdyn/dfdyn.hpp"
 
 #include "tests/firmware_lib/support/counted.hpp"
@@ -70,7 +70,7 @@ Sample perhaps_faulty(Sample sample, std::mt19937_64& engine) {
         sample.time_ns -= period_ns;
         break;
     case 6:
-        sample.position[0] += 9; // a jump: feature arguments, or a motion, out of range
+        sample.position[0] += 9; // a jump: feature arguments or motion out of range
         break;
     case 7:
     case 8:
@@ -103,9 +103,10 @@ TEMPLATE_TEST_CASE("a tick that learns its sample at once costs what prediction 
     CHECK(ticks >= 30);
 }
 
-// Beyond its budget a tick does a prediction and a variance, for any sample; the maximum is reached exactly.
-TEMPLATE_TEST_CASE("no tick does more than a prediction, a variance and its budget", "", UdSingle, UdDouble,
-                   UdWhole, Parametric, Mean, Kernel, KernelSingle) {
+// Beyond its budget a tick performs a prediction and a variance, for any sample; the maximum is reached
+// exactly.
+TEMPLATE_TEST_CASE("no tick performs more than a prediction and a variance and its budget", "", UdSingle,
+                   UdDouble, UdWhole, Parametric, Mean, Kernel, KernelSingle) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr Cost cost = cost_of<TestType>();
     for (const double forgetting_factor : {1.0, 0.99}) {
@@ -175,8 +176,8 @@ TEMPLATE_TEST_CASE_SIG("the cost of learning is that of any size", "",
     check(std::type_identity<UdCovariance<Double, columns, outputs>>{});
 }
 
-TEMPLATE_TEST_CASE("an input map costs what it declares", "", DerivativeFree<6>, DerivativeFreeWeighted<3>,
-                   (DerivativeFreeReduced<6, 3>), DerivativeFreeStructured<6>,
+TEMPLATE_TEST_CASE("an input map costs what its declaration says", "", DerivativeFree<6>,
+                   DerivativeFreeWeighted<3>, (DerivativeFreeReduced<6, 3>), DerivativeFreeStructured<6>,
                    DerivativeFreeStructuredRecursive<6>, StandardMeasured, Standard<2>, Standard<6>,
                    Standard<20>) {
     constexpr int joints = 5;
@@ -195,7 +196,8 @@ TEMPLATE_TEST_CASE("an input map costs what it declares", "", DerivativeFree<6>,
     CHECK(counted_operations == Map::cost(joints, TestType::lags, TestType::features_per_joint));
 }
 
-TEMPLATE_TEST_CASE_SIG("the feature map costs what it declares", "", ((int d), d), 1, 4, 7, 16, 25, 250) {
+TEMPLATE_TEST_CASE_SIG("the feature map costs what its declaration says", "", ((int d), d), 1, 4, 7, 16, 25,
+                       250) {
     const auto check = [](auto number) {
         using Number = decltype(number);
         const typename RandomFourier<d>::template Constants<Number, 12> constants{};
@@ -208,9 +210,9 @@ TEMPLATE_TEST_CASE_SIG("the feature map costs what it declares", "", ((int d), d
     check(Double{});
 }
 
-// Every inertial parameter and every effect is selected; at zero velocity the Stribeck term is computed in
-// full.
-TEST_CASE("the physics map costs what it declares") {
+// Every inertial parameter and every effect is selected; at zero velocity the Stribeck term is computed
+// completely.
+TEST_CASE("the physics map costs what its declaration says") {
     using Arm = Chain<3>;
     constexpr int columns = 10 * 3 + 6 * 3;
     using Columns = Physics<StandardMeasured, columns, ViscousFriction<3>, CoulombFriction<3>,

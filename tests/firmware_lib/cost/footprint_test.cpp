@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps and learners take the bytes that they declare, plus pointers and indices whose number does not depend
+// Maps and learners use the bytes that they declare, plus pointers and indices whose number does not depend
 // on the sizes.
 #include "dfdyn/dfdyn.hpp"
 
@@ -44,7 +44,7 @@ void check_learner() {
 
 } // namespace
 
-TEST_CASE("numbers in place take the bytes of `storage_bytes`") {
+TEST_CASE("numbers stored in place take the bytes of `storage_bytes`") {
     CHECK(sizeof(Storage<float, 1>) == storage_bytes<float>(1));
     CHECK(sizeof(Storage<float, 8>) == storage_bytes<float>(8));
     CHECK(sizeof(Storage<float, 9>) == storage_bytes<float>(9));

@@ -16,8 +16,8 @@ namespace estimator_allocation_test {
 using namespace dfdyn;
 using namespace dfdyn::tests;
 
-/// Ticks of every kind: filling, learned at once, in slices, without an output, refused, after a gap and
-/// after a clock restart.
+/// Ticks of every kind: window filling, learned at once, learned in slices, without an output, rejected,
+/// after a gap and after a clock restart.
 template <class Model>
 std::vector<typename Model::Sample> samples_of_every_kind(std::mt19937_64& engine) {
     std::vector<typename Model::Sample> samples;

@@ -69,7 +69,7 @@ TEMPLATE_TEST_CASE("random budgets learn the same as unlimited ones, bit for bit
     CHECK(sliced.counters().reasons[static_cast<int>(Reason::learner_busy)] > 300);
 }
 
-TEMPLATE_TEST_CASE("while a sample is being learned the estimates are those before it", "", UdFloat, UdDouble,
+TEMPLATE_TEST_CASE("the estimates while a sample is being learned are those before it", "", UdFloat, UdDouble,
                    Mean) {
     DFDYN_SEEDED_ENGINE(engine);
     const double rounding = std::is_same_v<typename TestType::Scalar, float> ? 1e-4 : 1e-12;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time stamps of valid samples: jitter, a wrong nominal period, losses.
+// Time stamps of valid samples: jitter, a wrong nominal period, lost samples.
 #include "dfdyn/estimator.hpp"
 
 #include "tests/firmware_lib/support/test_model.hpp"

@@ -43,7 +43,7 @@ struct WatchfulArm : RunningArm<Model> {
 
 using UdFloat = TestModel<float, DerivativeFreeReduced<6, 3>, 60>;
 
-TEMPLATE_TEST_CASE("a short contact is predicted, reported and not learned", "", UdFloat) {
+TEMPLATE_TEST_CASE("a short contact is predicted and reported but not learned", "", UdFloat) {
     DFDYN_SEEDED_ENGINE(engine);
     WatchfulArm<TestType> arm(engine);
     for (int contact = 0; contact < 4; ++contact) {

@@ -49,8 +49,8 @@ struct Record {
     }
 };
 
-TEMPLATE_TEST_CASE("until the window is full nothing is predicted, with the reason window_filling", "", float,
-                   double) {
+TEMPLATE_TEST_CASE("nothing is predicted until the window is full and the reason is window_filling", "",
+                   float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     using Model = ModelOf<TestType>;
     const auto constants = make_constants<Model>(engine);
@@ -116,8 +116,8 @@ TEST_CASE("every estimate equals the batch solution of all samples before it") {
 
 // With data drawn from the model itself the normalised innovations are independent and N(0, 1). The sum of
 // their squares is chi-square with m degrees of freedom per tick, with mean m and variance 2m.
-TEMPLATE_TEST_CASE("on data from the model the normalised innovations squared are chi-square", "", float,
-                   double) {
+TEMPLATE_TEST_CASE("normalised innovations squared have a chi-square distribution on data from the model", "",
+                   float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     using Model = ModelOf<TestType>;
     const auto constants = make_constants<Model>(engine);

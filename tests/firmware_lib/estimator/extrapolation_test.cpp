@@ -95,7 +95,7 @@ TEST_CASE("doubt rises from zero at the data to nearly one far from them") {
     CHECK(Extrapolation<float>(1, 1).doubt() > 0.98F);
     CHECK(Extrapolation<float>(1, 1).unknown() == 1);
     CHECK(Extrapolation<float>(1, 1).variance(2, 1, 0.5F, 7) == 8.5F);
-    // 4 of the variance belongs to the physics' parameters
+    // The parameters of the physics contribute 4 to the variance.
     CHECK(Extrapolation<float>(1, 1).variance(6, 1, 0.5F, 7) == 12.5F);
 }
 
@@ -105,7 +105,7 @@ TEST_CASE("without the constants predictions and standard deviations equal the p
     CHECK(paper.variance(124.4F, 123.4F, 0, 0) == 124.4F);
 }
 
-TEST_CASE("doubt of the physics rises with the variance of its parameters, up to the output's variance") {
+TEST_CASE("doubt of the physics rises with the variance of its parameters up to the variance of the output") {
     const Extrapolation<float> beyond(0, 0, 20);
     float last = 0;
     for (const float of_parameters : {0.0F, 0.01F, 1.0F, 5.0F, 40.0F, 1e10F, 1e30F}) {
@@ -121,11 +121,11 @@ TEST_CASE("doubt of the physics rises with the variance of its parameters, up to
     CHECK(beyond.parameter_doubt(1 + 15, 0, 100) == 0.5F); // 20 times 15 is the square of the range
     CHECK(beyond.variance(3, 0, 0.5F, 0, 100) == 41.5F);
     CHECK(beyond.variance(1e10F, 0, 0.5F, 0, 100) == 101.5F);
-    // 3 of the variance belongs to the parameters
+    // The parameters contribute 3 to the variance.
     CHECK(Extrapolation<float>(2, 0.1F, 20).variance(6, 2, 0.5F, 0, 100) == 61.5F);
 }
 
-TEST_CASE("a variance that is not finite stays so") {
+TEST_CASE("a variance that is not finite remains not finite") {
     for (const float ratio : {std::numeric_limits<float>::infinity(), std::nanf("")}) {
         CHECK_FALSE(std::isfinite(Extrapolation<float>(ratio, 1).variance(ratio, ratio, 1, 1)));
         CHECK_FALSE(std::isfinite(Extrapolation<float>(0, 0, 20).variance(ratio, 0, 1, 0, 100)));
@@ -167,8 +167,9 @@ TEST_CASE("without a variance of the outputs the parameters' variance has the fa
     CHECK(open.prediction[1] == often.prediction[1]);
 }
 
-TEMPLATE_TEST_CASE("far from the data the prediction is that of the physics and the deviation the output's",
-                   "", Features, Mean, Kernel) {
+TEMPLATE_TEST_CASE(
+    "far from the data the prediction equals the physics and the deviation is that of the output", "",
+    Features, Mean, Kernel) {
     DFDYN_SEEDED_ENGINE(engine);
     StrayArm<TestType> arm(engine);
     float strayed = 0;
@@ -177,7 +178,8 @@ TEMPLATE_TEST_CASE("far from the data the prediction is that of the physics and 
         REQUIRE(estimate.status.predicted());
         strayed = std::max(strayed, std::abs(estimate.prediction[0] - arm.without_features(0)));
     }
-    REQUIRE(strayed > arm.constants.output_noise_std[0]); // the features of the paper contribute here
+    // the features of the paper contribute at this position
+    REQUIRE(strayed > arm.constants.output_noise_std[0]);
     arm.know();
     for (int visit = 0; visit < 20; ++visit) {
         const auto estimate = arm.estimate_at(6);
@@ -211,7 +213,7 @@ TEMPLATE_TEST_CASE("near the data predictions do not change", "", Features, Mean
 
 // The covariance describes only the samples since the change, but the weights are still the best estimate
 // elsewhere.
-TEST_CASE("after a change the model keeps its predictions where the arm has not been since") {
+TEST_CASE("after a change the model keeps its predictions at positions not visited since") {
     DFDYN_SEEDED_ENGINE(engine);
     StrayArm<Features> arm(engine);
     arm.know();

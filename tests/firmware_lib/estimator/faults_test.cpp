@@ -91,7 +91,7 @@ TEST_CASE("an output that is NaN or beyond its limit is predicted and not learne
     CHECK(std::isfinite(estimate.standard_deviation[0]));
 }
 
-TEST_CASE("a missing output may have any value") {
+TEST_CASE("a missing output may contain any value") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);
     auto sample = with_output(arm.due(), 0, not_a_number);
@@ -175,7 +175,7 @@ TEST_CASE("after one stamp far in the future the true clock is adopted again") {
     CHECK(arm.ticks_to_recover() == lags - 1);
 }
 
-TEST_CASE("a clock may jump over its whole range") {
+TEST_CASE("a clock may jump by its whole range") {
     DFDYN_SEEDED_ENGINE(engine);
     Arm arm(engine);
     constexpr std::int64_t first = std::numeric_limits<std::int64_t>::min();

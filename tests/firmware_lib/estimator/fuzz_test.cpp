@@ -23,8 +23,8 @@ using FuzzSample = FuzzModel::Sample;
 constexpr float jump = 1e6F;
 constexpr float position_limit = 1e7F;
 
-/// Constants for which every jump of joint 1 makes the inputs invalid while it is in the window: all rows sum
-/// to -1 without small entries, and all frequencies are positive, so that nothing cancels.
+/// Constants for which every jump of joint 1 makes the inputs invalid while it is in the window. All rows sum
+/// to -1 without small entries and all frequencies are positive, so nothing cancels.
 FuzzModel::Constants fuzz_constants(std::mt19937_64& engine) {
     FuzzModel::Constants constants{};
     std::uniform_real_distribution<float> size(0.5F, 1.5F);
@@ -165,7 +165,7 @@ class FaultyLine {
 
     int joint() { return static_cast<int>((*engine_)() % 2); }
 
-    /// Returns the last sample again, or one with a distant stamp.
+    /// Returns the last sample again, or a sample with a distant stamp.
     FuzzSample stray() {
         const std::int64_t offsets[] = {0, -10'000 * period_ns, 10'000 * period_ns, 1'000'000 * period_ns};
         FuzzSample sample = last_;
@@ -249,7 +249,7 @@ FuzzSample garbage_sample(std::mt19937_64& engine) {
 
 // The twin receives every good sample, but learns only those that the victim learned. It must predict the
 // same as the victim, bit for bit.
-TEST_CASE("any mixture of faults is handled as documented, without lasting effect") {
+TEST_CASE("any mixture of faults is handled as documented and has no lasting effect") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = fuzz_constants(engine);
     Victim victim(constants);

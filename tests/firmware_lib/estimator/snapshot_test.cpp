@@ -68,7 +68,7 @@ struct Pair {
     }
 };
 
-TEMPLATE_TEST_CASE("a restored estimator behaves as the original once its window is full", "", UdFloat,
+TEMPLATE_TEST_CASE("a restored estimator behaves like the original once its window is full", "", UdFloat,
                    UdDouble, Parametric, Mean, Kernel, KernelDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     for (const bool half_learned : {false, true}) {
@@ -127,7 +127,7 @@ TEMPLATE_TEST_CASE("NaN in a snapshot is rejected despite a correct checksum", "
     CHECK(wrongly_restored == 0);
 }
 
-// The memory layout of U depends on the machine; a snapshot does not.
+// The memory layout of U depends on the machine, but a snapshot does not.
 TEST_CASE("the snapshot of U-D begins with U above its diagonal, by columns") {
     DFDYN_SEEDED_ENGINE(engine);
     const Pair<UdFloat> pair(engine);

@@ -62,7 +62,8 @@ class StoppingArm {
                 -0.5 * std::acos(-1.0) / (stop_ticks * period_s) * std::sin(angle)};
     }
 
-    /// `rate`: of the path, in seconds of the moving arm per second; `change`: its derivative, 1/s.
+    /// Sets the motion at `rate` along the path (seconds of the moving arm per second) with the derivative
+    /// `change` (1/s).
     template <class Model>
     typename Model::Sample next(double rate, double change) {
         path_s_ += rate * period_s;
@@ -93,16 +94,16 @@ typename Model::Constants filtered_constants(std::mt19937_64& engine, double for
 struct Restart {
     /// Largest variance of a parameter during the standstill, in units of the prior's.
     double largest_variance = 0;
-    /// RMS innovation in the first second after it, relative to a twin without learning at standstill.
+    /// RMS innovation in the first second of motion, relative to a twin without learning at standstill.
     double first_error = 0;
-    /// Same, in the third second.
+    /// The same in the third second.
     double later_error = 0;
     /// RMS innovation of the twin in the first second.
     double twins_error = 0;
     bool finite = true;
 };
 
-/// Returns the learner whose variances are checked: for SPK that of the physics' parameters.
+/// Returns the learner whose variances are checked. For SPK it is the learner of the physics' parameters.
 template <class Model>
 const auto& watched_learner(const Estimator<Model>& estimator) {
     const auto& learner = estimator.regression().learner();
@@ -180,7 +181,7 @@ class Standstill {
                 result_.largest_variance =
                     std::max(result_.largest_variance, largest_parameter_variance(*estimator_, constants_));
             }
-            if (ticks - t <= 20) { // only the window is updated
+            if (ticks - t <= 20) { // only the window is updated in these ticks
                 sample.output_valid = false;
                 tick(twin, sample);
             }
@@ -280,7 +281,7 @@ TEMPLATE_TEST_CASE("after a long standstill the motion is predicted as if learni
     }
 }
 
-// Encoder noise looks like motion without torque. Near this position the model learns that, and unlearns it
+// Encoder noise looks like motion without torque. Near this position the model learns that, and corrects it
 // in the first tenths of a second of motion.
 TEMPLATE_TEST_CASE("after a long standstill with encoder noise the motion is predicted nearly as well", "",
                    UdFloat, UdDouble, Parametric, Mean, Kernel, KernelDouble) {
@@ -297,10 +298,10 @@ TEMPLATE_TEST_CASE("after a long standstill with encoder noise the motion is pre
     }
 }
 
-TEST_CASE("textbook forgetting fails after the same standstill, even in double") {
+TEST_CASE("textbook forgetting fails after the same standstill even in double") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = filtered_constants<UdDouble>(engine, 0.999);
-    Estimator<UdDouble> columns(constants); // gets no outputs: it computes the rows
+    Estimator<UdDouble> columns(constants); // receives no outputs and only computes the rows
     TextbookForgetting textbook(UdDouble::columns, 1000, 0.999);
     StoppingArm arm(engine);
     const auto learn = [&](UdDouble::Sample sample) {

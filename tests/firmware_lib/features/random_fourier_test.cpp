@@ -70,7 +70,7 @@ double kernel_error(std::mt19937_64& engine, int feature_count) {
     return std::sqrt(sum / draws);
 }
 
-TEST_CASE("the columns are the cosines, then the sines, of frequencies times input") {
+TEST_CASE("the columns are the cosines followed by the sines of frequencies times input") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const std::size_t feature_count : {1U, 2U, 7U, 33U, 250U}) {
         const Constants constants = random_constants(engine, static_cast<int>(feature_count));
@@ -98,7 +98,7 @@ TEST_CASE("the column vector of any input has norm one") {
 
 // φ'φ' is a mean of d bounded terms whose expectation is the kernel, so its error is proportional to 1/√d.
 // 400 draws determine each error to about 4 %.
-TEST_CASE("the error of the kernel approximation falls with the square root of the number of columns") {
+TEST_CASE("the error of the kernel approximation decreases with the square root of the number of columns") {
     DFDYN_SEEDED_ENGINE(engine);
     const double few = kernel_error(engine, 16);
     const double many = kernel_error(engine, 256);

@@ -93,7 +93,7 @@ TEMPLATE_TEST_CASE("the forecast error of a coloured residual is close to its in
         const Errors errors = errors_of(learned, Samples(coefficient), 8000, engine);
         CHECK(errors.forecast[0] < 1.05 * errors.innovation);
         CHECK(errors.forecast[0] < 1.02 * errors.persistence[0]);
-        CHECK(errors.forecast[1] < 1.02 * errors.model[1]); // white: no gain, small loss
+        CHECK(errors.forecast[1] < 1.02 * errors.model[1]); // white noise: no gain and a small loss
         CHECK(static_cast<double>(learned.correlation(0)) == Approx(coefficient).margin(0.1));
     }
 }
@@ -190,7 +190,7 @@ TEMPLATE_TEST_CASE("for any input the forecast is finite and the correlation bel
     }
 }
 
-TEST_CASE("after a gap the forecast is the prediction, then uses the coefficients again") {
+TEST_CASE("the forecast after a gap is the prediction and then uses the coefficients again") {
     DFDYN_SEEDED_ENGINE(engine);
     State<double> learned = state<double>();
     errors_of(learned, Samples(0.95), 2000, engine);
@@ -206,7 +206,7 @@ TEST_CASE("after a gap the forecast is the prediction, then uses the coefficient
     CHECK(one_step[0] < 5.1);
 }
 
-TEST_CASE("measurements without a prediction count as the last output once predictions begin") {
+TEST_CASE("measurements without a prediction are available as the last output when predictions begin") {
     State<double> learned = state<double>();
     const Values<double> measured{7, -7};
     for (int t = 0; t < 10; ++t) {

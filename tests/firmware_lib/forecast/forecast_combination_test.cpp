@@ -99,7 +99,7 @@ TEMPLATE_TEST_CASE("weights are inversely proportional to the square of the mean
     CHECK(combined.weights()[0] > TestType(0.85)); // 1 against 1/16 and 1/256
 }
 
-TEST_CASE("if members exchange their errors, the weights follow within the memory") {
+TEST_CASE("the weights follow within the memory if members exchange their errors") {
     Combination<double> combined = combination<double>(50);
     const std::array<double, outputs> measured{};
     const Values<double> first_good{0.1, 0.1, 1, 1, 5, 5};
@@ -173,8 +173,7 @@ TEMPLATE_TEST_CASE("an absurdly large error is forgotten within five memories", 
     CHECK(combined.weights()[outputs] > TestType(0.99));
 }
 
-TEMPLATE_TEST_CASE("before the first errors, members with known noise are weighted by it", "", float,
-                   double) {
+TEMPLATE_TEST_CASE("before the first errors members are weighted by their known noise", "", float, double) {
     const Combination<TestType> combined = scaled_combination<TestType>(100);
     const double sum = 16 + 1 + 1.0 / 16; // 1/σ⁴
     CHECK(combined.weights()[0] == Approx(16 / sum));
@@ -205,7 +204,7 @@ TEMPLATE_TEST_CASE("a member with uncertain parameters at an input has less weig
 }
 
 TEST_CASE(
-    "the factor on variances changes with the first error, and returns within memories without errors") {
+    "the variance factor changes at the first error and returns if errors are missing for several memories") {
     const double unjudged = Combination<double>::calibrated_variance_factor;
     Combination<double> combined({}, {}, 50, noise<double>.data(), unjudged);
     Values<double> deviations = noise<double>;
@@ -226,7 +225,7 @@ TEST_CASE(
     CHECK(weights() == Approx(ratio(unjudged)).epsilon(1e-3));
 }
 
-TEST_CASE("after a memory without samples the noise decides again, until the next sample") {
+TEST_CASE("after a memory without samples the weights follow the noise until the next sample") {
     Combination<double> combined = scaled_combination<double>(50);
     const std::array<double, outputs> measured{};
     const double start = combined.weights()[0];
@@ -297,8 +296,8 @@ std::int64_t count(const Call& call) {
     return dfdyn::tests::counted_operations;
 }
 
-TEMPLATE_TEST_CASE_SIG("a combination costs what its cost says", "", ((int c, int m), c, m), (1, 1), (2, 6),
-                       (5, 3)) {
+TEMPLATE_TEST_CASE_SIG("a combination costs what its cost function says", "", ((int c, int m), c, m), (1, 1),
+                       (2, 6), (5, 3)) {
     DFDYN_SEEDED_ENGINE(engine);
     using Number = dfdyn::tests::Counted<double>;
     using Counting = dfdyn::ForecastCombination<Number, c, m>;

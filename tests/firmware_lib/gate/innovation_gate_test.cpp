@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The gate's response to pushes, changes and models that never fit.
+// Response of the gate to pushes, changes and models that never fit.
 #include "dfdyn/innovation_gate.hpp"
 
 #include "tests/support/catch.hpp"
@@ -19,7 +19,7 @@ constexpr float plausible = 1;
 
 using Gate = InnovationGate<float>;
 
-TEST_CASE("a sample beyond the limit has less weight the further it is, and none far beyond") {
+TEST_CASE("the weight of a sample beyond the limit decreases with its distance down to zero") {
     Gate gate(limit, patience);
     CHECK(gate.judge(0) == 1);
     CHECK(gate.judge(limit) == 1);
@@ -76,7 +76,7 @@ TEST_CASE("a change is reported once, and every sample is learned until plausibl
     CHECK(gate.judge(1e6F * pushed) == 0);
 }
 
-TEST_CASE("a change that is known from elsewhere is reported once, and its samples are learned as they are") {
+TEST_CASE("a change reported by another detector is reported once and its samples keep their full weight") {
     Gate gate(1, patience);
     REQUIRE(gate.judge(pushed) == 0);
     gate.report_change();
@@ -94,11 +94,11 @@ TEST_CASE("plausible samples at reversals delay a change by their number and do 
         const bool reversal = samples % 4 == 0;
         refused += gate.judge(reversal ? plausible : pushed) == 0 ? 1 : 0;
     }
-    CHECK(samples == Approx(2 * patience).margin(4)); // each reversal costs itself and one more
+    CHECK(samples == Approx(2 * patience).margin(4)); // each reversal delays by itself and one more sample
     CHECK(refused == Approx(1.5 * patience).margin(4));
 }
 
-TEST_CASE("a model that never fits is not reported as changed again and again") {
+TEST_CASE("a model that never fits is not reported as changed repeatedly") {
     DFDYN_SEEDED_ENGINE(engine);
     std::exponential_distribution<float> innovation(1 / (3 * limit));
     Gate gate(limit, patience);
@@ -127,7 +127,7 @@ TEST_CASE("a new motion begins with an empty count") {
     CHECK(gate.judge(pushed) == 1);
 }
 
-TEST_CASE("the largest patience never ends, and zero or a negative patience learns everything") {
+TEST_CASE("the largest patience never ends and zero or negative patience learns everything") {
     Gate patient(limit, std::numeric_limits<std::int32_t>::max());
     for (int t = 0; t < 100'000; ++t) {
         REQUIRE(patient.judge(pushed) == 0);

@@ -65,7 +65,7 @@ double largest_velocity_error(const Signal& signal, const Signal& derivative, in
 
 double quantised(double value, double count) { return std::floor(value / count) * count; }
 
-TEMPLATE_TEST_CASE("a straight line and a parabola are fitted exactly, at uneven times", "", float, double) {
+TEMPLATE_TEST_CASE("a straight line and a parabola are fitted exactly at uneven times", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     const double tolerance = std::is_same_v<TestType, float> ? 1e-3 : 1e-9;
     for (int trial = 0; trial < 50; ++trial) {
@@ -85,7 +85,7 @@ TEMPLATE_TEST_CASE("a straight line and a parabola are fitted exactly, at uneven
 // A line fitted to a parabola with acceleration a has the error a h²/3 at the ends of a window of length 2h,
 // and its slope has the error a h at the newest sample. With the longest window that the noise bound δ allows
 // this is sqrt(3 δ a).
-TEST_CASE("on a smooth motion the error is within that of the noise bound") {
+TEST_CASE("the error on a smooth motion is within the bound that follows from the noise bound") {
     constexpr double omega = 4;
     const Signal sine = [](double t) { return std::sin(omega * t); };
     const Signal cosine = [](double t) { return omega * std::cos(omega * t); };
@@ -100,7 +100,7 @@ TEST_CASE("on a smooth motion the error is within that of the noise bound") {
 
 // The slope of a line through L values, each with an error of at most half a count, has an error of at most
 // 1.5 counts / L per sample. The difference of two values has an error of up to one count per sample.
-TEST_CASE("on a quantised ramp the window grows and the ripple is far below one count per sample") {
+TEST_CASE("on a quantised ramp the window grows and the ripple is much smaller than one count per sample") {
     constexpr double count = 1e-4;
     constexpr int length = 50;
     for (const double counts_per_sample : {0.03, 0.3, 0.77, 3.2}) {

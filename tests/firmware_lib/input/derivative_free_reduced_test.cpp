@@ -103,14 +103,14 @@ TEST_CASE("DFR gives the scaled product of R with each joint's window") {
     }
 }
 
-TEST_CASE("the difference form keeps the entries of a row and puts its sum in front, also in place") {
+TEST_CASE("the difference form keeps the entries of a row and puts its sum first even in place") {
     std::array<double, 6> matrix{1, -2, 4, 8, 16, -32};
     to_difference_form(matrix.data(), 2, 2, matrix.data());
     CHECK(matrix == std::array<double, 6>{3, -2, 4, -8, 16, -32});
 }
 
 // At 1 kHz the entries of the acceleration row are about 1e6 and nearly cancel.
-TEST_CASE("in float at 1 kHz the difference form is accurate where the plain product is not") {
+TEST_CASE("in float at 1 kHz the difference form is accurate and the plain product is not") {
     Rows matrix{};
     structured_rows<double>({1 / period_s, 1 / (period_s * period_s), 0.3, 0.3}, lags, matrix.data());
     const Errors velocity = float_errors(matrix, 1);

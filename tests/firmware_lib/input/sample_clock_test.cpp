@@ -55,8 +55,7 @@ std::vector<int> losses(double nominal_ns, const std::vector<std::int64_t>& stam
     return result;
 }
 
-/// Returns the indices at which a clock should report the losses of these samples, no two of which are
-/// adjacent.
+/// Returns the indices at which a clock should report these lost samples, none of which are adjacent.
 std::vector<int> expected_at(const std::vector<int>& lost) {
     std::vector<int> result;
     for (std::size_t i = 0; i < lost.size(); ++i) {
@@ -77,7 +76,7 @@ std::vector<int> random_losses(std::mt19937_64& engine, int samples, int first, 
 
 constexpr double periods_ns[] = {20e6, 8e6, 2e6, 1e6, 200e3}; // 50 Hz to 5 kHz
 
-TEST_CASE("jitter of half a period and an error of the nominal period by percents are not losses") {
+TEST_CASE("jitter of half a period and a nominal period wrong by some percent are not losses") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const double nominal_ns : periods_ns) {
         std::size_t taken_for_losses = 0;

@@ -84,7 +84,7 @@ TEST_CASE("STD is ready after M+1 samples, and a restart discards positions and 
     map.restart();
     for (int t = 0; t <= lags; ++t) {
         map.push(
-            // a jump of all positions: old ones must not appear
+            // A jump of all positions: old positions must not appear.
             parabolas_at<double>(1'000'000'000'000 + t * period_ns));
     }
     REQUIRE(map.ready());

@@ -226,7 +226,7 @@ TEST_CASE("the block arrow equals the dense solution of all unknowns, for every 
 TEST_CASE("the block arrow learned in slices equals learning at once, bit for bit") {
     DFDYN_SEEDED_ENGINE(engine);
     ArrowProblem problem(engine, 60, 12, 5, 3);
-    problem.forgetting_factor = 0.95; // variances exceed their bound: that is sliced too
+    problem.forgetting_factor = 0.95; // variances exceed their bound, which is sliced too
     const Cost cost = Arrow<double>::Learner::cost(12, 5, 3);
     Arrow<double> whole(problem);
     Arrow<double> sliced(problem);
@@ -317,7 +317,7 @@ TEST_CASE("a sample predicted before another was learned is learned as if predic
     CHECK(relative_error(late.all_unknowns(), usual.all_unknowns()) < 1e-12);
 }
 
-TEST_CASE("the block arrow spends its declared cost") {
+TEST_CASE("the block arrow uses exactly its declared cost") {
     DFDYN_SEEDED_ENGINE(engine);
     const ArrowProblem problem(engine, 20, 30, 7, 3);
     const Cost cost = Arrow<float>::Learner::cost(30, 7, 3);
@@ -333,7 +333,7 @@ TEST_CASE("the block arrow spends its declared cost") {
     }
 }
 
-TEST_CASE("the block arrow costs the sum of its parts, far less than the dense solution") {
+TEST_CASE("the cost of the block arrow is the sum of its parts and far below the dense solution") {
     constexpr int columns = 500;
     constexpr int parameters = 40;
     constexpr int outputs = 6;
@@ -382,7 +382,8 @@ TEMPLATE_TEST_CASE("a covariance reset keeps the predictions, in any slices", ""
     }
 }
 
-TEMPLATE_TEST_CASE("samples with other noise are weighted as in the dense solution", "", float, double) {
+TEMPLATE_TEST_CASE("samples with another noise variance are weighted as in the dense solution", "", float,
+                   double) {
     DFDYN_SEEDED_ENGINE(engine);
     const double tolerance = std::is_same_v<TestType, float> ? 1e-3 : 1e-9;
     ArrowProblem problem(engine, 120, 16, 5, 3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parameters common to several outputs: learning the rows of a sample one after the other equals the batch
+// Parameters common to several outputs. Learning the rows of a sample one after another equals the batch
 // solution.
 #include "dfdyn/learner/common_parameters.hpp"
 

@@ -11,7 +11,7 @@ namespace forgetting_test {
 
 using dfdyn::Forgetting;
 
-/// Nats discarded per nat that a sample contributes, as documented, for 40 parameters or more.
+/// Information (nats) that may be forgotten per nat of a sample, as documented, for 40 parameters or more.
 constexpr double payback = 20;
 
 /// Returns the nats per parameter that were discarded over `samples` samples without information.
@@ -58,20 +58,21 @@ TEMPLATE_TEST_CASE("a standstill forgets one horizon and then nothing", "", floa
     }
 }
 
-TEMPLATE_TEST_CASE("the account is limited to one horizon, and restart fills it", "", float, double) {
+TEMPLATE_TEST_CASE("the information account is limited to one horizon and restart fills it", "", float,
+                   double) {
     Forgetting<TestType> forgetting(TestType(0.99), 5);
     for (int t = 0; t < 1000; ++t) {
         static_cast<void>(forgetting.factor_after(1000));
     }
     const double tolerance = 1e4 * static_cast<double>(std::numeric_limits<TestType>::epsilon());
-    // The last sample has used its share.
+    // The last sample has used its part.
     CHECK(forgotten_at_rest(forgetting, 10'000) == Approx(1 + std::log(0.99)).epsilon(tolerance));
     CHECK(forgotten_at_rest(forgetting, 10'000) == 0);
     forgetting.restart();
     CHECK(forgotten_at_rest(forgetting, 10'000) == Approx(1).epsilon(tolerance));
 }
 
-TEST_CASE("forgetting is limited to what the account covers, and uses all of that") {
+TEST_CASE("forgetting is limited by the information account and uses all of it") {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr int parameters = 40;
     constexpr double factor = 0.99;
@@ -114,7 +115,7 @@ TEMPLATE_TEST_CASE("a standstill stops forgetting for any number of rows per sam
     }
 }
 
-TEMPLATE_TEST_CASE("rows with no more information than at standstill pay for no forgetting", "", float,
+TEMPLATE_TEST_CASE("rows with no more information than at standstill do not allow forgetting", "", float,
                    double) {
     const auto paid = [](int rows, double brought) {
         Forgetting<TestType> forgetting(TestType(0.999), 32, rows);
@@ -140,7 +141,7 @@ TEST_CASE("a moving arm with fewer parameters than rows forgets with the full fa
     }
 }
 
-TEST_CASE("rows with no more than rounding error pay for no forgetting, for any memory") {
+TEST_CASE("rows with only rounding errors do not allow forgetting for any memory") {
     constexpr float epsilon = std::numeric_limits<float>::epsilon();
     const auto paid = [](float brought) {
         Forgetting<float> forgetting(0.99999F, 32);

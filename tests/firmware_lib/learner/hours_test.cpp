@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hours of samples in float: the learned state is lost neither to forgetting nor to rounding.
+// Hours of samples in float: neither forgetting nor rounding destroys the learned state.
 #include "dfdyn/learner/ud_covariance.hpp"
 
 #include "tests/support/catch.hpp"
@@ -180,9 +180,9 @@ class Arm {
     std::int64_t learned_ = 0;
 };
 
-// The information of a repeated row falls as 1/t in exact arithmetic. Neither that nor its rounding error
-// pays for more forgetting.
-TEST_CASE("an arm that rests for an hour keeps the model of its motion, in float as in double") {
+// The information of a repeated row decreases as 1/t in exact arithmetic. Neither this information nor its
+// rounding error allows more forgetting.
+TEST_CASE("an arm that rests for an hour keeps the model of its motion in float as in double") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const double forgetting_factor : {0.999, 0.9999}) {
         CAPTURE(forgetting_factor);
@@ -247,7 +247,7 @@ void spend(Arm& arm, Day day, std::int64_t samples) {
     arm.stand(day == Day::moving ? 0 : samples - standing);
 }
 
-/// At a signal-to-noise ratio of 10⁴.
+/// Runs a schedule at a signal-to-noise ratio of 10⁴.
 template <int columns>
 void check_day(std::mt19937_64& engine, std::int64_t samples) {
     for (const double forgetting_factor : {1.0, 0.9999}) {
@@ -269,12 +269,12 @@ void check_day(std::mt19937_64& engine, std::int64_t samples) {
     }
 }
 
-TEST_CASE("minutes of moving, of both in turn, and of standstill give in float the error of double") {
+TEST_CASE("minutes of moving or standstill or both in turn give the same error in float as in double") {
     DFDYN_SEEDED_ENGINE(engine);
     check_day<32>(engine, slow_build ? 120'000 : 600'000);
 }
 
-TEST_CASE("a day of moving, of both in turn, and of standstill gives in float the error of double",
+TEST_CASE("a day of moving or standstill or both in turn gives the same error in float as in double",
           "[.long]") {
     DFDYN_SEEDED_ENGINE(engine);
     check_day<32>(engine, 100'000'000);

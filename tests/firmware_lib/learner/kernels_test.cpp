@@ -123,7 +123,7 @@ TEMPLATE_TEST_CASE("the products of a panel equal those of its four columns", ""
     }
 }
 
-TEMPLATE_TEST_CASE("the update of a panel equals that of its columns in turn", "", float, double) {
+TEMPLATE_TEST_CASE("the update of a panel equals the updates of its columns in turn", "", float, double) {
     DFDYN_SEEDED_ENGINE(engine);
     const detail::PanelFactors<TestType> factors = {
         {TestType(0.3), TestType(-0.8), TestType(0.5), TestType(0.1)},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recursive equals batch, for every form of learner.
+// The recursive solution equals the batch solution for every form of learner.
 #include "dfdyn/learner/learner.hpp"
 
 #include "tests/firmware_lib/support/learner_under_test.hpp"
@@ -147,7 +147,7 @@ TEST_CASE("weights and variances equal the batch solution, for hundreds of colum
 
 // If columns have similar sizes and are not collinear, each weight is determined, and the normal equations
 // are accurate enough to be a second reference.
-TEST_CASE("each weight equals that of the normal equations for well-conditioned columns") {
+TEST_CASE("each weight equals the solution of the normal equations for well-conditioned columns") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const int columns : {1, 4, 10, 33, 100}) {
         const Problem problem(engine, {200, columns, 2}, Columns::independent, 100, some_forgetting);
@@ -250,7 +250,8 @@ TEMPLATE_TEST_CASE("the ratio of a row is one plus its variance before learning"
     }
 }
 
-TEMPLATE_TEST_CASE("rows with other noise are weighted as in the batch solution", "", UdFloat, UdDouble) {
+TEMPLATE_TEST_CASE("rows with another noise variance are weighted as in the batch solution", "", UdFloat,
+                   UdDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr int columns = 20;
     Regression regression =
@@ -268,8 +269,8 @@ TEMPLATE_TEST_CASE("rows with other noise are weighted as in the batch solution"
           TestType::tolerance);
 }
 
-TEMPLATE_TEST_CASE("a covariance reset keeps the weights and learns as from that initial state", "", UdFloat,
-                   UdDouble) {
+TEMPLATE_TEST_CASE("a covariance reset keeps the weights and continues as from that initial state", "",
+                   UdFloat, UdDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr int columns = 20;
     const Regression regression =

@@ -117,7 +117,7 @@ TEMPLATE_TEST_CASE("a budget below the largest step never finishes a row, one of
     CHECK_FALSE(learned.weights().isZero(0));
 }
 
-TEMPLATE_TEST_CASE("learning spends its declared cost and never more than its budget", "", UdFloat,
+TEMPLATE_TEST_CASE("learning uses exactly its declared cost and never more than its budget", "", UdFloat,
                    UdDouble) {
     DFDYN_SEEDED_ENGINE(engine);
     constexpr Cost cost = cost_of<TestType>();

@@ -127,12 +127,12 @@ TEMPLATE_TEST_CASE("every departure is detected with its onset, and ends", "[mon
     }
     CAPTURE(block);
     REQUIRE(detector.alarm());
-    // the other kinds may look alike over a second
+    // Over one second the other kinds may look the same.
     if (kind == Departure::friction || kind == Departure::burst) {
         CHECK(static_cast<int>(detector.departure()) == static_cast<int>(kind));
         CHECK(detector.channel() == channel);
     }
-    CHECK(detector.blocks_since_onset() >= block - 10); // earlier only if the sum was above zero by chance
+    CHECK(detector.blocks_since_onset() >= block - 10); // earlier only if the sum happened to be above zero
     CHECK(detector.blocks_since_onset() <= block + 80);
     int over = 0;
     for (; over < 300 && detector.alarm(); ++over) {
@@ -191,7 +191,7 @@ TEMPLATE_TEST_CASE("an absurd block raises no alarm and hides no later change", 
 }
 
 /// An arm that rests for half a minute between motions of 2 s. At each stop the static friction of a joint
-/// takes another level within ±1 and relaxes over a second; then only a tremble of 0.01 is left.
+/// takes a new level within ±1 and relaxes over a second to a vibration of 0.01.
 class Resting {
   public:
     using Blocks = std::array<OutputBlock<double>, outputs>;
@@ -226,8 +226,7 @@ class Resting {
     std::normal_distribution<double> normal_;
 };
 
-TEST_CASE("joints that stop at another level of static friction each time raise no alarm, pushed ones do",
-          "[monitor]") {
+TEST_CASE("stops at different levels of static friction raise no alarm but pushes do", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     Resting arm;
     Detector<double> detector({}, true, 10 * blocks_per_hour);
@@ -239,7 +238,7 @@ TEST_CASE("joints that stop at another level of static friction each time raise 
         const auto& now = arm.next(engine);
         REQUIRE_FALSE(detector.add(now.data(), arm.before(), speed<double>));
     }
-    int pushed = 0; // back and forth, four times the static friction
+    int pushed = 0; // in both directions, with four times the static friction
     bool alarm = false;
     while (pushed < 20 && !alarm) {
         const auto& now = arm.next(engine, 4 * std::sin(1.2 * ++pushed));
@@ -302,7 +301,7 @@ TEST_CASE("a persistent level is adopted as the new reference", "[monitor]") {
     CHECK(detector.noise(1).scale(2) == Approx(8).epsilon(0.2));
 }
 
-TEST_CASE("after a gap the previous block is ignored", "[monitor]") {
+TEST_CASE("the block before a gap is ignored", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     Innovations<double> innovations(0.9, false);
     Detector<double> detector({}, true, 10 * blocks_per_hour);

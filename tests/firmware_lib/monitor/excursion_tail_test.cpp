@@ -52,7 +52,7 @@ TEMPLATE_TEST_CASE("a limit is exceeded as often as specified, for every distrib
     for (int repetition = 0; repetition < repetitions; ++repetition) {
         ExcursionTail<TestType> tail;
         Walk walk(kind);
-        for (int block = 0; block < 3000; ++block) { // few blocks, so the tail is poorly known
+        for (int block = 0; block < 3000; ++block) { // few blocks, which determine the tail poorly
             tail.add(static_cast<TestType>(walk.step(engine)));
             tail.add_block();
         }
@@ -65,7 +65,7 @@ TEMPLATE_TEST_CASE("a limit is exceeded as often as specified, for every distrib
     CHECK(exceeded > repetitions / 20); // the limit is not far too high either
 }
 
-TEST_CASE("the limit falls as more excursions of a tail are known", "[monitor]") {
+TEST_CASE("the limit decreases with the number of known excursions", "[monitor]") {
     ExcursionTail<double> tail;
     double last = tail.limit(1e6);
     for (int seen : {10, 100, 1000}) {

@@ -78,7 +78,7 @@ TEST_CASE("repeated readings of an arm at standstill are not evidence", "[monito
     CHECK(watch.evidence(1) < 15);
 }
 
-TEST_CASE("A stationary joint that trembles by a count is not frozen while the others move", "[monitor]") {
+TEST_CASE("a stationary joint that vibrates by a count is not frozen while the others move", "[monitor]") {
     DFDYN_SEEDED_ENGINE(engine);
     FrozenWatch<float, 2> watch({}, 2);
     double phase = 0, tremble = 0;
@@ -105,7 +105,7 @@ TEST_CASE("A stationary joint that trembles by a count is not frozen while the o
     while (std::abs(std::cos(1.7 * phase)) < 0.7 || std::abs(std::cos(phase)) < 0.5) {
         run(1, true, true, false);
     }
-    CHECK(run(600, true, false, false) > 15); // stopped dead
+    CHECK(run(600, true, false, false) > 15); // an abrupt stop
 }
 
 } // namespace frozen_watch_test

@@ -9,7 +9,8 @@ namespace standstill_range_test {
 
 using Range = dfdyn::StandstillRange<double>;
 
-/// Adds a standstill of `blocks` blocks, one of which reaches `level` and `change`, and the motion after it.
+/// Adds a standstill of `blocks` blocks and the motion after it. One of the blocks reaches `level` and
+/// `change`.
 void stop(Range& range, double level, double change, int blocks = 10, bool alarm = false) {
     for (int block = 0; block < blocks; ++block) {
         const double share = block == blocks / 2 ? 1 : 0.1;
@@ -26,8 +27,7 @@ Range known(double level, double change) {
     return range;
 }
 
-TEST_CASE("the range of a standstill is known after four, with a margin for what has not been seen",
-          "[monitor]") {
+TEST_CASE("the range is known after four standstills and has a margin for unseen values", "[monitor]") {
     Range range;
     for (int standstill = 0; standstill < 4; ++standstill) {
         CHECK_FALSE(range.known());
@@ -42,7 +42,7 @@ TEST_CASE("the range of a standstill is known after four, with a margin for what
     CHECK(range.level() == Approx(1.3 * 1.04));
 }
 
-TEST_CASE("one standstill of any length counts once, and minutes of quiet do not narrow the range",
+TEST_CASE("one standstill of any length counts once and minutes at rest do not narrow the range",
           "[monitor]") {
     Range fresh;
     stop(fresh, 1, 0.3, 6000);
@@ -64,15 +64,14 @@ TEST_CASE("a wider standstill widens the range at once, narrower ones narrow it 
     CHECK(range.level() > 1.2 * 1.04);
 }
 
-TEST_CASE("what happens during an alarm widens the range by half at most and does not narrow it",
-          "[monitor]") {
+TEST_CASE("an alarm widens the range by at most half and does not narrow it", "[monitor]") {
     Range range = known(1, 0.3);
     stop(range, 5, 0.01, 10, true);
     CHECK(range.level() == Approx(1.5 * 1.04));
     CHECK(range.change() == Approx(0.3 * 1.04));
 }
 
-TEST_CASE("an absurd block does not make the range useless", "[monitor]") {
+TEST_CASE("an absurd block does not make the range unusable", "[monitor]") {
     Range range = known(1, 0.3);
     for (const double absurd :
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e30}) {

@@ -67,7 +67,8 @@ TEST_CASE("in single precision a ripple of 200 cycles per turn keeps its phase")
     }
 }
 
-TEST_CASE("at three times the sign velocity the smooth sign is within half a percent of the sign") {
+TEST_CASE(
+    "at three times the sign velocity the smooth sign deviates from the sign by at most half a percent") {
     const CoulombFriction<1>::Constants<double> coulomb{{{0}}, {{0.01}}};
     for (const double sign : {-1.0, 1.0}) {
         const double motion[] = {0, sign * 0.03, 0};
@@ -75,7 +76,7 @@ TEST_CASE("at three times the sign velocity the smooth sign is within half a per
     }
 }
 
-TEST_CASE("effect columns follow the body columns, each in the row it acts on") {
+TEST_CASE("effect columns follow the body columns and each is in the row on which it acts") {
     using Arm = Chain<2>;
     using Effects = Physics<StandardMeasured, 6, ViscousFriction<2>, CubicDamping, OutputOffset<1>,
                             JointSpring<2>>; // 20 columns of bodies, then 2 + 1 + 1 + 2

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Properties of the regressor of any chain. Torques and wrenches themselves: tests/truth.
+// Properties of the regressor of any chain. tests/truth compares the torques and wrenches themselves.
 #include "dfdyn/physics/rigid_body.hpp"
 
 #include "tests/firmware_lib/support/counted.hpp"
@@ -211,7 +211,7 @@ TEST_CASE("a scalar with derivatives gives the derivatives of the regressor") {
             2e-5;
         for (Eigen::Index k = 0; k < psi.size(); ++k) {
             const Eigen::VectorXd& derivatives = psi.data()[k].derivatives();
-            // a constant zero has none
+            // A constant zero has no derivatives.
             const double derivative = derivatives.size() == 0 ? 0 : derivatives[i];
             REQUIRE(derivative == Approx(slope.data()[k]).epsilon(1e-6).margin(1e-6));
         }
@@ -229,7 +229,7 @@ TEST_CASE("rows are a stride apart and the gaps are not written") {
     CHECK((psi.rightCols(3).array() == 77).all());
 }
 
-TEMPLATE_TEST_CASE("the rigid body costs what it declares", "", Chain<1>, Chain<4>, Chain<7>,
+TEMPLATE_TEST_CASE("the rigid body costs what its declaration says", "", Chain<1>, Chain<4>, Chain<7>,
                    (Chain<4, WrenchAtSensor<4>>), (Chain<7, WrenchAtSensor<3>>)) {
     using Arm = TestType;
     using Number = Counted<double>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The regressor against the textbook equations of the planar two-link arm, written out by hand.
+// Compares the regressor with the textbook equations of the planar two-link arm.
 #include "dfdyn/physics/rigid_body.hpp"
 
 #include "tests/support/catch.hpp"
@@ -51,7 +51,7 @@ Torques by_hand(const PlanarBody& one, const PlanarBody& two, const double* xi) 
     return {first, second};
 }
 
-TEST_CASE("a planar arm of two links has the textbook's torques") {
+TEST_CASE("a planar arm of two links has the torques of the textbook") {
     DFDYN_SEEDED_ENGINE(engine);
     std::uniform_real_distribution<double> number(-3, 3);
     for (int trial = 0; trial < 200; ++trial) {
@@ -71,7 +71,7 @@ TEST_CASE("a planar arm of two links has the textbook's torques") {
                 torques[k] += psi[20 * k + c] * parameters[c];
             }
         }
-        // Forces out of the plane, such as those of the other parameters, act on no joint.
+        // Forces out of the plane, which the other parameters cause, act on no joint.
         const Torques expected =
             by_hand({parameters[0], parameters[1], parameters[2], parameters[9]},
                     {parameters[10], parameters[11], parameters[12], parameters[19]}, xi);
@@ -80,7 +80,7 @@ TEST_CASE("a planar arm of two links has the textbook's torques") {
     }
 }
 
-TEST_CASE("the force of a prismatic joint carries and accelerates the mass beyond it") {
+TEST_CASE("a prismatic joint carries and accelerates the mass beyond it") {
     using Slider = Chain<1>;
     constexpr Slider::Constants<double> vertical{
         {{{{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}, {0, 0, 1}, true}}}, {0, 0, -gravity}, {}};

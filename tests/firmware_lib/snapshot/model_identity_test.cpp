@@ -66,7 +66,7 @@ std::vector<ModelKind> kinds(std::mt19937_64& engine) {
     };
 }
 
-TEST_CASE("a snapshot of one type of model is refused by every other type, also with equal identities") {
+TEST_CASE("a snapshot of one type of model is rejected by every other type even with equal identities") {
     DFDYN_SEEDED_ENGINE(engine);
     const std::vector<ModelKind> all = kinds(engine);
     for (const ModelKind& from : all) {

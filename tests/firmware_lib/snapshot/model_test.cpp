@@ -13,7 +13,7 @@ namespace model_test {
 using namespace dfdyn;
 using namespace dfdyn::tests;
 
-/// A model at least as large as the paper's, as in an embedding: all of it in .bss.
+/// A model at least as large as in the paper, stored completely in .bss as on a microcontroller.
 using LargeModel = TestModel<float, DerivativeFreeReduced<10, 3>, 500>;
 LargeModel::Constants large_constants;
 Estimator<LargeModel> large_estimator{large_constants};
@@ -60,7 +60,7 @@ DynamicModel::Constants on_heap(const FixedModel::Constants& fixed) {
     return constants;
 }
 
-TEST_CASE("a model with 500 features, 1,000 columns, works in static storage") {
+TEST_CASE("a model with 500 features and 1000 columns works in static storage") {
     DFDYN_SEEDED_ENGINE(engine);
     large_constants = make_constants<LargeModel>(engine);
     large_estimator.reset();
@@ -76,7 +76,7 @@ TEST_CASE("a model with 500 features, 1,000 columns, works in static storage") {
 
 // The host's tools run models of any size with the same code, so that their results are those of the
 // firmware.
-TEST_CASE("a model with run-time sizes behaves as the firmware's") {
+TEST_CASE("a model with run-time sizes behaves like the firmware's model") {
     DFDYN_SEEDED_ENGINE(engine);
     const auto constants = make_constants<FixedModel>(engine, 0.999);
     const auto host_constants = on_heap(constants);
@@ -96,7 +96,7 @@ TEST_CASE("a model with run-time sizes behaves as the firmware's") {
             REQUIRE(estimate.standard_deviation[k] == Approx(expected.standard_deviation[k]).epsilon(1e-4));
         }
     }
-    // It also accepts the firmware's snapshot.
+    // It also accepts a snapshot of the firmware.
     CHECK(host.restore(snapshot_of(firmware)) == SnapshotResult::ok);
     CHECK((snapshot_of(host) == snapshot_of(firmware)));
 }

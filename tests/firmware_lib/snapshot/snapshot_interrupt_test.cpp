@@ -63,8 +63,8 @@ class Ticked {
         return static_cast<std::size_t>(std::count(held_.begin(), held_.end(), 1));
     }
 
-    /// Counts the snapshots that equal the state after some tick and, restored, predict as the estimator did
-    /// then.
+    /// Counts the snapshots that equal the state after some tick and, when restored, predict like the
+    /// estimator at that time.
     [[nodiscard]] std::size_t true_ones(std::map<Bytes, int> snapshots) const {
         std::size_t found = 0;
         Estimator<Model> replayed(constants_);
@@ -204,7 +204,7 @@ TEST_CASE("among snapshots that exceed their ticks, every accepted one is consis
     CHECK(ticked.true_ones(result.accepted) == result.accepted_count);
 }
 
-TEST_CASE("a snapshot in one call that a learning tick interrupts is refused") {
+TEST_CASE("a snapshot in one call that a learning tick interrupts is rejected") {
     DFDYN_SEEDED_ENGINE(engine);
     Ticked ticked(engine);
     Attempts result;

@@ -125,7 +125,7 @@ TEMPLATE_TEST_CASE("ticks during a snapshot predict and do not learn, and learni
     }
 }
 
-TEST_CASE("a snapshot that exceeds its ticks is refused and learning continues") {
+TEST_CASE("a snapshot that exceeds its ticks is rejected and learning continues") {
     DFDYN_SEEDED_ENGINE(engine);
     Learned<UdFloat> arm(engine);
     Bytes buffer(arm.estimator.snapshot_bytes());

@@ -36,7 +36,7 @@ TEST_CASE("storage of a fixed size is an aggregate in place, aligned for vectors
     static_assert(table[1] == 2 && table.size() == 2);
 }
 
-TEST_CASE("the host's storage with run-time sizes behaves the same") {
+TEST_CASE("the host's storage with run-time sizes behaves in the same way") {
     auto storage = Storage<float, dynamic>::zeros({7});
     CHECK(storage.size() == 7);
     check_holds_numbers(storage);

@@ -13,8 +13,8 @@ namespace dfdyn::tests {
 
 inline std::int64_t counted_operations = 0;
 
-/// A number that counts its operations, as defined by `Budget`. Otherwise it behaves as `Real`, so that code
-/// for a plain number accepts it.
+/// A number that counts its operations, as defined by `Budget`. Otherwise it behaves like `Real`, so that it
+/// can replace a plain number.
 template <class Real>
 struct Counted {
     Real value = 0;

@@ -54,8 +54,8 @@ class LearnerUnderTest {
         learner_.reset();
     }
 
-    /// Starts from `start`. `ceiling` is the prior's variance, which bounds that of every parameter under
-    /// forgetting.
+    /// Starts from `start`. `ceiling` is the variance of the prior, an upper bound of the variance of every
+    /// parameter under forgetting.
     LearnerUnderTest(const Start& start, double ceiling, double forgetting_factor)
         : columns_(static_cast<int>(start.weights.rows())), outputs_(static_cast<int>(start.weights.cols())),
           start_(converted(start)), constants_{static_cast<Scalar>(ceiling),

@@ -52,7 +52,8 @@ inline ArmState standing_arm(double time_s) { return {moving_arm(time_s).positio
 
 inline constexpr double torque_noise = 0.05;
 
-/// Returns the torques of the arm under test: that of the model's physics, or the plain arm without physics.
+/// Returns the torques of the arm under test: those with the model's physics, or of the plain arm without
+/// physics.
 template <class Model>
 std::array<double, 2> torques_of(const ArmState& arm) {
     if constexpr (Model::parameters == 0) {
