@@ -90,7 +90,7 @@ class Row {
         TrainedModel model = train_model(prepare_training({&recordings_[0], 1}, training_), outputs_,
                                          training_, [](const TrainingProgress&) {})
                                  .model;
-        // accept every sample
+        // Accepts every sample.
         model.limits.innovation = static_cast<double>(std::numeric_limits<float>::max());
         return model;
     }

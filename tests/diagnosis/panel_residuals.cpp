@@ -45,7 +45,7 @@ std::vector<std::vector<double>> residuals() {
     arm.kind = panel_robot("ur5_torque");
     arm.robot = read_panel_robot(arm.kind);
     const MotionRows motion{rows_of(recording.position), rates.first, rates.second};
-    // without the ends, where derivative windows are incomplete
+    // Without the ends, where the windows of the derivatives are incomplete.
     const Eigen::Index inner = motion.position.rows() - 100;
     const Eigen::MatrixXd torque = rigid_outputs(arm, arm.robot, motion).middleRows(50, inner);
     const Eigen::MatrixXd current = rows_of(recording.output).middleRows(50, inner);

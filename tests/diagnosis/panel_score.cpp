@@ -35,7 +35,7 @@ void score_parameter(EffectScore& score, const HiddenEffect& hidden, const tools
     if (found == finding.parameters.end()) {
         return;
     }
-    // no error is a gain of 1
+    // A gain of 1 means no error.
     const bool is_factor = hidden.effect == "actuator_gain" || hidden.effect == "ft_gain";
     score.relative_error = std::abs(found->value - value) / std::abs(is_factor ? value - 1 : value);
     score.in_interval = found->low <= value && value <= found->high;

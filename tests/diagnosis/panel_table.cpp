@@ -47,7 +47,7 @@ void add_named(PanelSummary& summary, const CaseScore& score) {
         add_effect(summary, effect);
     }
     const bool drift = std::ranges::any_of(score.effects, [](const EffectScore& effect) {
-        // always drawn together with its friction, so it is not a pair of independent effects
+        // Always drawn together with its friction, so it is not a pair of independent effects.
         return effect.effect == "friction_drift";
     });
     if (score.effects.size() == 2 && !drift) {

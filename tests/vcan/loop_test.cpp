@@ -125,7 +125,7 @@ TEST_CASE("a plant loses the frames of its scenario's faults from their time on"
         {"missed_deadlines"});
     CAPTURE(said);
     CHECK_THAT(said, ContainsSubstring("stopped (no_position)"));
-    // ticks at 100 Hz in which it followed the reference
+    // It followed the reference in these ticks, at 100 Hz.
     CHECK(std::abs(number_after(said, "ticks, ") - 155) < 15);
 }
 
@@ -165,7 +165,7 @@ TEST_CASE("a signal disables what a loop has learned and another enables it agai
         return loop.output(loop_lines);
     });
     CAPTURE(said);
-    // the default action of that signal would end the program
+    // The default action of that signal would end the program.
     CHECK_THAT(said, ContainsSubstring("stopped (requested)"));
 }
 

@@ -178,7 +178,7 @@ TEMPLATE_TEST_CASE(
         REQUIRE(estimate.status.predicted());
         strayed = std::max(strayed, std::abs(estimate.prediction[0] - arm.without_features(0)));
     }
-    // the features of the paper contribute at this position
+    // The features of the paper contribute at this position.
     REQUIRE(strayed > arm.constants.output_noise_std[0]);
     arm.know();
     for (int visit = 0; visit < 20; ++visit) {

@@ -24,7 +24,7 @@ void check_all(const Contenders& contenders, const RegressionTask& task) {
         }
         CHECK(relative_error(contender->predictions(), expected) <= tolerated_error(contender->scalar()));
         contender->tick();
-        // one more row changes the predictions
+        // One more row changes the predictions.
         CHECK(relative_error(contender->predictions(), expected) > 1e-5);
     }
 }

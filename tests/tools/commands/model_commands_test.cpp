@@ -98,7 +98,7 @@ double largest_figure(const std::string& summary, const std::string& label) {
 
 struct Call {
     std::string arguments;
-    /// limit of the nRMSE of each output over the second half: a third above the value of one run
+    /// Limit of the nRMSE of each output over the second half: a third above the value of one run.
     double error_below;
 };
 

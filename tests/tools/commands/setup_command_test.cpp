@@ -197,7 +197,7 @@ TEST_CASE("a replay without any prediction ends with status 1 and the reason") {
     CHECK_THAT(nothing.error, ContainsSubstring(wrong + ": nothing was predicted: ") &&
                                   ContainsSubstring("check that units, sample period and columns"));
     CHECK(bench.call(replay + bench.path("run.csv")).status == 0);
-    // one of two recordings is predicted
+    // One of two recordings is predicted.
     CHECK(bench.call(replay + bench.path("run.csv") + "," + wrong).status == 0);
 }
 

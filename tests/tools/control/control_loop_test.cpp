@@ -112,8 +112,7 @@ TEST_CASE("an arm that drifts while the loop holds it is damped and pulled back"
         bench.position()[0] += 0.001; // 1 rad/s
         torque = bench.tick(true, true);
     }
-    // position gain times the distance to the rest position, limited to 0.05 rad
-    const double spring = 50 * 0.05;
+    const double spring = 50 * 0.05; // position gain times the distance to the rest position
     CHECK(torque == Approx(weight(bench.position()[0]) - 5 * 1.0 - spring).epsilon(1e-3));
 }
 

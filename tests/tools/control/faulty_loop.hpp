@@ -60,7 +60,7 @@ class FaultyLoop {
         start_ = plant_.truth().position;
         peak_distance_ = 0;
     }
-    /// largest change of a command in one tick, as a share of the torque limit
+    /// Largest change of a command in one tick, as a share of the torque limit.
     double peak_step() const { return peak_step_; }
     double peak_speed() const { return peak_speed_; } ///< largest speed of a joint, rad/s
     double peak_distance() const {

@@ -174,7 +174,7 @@ struct StopFault {
     StopCause cause;
     int ticks;    ///< at most, from the fault to the stop, in addition to the delay of the bus
     double speed; ///< at most, after the fault, as a multiple of the speed before it
-    /// at most, in addition to the distance at the speed before the fault until 0.1 s after the stop
+    /// At most, in addition to the distance at the speed before the fault until 0.1 s after the stop.
     double distance_rad;
     std::function<LoopFault(int after)> fault;
 };

@@ -232,7 +232,7 @@ TEST_CASE("a late tick of the loop sees the arm under the old command and delays
         CHECK(ticks[303].begun_s == Approx(0.303));
         check_position(ticks[303], 0.303);
         CHECK(ticks[303].true_position != tick.true_position);
-        // relative to the reference at the due times
+        // Errors are relative to the reference at the due times.
         CHECK(std::abs(ticks[300].error - ticks[299].error) < 1e-4);
         CHECK(std::abs(ticks[302].error - ticks[301].error) < 1e-4);
     }

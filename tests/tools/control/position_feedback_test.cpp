@@ -114,7 +114,7 @@ TEST_CASE("only the joint whose reading is missing coasts") {
 TEST_CASE("a reading that would need an impossible acceleration is reported as irregular") {
     PositionFeedback loop = after(20);
     loop.advance();
-    // 100 rad/s² moves a joint by 0.0004 rad in 2 ms
+    // An acceleration of 100 rad/s² moves a joint by 0.0004 rad in 2 ms.
     loop.observe(0, position(20).array() + 0.0003, reference(20));
     CHECK(loop.regular());
     loop.advance();

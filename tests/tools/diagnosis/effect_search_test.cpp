@@ -148,7 +148,7 @@ TEST_CASE("a nuisance parameter has a Gaussian prior with its own standard devia
 TEST_CASE(
     "an effect that a nuisance parameter can imitate is found and kept where it is too large for the prior") {
     DFDYN_SEEDED_ENGINE(engine);
-    // only a thousandth of its copy is not explained by it
+    // Leaves only a thousandth of its copy unexplained.
     const MatrixXd nuisance = 30 * random_columns(1, engine);
     const VectorXd target = 0.4 * nuisance + random_columns(1, engine);
     MatrixXd columns(rows, 2);

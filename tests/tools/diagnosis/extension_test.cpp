@@ -101,7 +101,7 @@ bool carried_exactly(const Candidate& candidate, std::size_t shape) {
     if (candidate.effect == "coulomb_friction") {
         return columns == std::vector<std::size_t>{0};
     }
-    // a function of velocity, not of travel
+    // Column 0 is a function of velocity, not of travel.
     return candidate.effect != "stribeck_friction" || columns.front() == 0;
 }
 

@@ -66,7 +66,7 @@ TEST_CASE("the spectrum of first-order autoregressive noise equals the closed fo
         const double phase = std::numbers::pi * (static_cast<double>(bin) + 0.5) / 200;
         const double expected = 1 / (1 - 2 * memory * std::cos(phase) + memory * memory);
         INFO("bin " << bin);
-        // with 200 frames the standard deviation is at most 10 %
+        // With 200 frames the standard deviation is at most 10 %.
         CHECK(spectrum[bin] == Approx(expected).epsilon(0.25));
     }
 }

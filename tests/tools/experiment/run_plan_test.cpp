@@ -283,7 +283,7 @@ TEST_CASE("a combination of cases combines their models and runs again if a memb
     const UnitResult& combined = results.units[4];
     CHECK(combined.case_name == "both-of-them");
     CHECK(combined.columns == 40);
-    // the error of the mean of two members is below the mean of their errors
+    // The error of the mean of two members is below the mean of their errors.
     for (const std::size_t group : {0U, 1U}) {
         const auto sum_of = [group](const UnitResult& unit) {
             double sum = 0;

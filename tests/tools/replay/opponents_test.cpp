@@ -125,7 +125,7 @@ TEST_CASE("opponents are scored only at the ticks that the model predicted") {
     CHECK(state < errors[1].normalised_error[0]);
     CHECK(state < 1.1 * errors[2].normalised_error[0]);
     CHECK(errors[2].normalised_error[0] < errors[1].normalised_error[0]);
-    // neither predictions nor the last two values of a forecast
+    // No prediction belongs to these ticks, and no scored forecast uses their values.
     for (std::size_t tick = 0; tick < 7; ++tick) {
         replayed.measured[2 * tick] += tick % 2 == 0 ? 1e-3 : -1e-3;
     }

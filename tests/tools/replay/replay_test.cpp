@@ -160,7 +160,7 @@ TEST_CASE("contradictions are intervals above the limit") {
     const float none = std::nanf("");
     const auto found =
         find_contradictions(with_innovations({none, 9, 1, 9, 8, 7, 1, 1, 1, 1, 9, 1, 1, 1, 6, 12}), 5);
-    // 0.1 to 0.5 s is one and 1.4 to 1.5 s another; the single tick at 1.0 s is none
+    // 0.1 to 0.5 s is one and 1.4 to 1.5 s another; the single tick at 1.0 s is none.
     REQUIRE(found.size() == 2);
     CHECK(found[0].start_s == Approx(0.1));
     CHECK(found[0].end_s == Approx(0.5));

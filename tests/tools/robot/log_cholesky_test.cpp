@@ -52,7 +52,7 @@ TEST_CASE("the derivative of the parameters equals finite differences") {
         const tools::LogCholesky step = 1e-6 * tools::LogCholesky::Unit(j);
         const tools::InertialParameters difference =
             (tools::parameters_from(at + step) - tools::parameters_from(at - step)) / 2e-6;
-        // rounding errors
+        // The tolerance covers the rounding errors of the differences.
         CHECK((slope.col(j) - difference).norm() < 1e-8 * tools::parameters_from(at).norm());
     }
 }

@@ -48,7 +48,7 @@ TEST_CASE("doubled friction requires twice the torque at the same speed while th
 
 TEST_CASE("a constant push accelerates the pendulum by lever times force from its start to its end") {
     const double angle = 0.7;
-    // force in the frame of the base, lever in that of the link
+    // The force is in the frame of the base, the lever in the frame of the link.
     const Eigen::Vector3d force(5, 3, -2), lever(0.1, 0.05, -0.3);
     SimulatedPlant plant = plant_with(R"([{"kind": "push", "force_n": [5, 3, -2], "link": 1,
         "point_m": [0.1, 0.05, -0.3], "from_s": 0.1, "for_s": 0.2}])",

@@ -35,7 +35,7 @@ TEST_CASE("predictions are limited to three times and measurements to ten times 
 
 TEST_CASE("a prediction is limited to the motor's effort if the data do not exceed it") {
     LimitModel limits = limits_of(some_data());
-    // the second effort is ignored because the data exceed it
+    // The second effort is ignored because the data exceed it.
     bound_by_efforts(limits, std::array{56.0, 4.0, 0.0});
     CHECK(limits.prediction[0] == 56);
     CHECK(limits.prediction[1] == 15);

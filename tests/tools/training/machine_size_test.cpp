@@ -33,8 +33,8 @@ TEST_CASE("the size of each parameter follows from mass and reach and limits") {
     CHECK(sizes[0] == Approx(2));
     CHECK(sizes[13] == Approx(2 * 1.6));
     CHECK(sizes[19] == Approx(2 * 1.6 * 1.6));
-    const VectorXd expected{// by effect, then by joint
-                            {200 / 4.0, weight, 200, weight, 2 * 1.6 * 1.6, 2 * 1.6 * 1.6, 200, weight}};
+    const VectorXd expected{
+        {200 / 4.0, weight, 200, weight, 2 * 1.6 * 1.6, 2 * 1.6 * 1.6, 200, weight}}; // by effect, by joint
     CHECK((sizes.tail(8) - expected).norm() < 1e-9);
 }
 

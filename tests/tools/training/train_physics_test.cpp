@@ -297,7 +297,7 @@ TEST_CASE("the physics of DFR can have its own filters") {
     arm.options.rows_per_joint = 2; // without an acceleration
     const tools::TrainingResult result = tools::train(arm.data, arm.options);
     const MatrixXd& rows = result.physics->motion_rows;
-    // a constant position has no velocity or acceleration
+    // A constant position has no velocity or acceleration.
     CHECK(rows.bottomRows(2).rowwise().sum().norm() < 1e-8 * rows.norm());
     const VectorXd time = -arm.data.sample_period_s * VectorXd::LinSpaced(lags + 1, 0, lags);
     CHECK(rows.row(1).dot(time) == Approx(1));
@@ -331,7 +331,7 @@ TEST_CASE("the likelihood of DFR is at least that of DFSR") {
     arm.options.input = InputKind::DFR;
     arm.options.starts = 1;
     CHECK(tools::train(arm.data, arm.options).model.training.log_likelihood >=
-          // tolerance of the search; the filters are truncated differently
+          // The tolerance is that of the search; the filters are truncated differently.
           structured - (own_motion ? 1e-6 : 1e-3));
 }
 
