@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faults that look like others: each is found by its own rule, with its rate, and no other rule holds.
+#include "dfdyn/hal/device/icub_strain.hpp"
+
 #include "tests/tools/can/bus_check_support.hpp"
 
 namespace {

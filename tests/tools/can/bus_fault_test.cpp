@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What replay makes of faults: nothing that it accepts is wrong, and what is good is not refused for ever.
+#include "dfdyn/hal/device/icub_strain.hpp"
+
 #include "tests/tools/can/bus_check_support.hpp"
 #include "tools/can/arm/bus_sampler.hpp"
 

@@ -4,11 +4,10 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/can/bus_check_support.hpp"
 #include "tests/tools/support/name_literals.hpp"
-#include "tools/can/arm/device_frames.hpp"
 #include "tools/can/arm/torque_frames.hpp"
+#include "tools/can/description/bus_fields.hpp"
 
 #include <filesystem>
-#include <map>
 #include <set>
 #include <string>
 #include <vector>
