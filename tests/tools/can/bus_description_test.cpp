@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/catch.hpp"
+#include "tests/tools/can/bus_check_support.hpp"
 #include "tests/tools/can/bus_support.hpp"
 #include "tools/base/text/error.hpp"
 
+#include <cmath>
 #include <filesystem>
 
 namespace {
@@ -20,6 +22,32 @@ BusDescription changed(const std::string& name, const std::string& from, const s
     REQUIRE(place != std::string::npos);
     const TemporaryDirectory directory;
     return read_bus_description(directory.write("bus.json", text.replace(place, from.size(), to)));
+}
+
+/// An arm of Damiao motors: the fields of the first, besides those that say where it is, and all of the
+/// others.
+BusDescription damiao_arm(const std::string& scale, const std::string& others = "") {
+    return dfdyn::tests::described(
+        R"({"schema": "dfdyn.bus/1", "bit_rate": 1000000, "sample_rate_hz": 500, "trigger": {"on": "set"},
+            "joints": {"family": "damiao", "boards": [{"motor_id": 1, "feedback_id": "0x11", "joint": 1)" +
+        scale + "}" + others + R"(]}, "output": {"family": "efforts", "quantity": "tau"}})");
+}
+
+std::string refusal_of_damiao_arm(const std::string& scale, const std::string& others = "") {
+    try {
+        damiao_arm(scale, others);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+/// The TMAX that the first motor is taken to have.
+double torque_max_of(const BusDescription& arm) {
+    dfdyn::hal::Frame frame = dfdyn::hal::make_frame(0x11, 8);
+    frame.data = {0x11, 0x90, 0, 0x80, 0x0C, 0x00};
+    AnyBoard motor = arm.boards.front().board;
+    return motor.decode(frame).joint[0].effort / (2 * 0xC00 / 4095.0 - 1);
 }
 
 } // namespace
@@ -68,7 +96,7 @@ TEST_CASE("what a bus description cannot be is refused by field, expectation and
         {"ur5_cia402.json", "dfdyn.bus/1", "dfdyn.bus/2",
          R"(schema: expected "dfdyn.bus/1", found "dfdyn.bus/2")"},
         {"ur5_cia402.json", "cia402", "cia403",
-         R"(joints.family: expected icub_two_joint_board, icub_2foc, cia402, odrive or dbc, found "cia403")"},
+         R"(joints.family: expected icub_two_joint_board, icub_2foc, cia402, odrive, damiao or dbc, found "cia403")"},
         {"ur5_cia402.json", "\"joint\": 6", "\"joint\": 5",
          "joints.boards: expected joints 1 to N, each once, found joint 6 after another one of that number"},
         {"ur5_cia402.json", "\"joint\": 2", "\"joint\": 7",
@@ -112,4 +140,49 @@ TEST_CASE("what a bus description cannot be is refused by field, expectation and
         found = error.what();
     }
     CHECK_THAT(found, EndsWith(message));
+}
+
+TEST_CASE("a Damiao motor's scale is its type's as delivered, or the one given") {
+    CHECK(torque_max_of(damiao_arm(R"(, "motor": "DM4310")")) == Approx(10));
+    CHECK(torque_max_of(damiao_arm(R"(, "motor": "DM8009")")) == Approx(54));
+    CHECK(torque_max_of(damiao_arm(R"(, "motor": "DM4310", "torque_max": 12)")) == Approx(12));
+    CHECK(torque_max_of(damiao_arm(R"(, "motor": "DM4340", "velocity_max": 10)")) == Approx(28));
+    CHECK(torque_max_of(damiao_arm(R"(, "position_max": 12.5, "velocity_max": 30, "torque_max": 4)")) ==
+          Approx(4));
+}
+
+TEST_CASE("a Damiao motor's scale has no default where libraries disagree on it") {
+    const std::string unsure = ", for which no default is sure, found none";
+    CHECK_THAT(refusal_of_damiao_arm(R"(, "motor": "DM4340")"),
+               EndsWith("joints.boards[0].velocity_max: expected the motor's register 22 (VMAX)" + unsure));
+    CHECK_THAT(refusal_of_damiao_arm(R"(, "motor": "DM3507")"), EndsWith("register 22 (VMAX)" + unsure));
+    CHECK_THAT(refusal_of_damiao_arm(R"(, "motor": "DM3507", "velocity_max": 50)"),
+               EndsWith("joints.boards[0].torque_max: expected the motor's register 23 (TMAX)" + unsure));
+    CHECK_THAT(refusal_of_damiao_arm(""), EndsWith("register 21 (PMAX)" + unsure));
+    CHECK_THAT(refusal_of_damiao_arm(R"(, "motor": "DM4311")"), EndsWith("found \"DM4311\""));
+    CHECK_THAT(refusal_of_damiao_arm(R"(, "motor": "DM4310")", R"(, {"motor_id": 2, "joint": 2})"),
+               EndsWith("joints.boards[1].feedback_id: expected this field, found none"));
+    CHECK_THAT(
+        refusal_of_damiao_arm(R"(, "motor": "DM4310")",
+                              R"(, {"motor_id": 2, "feedback_id": "0x11", "joint": 2, "motor": "DM4310"})"),
+        EndsWith("expected devices that do not share identifiers, found two that send 0x11"));
+}
+
+TEST_CASE("buscheck sees that a Damiao motor's velocities are of another scale than its positions") {
+    const auto rules_with = [](double described_max, double true_max) {
+        const BusDescription arm =
+            damiao_arm(R"(, "motor": "DM4340", "velocity_max": )" + std::to_string(described_max));
+        dfdyn::tests::Frames frames = dfdyn::tests::sound(arm, 12);
+        const std::int64_t start_ns = frames.front().stamp_ns;
+        for (dfdyn::hal::Frame& frame : frames) {
+            const double velocity = 0.2 * std::cos(1e-9 * static_cast<double>(frame.stamp_ns - start_ns));
+            const auto code = static_cast<unsigned>((velocity + true_max) / (2 * true_max) * 4095 + 0.5);
+            frame.data[3] = static_cast<std::uint8_t>(code >> 4);
+            frame.data[4] = static_cast<std::uint8_t>((code & 0xF) << 4 | (frame.data[4] & 0xF));
+        }
+        return dfdyn::tests::rules(arm, frames);
+    };
+    CHECK(rules_with(10, 10) == dfdyn::tests::Names{});
+    CHECK(rules_with(10, 8) == dfdyn::tests::Names{"velocity_scale"});
+    CHECK(rules_with(8, 10) == dfdyn::tests::Names{"velocity_scale"});
 }

@@ -14,6 +14,7 @@ JointFamily icub_two_joint_board();
 JointFamily icub_2foc();
 JointFamily cia402();
 JointFamily odrive();
+JointFamily damiao();
 JointFamily dbc_joints();
 
 SensorFamily icub_strain();
@@ -26,7 +27,7 @@ SensorFamily dbc_sensor();
 const std::vector<JointFamily>& joint_families() {
     using namespace families;
     static const std::vector<JointFamily> catalogue{
-        icub_two_joint_board(), icub_2foc(), cia402(), odrive(), dbc_joints(),
+        icub_two_joint_board(), icub_2foc(), cia402(), odrive(), damiao(), dbc_joints(),
     };
     return catalogue;
 }
