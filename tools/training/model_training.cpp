@@ -31,7 +31,7 @@ bool have_derivatives(std::span<const Recording> recordings) {
     });
 }
 
-/// 0 where the URDF has none.
+/// Returns the joints' effort limits; 0 if the URDF has none.
 std::vector<double> joint_efforts(const Robot& robot) {
     std::vector<double> efforts;
     for (const RobotJoint& joint : robot.joints) {
@@ -40,14 +40,14 @@ std::vector<double> joint_efforts(const Robot& robot) {
     return efforts;
 }
 
-/// The chain, its effects and the outputs' gains.
+/// The chain, its effects and the output gains.
 struct PhysicsColumnsOf {
     ChainModel chain;
     std::vector<EffectModel> effects;
     std::vector<double> output_gain;
 };
 
-/// Of currents; nothing for other outputs.
+/// Returns the torque gains for currents; empty for other outputs.
 std::vector<TorqueGain> torque_gains(const PreparedTraining& prepared, OutputKind outputs,
                                      const RobotPhysics& physics) {
     const auto count = static_cast<std::size_t>(prepared.data.outputs.cols());
@@ -87,7 +87,7 @@ void check_joints(const Robot& robot, const TrainingData& data) {
     }
 }
 
-/// The motion that the physics sees, as a model stores it.
+/// Returns the motion input of the physics, as stored in a model.
 InputModel motion_model(const TrainedModel& model, const MatrixXd& rows) {
     InputModel motion;
     if (rows.size() == 0) {
@@ -134,7 +134,7 @@ PhysicsModel physics_model(const TrainedModel& model, const TrainedPhysics& trai
     return physics;
 }
 
-/// Input STD takes what the recording has, sample by sample, without a window.
+/// With measured derivatives, input STD has no window.
 void set_derivatives(TrainedModel& model, const PreparedTraining& prepared) {
     if (model.input.kind != InputKind::STD || prepared.derivatives == Derivatives::estimated) {
         return;
@@ -144,7 +144,7 @@ void set_derivatives(TrainedModel& model, const PreparedTraining& prepared) {
     model.input.position_noise_bound = 0;
 }
 
-/// The selected columns in their units, N x (m p), as PhysicsColumns orders them.
+/// Returns the selected columns in their units, N x (m p), in the order of PhysicsColumns.
 MatrixXd columns_of(const PhysicsModel& physics, const TrainingData& data, const RowList& rows) {
     const auto regressor = robot_regressor(physics.chain, physics.effects, physics.output_gain);
     const ColumnChoice choice{{physics.selected.begin(), physics.selected.end()},

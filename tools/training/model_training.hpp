@@ -13,57 +13,57 @@
 
 namespace dfdyn::tools {
 
-/// The robot behind models P, SP, SP2 and SPK.
+/// The robot for models P, SP, SP2 and SPK.
 struct RobotPhysics {
     Robot robot;
-    std::vector<std::string> effects;     ///< beside the rigid body, as find_effect_kind() knows them
+    std::vector<std::string> effects;     ///< in addition to the rigid body; names as in find_effect_kind()
     double sign_velocity = 0.05;          ///< v of Coulomb's tanh(qd / v), rad/s
     std::vector<double> torque_constants; ///< N·m/A of each joint, for currents; empty: estimated
 };
 
-/// Where input STD takes velocities and accelerations from.
+/// Source of velocities and accelerations for input STD.
 enum class DerivativeSource {
-    automatic, ///< the recording's columns qd and qdd where it has both, else estimated
-    measured,  ///< the columns; an error without
+    automatic, ///< the recording's columns qd and qdd if it has both, otherwise estimated
+    measured,  ///< the columns; an error if they are missing
     estimated, ///< from the positions, by the adaptive window
 };
 
 struct ModelTraining {
-    TrainingOptions options;             ///< `physics.regressor` and `position_noise_bound` are filled in
-    std::optional<RobotPhysics> physics; ///< read unless the model is NP
+    TrainingOptions options; ///< `physics.regressor` and `position_noise_bound` are set by the training
+    std::optional<RobotPhysics> physics; ///< used unless the model is NP
     DerivativeSource derivatives = DerivativeSource::automatic;
 };
 
-/// Whether the training looks at velocities and accelerations: with input STD, and to estimate torque
+/// Returns whether the training uses velocities and accelerations: for input STD, and to estimate torque
 /// constants.
 bool sees_derivatives(const ModelTraining& training);
 
-/// What is trained on, with the derivatives that the training needs.
+/// Training data with the derivatives that the training needs.
 struct PreparedTraining {
     TrainingData data;
     Derivatives derivatives = Derivatives::estimated;
     double position_noise_bound = 0;
 };
 
-/// Reads the recordings' samples. Throws InputError as gather_training_data(), and for derivatives that the
-/// recordings lack.
+/// Reads the recordings' samples. Throws InputError as gather_training_data() does, and if the recordings
+/// lack derivatives.
 PreparedTraining prepare_training(std::span<const Recording> recordings, const ModelTraining& training);
 
-/// A model, and what training found out beside it.
+/// A model and further results of its training.
 struct ModelTrainingResult {
     TrainedModel model;
     std::vector<HoldOutPoint> hold_out;   ///< CV: the errors over the grid
     std::vector<TorqueGain> torque_gains; ///< of each joint, for physics of currents
 };
 
-/// Trains a model on `prepared`; see train(). `training.rows`, `training.recordings` and the innovation limit
-/// are left to the caller. Throws InputError also for physics without a robot.
+/// Trains a model on `prepared`; see train(). The caller sets `training.rows`, `training.recordings` and the
+/// innovation limit. Throws InputError also for physics without a robot.
 ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind outputs,
                                 const ModelTraining& training, const ProgressCallback& progress);
 
-/// Computes the start of `model` again, by batch least squares over all usable samples of `prepared`, with
-/// everything else as the model has it: its hyperparameters, motion, features. For another draw of features,
-/// or other data. Of a model trained without shrinkage: the robot's own parameters are not in the prior.
+/// Computes the initial state of `model` again by batch least squares over all usable samples of `prepared`,
+/// with its hyperparameters, motion and features, for another draw of features or other data. Only for a
+/// model trained without shrinkage: the prior does not include the robot's own parameters.
 void restart_model(TrainedModel& model, const PreparedTraining& prepared);
 
 } // namespace dfdyn::tools

@@ -29,7 +29,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// All but the start.
+/// Returns the model without its initial state.
 TrainedModel model_of(const TrainingSetup& setup, const Fit& fit) {
     const TrainingOptions& options = setup.options;
     const TrainingData& data = setup.data;
@@ -68,8 +68,8 @@ MatrixXd full_motion_rows(const TrainingSetup& setup, const VectorXd& parameters
     return full;
 }
 
-/// Reduces the scales of parameters whose prior deviation, column_scale gamma, exceeds their size in a
-/// machine.
+/// Reduces the scales of parameters whose prior standard deviation, column_scale gamma, exceeds their
+/// plausible size.
 void bound_prior(TrainedPhysics& physics, const VectorXd& parameter_size) {
     const double deviation = std::sqrt(physics.prior_variance);
     for (Index c = 0; c < physics.column_scale.size() && parameter_size.size() > 0 && deviation > 0; ++c) {
@@ -78,8 +78,8 @@ void bound_prior(TrainedPhysics& physics, const VectorXd& parameter_size) {
     }
 }
 
-/// Units of the parameters such that the prior is gamma^2 I and psi~ of order 1, as far as the options leave
-/// it open.
+/// Returns the units of the parameters for which the prior is gamma^2 I and psi~ has order 1, as far as the
+/// options permit.
 TrainedPhysics units_of(const TrainingSetup& setup, const PhysicsPart& part, const OutputModel& outputs) {
     const PhysicsOptions& options = setup.options.physics;
     TrainedPhysics physics;
@@ -101,8 +101,8 @@ TrainedPhysics units_of(const TrainingSetup& setup, const PhysicsPart& part, con
     return physics;
 }
 
-/// What the features have to explain, in units of noise_std: what the physics (columns of physics.columns at
-/// the usable rows, N x (m p)) leaves of the outputs.
+/// Returns the targets of the features in units of noise_std: the outputs minus the physics (columns of
+/// physics.columns at the usable rows, N x (m p)).
 MatrixXd feature_targets(const TrainingSetup& setup, const OutputModel& outputs, const MatrixXd& columns,
                          const VectorXd& parameters) {
     MatrixXd targets = scaled_outputs(outputs, setup.data.outputs, setup.rows.usable);
@@ -113,8 +113,8 @@ MatrixXd feature_targets(const TrainingSetup& setup, const OutputModel& outputs,
     return targets;
 }
 
-/// The prior that the robot's own parameters give; nothing where they are unknown or the paper's prior is
-/// wanted.
+/// Returns the prior from the robot's own parameters; empty if they are unknown or the paper's prior is
+/// requested.
 std::optional<ParameterPrior> knowledge_of(const TrainingSetup& setup, const ColumnChoice& choice,
                                            const VectorXd& motion) {
     const PhysicsOptions& physics = setup.options.physics;
@@ -124,13 +124,13 @@ std::optional<ParameterPrior> knowledge_of(const TrainingSetup& setup, const Col
     return robot_prior(setup, choice, motion);
 }
 
-/// SP: by generalised least squares under the kernel of the features; SP2: without features.
+/// SP: by generalised least squares with the kernel of the features; SP2: without features.
 VectorXd fixed_parameters(const PhysicsProblem& problem, ModelClass model, const ParameterPrior& prior) {
     return (model == ModelClass::SP ? joint_start(problem, prior) : parametric_start(problem, prior))
         .physics.parameters;
 }
 
-/// Fills the start of the model and what it says of the physics.
+/// Sets the initial state of the model, and returns its physics.
 TrainedPhysics start_physics(const TrainingSetup& setup, const PhysicsPart& part, TrainedModel& model) {
     TrainedPhysics physics = units_of(setup, part, model.outputs);
     physics.motion_rows = full_motion_rows(setup, part.motion);
@@ -173,7 +173,7 @@ TrainedPhysics start_physics(const TrainingSetup& setup, const PhysicsPart& part
     return physics;
 }
 
-/// train() with the lags as they are in `data`.
+/// Runs train() with the lags of `data`.
 TrainingResult train_unspaced(const TrainingData& data, const TrainingOptions& options,
                               const ProgressCallback& progress) {
     const TrainingSetup setup(data, options);

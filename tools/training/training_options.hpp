@@ -7,16 +7,17 @@
 
 namespace dfdyn::tools {
 
-/// NP, P, SP, SP2 or SPK.
+/// Returns NP, P, SP, SP2 or SPK.
 std::string to_string(ModelClass model);
 
-/// What has that name (`scaled`, `unit` or `diagonal`; ML or CV); throw InputError for any other.
+/// Return the value with this name (`scaled`, `unit` or `diagonal`; ML or CV). Throw InputError for any other
+/// name.
 ModelClass parse_model_class(const std::string& name);
 PriorForm parse_prior_form(const std::string& name);
 HyperMethod parse_hyper_method(const std::string& name);
 
-/// Throws InputError that names the option unless all are in range and go together with each other and with
-/// `data`.
+/// Throws InputError with the option's name unless all options are in range and consistent with each other
+/// and with `data`.
 void check_options(const TrainingOptions& options, const TrainingData& data);
 
 } // namespace dfdyn::tools

@@ -187,7 +187,7 @@ class DerivativeInput final : public InputMap {
     }
 
     MatrixXd columns_; // N x 3n, each column without its mean
-    Index gains_;      // that are learned
+    Index gains_;      // learned gains
     VectorXd inverse_deviations_;
 };
 

@@ -12,7 +12,7 @@
 
 namespace dfdyn::tools {
 
-/// The kernel's inputs xi of the likelihood rows as a differentiable function of the input's own parameters.
+/// The kernel's inputs xi of the likelihood rows, as a differentiable function of the input's own parameters.
 class InputMap {
   public:
     InputMap() = default;
@@ -23,31 +23,33 @@ class InputMap {
     virtual Bounds bounds() const = 0;
     virtual Eigen::VectorXd start(int index, NormalSource& random) const = 0;
 
-    /// N x (n k), element (i, j) of xi in column i k + j, up to a constant per column (the kernel sees
-    /// differences only).
+    /// Returns N x (n k), with element (i, j) of xi in column i k + j. Each column has an arbitrary constant
+    /// offset, because the kernel depends on differences only.
     virtual Eigen::MatrixXd inputs(const Eigen::VectorXd& parameters) const = 0;
 
-    /// Gradient with respect to the parameters, from the one with respect to inputs(parameters).
+    /// Returns the gradient with respect to the parameters, from that with respect to inputs(parameters).
     virtual Eigen::VectorXd pull_back(const Eigen::VectorXd& parameters,
                                       const Eigen::MatrixXd& input_gradient) const = 0;
 
-    /// What is stored of it; kind, lags and position_noise_bound are left to the caller.
+    /// Returns the stored form of the input, except for kind, lags and position_noise_bound, which the caller
+    /// sets.
     virtual InputModel model(const Eigen::VectorXd& parameters) const = 0;
 };
 
-/// DF, DFW, DFR, DFSR. `rows` are the likelihood rows, `spread` the deviations that scale the inputs.
+/// Returns the input DF, DFW, DFR or DFSR. `rows`: the likelihood rows; `spread`: the standard deviations
+/// that scale the inputs.
 std::unique_ptr<InputMap> lag_input(const Eigen::MatrixXd& positions, const RowList& rows, LagSpread spread,
                                     std::unique_ptr<RowFamily> family);
 
-/// STD: position, velocity and acceleration with unit deviation over `scale_rows`, times gains 1, a_1, a_2,
-/// with `relevance` learned as log a_j, else 1. `spread` says which joints are held: their inputs get
-/// scale 1.
+/// Returns the input STD: position, velocity and acceleration with unit standard deviation over `scale_rows`,
+/// times the gains 1, a_1, a_2. With `relevance`, log a_j is learned; otherwise a_j is 1. `spread` determines
+/// which joints are constant; their inputs have scale 1.
 std::unique_ptr<InputMap> derivative_input(const TrainingData& data, const RowList& rows,
                                            const RowList& scale_rows, const LagSpread& spread,
                                            bool relevance);
 
-/// The inputs xi exactly as the product computes them: scale .* (R q_i(t^-)), or scale .* (q, qd, qdd) for
-/// STD. rows x (n k).
+/// Returns the inputs xi exactly as the product computes them: scale .* (R q_i(t^-)), or scale .* (q, qd,
+/// qdd) for STD. rows x (n k).
 Eigen::MatrixXd stored_inputs(const InputModel& model, const TrainingData& data, const RowList& rows);
 
 } // namespace dfdyn::tools

@@ -150,8 +150,8 @@ class FreeRows final : public RowFamily {
         return result;
     }
 
-    /// Derivatives of order 1 … k-1: smooth polynomial fit, the paper's low-pass filters, raw polynomial;
-    /// then perturbed.
+    /// Derivatives of order 1 … k-1, by start: smooth polynomial fit, the paper's low-pass filters, raw
+    /// polynomial, then perturbed ones.
     VectorXd start(int index, NormalSource& random) const override {
         VectorXd parameters(free_ * (lags_ + 1));
         for (Index j = 0; j < free_; ++j) {
@@ -164,7 +164,7 @@ class FreeRows final : public RowFamily {
     VectorXd stored_gain(const InputRows& rows) const override { return VectorXd::Ones(rows.gain.size()); }
 
   private:
-    /// Row j >= 1 of the paper's filters; with k >= 4 there is room for a fast and a slow velocity.
+    /// Row j >= 1 of the paper's filters; for k >= 4 there are a fast and a slow velocity row.
     VectorXd filtered_row(int row) const {
         if (row == 1) {
             return filtered_velocity_row(0.4, lags_);

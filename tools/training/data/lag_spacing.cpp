@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Number of samples since the last gap, the sample itself included, of each sample.
+/// Returns, for each sample, the number of samples since the last gap, including the sample itself.
 std::vector<int> samples_since_gap(const TrainingData& data) {
     std::vector<int> result(data.gap_before.size());
     for (std::size_t t = 0; t < result.size(); ++t) {

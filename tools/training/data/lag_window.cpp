@@ -11,12 +11,13 @@
 namespace dfdyn::tools {
 namespace {
 
-constexpr double held_fraction = 1e-3;      // of the widest joint's deviation
-constexpr double rounding_fraction = 1e-10; // of |r| times the joint's deviation; rounding leaves about 1e-15
-constexpr double pooled_floor = 1e-6;       // of a typical joint's deviation
+constexpr double held_fraction = 1e-3; // of the largest joint's standard deviation
+// of |r| times the joint's standard deviation; rounding errors are about 1e-15
+constexpr double rounding_fraction = 1e-10;
+constexpr double pooled_floor = 1e-6; // of a typical joint's standard deviation
 constexpr std::size_t block_rows = 512;
 
-/// Triangular factor of the rows stacked under `factor`.
+/// Triangular factor of `factor` with the rows appended.
 Eigen::MatrixXd stacked_factor(const Eigen::MatrixXd& factor, const Eigen::MatrixXd& rows) {
     Eigen::MatrixXd stacked(factor.rows() + rows.rows(), factor.cols());
     stacked << factor, rows;

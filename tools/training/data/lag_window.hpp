@@ -12,25 +12,25 @@ namespace dfdyn::tools {
 /// Lag windows q_i(t^-) of the given usable rows: rows x n(M+1); column i(M+1)+j is joint i, j samples ago.
 Eigen::MatrixXd lag_windows(const Eigen::MatrixXd& positions, const RowList& rows, int lags);
 
-/// Standard deviations of r' q_i(t^-) over a set of rows, for any r. Each joint's windows are kept as the
-/// triangular factor T_i of their QR decomposition, T_i' T_i = C_i: |T_i r| keeps its digits where r' C_i r
-/// would cancel (second differences).
+/// Standard deviations of r' q_i(t^-) over a set of rows, for any r. Each joint's windows are stored as the
+/// triangular factor T_i of their QR decomposition, T_i' T_i = C_i. The norm |T_i r| is accurate where r' C_i
+/// r would suffer from cancellation (second differences).
 class LagSpread {
   public:
     /// `rows` must be usable and not empty. O(rows * n * (M+1)^2), memory O(n (M+1)^2).
     LagSpread(const Eigen::MatrixXd& positions, const RowList& rows, int lags);
 
-    /// s = |T_i r|, the standard deviation; 0 for a constant input: a joint whose positions spread less than
-    /// a thousandth of the widest joint's (a held joint shows encoder flicker only), or a combination that
-    /// rounding alone keeps from 0.
+    /// Returns the standard deviation s = |T_i r|. Returns 0 for a constant input: for a joint whose standard
+    /// deviation is below a thousandth of the largest joint's (a stationary joint with encoder noise only),
+    /// or for a combination that differs from 0 by rounding errors only.
     double deviation(Eigen::Index joint, const Eigen::VectorXd& row) const;
 
     /// ds/dr = T_i' T_i r / s. Only where deviation() > 0.
     Eigen::VectorXd deviation_gradient(Eigen::Index joint, const Eigen::VectorXd& row) const;
 
-    /// Upper triangular T, not singular: T' T is the mean over the moving joints of C_i / (variance of joint
-    /// i), plus a floor. In coordinates theta = T r, |theta| is a typical joint's deviation: rows differ by
-    /// their content, not by lag's units.
+    /// Returns an upper triangular, nonsingular T. T' T is the mean over the moving joints of C_i / (variance
+    /// of joint i), plus a floor. In the coordinates theta = T r, |theta| is the standard deviation for a
+    /// typical joint, which makes rows comparable.
     Eigen::MatrixXd pooled_factor() const;
 
     Eigen::Index joints() const { return static_cast<Eigen::Index>(factors_.size()); }

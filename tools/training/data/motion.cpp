@@ -17,7 +17,7 @@ constexpr double logit_most = 6;         // beta between 0.0025 and 0.9975
 constexpr double beta_start = 0.4;       // the filters of DFR's starts
 constexpr double log_factor_range = 4.6; // a hundred times either way
 constexpr double log_room = 0.7;         // twice
-constexpr double alike_least = 0.05;     // correlation of a row with the derivative it starts as
+constexpr double alike_least = 0.05;     // correlation of a row with the derivative from which it starts
 
 Bounds no_bounds() { return {VectorXd(0), VectorXd(0)}; }
 
@@ -81,7 +81,7 @@ class LagMotion final : public LearnedMotion {
     std::unique_ptr<MotionRows> rows_;
 };
 
-/// Rows of order 1 and 2 in units of the sample period, over the period.
+/// Rows of order 1 and 2 in units of the sample period, divided by its powers.
 MatrixXd physical_rows(const VectorXd& velocity, const VectorXd& acceleration, double sample_period) {
     MatrixXd rows(2, velocity.size());
     rows.row(0) = velocity.transpose() / sample_period;
@@ -191,8 +191,8 @@ class ScaledMotion final : public MotionRows {
         slopes.rows.middleRows(1, 2) = factors(parameters).asDiagonal() * gradient;
         VectorXd result(parameters.size());
         result.head(inputs_) = family_->pull_back(parameters.head(inputs_), slopes);
-        result.segment(inputs_, 2) =
-            evaluate(parameters).cwiseProduct(gradient).rowwise().sum(); // of the logarithms
+        // gradient with respect to the logarithms
+        result.segment(inputs_, 2) = evaluate(parameters).cwiseProduct(gradient).rowwise().sum();
         return result;
     }
 
@@ -205,7 +205,7 @@ class ScaledMotion final : public MotionRows {
     Index inputs_;
     MatrixXd polynomial_;
     MatrixXd factor_;
-    VectorXd log_most_; // no filter of DFSR is longer
+    VectorXd log_most_; // no longer than the filters of DFSR
 };
 
 } // namespace

@@ -12,7 +12,7 @@
 
 namespace dfdyn::tools {
 
-/// What the physics sees of a set of samples: N x n each, in rad (m), per s, per s^2.
+/// Motion of a set of samples as the input of the physics: N x n each, in rad (m), per s, per s^2.
 struct MotionSamples {
     Eigen::MatrixXd positions;
     Eigen::MatrixXd velocities;
@@ -30,7 +30,7 @@ struct MotionGradient {
     Eigen::MatrixXd accelerations;
 };
 
-/// The motion of a set of samples as a differentiable function of the input's parameters, then its own.
+/// The motion of a set of samples as a differentiable function of the input's parameters followed by its own.
 class LearnedMotion {
   public:
     LearnedMotion() = default;
@@ -40,16 +40,16 @@ class LearnedMotion {
 
     virtual Bounds bounds() const = 0; ///< of its own parameters
     virtual Eigen::VectorXd start(const Eigen::VectorXd& input) const = 0;
-    virtual bool learns() const = 0; ///< whether any parameter moves it
+    virtual bool learns() const = 0; ///< whether any parameter changes it
     virtual MotionSamples evaluate(const Eigen::VectorXd& parameters) const = 0;
 
-    /// As many entries as `parameters`.
+    /// Returns as many entries as `parameters`.
     virtual Eigen::VectorXd pull_back(const Eigen::VectorXd& parameters,
                                       const MotionGradient& gradient) const = 0;
 };
 
 /// Velocity row and acceleration row, newest lag first: 2 x (M+1), in 1/s and 1/s^2, as a function of the
-/// input's parameters, then its own.
+/// input's parameters followed by its own.
 class MotionRows {
   public:
     MotionRows() = default;
@@ -62,36 +62,35 @@ class MotionRows {
     virtual bool learns() const = 0;
     virtual Eigen::MatrixXd evaluate(const Eigen::VectorXd& parameters) const = 0;
 
-    /// From the gradient with respect to the rows; as many entries as `parameters`.
+    /// Applies the chain rule to the gradient with respect to the rows; returns as many entries as
+    /// `parameters`.
     virtual Eigen::VectorXd pull_back(const Eigen::VectorXd& parameters,
                                       const Eigen::MatrixXd& gradient) const = 0;
 };
 
-/// The recording's derivatives at `rows`. Nothing is learned.
+/// Returns the recording's derivatives at `rows`, without parameters.
 std::unique_ptr<LearnedMotion> given_motion(const TrainingData& data, const RowList& rows);
 
-/// Measured positions, and derivatives by `motion_rows` of each joint's last positions.
+/// Returns the measured positions, and derivatives from each joint's last positions by `motion_rows`.
 std::unique_ptr<LearnedMotion> lag_motion(const Eigen::MatrixXd& positions, const RowList& rows, int lags,
                                           std::unique_ptr<MotionRows> motion_rows);
 
-/// The polynomial of degree 2 through the window, in the least-squares sense, at its newest sample. 2 <=
-/// lags.
+/// Rows of the least-squares polynomial of degree 2 through the window, at its newest sample. 2 <= lags.
 std::unique_ptr<MotionRows> polynomial_motion(int lags, double sample_period);
 
-/// The first and second differences in the window, averaged with weights beta_1^t and beta_2^t: the filters
-/// of DFSR in physical units, cut so that a ramp gives its slope and a parabola its second derivative
-/// exactly. logit beta_1 and logit beta_2 are parameters number `first` and `first` + 1: the input's own
-/// (DFSR), or with `own` the physics' own, the only ones behind `first` of the input's. 2 <= lags.
+/// Rows of the first and second differences in the window, averaged with weights beta_1^t and beta_2^t: the
+/// filters of DFSR in physical units, truncated so that ramps and parabolas have exact derivatives. logit
+/// beta_1 and logit beta_2 are parameters number `first` and `first` + 1: those of the input (DFSR), or with
+/// `own` separate ones that follow the `first` parameters of the input. 2 <= lags.
 std::unique_ptr<MotionRows> difference_motion(int lags, double sample_period, Eigen::Index first, bool own);
 
-/// Logarithms of the factors by which `rows`, over the windows that `pooled_factor` stands for, come closest
-/// to `wanted`, 2 x (M+1) each; where a row has nothing of the one wanted, the factor gives it the same
-/// length.
+/// Returns the logarithms of the factors with which `rows` are closest to `wanted` (2 x (M+1) each), over the
+/// windows of `pooled_factor`. If a row is orthogonal to the wanted one, the factor gives it the same length.
 Eigen::VectorXd log_factors(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& wanted,
                             const Eigen::MatrixXd& pooled_factor);
 
-/// Rows 2 and 3 of `family` (DFR: of length 1) times a factor each, learned as its logarithm. It starts with
-/// the log_factors() towards the polynomial's rows. The family must have three rows or more.
+/// Rows 2 and 3 of `family` (DFR: of length 1), times a factor each, learned as its logarithm. The initial
+/// values are the log_factors() for the polynomial's rows. The family must have at least three rows.
 std::unique_ptr<MotionRows> scaled_motion(std::unique_ptr<RowFamily> family, int lags, double sample_period,
                                           const Eigen::MatrixXd& pooled_factor);
 

@@ -10,7 +10,7 @@ namespace dfdyn::tools {
 
 using RowList = std::vector<Eigen::Index>; ///< ascending row numbers
 
-/// Rows whose lag window of `lags` + 1 rows lies in one uninterrupted stretch. O(T).
+/// Returns the rows whose lag window of `lags` + 1 rows has no gap. O(T).
 RowList usable_rows(const std::vector<std::uint8_t>& gap_before, int lags);
 
 /// Rows in motion and rows at rest.
@@ -19,13 +19,13 @@ struct MotionSplit {
     RowList still;
 };
 
-/// A row is at rest when, over its lag window, no joint covers 1 % of the widest range that any joint covers
-/// in any window. `rows` must be usable with the same `lags`. O(rows * n * lags).
+/// Divides the rows. A row is at rest if, over its lag window, no joint covers 1 % of the largest range that
+/// any joint covers in any window. `rows` must be usable with the same `lags`. O(rows * n * lags).
 MotionSplit split_by_motion(const Eigen::MatrixXd& positions, const RowList& rows, int lags);
 
-/// At most `count` rows for the exact likelihood: evenly strided over the rows in motion, with at most 5 %
-/// rows at rest (a long standstill would repeat one sample and drown the rest; strided rows are also less
-/// correlated than a solid block).
+/// Returns at most `count` rows for the exact likelihood: evenly strided over the rows in motion, with at
+/// most 5 % rows at rest. A long standstill would repeat one sample and dominate the others. Strided rows are
+/// also less correlated than a contiguous block.
 RowList likelihood_rows(const MotionSplit& split, int count);
 
 } // namespace dfdyn::tools

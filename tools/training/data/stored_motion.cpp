@@ -18,7 +18,7 @@ MotionSamples stored_motion(const InputModel& motion, const TrainingData& data, 
 
 std::vector<double> motion_limits(const InputModel& motion, const TrainingData& data) {
     constexpr double margin = 10;
-    constexpr double least = 1e-3; // of a joint that was held still
+    constexpr double least = 1e-3; // for a joint that did not move
     const MatrixXd xi = stored_inputs(motion, data, usable_rows(data.gap_before, motion.lags));
     const Eigen::VectorXd limits = (margin * xi.cwiseAbs().colwise().maxCoeff().transpose()).cwiseMax(least);
     return to_vector(limits);

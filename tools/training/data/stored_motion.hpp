@@ -10,11 +10,13 @@
 
 namespace dfdyn::tools {
 
-/// (q, qd, qdd) of the samples `rows` as a model's physics sees them; `motion` has three rows per joint.
+/// Returns (q, qd, qdd) of the samples `rows` as computed by a model's physics; `motion` has three rows per
+/// joint.
 MotionSamples stored_motion(const InputModel& motion, const TrainingData& data, const RowList& rows);
 
-/// The largest position, velocity and acceleration of each joint that the physics sees in `data`, times ten:
-/// as wide as the limits of positions and outputs, for differentiated counts have tails.
+/// Returns ten times the largest position, velocity and acceleration of each joint in `data`, as computed by
+/// the physics. The factor equals that of the position and output limits, because differentiated encoder
+/// counts have outliers.
 std::vector<double> motion_limits(const InputModel& motion, const TrainingData& data);
 
 } // namespace dfdyn::tools

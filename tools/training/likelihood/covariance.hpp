@@ -5,15 +5,15 @@
 
 namespace dfdyn::tools {
 
-/// Covariance C (N x N, positive definite) that all outputs share up to a factor: of the exact kernel, of
-/// random features, or none but noise.
+/// Covariance C (N x N, positive definite), common to all outputs up to a factor: that of the exact kernel,
+/// of random features, or of white noise.
 class Covariance {
   public:
     virtual ~Covariance() = default;
 
     virtual double log_determinant() const = 0;
 
-    /// C^-1 B for B with N rows.
+    /// Returns C^-1 B for B with N rows.
     virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& right_hand_sides) const = 0;
 
   protected:
@@ -24,7 +24,7 @@ class Covariance {
     Covariance& operator=(Covariance&&) = default;
 };
 
-/// C = I: white noise alone.
+/// C = I: white noise only.
 class WhiteCovariance final : public Covariance {
   public:
     double log_determinant() const override { return 0; }

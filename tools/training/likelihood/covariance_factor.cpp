@@ -14,7 +14,7 @@ using Eigen::Lower;
 using Eigen::MatrixXd;
 using Block = Eigen::Ref<MatrixXd>;
 
-constexpr Index leaf_size = 48; // below it recursion costs more than it saves
+constexpr Index leaf_size = 48; // smaller blocks are faster without recursion
 
 /// L -> L^-1 in place, lower triangles: [A 0; B D]^-1 = [A^-1 0; -D^-1 B A^-1 D^-1].
 void invert_lower(Block matrix) {

@@ -12,18 +12,18 @@ namespace dfdyn::tools {
 /// Cholesky factor C = L L' of a covariance matrix.
 class CovarianceFactor final : public Covariance {
   public:
-    /// Nothing when C is not positive definite in double precision or not finite. N^3/3 operations.
+    /// Returns nothing if C is not positive definite in double precision or not finite. N^3/3 operations.
     static std::optional<CovarianceFactor> of(Eigen::MatrixXd covariance);
 
     double log_determinant() const override;
 
-    /// C^-1 B.
+    /// Returns C^-1 B.
     Eigen::MatrixXd solve(const Eigen::MatrixXd& right_hand_sides) const override;
 
-    /// C^-1, both triangles. 2 N^3/3 operations: the zeros of L are not multiplied.
+    /// Returns C^-1, both triangles. 2 N^3/3 operations: the zeros of L are not multiplied.
     Eigen::MatrixXd inverse() const;
 
-    /// L; only the lower triangle means anything.
+    /// Returns L; only its lower triangle is defined.
     const Eigen::MatrixXd& lower() const { return lower_; }
 
   private:

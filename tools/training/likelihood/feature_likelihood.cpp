@@ -14,7 +14,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The features of every sample, and what the chain rule needs of them.
+/// Features of every sample, and intermediate results for the chain rule.
 struct Features {
     MatrixXd phase; ///< N x d: omega xi / l
     MatrixXd phi;   ///< N x 2d
@@ -30,14 +30,14 @@ Features features_of(const MatrixXd& inputs, const MatrixXd& omega, double lengt
     return features;
 }
 
-/// From the gradient with respect to phi to the one with respect to the phases.
+/// Converts the gradient with respect to phi to that with respect to the phases.
 MatrixXd pull_back_to_phase(const Features& features, const MatrixXd& phi_gradient) {
     const Eigen::Index d = features.phase.cols();
     return features.phi.leftCols(d).cwiseProduct(phi_gradient.rightCols(d)) -
            features.phi.rightCols(d).cwiseProduct(phi_gradient.leftCols(d));
 }
 
-/// dL/dC contracted with what C = phi phi' + r I is made of.
+/// Gradient with respect to the parts of C = phi phi' + r I.
 struct RidgeGradient {
     double log_noise_ratio = 0;
     MatrixXd phi;

@@ -10,10 +10,10 @@
 
 namespace dfdyn::tools {
 
-/// -2 log marginal likelihood of the model that will run: the random features of one draw of omega in place
-/// of the exact kernel, C = Phi Phi' + r I. Its cost is linear in the samples, so that it can take all of
-/// them, and it knows how far so few features can follow the kernel. Parameters as of MarginalLikelihood.
-/// Refers to `input` and `outputs`.
+/// -2 log marginal likelihood of the model that the estimator uses: with the random features of one draw of
+/// omega instead of the exact kernel, C = Phi Phi' + r I. Its cost is linear in the number of samples, so
+/// that it can use all of them, and it includes the approximation error of the features. Parameters as in
+/// MarginalLikelihood. Refers to `input` and `outputs`.
 class FeatureLikelihood final : public Likelihood {
   public:
     /// `omega` d x (n k), before division by the length scale.

@@ -23,7 +23,7 @@ KernelGradient gaussian_kernel_pull_back(const Eigen::MatrixXd& inputs, double l
     gradient.inputs = weights * inputs;
     gradient.inputs -= sums.asDiagonal() * inputs;
     gradient.inputs *= 2 / (length_scale * length_scale);
-    // The kernel depends on inputs / l only.
+    // the kernel depends on inputs / l only
     gradient.log_length_scale = -gradient.inputs.cwiseProduct(inputs).sum();
     return gradient;
 }

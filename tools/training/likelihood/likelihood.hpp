@@ -27,11 +27,11 @@ class Likelihood {
     Likelihood& operator=(const Likelihood&) = delete;
     virtual ~Likelihood() = default;
 
-    /// Nothing where the covariance cannot be factored or a number is not finite.
+    /// Returns nothing if the covariance cannot be factored or a number is not finite.
     virtual std::optional<LikelihoodValue> evaluate(const Eigen::VectorXd& theta) const = 0;
 };
 
-/// Nothing in place of a value that is not finite.
+/// Returns `value`, or nothing if it is not finite.
 inline std::optional<LikelihoodValue> finite_or_nothing(LikelihoodValue value) {
     if (!std::isfinite(value.minus_two_log_likelihood) || !value.gradient.allFinite()) {
         return std::nullopt;

@@ -15,7 +15,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// dL/dC, every entry.
+/// Returns dL/dC, with all entries.
 MatrixXd covariance_gradient(const Evidence& evidence, const CovarianceFactor& factor) {
     MatrixXd gradient = evidence.count * factor.inverse();
     gradient.noalias() -=

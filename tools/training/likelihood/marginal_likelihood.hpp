@@ -10,9 +10,9 @@
 
 namespace dfdyn::tools {
 
-/// The hyperparameters as the optimiser's vector: [log r, log l, input's own, physics' own], r = sigma^2 /
-/// rho^2 the noise ratio, l the length scale. Variances of outputs and of pi are not among them: they have
-/// their best values at every theta.
+/// The hyperparameters as the optimiser's vector: [log r, log l, input's own, physics' own], with the noise
+/// ratio r = sigma^2 / rho^2 and the length scale l. Variances of outputs and of pi are not included: they
+/// have their optimal values for every theta.
 struct Hyperparameters {
     double noise_ratio = 0;
     double length_scale = 0;
@@ -20,14 +20,13 @@ struct Hyperparameters {
     Eigen::VectorXd physics;
 };
 
-/// The logarithms of r and l come first.
+/// Number of the kernel's parameters: the logarithms of r and l, which come first.
 constexpr Eigen::Index kernel_parameters = 2;
 
 Eigen::VectorXd joined(double log_noise_ratio, double log_length_scale, const Eigen::VectorXd& rest);
 
-/// -2 log marginal likelihood of the training samples under the exact Gaussian kernel (section
-/// "Hyperparameter vector estimation"), with its analytic gradient. Refers to both parts, which must outlive
-/// it.
+/// -2 log marginal likelihood of the training samples with the exact Gaussian kernel (paper, Section IV-C),
+/// with its analytic gradient. Refers to both parts, which must outlive it.
 class MarginalLikelihood final : public Likelihood {
   public:
     MarginalLikelihood(const InputMap& input, const OutputLikelihood& outputs)
@@ -38,11 +37,11 @@ class MarginalLikelihood final : public Likelihood {
 
     Hyperparameters split(const Eigen::VectorXd& theta) const;
 
-    /// r in [1e-6, 100]: below, float32 learners lose their digits; l in [0.01, 1000] of inputs with unit
-    /// deviation.
+    /// Returns the bounds: r in [1e-6, 100], because float32 learners lose accuracy below; l in [0.01, 1000]
+    /// for inputs with unit standard deviation.
     Bounds bounds() const;
 
-    /// Where start number `index` begins.
+    /// Returns the initial point of start number `index`.
     Eigen::VectorXd start(int index, NormalSource& random) const;
 
   private:

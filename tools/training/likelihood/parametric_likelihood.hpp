@@ -5,13 +5,13 @@
 
 namespace dfdyn::tools {
 
-/// -2 log marginal likelihood of physics and white noise alone (model P): theta = [input's own, physics'
-/// own], possibly none. Refers to `outputs`.
+/// -2 log marginal likelihood of physics and white noise only (model P): theta = [input's own, physics' own],
+/// possibly empty. Refers to `outputs`.
 class ParametricLikelihood final : public Likelihood {
   public:
     explicit ParametricLikelihood(const OutputLikelihood& outputs) : outputs_(outputs) {}
 
-    /// O(N m p^2), and the regressor of every sample.
+    /// O(N m p^2), plus the regressor of every sample.
     std::optional<LikelihoodValue> evaluate(const Eigen::VectorXd& theta) const override {
         auto evidence = outputs_.evaluate(WhiteCovariance(), theta);
         if (!evidence) {

@@ -12,7 +12,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// C^-1 (y_k - Psi_k pi) in column k.
+/// Returns C^-1 (y_k - Psi_k pi) in column k.
 MatrixXd solved_residuals(const MatrixXd& solved_outputs, const MatrixXd& solved_columns,
                           const VectorXd& parameters) {
     MatrixXd residuals = solved_outputs;
@@ -22,8 +22,8 @@ MatrixXd solved_residuals(const MatrixXd& solved_outputs, const MatrixXd& solved
     return residuals;
 }
 
-/// Fills directions and weights; returns the gradient with respect to the columns. `integrated`: pi has a
-/// prior, and the uncertainty of pi counts.
+/// Sets directions and weights; returns the gradient with respect to the columns. `integrated`: pi has a
+/// prior, and its uncertainty is included.
 MatrixXd add_gradients(const VarianceComponents& best, const MatrixXd& residuals,
                        const MatrixXd& solved_columns, bool integrated, Evidence& evidence) {
     const Index count = residuals.cols();
@@ -48,7 +48,7 @@ MatrixXd add_gradients(const VarianceComponents& best, const MatrixXd& residuals
     return slope;
 }
 
-constexpr double log_prior_range = 15; // of columns of the outputs' size
+constexpr double log_prior_range = 15; // for columns of the outputs' size
 
 } // namespace
 

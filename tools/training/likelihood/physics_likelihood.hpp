@@ -7,15 +7,15 @@
 
 namespace dfdyn::tools {
 
-/// Outputs with physics: y_k = Psi_k pi + e_k, e_k ~ N(0, rho_k^2 C). Without prior on pi: model SP,
-/// eq:profile_marginal_lik (P's and SP2's least squares with C = I); with a prior: SPK,
-/// eq:SP-Kernel_model_statistics with gamma^2 Psi Psi' added by the matrix inversion lemma (P with C = I).
-/// All rho_k^2, pi and gamma^2 have their most likely values at every C: the statistics Psi_k' C^-1 Psi_k are
-/// all it takes to find them. The logarithms of a diagonal prior are parameters instead, behind those of the
-/// physics. Refers to `physics`, which must outlive it.
+/// Outputs with physics: y_k = Psi_k pi + e_k, e_k ~ N(0, rho_k^2 C). Without a prior on pi it is model SP
+/// (with C = I the least squares of P and SP2); with a prior it is SPK (with C = I model P), where gamma^2
+/// Psi Psi' is added by the matrix inversion lemma (paper, Section III-D). All rho_k^2, pi and gamma^2 have
+/// their most likely values for every C, found from the statistics Psi_k' C^-1 Psi_k. Instead, the logarithms
+/// of a diagonal prior are parameters, after those of the physics. Refers to `physics`, which must outlive
+/// it.
 class PhysicsLikelihood final : public OutputLikelihood {
   public:
-    /// `outputs` N x m, not centred: the physics explains the mean.
+    /// `outputs` N x m, not centred, because the physics explains the mean.
     PhysicsLikelihood(Eigen::MatrixXd outputs, const PhysicsColumns& physics, PhysicsPrior prior)
         : outputs_(std::move(outputs)), physics_(physics), prior_(prior) {}
 
@@ -27,7 +27,7 @@ class PhysicsLikelihood final : public OutputLikelihood {
                                      const Eigen::VectorXd& parameters) const override;
 
   private:
-    /// How many of the parameters are logarithms of the prior's variances.
+    /// Number of parameters that are logarithms of the prior's variances.
     Eigen::Index prior_parameters() const {
         return prior_ == PhysicsPrior::diagonal ? physics_.columns() : 0;
     }
@@ -37,8 +37,8 @@ class PhysicsLikelihood final : public OutputLikelihood {
     PhysicsPrior prior_;
 };
 
-/// The statistics of outputs (N x m) and columns Psi (N x (m p), see PhysicsColumns) where C^-1 times both is
-/// known.
+/// Returns the statistics of outputs (N x m) and columns Psi (N x (m p), see PhysicsColumns), from the
+/// products of both with C^-1.
 LinearStatistics linear_statistics(const Eigen::MatrixXd& outputs, const Eigen::MatrixXd& columns,
                                    const Eigen::MatrixXd& solved_outputs,
                                    const Eigen::MatrixXd& solved_columns);

@@ -12,7 +12,7 @@ namespace dfdyn::tools {
 /// C = Phi Phi' + r I by the matrix inversion lemma. Refers to Phi, which must outlive it.
 class RidgeCovariance final : public Covariance {
   public:
-    /// Nothing when Phi' Phi + r I is not positive definite in double precision. O(N (2d)^2 + (2d)^3).
+    /// Returns nothing if Phi' Phi + r I is not positive definite in double precision. O(N (2d)^2 + (2d)^3).
     static std::optional<RidgeCovariance> of(const Eigen::MatrixXd& phi, double noise_ratio);
 
     double log_determinant() const override;
@@ -20,10 +20,10 @@ class RidgeCovariance final : public Covariance {
     /// O(N 2d) per column of B.
     Eigen::MatrixXd solve(const Eigen::MatrixXd& right_hand_sides) const override;
 
-    /// (Phi' Phi + r I)^-1, 2d x 2d: C^-1 Phi = Phi times it.
+    /// Returns (Phi' Phi + r I)^-1, 2d x 2d; C^-1 Phi = Phi times it.
     Eigen::MatrixXd inverse_information() const;
 
-    /// r tr C^-1, from inverse_information().
+    /// Returns r tr C^-1, from inverse_information().
     double scaled_trace(const Eigen::MatrixXd& inverse_information) const;
 
   private:

@@ -5,7 +5,7 @@
 
 namespace dfdyn::tools {
 
-/// One vector below the other; either may be empty.
+/// Concatenates two vectors; either may be empty.
 inline Eigen::VectorXd stacked(const Eigen::VectorXd& first, const Eigen::VectorXd& second) {
     Eigen::VectorXd result(first.size() + second.size());
     result << first, second;

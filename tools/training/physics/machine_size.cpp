@@ -29,20 +29,20 @@ double centre_distance(const RobotJoint& joint) {
     return mass > 0 ? joint.inertia.segment<3>(1).norm() / mass : 0;
 }
 
-/// From joint `first` to the tip or the farthest centre of mass.
+/// Distance from joint `first` to the tip or the farthest centre of mass.
 double reach_of(const Robot& robot, std::size_t first) {
     double to_joint = 0;
     double reach = shortest_reach;
     for (std::size_t i = first; i < robot.joints.size(); ++i) {
         const RobotJoint& joint = robot.joints[i];
-        to_joint +=
-            travel(joint) + (i > first ? joint.placement.translation().norm() : 0); // not the base's height
+        // without the base's height
+        to_joint += travel(joint) + (i > first ? joint.placement.translation().norm() : 0);
         reach = std::max(reach, to_joint + centre_distance(joint));
     }
     return std::max(reach, to_joint + robot.tip_placement.translation().norm());
 }
 
-/// Of joint `first` and all beyond it.
+/// Mass of joint `first` and everything beyond it.
 double mass_of(const Robot& robot, std::size_t first, double reach) {
     double mass = 0;
     double effort = 0;
@@ -56,7 +56,7 @@ double mass_of(const Robot& robot, std::size_t first, double reach) {
     return effort > 0 ? effort / (gravity * reach) : unknown_mass;
 }
 
-/// Mass and reach of a robot from one of its joints on, and what follows from them.
+/// Mass and reach of a robot from one of its joints on, and quantities derived from them.
 struct MachineSize {
     double reach, mass;
 

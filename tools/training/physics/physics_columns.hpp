@@ -11,7 +11,7 @@
 
 namespace dfdyn::tools {
 
-/// The physics' columns Psi of a set of samples as a differentiable function of the input's parameters and of
+/// The physics' columns Psi of a set of samples, as a differentiable function of the input's parameters and
 /// some of its own.
 class PhysicsColumns {
   public:
@@ -23,14 +23,14 @@ class PhysicsColumns {
     virtual Eigen::Index columns() const = 0; ///< p
     virtual Bounds bounds() const = 0;        ///< of its own parameters, possibly none
 
-    /// Its own parameters to start with, where the input's start at `input`.
+    /// Returns the initial values of its own parameters if those of the input are `input`.
     virtual Eigen::VectorXd start(const Eigen::VectorXd& input) const = 0;
 
-    /// N x (m p): columns k p … k p + p - 1 are Psi_k, those of output k. `parameters`: the input's, then its
-    /// own.
+    /// Returns N x (m p): columns k p … k p + p - 1 are Psi_k, those of output k. `parameters`: the input's,
+    /// then its own.
     virtual Eigen::MatrixXd evaluate(const Eigen::VectorXd& parameters) const = 0;
 
-    /// Gradient with respect to `parameters`, from the one with respect to evaluate(parameters).
+    /// Returns the gradient with respect to `parameters`, from that with respect to evaluate(parameters).
     virtual Eigen::VectorXd pull_back(const Eigen::VectorXd& parameters,
                                       const Eigen::MatrixXd& gradient) const = 0;
 };
@@ -55,11 +55,11 @@ class RegressorColumns final : public PhysicsColumns {
     ColumnChoice choice_;
 };
 
-/// The chosen columns of the regressor, each times its scale: N x (m p).
+/// Returns the chosen columns of the regressor, each times its scale: N x (m p).
 Eigen::MatrixXd chosen_columns(const Regressor& regressor, const MotionSamples& motion,
                                const ColumnChoice& choice);
 
-/// All columns of the regressor, not scaled: N x (m P).
+/// Returns all columns of the regressor, not scaled: N x (m P).
 Eigen::MatrixXd all_columns(const Regressor& regressor, const MotionSamples& motion);
 
 } // namespace dfdyn::tools

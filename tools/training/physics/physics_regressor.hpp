@@ -13,8 +13,8 @@
 
 namespace dfdyn::tools {
 
-/// The firmware's physics map as the regressor of training: the columns that `constants` selects, in their
-/// order. PhysicsType is a Physics, Arm a Chain.
+/// The firmware's physics map as the regressor of the training: the columns that `constants` selects, in
+/// their order. PhysicsType is a Physics, Arm a Chain.
 template <class PhysicsType, class Arm>
 class PhysicsRegressor final : public Regressor {
   public:
@@ -27,7 +27,7 @@ class PhysicsRegressor final : public Regressor {
     Eigen::Index outputs() const override { return sizes_.output_count; }
     Eigen::Index columns() const override { return sizes_.column_count; }
 
-    /// As many operations as the firmware's.
+    /// Number of operations as in the firmware.
     void evaluate(const MotionState& state, Eigen::MatrixXd& values) const override {
         std::vector<double> xi(static_cast<std::size_t>(3 * state.position.size()));
         for (Eigen::Index i = 0; i < state.position.size(); ++i) {
@@ -42,8 +42,8 @@ class PhysicsRegressor final : public Regressor {
         values = psi;
     }
 
-    /// With scalars that carry derivatives, `lanes` of them at a time: about as many operations as n/4 times
-    /// `lanes` evaluations.
+    /// Uses scalars with `lanes` derivatives at a time: about as many operations as n/4 times `lanes`
+    /// evaluations.
     RegressorGradient pull_back(const MotionState& state, const Eigen::MatrixXd& gradient) const override {
         const Eigen::Index joints = state.position.size();
         RegressorGradient result{Eigen::VectorXd(joints), Eigen::VectorXd(joints)};
@@ -62,7 +62,7 @@ class PhysicsRegressor final : public Regressor {
     using Lanes = Eigen::Matrix<double, lanes, 1>;
     using Dual = Eigen::AutoDiffScalar<Lanes>;
 
-    /// Derivatives by numbers `first` … of (velocity, acceleration) of each joint.
+    /// Derivatives with respect to numbers `first` … of (velocity, acceleration) of each joint.
     Lanes pass(const MotionState& state, const Eigen::MatrixXd& gradient, Eigen::Index first) const {
         std::vector<Dual> xi(static_cast<std::size_t>(3 * state.position.size()));
         for (Eigen::Index i = 0; i < state.position.size(); ++i) {

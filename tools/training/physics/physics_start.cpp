@@ -36,7 +36,7 @@ struct ScaledProblem {
     auto columns_of(Index k) const { return columns.middleCols(k * p, p); }
 };
 
-/// Lambda pi = b of the physics alone, with its prior.
+/// Normal equations Lambda pi = b of the physics alone, with its prior.
 NormalEquations physics_equations(const PhysicsProblem& problem, const ParameterPrior& prior) {
     ScaledProblem scaled(problem);
     scaled.weigh(problem.model.forgetting_factor);
@@ -60,7 +60,7 @@ PhysicsStart solved(NormalEquations equations, const ParameterPrior& prior) {
     return start;
 }
 
-/// Phi' [Y~ psi~], all outputs' targets beside each other.
+/// Phi' [Y~ psi~], with the targets of all outputs side by side.
 MatrixXd targets_of(const PhysicsProblem& problem) {
     const ScaledProblem scaled(problem);
     MatrixXd targets(scaled.outputs.rows(), scaled.outputs.cols() + scaled.columns.cols());

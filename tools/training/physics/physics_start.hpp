@@ -12,8 +12,7 @@
 
 namespace dfdyn::tools {
 
-/// Where learning of pi begins, in units of column_scale and noise_std: psi~_k = psi_k column_scale /
-/// noise_std_k.
+/// Initial estimate of pi, in units of column_scale and noise_std: psi~_k = psi_k column_scale / noise_std_k.
 struct PhysicsStart {
     Eigen::VectorXd parameters;     ///< p: pi^
     std::vector<double> unit_upper; ///< of P_pi = U D U', by columns as in StartModel; empty if pi is fixed
@@ -23,13 +22,13 @@ struct PhysicsStart {
     std::vector<Eigen::MatrixXd> coupling;
 };
 
-/// Start states of NP's part and of the physics.
+/// Initial states of NP's part and of the physics.
 struct JointStart {
     StartModel kernel; ///< P: empty. SPK: `weights` holds A_k. Otherwise those of the residual.
     PhysicsStart physics;
 };
 
-/// What the start of a model with physics is made from.
+/// Data for the initial state of a model with physics.
 struct PhysicsProblem {
     const TrainedModel& model; ///< forgetting factor, input, features, outputs; P: no features
     const TrainingData& data;
@@ -42,20 +41,20 @@ struct ParameterPrior {
     Eigen::VectorXd mean;        ///< p
     Eigen::MatrixXd information; ///< p x p, the inverse of the covariance
 
-    /// The paper's: N(0, prior_variance I).
+    /// The paper's prior: N(0, prior_variance I).
     static ParameterPrior independent(Eigen::Index p, double prior_variance);
 };
 
-/// The regularised least-squares solution (eq:ReLS) of P: pi^ and its covariance under the prior. The prior's
-/// weight under forgetting as of batch_start(). O(N m p^2 + p^3). Throws InputError where the information
-/// matrix cannot be factored.
+/// Returns the regularised least-squares solution (paper, Section IV-B) of P: pi^ and its covariance under
+/// the prior. The prior's weight under forgetting is that of batch_start(). O(N m p^2 + p^3). Throws
+/// InputError if the information matrix cannot be factored.
 JointStart parametric_start(const PhysicsProblem& problem, const ParameterPrior& prior);
 
-/// SP, SP2: NP's start on what the fixed `parameters` leave of the outputs.
+/// SP, SP2: returns NP's initial state for the residual of the outputs with fixed `parameters`.
 JointStart residual_start(const PhysicsProblem& problem, const Eigen::VectorXd& parameters);
 
-/// SPK in block-arrow form: the factor of Lambda_phi, which all outputs share, and the Schur complement of
-/// pi. Equal to the solution for all unknowns at once. O(N (2d)^2 + N m 2d p + (2d)^3).
+/// Returns the initial state of SPK in block-arrow form: the factor of Lambda_phi, common to all outputs, and
+/// the Schur complement of pi. Equal to the joint solution for all unknowns. O(N (2d)^2 + N m 2d p + (2d)^3).
 JointStart joint_start(const PhysicsProblem& problem, const ParameterPrior& prior);
 
 } // namespace dfdyn::tools

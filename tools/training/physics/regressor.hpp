@@ -5,21 +5,21 @@
 
 namespace dfdyn::tools {
 
-/// Where an arm is and how it moves: n joints each, in rad (m), per s and per s^2.
+/// Position, velocity and acceleration of an arm: n joints each, in rad (m), per s and per s^2.
 struct MotionState {
     Eigen::VectorXd position;
     Eigen::VectorXd velocity;
     Eigen::VectorXd acceleration;
 };
 
-/// Gradient of a scalar with respect to the moving part of MotionState; positions are measured, nothing is
-/// learned of them.
+/// Gradient of a scalar with respect to velocity and acceleration of MotionState. Positions are measured and
+/// have no parameters.
 struct RegressorGradient {
     Eigen::VectorXd velocity;
     Eigen::VectorXd acceleration;
 };
 
-/// psi' of eq. par_regr_model: outputs are its product with the parameters.
+/// Regressor psi' of the paper (Section III-A, eq. 3): outputs are its product with the parameters.
 class Regressor {
   public:
     Regressor() = default;
@@ -33,7 +33,7 @@ class Regressor {
     /// Writes outputs x columns.
     virtual void evaluate(const MotionState& state, Eigen::MatrixXd& values) const = 0;
 
-    /// Chain rule, from the gradient with respect to each entry of the values.
+    /// Applies the chain rule to the gradient with respect to each entry of the values.
     virtual RegressorGradient pull_back(const MotionState& state, const Eigen::MatrixXd& gradient) const = 0;
 };
 

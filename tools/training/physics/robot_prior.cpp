@@ -18,9 +18,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index random_states = 300;
-constexpr double random_weight = 0.03; // of their rows beside the recording's
+constexpr double random_weight = 0.03; // weight of the random states' rows relative to the recording's
 
-/// States that excite every joint, moving as fast as the fastest joint of the recording.
+/// Returns states that excite every joint with the speed of the recording's fastest joint.
 MotionSamples random_motion(const MotionSamples& recorded) {
     NormalSource random(1);
     const Index joints = recorded.positions.cols();
@@ -32,7 +32,8 @@ MotionSamples random_motion(const MotionSamples& recorded) {
             largest(recorded.accelerations) * random.matrix(random_states, joints)};
 }
 
-/// All columns, output after output below each other, over the outputs' deviations: (N m) x P.
+/// Returns all columns, with the outputs below each other, divided by the outputs' standard deviations: (N m)
+/// x P.
 MatrixXd stacked_columns(const TrainingSetup& setup, const MotionSamples& motion) {
     const Regressor& regressor = *setup.options.physics.regressor;
     const MatrixXd columns = all_columns(regressor, motion);
@@ -45,7 +46,7 @@ MatrixXd stacked_columns(const TrainingSetup& setup, const MotionSamples& motion
     return stacked;
 }
 
-/// p x P: what a unit of each parameter adds to the chosen ones, in units of their scales.
+/// Returns p x P: the contribution of each parameter to the chosen ones, in units of their scales.
 MatrixXd expressed_by(const TrainingSetup& setup, const ColumnChoice& choice, const VectorXd& motion) {
     const MotionSamples recorded = setup.motion(setup.options.input, setup.rows.likelihood)->evaluate(motion);
     const MatrixXd data = stacked_columns(setup, recorded);
@@ -61,7 +62,8 @@ MatrixXd expressed_by(const TrainingSetup& setup, const ColumnChoice& choice, co
 } // namespace
 
 double parameter_variance_factor(const TrainingSetup& setup) {
-    const double rows_per_s = setup.options.every / setup.data.sample_period_s; // of all phases of the lags
+    // over all phases of the lags
+    const double rows_per_s = setup.options.every / setup.data.sample_period_s;
     const ModelClass model = setup.options.model;
     const bool features = model == ModelClass::SPK || model == ModelClass::SP;
     const double correlation_s = features ? residual_correlation_with_features_s : residual_correlation_s;

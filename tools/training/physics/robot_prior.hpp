@@ -8,25 +8,25 @@
 
 namespace dfdyn::tools {
 
-/// What the physics leaves of a real arm's outputs (friction, gears, temperature) stays alike for about so
-/// long (s): samples within it count as one. Chosen on two motions of a UR5 and on a servo (see
-/// docs/reference/extrapolation.md).
+/// Correlation time (s) of the physics' residual on a real arm (friction, gears, temperature): samples within
+/// it count as one. Chosen on two motions of a UR5 and on a servo (see docs/extrapolation.md).
 inline constexpr double residual_correlation_s = 4;
-/// The same where features explain most of it (SP, SPK). Chosen on one of these motions, after the other.
+/// The correlation time if features explain most of the residual (SP, SPK). Chosen on one of these motions,
+/// after the other.
 inline constexpr double residual_correlation_with_features_s = 0.5;
 
-/// The number of the recording's samples that count as one for the model; at least 1.
+/// Returns the number of the recording's samples that count as one for the model; at least 1.
 double parameter_variance_factor(const TrainingSetup& setup);
 
-/// What the robot itself says of the chosen parameters: N(PhysicsOptions::nominal, nominal_deviation^2) for
-/// all parameters of the regressor, as the chosen columns can express them; times the
-/// parameter_variance_factor() in its information, because as many samples count as one. `choice`: columns
-/// and scales; `motion`: the physics' motion parameters. Deterministic. O(R m P^2), R likelihood rows and
-/// 300 random states.
+/// Returns the robot's own prior of the chosen parameters: N(PhysicsOptions::nominal, nominal_deviation^2)
+/// for all parameters of the regressor, as far as the chosen columns can express them. Its information is
+/// multiplied by parameter_variance_factor(), because this number of samples counts as one. `choice`: columns
+/// and scales; `motion`: the physics' motion parameters. Deterministic. O(R m P^2), R likelihood rows and 300
+/// random states.
 ///
-/// A column left out is a linear combination of those chosen, over the recording and, as far as that leaves
-/// it open, over random states with positions within ± pi and velocities and accelerations as large as the
-/// recording's. Its parameter adds that combination to the others.
+/// A column that was left out is a linear combination of the chosen ones, over the recording and, where that
+/// leaves it undetermined, over random states (positions within ± pi, velocities and accelerations as large
+/// as the recording's). Its parameter adds this combination to the others.
 ParameterPrior robot_prior(const TrainingSetup& setup, const ColumnChoice& choice,
                            const Eigen::VectorXd& motion);
 

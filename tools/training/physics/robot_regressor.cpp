@@ -10,7 +10,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// All columns selected, unscaled.
+/// Returns physics with all columns selected and unscaled.
 PhysicsModel whole_physics(const ChainModel& chain, const std::vector<EffectModel>& effects,
                            const std::vector<double>& output_gain) {
     PhysicsModel physics;
@@ -18,7 +18,8 @@ PhysicsModel whole_physics(const ChainModel& chain, const std::vector<EffectMode
     physics.motion.kind = InputKind::STD;
     physics.motion.derivatives = Derivatives::measured;
     physics.effects = effects;
-    physics.motion_limit.assign(3 * chain.joints.size(), 0); // of the firmware's gate, which is not used here
+    // of the firmware's input gate, which is not used here
+    physics.motion_limit.assign(3 * chain.joints.size(), 0);
     physics.selected.resize(static_cast<std::size_t>(inertial_parameters * body_count(chain)) +
                             effects.size());
     std::iota(physics.selected.begin(), physics.selected.end(), 0);

@@ -8,8 +8,8 @@
 
 namespace dfdyn::tools {
 
-/// The firmware's own columns in double: ten per body of `chain`, then `effects`, in output units by
-/// `output_gain`. Thread-safe.
+/// Returns the firmware's columns in double: ten per body of `chain`, then `effects`, converted to output
+/// units by `output_gain`. Thread-safe.
 std::unique_ptr<Regressor> robot_regressor(const ChainModel& chain, const std::vector<EffectModel>& effects,
                                            const std::vector<double>& output_gain);
 

@@ -24,7 +24,7 @@ using Eigen::VectorXd;
 constexpr double share_of_median_least = 1.0 / 3;
 constexpr double share_of_median_most = 3;
 
-/// Torques of the nominal rigid body, T x n.
+/// Returns the torques of the nominal rigid body, T x n.
 MatrixXd nominal_torques(const Robot& robot, const TrainingData& data) {
     const std::vector<double> gains(robot.joints.size(), 1);
     const auto regressor = robot_regressor(chain_model(robot, OutputKind::joint_torque), {}, gains);

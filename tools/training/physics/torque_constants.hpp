@@ -13,19 +13,19 @@ struct TorqueGain {
     enum class Source {
         given,
         estimated,
-        median, ///< of the other joints'
+        median, ///< median of the other joints
     };
     double gain = 1; ///< A/N·m, > 0
     Source source = Source::given;
 };
 
-/// The gains of all joints, for which the robot file has nothing: least squares of
-/// the measured current on the nominal rigid body's torque, viscous friction, Coulomb friction and an offset,
-/// over all rows. `data` has velocities and accelerations. `sign_velocity`: of Coulomb friction (rad/s).
+/// Estimates the gains of all joints, which are not part of the robot file: least squares of the measured
+/// current with the nominal rigid body's torque, viscous friction, Coulomb friction and an offset, over all
+/// rows. `data` must have velocities and accelerations. `sign_velocity`: of Coulomb friction (rad/s).
 ///
-/// A joint whose nominal torque hardly explains its current (a wrist) has no gain of its own: below a third
-/// or above three times the median of the positive ones it gets the median; 1 where no joint has a positive
-/// one.
+/// A joint whose nominal torque explains little of its current (a wrist) has no estimate of its own. If its
+/// gain is below a third or above three times the median of the positive ones, it receives the median; 1 if
+/// no joint has a positive gain.
 std::vector<TorqueGain> estimate_torque_gains(const Robot& robot, const TrainingData& data,
                                               double sign_velocity);
 

@@ -31,7 +31,7 @@ const Minimum& best_of(const std::vector<Minimum>& minima) {
     return *best;
 }
 
-/// DFR begins where DFSR ends.
+/// Returns whether DFR starts from the result of DFSR.
 bool begins_structured(const TrainingOptions& options) {
     return options.input == InputKind::DFR && options.lags >= 2 && options.rows_per_joint >= 2;
 }
@@ -43,7 +43,7 @@ PhysicsPrior prior_of(const TrainingOptions& options) {
     return options.physics.prior == PriorForm::diagonal ? PhysicsPrior::diagonal : PhysicsPrior::shared;
 }
 
-/// The point of a search with everything that has its best value there.
+/// A point of a search with all values that are optimal there.
 struct Found {
     VectorXd theta;
     LikelihoodValue value;
@@ -69,7 +69,7 @@ class Search {
         return starts_.run(problem_.exact(), problem_.bounds(), starts, announced);
     }
 
-    /// Goes on from `theta` by the likelihood of the model that will run, over all usable rows.
+    /// Continues from `theta` with the likelihood of the estimator's model, over all usable rows.
     Found refined(const VectorXd& theta) {
         Found found{theta, *problem_.exact().evaluate(theta)};
         if (setup_.options.refinement_evaluations == 0) {
@@ -104,7 +104,7 @@ PhysicsPart part_of(const FitProblem& problem, const FitModel& model, const Foun
     return {*model.columns, stacked(hyper.input, hyper.physics), found.value.physics};
 }
 
-/// Physics with white noise alone.
+/// Physics with white noise only.
 FitModel physics_alone(const TrainingSetup& setup, PhysicsPrior prior) {
     FitModel model;
     model.kernel = false;

@@ -23,16 +23,16 @@ struct Fit {
     Hyperparameters hyper;           ///< P: the input's only
     Eigen::VectorXd output_variance; ///< rho_k^2; P: sigma_k^2
     Eigen::VectorXd offset;
-    std::optional<PhysicsPart> physics; ///< nothing for NP
+    std::optional<PhysicsPart> physics; ///< empty for NP
     TrainingRecord record;
     std::vector<HoldOutPoint> hold_out; ///< CV only
 };
 
-/// By marginal likelihood. Throws InputError when no start has a finite likelihood.
+/// Fits by marginal likelihood. Throws InputError if no start has a finite likelihood.
 Fit fit_by_likelihood(const TrainingSetup& setup, const ProgressCallback& progress);
 
-/// By cross validation on a grid (eq:CVcost); inputs and motion have the parameters of their first start.
-/// Throws InputError where no point of the grid has a finite error.
+/// Fits by cross validation on a grid (paper, Section IV-C). Inputs and motion have the parameters of their
+/// first start. Throws InputError if no point of the grid has a finite error.
 Fit fit_by_hold_out(const TrainingSetup& setup, const ProgressCallback& progress);
 
 } // namespace dfdyn::tools

@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The likelihood rows' first part, on which the grid's models are trained.
+/// Returns the first part of the likelihood rows, on which the grid's models are trained.
 RowList training_part(const TrainingSetup& setup) {
     const RowList& rows = setup.rows.likelihood;
     const double wanted = setup.options.training_share * static_cast<double>(rows.size());
@@ -24,7 +24,7 @@ RowList training_part(const TrainingSetup& setup) {
     return {rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
-/// Least squares over `at`, or the parameters that the caller gave.
+/// Returns the least-squares solution over `at`, or the parameters given by the caller.
 PhysicsPart physics_over(const TrainingSetup& setup, const RowList& at) {
     if (setup.options.physics.given) {
         return given_physics(setup);

@@ -10,22 +10,22 @@
 
 namespace dfdyn::tools {
 
-/// What is to be fitted: y = offset + mean + physics + f + e.
+/// The model to fit: y = offset + mean + physics + f + e.
 struct FitModel {
-    bool kernel = true;                  ///< f; without it P
+    bool kernel = true;                  ///< includes f; otherwise P
     Eigen::VectorXd offset;              ///< m
     std::optional<PhysicsPart> mean;     ///< fixed physics
-    std::optional<ColumnChoice> columns; ///< physics that is fitted along, none with NP and SP2
+    std::optional<ColumnChoice> columns; ///< fitted physics; none for NP and SP2
     PhysicsPrior prior = PhysicsPrior::none;
 };
 
-/// All columns with the parameters that the caller gave, and the motion that training begins with.
+/// Returns all columns with the parameters given by the caller, and the initial motion.
 PhysicsPart given_physics(const TrainingSetup& setup);
 
-/// Outputs less what is fixed.
+/// Returns the outputs minus the fixed parts.
 Eigen::MatrixXd remaining_outputs(const TrainingSetup& setup, const FitModel& model, const RowList& at);
 
-/// The likelihoods of a model over the rows `at`, with an input of the given kind. Refers to `setup`.
+/// Likelihoods of a model over the rows `at`, with an input of the given kind. Refers to `setup`.
 class FitProblem {
   public:
     FitProblem(const TrainingSetup& setup, InputKind kind, const RowList& at, const FitModel& model);
@@ -34,22 +34,23 @@ class FitProblem {
     Bounds bounds() const;
     Eigen::VectorXd start(int index) const;
 
-    /// Exact kernel, or none.
+    /// Likelihood with the exact kernel, or without a kernel.
     const Likelihood& exact() const { return *exact_; }
 
-    /// That of the model that will run: the random features that the options ask for, or no kernel.
+    /// Returns the likelihood of the estimator's model: with the random features of the options, or without a
+    /// kernel.
     std::unique_ptr<Likelihood> running() const;
 
-    /// The start that does as `structured` does at `theta`, a problem with input DFSR; this one has DFR.
-    /// Where the physics shares rows with the input, it does so up to beta^M: the input's filters are the
-    /// paper's, the physics' own are exact for ramps and parabolas (see difference_motion()).
+    /// Returns the start of this DFR problem that is equivalent to `structured`, a DFSR problem, at `theta`.
+    /// If the physics uses rows of the input, the equivalence holds up to beta^M: the input's filters are the
+    /// paper's, and the physics' own ones are exact for ramps and parabolas (see difference_motion()).
     Eigen::VectorXd start_from(const FitProblem& structured, const Eigen::VectorXd& theta) const;
 
     /// P: r = l = 0.
     Hyperparameters split(const Eigen::VectorXd& theta) const;
 
   private:
-    /// The parameters of the physics that do as DFSR's, beside the input at `input`.
+    /// Returns the physics' parameters that are equivalent to DFSR's, for the input's parameters `input`.
     Eigen::VectorXd physics_from(const Hyperparameters& structured, const Eigen::VectorXd& input) const;
 
     Eigen::Index first_input() const { return kernel_ ? kernel_parameters : 0; }

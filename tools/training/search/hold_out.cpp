@@ -22,7 +22,7 @@ constexpr int kernel_grid_side = 13;
 static_assert(kernel_grid_side * kernel_grid_side == kernel_grid_points);
 constexpr double no_error = std::numeric_limits<double>::infinity();
 
-/// first, first * factor, … `count` values.
+/// Returns first, first * factor, …: `count` values.
 std::vector<double> geometric(double first, double factor, int count) {
     std::vector<double> values;
     for (int i = 0; i < count; ++i) {
@@ -52,7 +52,7 @@ double kernel_error(const MatrixXd& kernel, const MatrixXd& outputs, Index train
     return relative_error(predicted, outputs.bottomRows(held_out));
 }
 
-/// Psi_k pi in column k.
+/// Returns Psi_k pi in column k.
 MatrixXd products(const MatrixXd& columns, const VectorXd& parameters, Index outputs) {
     MatrixXd result(columns.rows(), outputs);
     for (Index k = 0; k < outputs; ++k) {
@@ -92,7 +92,7 @@ std::optional<std::vector<HoldOutPoint>> hold_out_physics(const MatrixXd& column
     if (!least_squares) {
         return std::nullopt;
     }
-    double energy = 0; // of the columns, in units of the outputs'
+    double energy = 0; // of the columns, relative to the outputs'
     for (Index k = 0; k < y.cols(); ++k) {
         energy += psi.middleCols(k * statistics.products.rows(), statistics.products.rows()).squaredNorm() /
                   y.col(k).squaredNorm();

@@ -17,8 +17,8 @@ struct Descent {
     const Differentiable& function;
     int evaluations_most;
     Minimum best;
-    double worst = 0;         // highest finite value met, at least 0: points without one are worse
-    std::exception_ptr error; // thrown by the function: NLopt would not hand it on as it is
+    double worst = 0;         // largest finite value so far, at least 0: points without a value are worse
+    std::exception_ptr error; // thrown by the function: NLopt would not preserve it
 };
 
 std::optional<PointValue> guarded(Descent& search, const Eigen::VectorXd& point) {
@@ -38,7 +38,7 @@ double without_value(const Descent& search, std::vector<double>& gradient) {
 double evaluate(const std::vector<double>& point, std::vector<double>& gradient, void* context) {
     Descent& search = *static_cast<Descent*>(context);
     if (search.error || search.best.evaluations == search.evaluations_most) {
-        return without_value(search, gradient); // NLopt stops only when its line search has ended
+        return without_value(search, gradient); // NLopt stops only after its line search
     }
     ++search.best.evaluations;
     const Eigen::VectorXd here =
@@ -56,7 +56,7 @@ double evaluate(const std::vector<double>& point, std::vector<double>& gradient,
     return found->value;
 }
 
-/// One run of the optimiser from `start`.
+/// Runs the optimiser once from `start`.
 void descend(Descent& search, const Bounds& bounds, const Eigen::VectorXd& start, double tolerance) {
     nlopt::opt optimiser(nlopt::LD_LBFGS, static_cast<unsigned>(start.size()));
     optimiser.set_min_objective(evaluate, &search);
@@ -70,7 +70,7 @@ void descend(Descent& search, const Bounds& bounds, const Eigen::VectorXd& start
     try {
         optimiser.optimize(point, value);
     } catch (const std::runtime_error&) {
-        // NLopt's word for a line search that finds nothing lower, or the function's own error.
+        // NLopt's error for a line search without a lower value, or the function's own error
     }
     if (search.error) {
         std::rethrow_exception(search.error);

@@ -9,14 +9,14 @@
 namespace dfdyn::tools {
 namespace {
 
-constexpr double log_likelihood_tolerance = 0.001; // far below what separates one model from another
+constexpr double log_likelihood_tolerance = 0.001; // far below the differences between models
 constexpr double refinement_tolerance = 0.1;       // of -2 log L
 
 } // namespace
 
 std::vector<Minimum> MultiStart::run(const Likelihood& likelihood, const Bounds& bounds,
                                      const std::vector<Eigen::VectorXd>& starts, bool announced) {
-    std::vector<Minimum> minima(starts.size()); // each written by the thread that has its start
+    std::vector<Minimum> minima(starts.size()); // each element is written by the thread of its start
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
         for (std::size_t start = next++; start < starts.size(); start = next++) {

@@ -10,27 +10,28 @@
 
 namespace dfdyn::tools {
 
-/// Local searches of likelihoods on `options.threads` threads, with one count of evaluations over all runs.
-/// Refers to both arguments.
+/// Local searches of likelihoods on `options.threads` threads, with a common count of evaluations over all
+/// runs. Refers to both arguments.
 class MultiStart {
   public:
-    /// `searches`: of all runs to come, for the progress, beside one refinement.
+    /// `searches`: number of all searches, for the progress display, without the refinement.
     MultiStart(const TrainingOptions& options, const ProgressCallback& callback, int searches)
         : options_(options), callback_(callback) {
         progress_.evaluations_most =
             searches * options.evaluations_per_start + options.refinement_evaluations;
     }
 
-    /// One Minimum per start, in their order, its value -2 log L; each search depends on its own start only.
-    /// `announced`: the callback hears of every end. An exception of a search is passed on.
+    /// Returns one Minimum per start, in order, with the value -2 log L; each search depends on its own start
+    /// only. `announced`: the callback receives the end of every search. An exception of a search is
+    /// rethrown.
     std::vector<Minimum> run(const Likelihood& likelihood, const Bounds& bounds,
                              const std::vector<Eigen::VectorXd>& starts, bool announced);
 
-    /// One search with the budget of the refinement.
+    /// Runs one search with the evaluation limit of the refinement.
     Minimum refine(const Likelihood& likelihood, const Bounds& bounds, const Eigen::VectorXd& start);
 
   private:
-    /// `tolerance` of -2 log L; at most `evaluations`.
+    /// `tolerance`: of -2 log L; at most `evaluations`.
     Minimum search(const Likelihood& likelihood, const Bounds& bounds, const Eigen::VectorXd& start,
                    double tolerance, int evaluations);
     void report(int evaluations, const std::optional<TrainingProgress::End>& end);

@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int rows_least = 20;
-constexpr Index structured_betas = 2; // where DFSR's parameters hold the logits of its poles
+constexpr Index structured_betas = 2; // index of the logits of DFSR's poles among its parameters
 
 } // namespace
 
@@ -129,7 +129,8 @@ ColumnChoice choose_columns(const TrainingSetup& setup) {
     const Index samples = columns.rows();
     MatrixXd relative(samples * regressor.outputs(), regressor.columns());
     for (Index k = 0; k < regressor.outputs(); ++k) {
-        const double unit = std::isfinite(deviations[k]) ? deviations[k] : 1; // the search will say so
+        // the search reports the error
+        const double unit = std::isfinite(deviations[k]) ? deviations[k] : 1;
         relative.middleRows(k * samples, samples) =
             columns.middleCols(k * regressor.columns(), regressor.columns()) / unit;
     }

@@ -12,7 +12,7 @@
 
 namespace dfdyn::tools {
 
-/// The rows that training uses, and for what.
+/// The rows for each step of the training.
 struct TrainingRows {
     RowList usable;     ///< for the start state
     RowList moving;     ///< for scales and offsets
@@ -22,25 +22,25 @@ struct TrainingRows {
 /// Throws InputError for fewer than 20 usable rows in motion.
 TrainingRows choose_rows(const TrainingData& data, const TrainingOptions& options);
 
-/// What all parts of training read, and what they make of it for any set of rows.
+/// Common data of all steps of the training, and the objects made from it for any set of rows.
 struct TrainingSetup {
     const TrainingData& data;
     const TrainingOptions& options;
     TrainingRows rows;
-    LagSpread spread; ///< of the rows in motion
+    LagSpread spread; ///< over the rows in motion
 
     TrainingSetup(const TrainingData& data, const TrainingOptions& options);
 
-    /// The input over the rows `at`, scaled over the rows in motion.
+    /// Returns the input over the rows `at`, scaled over the rows in motion.
     std::unique_ptr<InputMap> input(InputKind kind, const RowList& at) const;
 
-    /// What the regressor sees over the rows `at` beside an input of that kind.
+    /// Returns the motion input of the regressor over the rows `at`, for an input of this kind.
     std::unique_ptr<LearnedMotion> motion(InputKind kind, const RowList& at) const;
 
-    /// The parameters of that motion that training begins with: the input's, then its own.
+    /// Returns the initial parameters of this motion: the input's, then its own.
     Eigen::VectorXd motion_start(InputKind kind) const;
 
-    /// The rows of that motion; nothing for the recording's derivatives.
+    /// Returns the rows of this motion; null for the recording's derivatives.
     std::unique_ptr<MotionRows> motion_rows(InputKind kind) const;
 
     std::unique_ptr<PhysicsColumns> physics(InputKind kind, const RowList& at,
@@ -49,18 +49,18 @@ struct TrainingSetup {
     Eigen::MatrixXd outputs(const RowList& at) const { return data.outputs(at, Eigen::all); }
 };
 
-/// Throws InputError that names an output that is constant over the likelihood rows.
+/// Throws InputError with the name of an output that is constant over the likelihood rows.
 void check_outputs_vary(const TrainingSetup& setup);
 
-/// The columns of the physics that the recording identifies with the motion that training begins with, and
-/// the units of their parameters (see TrainedPhysics, before the factor of the outputs). Throws InputError if
-/// there is none.
+/// Returns the columns of the physics that the recording identifies with the initial motion, and the units of
+/// their parameters (see TrainedPhysics, without the factor of the outputs). Throws InputError if there is
+/// none.
 ColumnChoice choose_columns(const TrainingSetup& setup);
 
-/// What the model adds to everything: NP's mean over the rows in motion if it is centred; else 0.
+/// Returns the model's output offset: the mean over the rows in motion for a centred NP, otherwise 0.
 Eigen::VectorXd output_offset(const TrainingSetup& setup);
 
-/// Standard deviations of the outputs over the likelihood rows.
+/// Returns the standard deviations of the outputs over the likelihood rows.
 Eigen::VectorXd output_deviations(const TrainingSetup& setup);
 
 } // namespace dfdyn::tools

@@ -18,10 +18,10 @@ constexpr double widest_log_prior = 25;
 constexpr double log_noise_range = 40;
 constexpr int expectation_steps = 10;
 constexpr int newton_steps_most = 300;
-constexpr double longest_step = 3; // in a logarithm
+constexpr double longest_step = 3; // of a logarithm
 constexpr double damping_most = 1e12;
 
-/// The outputs' variances as if there were no physics; a prior under which the physics is as large.
+/// The outputs' variances without physics, and a prior for which the physics has the same size.
 VectorXd first_guess(const LinearStatistics& statistics, PhysicsPrior prior) {
     const Index outputs = outputs_of(statistics);
     const auto samples = static_cast<double>(statistics.samples);
@@ -36,8 +36,8 @@ VectorXd first_guess(const LinearStatistics& statistics, PhysicsPrior prior) {
     return x;
 }
 
-/// What expectation-maximisation makes of x; it needs the gradient only. Nothing where a variance would
-/// vanish.
+/// One step of expectation-maximization from x; it needs the gradient only. Returns nothing if a variance
+/// would vanish.
 std::optional<VectorXd> expectation_step(const LinearStatistics& statistics, PhysicsPrior prior,
                                          const VectorXd& x) {
     const auto at = variance_criterion(statistics, prior, x);
@@ -55,15 +55,15 @@ std::optional<VectorXd> expectation_step(const LinearStatistics& statistics, Phy
     return x + factor.array().log().matrix();
 }
 
-/// Damped Newton's method in a box.
+/// Damped Newton method within bounds.
 class Newton {
   public:
     Newton(const LinearStatistics& statistics, PhysicsPrior prior, VectorXd lower, VectorXd upper)
         : statistics_(statistics), prior_(prior), lower_(std::move(lower)), upper_(std::move(upper)),
           tolerance_(1e-11 * static_cast<double>(statistics.samples)) {}
 
-    /// Nothing unless the box' minimum was reached, to a loose bound: gradients of what depends on it would
-    /// be wrong.
+    /// Returns nothing unless the minimum within the bounds was reached, to a loose tolerance: otherwise
+    /// gradients of dependent quantities would be wrong.
     std::optional<VarianceCriterion> run(VectorXd& x) const {
         auto here = variance_criterion(statistics_, prior_, x);
         double damping = 1e-3;
@@ -87,7 +87,7 @@ class Newton {
   private:
     static constexpr double loose = 1e5;
 
-    /// 1 where the box does not hold the coordinate back.
+    /// 1 for coordinates that are not held at a bound.
     VectorXd free(const VarianceCriterion& at, const VectorXd& x) const {
         VectorXd result = VectorXd::Ones(x.size());
         for (Index i = 0; i < x.size(); ++i) {
@@ -102,7 +102,7 @@ class Newton {
         return free(at, x).cwiseProduct(at.gradient).cwiseAbs().maxCoeff();
     }
 
-    /// Lower, or as low to rounding and flatter.
+    /// Returns whether a point is lower, or equal within rounding errors and flatter.
     bool better(const VarianceCriterion& there, const VectorXd& next, const VarianceCriterion& here,
                 const VectorXd& x) const {
         const double rounding = 1e-12 * std::abs(here.value);
@@ -116,7 +116,7 @@ class Newton {
         matrix.diagonal() += damping * at.hessian.diagonal().cwiseAbs() + (1 - open.array()).matrix();
         const Eigen::LLT<MatrixXd> factor(matrix);
         if (factor.info() != Eigen::Success) {
-            return x; // not an improvement: the damping grows
+            return x; // no improvement: the damping increases
         }
         VectorXd step = -factor.solve(open.cwiseProduct(at.gradient));
         step *= std::min(1.0, longest_step / std::max(step.cwiseAbs().maxCoeff(), 1e-300));

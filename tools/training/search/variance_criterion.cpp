@@ -13,12 +13,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Sums over the columns that share one gamma^2, in rows.
+/// Sums over the columns that have the same gamma^2, in rows.
 MatrixXd gathered(const MatrixXd& per_column, PhysicsPrior prior) {
     return prior == PhysicsPrior::shared ? MatrixXd(per_column.colwise().sum()) : per_column;
 }
 
-/// Everything at one x that value, gradient and Hessian are made of.
+/// Common terms of value, gradient and Hessian at one x.
 struct Point {
     VectorXd noise;                 // v_k
     VectorXd prior;                 // p, or empty
@@ -61,7 +61,7 @@ std::optional<Point> point_at(const LinearStatistics& statistics, PhysicsPrior p
     return point;
 }
 
-/// tr(P A_k), what the uncertainty of pi adds to the residuals; 0 where pi has no prior.
+/// tr(P A_k), the contribution of pi's uncertainty to the residuals; 0 if pi has no prior.
 VectorXd uncertainty(const Point& point, PhysicsPrior prior) {
     VectorXd traces = VectorXd::Zero(point.noise.size());
     for (Index k = 0; prior != PhysicsPrior::none && k < traces.size(); ++k) {
@@ -100,7 +100,7 @@ VectorXd gradient_of(const LinearStatistics& statistics, PhysicsPrior prior, con
     return gradient;
 }
 
-/// Second derivatives among the outputs' variances.
+/// Second derivatives with respect to the outputs' variances.
 MatrixXd noise_hessian(PhysicsPrior prior, const Point& point) {
     const Index outputs = point.noise.size();
     MatrixXd hessian = -2 * point.slopes.transpose() * point.covariance * point.slopes;

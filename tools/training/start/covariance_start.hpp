@@ -7,8 +7,8 @@
 
 namespace dfdyn::tools {
 
-/// The factors U (strictly upper part, by columns, as in StartModel) and D of `covariance` = U D U'. Throws
-/// InputError unless it is positive definite. O(p^3).
+/// Computes the factors U (strictly upper part, by columns, as in StartModel) and D of `covariance` = U D U'.
+/// Throws InputError unless it is positive definite. O(p^3).
 void store_covariance(const Eigen::MatrixXd& covariance, std::vector<double>& unit_upper,
                       std::vector<double>& diagonal);
 

@@ -19,14 +19,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index block_count = 5;
-constexpr Index learned_rows = 3000; // at most, of all blocks
+constexpr Index learned_rows = 3000; // maximum over all blocks
 constexpr Index predicted_rows = 600;
 constexpr double range_share = 0.99;
-constexpr double within_two_deviations = 0.954; // of a normal distribution
+constexpr double within_two_deviations = 0.954; // for a normal distribution
 constexpr double near_novelty = 0.1;
 constexpr std::size_t near_samples_least = 50;
 
-/// One stretch of time: its normal equations, and some of its rows to predict.
+/// One time block: its normal equations, and some of its rows for prediction.
 struct TimeBlock {
     MatrixXd information;
     MatrixXd right_hand_side;
@@ -34,7 +34,7 @@ struct TimeBlock {
     MatrixXd targets;
 };
 
-/// Errors on held-out rows, with the novelty of each.
+/// Held-out errors and the novelty of their rows.
 struct HeldOut {
     std::vector<double> novelty;
     std::vector<VectorXd> error; ///< m, in units of noise_std
@@ -72,7 +72,7 @@ std::vector<TimeBlock> blocks_of(const TrainedModel& model, const TrainingData& 
     return blocks;
 }
 
-/// Learns from the equations and predicts the rows of a block that is not among them.
+/// Learns from normal equations and predicts the rows of another block.
 class Learned {
   public:
     Learned(MatrixXd information, const MatrixXd& right_hand_side, double prior_variance)
@@ -127,7 +127,7 @@ HeldOut held_out_errors(const std::vector<TimeBlock>& blocks, double prior_varia
     return held_out;
 }
 
-/// Of one output.
+/// Returns the extra noise of one output.
 double extra_noise(const HeldOut& held_out, Index output, double prior_variance) {
     std::vector<double> near;
     std::vector<double> all;
@@ -145,14 +145,14 @@ double extra_noise(const HeldOut& held_out, Index output, double prior_variance)
     return std::max(quantile(samples, within_two_deviations) - 1, 0.0);
 }
 
-/// In units of noise_std squared.
+/// Returns the prior variance in units of noise_std squared.
 double prior_variance(const MatrixXd& targets, Index output, double offset) {
     const VectorXd magnitudes = (targets.col(output).array() + offset).abs();
     const double range = quantile(to_vector(magnitudes), range_share);
     return range * range / 3 + offset * offset;
 }
 
-/// trace(U D U') / size.
+/// Returns trace(U D U') / size.
 double mean_variance(const StartModel& start) {
     double trace = 0;
     auto upper = start.unit_upper.begin();
@@ -166,11 +166,11 @@ double mean_variance(const StartModel& start) {
     return trace / static_cast<double>(start.diagonal.size());
 }
 
-/// The physics' part of one stretch of time.
+/// The physics' part of one time block.
 struct PhysicsBlock {
     MatrixXd information;
     VectorXd right_hand_side;
-    MatrixXd columns; ///< rows to predict, in units of noise_std: (rows m) x p
+    MatrixXd columns; ///< rows for prediction, in units of noise_std: (rows m) x p
     VectorXd targets;
 };
 
@@ -195,8 +195,8 @@ PhysicsBlock physics_block(const PhysicsProblem& problem, Index first, Index las
     return block;
 }
 
-/// What two deviations, of the noise and of the parameters learned from the equations, leave of the squared
-/// errors on a block: added output by output.
+/// Appends, for each output, a quarter of the squared errors on a block (two standard deviations) minus the
+/// variance of the parameters learned from the equations, times `factor`.
 void predict_physics(const NormalEquations& equations, const ParameterPrior& prior, double factor,
                      const PhysicsBlock& block, std::vector<std::vector<double>>& unexplained) {
     const CovarianceFactor learned = information_factor(equations.information + prior.information, 1);

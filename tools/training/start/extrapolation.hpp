@@ -10,30 +10,31 @@
 
 namespace dfdyn::tools {
 
-/// Measures what `model`, with its start, knows of the outputs away from its data. `targets`, N x m in units
-/// of noise_std: what its features have to explain at `rows`.
+/// Measures the uncertainty of `model`, in its initial state, away from its data. `targets`: N x m in units
+/// of noise_std, the part of the outputs at `rows` that the features must explain.
 ///
-///  - inverse_far_variance: 1 / (trace(P) / 2d) of the start; that is the mean of φ'Pφ over all phases of the
-///  features.
-///  - prior_variance: where nothing is known an output is taken to be uniform over plus and minus its
-///    99 % quantile, so its variance about the offset is quantile^2 / 3 + offset^2.
-///  - extra_noise: such that two standard deviations hold 95.4 % of errors out of sample near the data
-///    (novelty below 0.1). Samples: five contiguous blocks in time, each predicted from the other four, and
-///    each of these from one (block cross-validation: neighbouring rows are too alike to be held out alone).
+/// - inverse_far_variance: 1 / (trace(P) / 2d) of the initial state; trace(P) / 2d is the mean of φ'Pφ over
+///   all phases of the features.
+/// - prior_variance: away from all data, an output is assumed uniform within plus and minus its 99 %
+///   quantile. Its variance about the offset is therefore quantile^2 / 3 + offset^2.
+/// - extra_noise: chosen so that two standard deviations contain 95.4 % of held-out errors near the data
+///   (novelty below 0.1). The errors are from five contiguous blocks in time, each predicted from the other
+///   four, and each of these from one (block cross-validation, because neighbouring rows are too similar to
+///   be held out individually).
 ///
-/// Deterministic. At most 3000 rows are learned from and 600 predicted, evenly strided: O(n (2d)^2 + 10
-/// (2d)^3) with n = 6000.
+/// Deterministic. At most 3000 rows are used for learning and 600 for prediction, evenly strided: O(n (2d)^2
+/// + 10 (2d)^3) with n = 6000.
 ExtrapolationModel measure_extrapolation(const TrainedModel& model, const TrainingData& data,
                                          const RowList& rows, const Eigen::MatrixXd& targets);
 
-/// Of each output about its offset where nothing is known, in units of noise_std squared: it is taken to be
-/// uniform over plus and minus its 99 % quantile at `rows`.
+/// Returns the variance of each output about its offset away from all data, in units of noise_std squared,
+/// for a uniform distribution within plus and minus its 99 % quantile at `rows`.
 std::vector<double> output_variances(const TrainedModel& model, const TrainingData& data,
                                      const RowList& rows);
 
-/// Likewise for P, whose start is the solution of `problem` under `prior`: extra_noise from the same blocks,
-/// where the variance of the parameters, times `parameter_variance_factor`, explains its part of the errors.
-/// O(n m p^2 + 10 p^3).
+/// Measures the uncertainty for P, whose initial state is the solution of `problem` under `prior`.
+/// extra_noise is from the same blocks; the variance of the parameters, times `parameter_variance_factor`,
+/// explains its part of the errors. O(n m p^2 + 10 p^3).
 ExtrapolationModel measure_parametric_extrapolation(const PhysicsProblem& problem,
                                                     const ParameterPrior& prior,
                                                     double parameter_variance_factor);

@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 
 constexpr double measured_factor = 10;
 constexpr double predicted_factor = 3;
-constexpr double least_output = 1e-3; // of a channel that is always 0
+constexpr double least_output = 1e-3; // for a channel that is always 0
 
 } // namespace
 

@@ -8,13 +8,13 @@
 
 namespace dfdyn::tools {
 
-/// What a model trained on `data` takes for possible: positions and outputs up to ten times the largest that
-/// the data have (positions: at least one turn), predictions up to three times. The limits of innovations are
-/// left to `calibrate_innovation_limit`.
+/// Returns the plausible range for a model trained on `data`: positions and outputs up to ten times their
+/// largest magnitudes in the data (positions: at least one turn), predictions up to three times. The limits
+/// of innovations are set by `calibrate_innovation_limit`.
 LimitModel limits_of(const TrainingData& data);
 
-/// Takes predicted torques back to what the joints' motors can give. `efforts`: of each output, in its unit,
-/// not above 0 where unknown; one that the data exceed is not believed.
+/// Limits predicted torques to the motors' capability. `efforts`: one per output, in its unit; not positive
+/// if unknown. An effort that the data exceed is ignored.
 void bound_by_efforts(LimitModel& limits, std::span<const double> efforts);
 
 } // namespace dfdyn::tools

@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 constexpr double prior_weight_least = 1e-6;
 constexpr std::size_t rows_at_once = 256;
 
-/// Ages the equations by the rows' number and adds the rows, the last of them with weight 1.
+/// Applies forgetting for the number of rows and adds the rows, the last of them with weight 1.
 void fold_in(const TrainedModel& model, const TrainingData& data, const RowList& rows,
              const MatrixXd& targets, NormalEquations& equations) {
     const auto count = static_cast<Index>(rows.size());

@@ -14,27 +14,28 @@ namespace dfdyn::tools {
 
 /// Lambda w = b.
 struct NormalEquations {
-    Eigen::MatrixXd information;     ///< Lambda, lower triangle, without prior
+    Eigen::MatrixXd information;     ///< Lambda, lower triangle, without the prior
     Eigen::MatrixXd right_hand_side; ///< b, one column per target
 };
 
-/// Sums over `rows` of lambda^(N-t) phi phi' and lambda^(N-t) phi target', phi the random features of
-/// `model`; `targets` has a row for each of `rows`. O(N (2d)^2), in blocks: memory does not grow with N.
+/// Returns the sums over `rows` of lambda^(N-t) phi phi' and lambda^(N-t) phi target', with the random
+/// features phi of `model`; `targets` has a row for each of `rows`. O(N (2d)^2), in blocks, so that memory
+/// does not grow with N.
 NormalEquations normal_equations(const TrainedModel& model, const TrainingData& data, const RowList& rows,
                                  const Eigen::MatrixXd& targets);
 
 /// The square roots of lambda^(count-1) … 1.
 Eigen::VectorXd forgetting_roots(double forgetting_factor, Eigen::Index count);
 
-/// What forgetting leaves of the prior after `count` rows: lambda^(count-1), at least 1e-6, so that the
-/// information matrix stays regular where the rows excite nothing.
+/// Weight of the prior after `count` rows with forgetting: lambda^(count-1), at least 1e-6, so that the
+/// information matrix stays regular if the rows do not excite all columns.
 double prior_weight(double forgetting_factor, Eigen::Index count);
 
 /// (y - offset) / noise_std of the given rows.
 Eigen::MatrixXd scaled_outputs(const OutputModel& model, const Eigen::MatrixXd& outputs, const RowList& rows);
 
-/// Factor of an information matrix with its prior. Throws InputError that shows `prior_variance` when it is
-/// not positive definite.
+/// Returns the factor of an information matrix with its prior. Throws InputError with `prior_variance` if it
+/// is not positive definite.
 CovarianceFactor information_factor(Eigen::MatrixXd information, double prior_variance);
 
 /// Lambda = L L', so Lambda^-1 = L^-T L^-1 = U D U' with U D^(1/2) = L^-T; in the order of StartModel.

@@ -14,7 +14,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr std::uint32_t frequency_stream = 0xffffffff; // the optimiser's starts use the streams from 0
+constexpr std::uint32_t frequency_stream = 0xffffffff; // the optimiser's starts use the streams from 0 on
 
 /// Uniformly distributed orthogonal matrix: Q of a normal matrix, with the signs that make R's diagonal
 /// positive.
