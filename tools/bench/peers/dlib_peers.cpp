@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// dlib's recursive least squares, compiled in if dlib's headers were there at build time.
+// dlib's recursive least squares, compiled if dlib's headers are available at build time.
 #include "tools/bench/peers/typed_contender.hpp"
 
 #ifdef DFDYN_HAS_DLIB

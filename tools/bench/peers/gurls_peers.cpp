@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What GURLS (https://github.com/LCSL/GURLS, the paper's tool) does for each sample of its recursive Cholesky
-// update (rlsprimalrecupdatecholesky.h, cholupdateutils.h, gmat2d.hpp), written anew. Compiled in if BLAS was
-// there at build time. GURLS itself is not in Debian.
+// The work of GURLS (https://github.com/LCSL/GURLS, the paper's tool) for each sample of its recursive
+// Cholesky update (rlsprimalrecupdatecholesky.h, cholupdateutils.h, gmat2d.hpp), implemented again. Compiled
+// if BLAS is available at build time. GURLS itself is not in Debian.
 #include "tools/bench/peers/typed_contender.hpp"
 
 #ifdef DFDYN_HAS_BLAS

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Cholesky route with Fortran libraries, compiled in if qrupdate, LAPACK and BLAS were there at build
+// The Cholesky method with Fortran libraries, compiled if qrupdate, LAPACK and BLAS are available at build
 // time.
 #include "tools/bench/peers/typed_contender.hpp"
 

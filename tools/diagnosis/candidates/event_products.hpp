@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Effects that begin, or happen, at a time that nobody knows.
+// Effects that begin, or occur, at an unknown time.
 #pragma once
 
 #include "tools/diagnosis/candidates/effect_regression.hpp"
