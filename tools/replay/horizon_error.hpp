@@ -17,8 +17,8 @@ struct HorizonIndex {
     std::vector<double> error_square; ///< m values: Σ (y(t+s) - ŷ(t+s|t))², the numerator of ε
 };
 
-/// Computes ε over a horizon of T samples (eq. pred_error): how the model learned up to t predicts the T
-/// samples that follow, given their positions. Holds the weights of the last T models.
+/// Computes ε over a horizon of T samples (paper, Section VI): the error of the model learned up to t for the
+/// T following samples, given their positions. Stores the weights of the last T models.
 class HorizonError {
   public:
     /// `horizon` T ≥ 1, `outputs` m, `weights` the number of weights of all outputs.
