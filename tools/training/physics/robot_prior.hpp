@@ -9,7 +9,7 @@
 namespace dfdyn::tools {
 
 /// Correlation time (s) of the physics' residual on a real arm (friction, gears, temperature): samples within
-/// it count as one. Chosen on two motions of a UR5 and on a servo (see docs/extrapolation.md).
+/// it count as one. Chosen on two motions of a UR5 and on a servo (see docs/reference/extrapolation.md).
 inline constexpr double residual_correlation_s = 4;
 /// The correlation time if features explain most of the residual (SP, SPK). Chosen on one of these motions,
 /// after the other.
