@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_realtime.sh SOURCE_FOLDER: checks that functions within the control loop's period do not block, with clang's function
-# effects at compile time and RealtimeSanitizer at run time, and that both detect a function that blocks. Needs clang 20 or later
-# with its runtime; without it the script reports that and checks nothing.
+# check_realtime.sh SOURCE_FOLDER FAMILIES: checks that functions within the control loop's period do not block, with clang's
+# function effects at compile time and RealtimeSanitizer at run time, and that both detect a function that blocks. FAMILIES is the
+# folder of every_family.hpp. Needs clang 20 or later with its runtime; without it the script reports that and checks nothing.
 set -euo pipefail
 cd "$1"
+families=$2
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
@@ -22,7 +23,7 @@ fi
 
 awk -v table=samples -f firmware_lib/examples/ur5_tables.awk tests/data/ur5_kufieta/Movement_No6_Acc_slow_Verify_Model.csv >"$scratch/ur5_samples.hpp"
 compile=("$compiler" -std=c++20 -O1 -Wfunction-effects -Werror=function-effects -fsanitize=realtime -DNDEBUG
-    -I. "-I$scratch" -Ifirmware_lib/include -Ihal/include tests/realtime/realtime.cpp)
+    -I. "-I$scratch" "-I$families" -Ifirmware_lib/include -Ihal/include tests/realtime/realtime.cpp)
 if "${compile[@]}" -DDFDYN_MUST_NOT_COMPILE -fsyntax-only 2>"$scratch/refused.txt"; then
     echo "realtime: a function that may not block allocates, and compiles"
     exit 1

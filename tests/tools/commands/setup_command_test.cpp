@@ -141,12 +141,12 @@ TEST_CASE("a recording with a mistake trains with --no-setup-check and a correct
     CHECK_THAT(right.call("train --help").out, ContainsSubstring("--no-setup-check"));
 }
 
-/// Runs `dfdyn diagnose` on the recording; returns its output and its JSON.
+/// Runs `dfdyn diagnose` on the recording, which is refused; returns its output and its JSON.
 std::pair<Outcome, nlohmann::json> diagnose(const Bench& bench, const std::string& option) {
     Outcome outcome = bench.call("diagnose" + robot + "--outputs i --no-held-out --rows :1200 --log " +
                                  bench.path("run.csv") + " -o " + bench.path("out") + " " + option);
     INFO(outcome.error);
-    REQUIRE(outcome.status == 0);
+    REQUIRE(outcome.status == 1);
     return {std::move(outcome), nlohmann::json::parse(file_content(bench.path("out/diagnosis.json")))};
 }
 
@@ -156,15 +156,19 @@ TEST_CASE("diagnose has the same check and the same option to skip it") {
     CHECK_THAT(checked.out, StartsWith("! columns i1, i2, i3, i4, i5, i6: expected A") &&
                                 ContainsSubstring("looks like mA"));
     CHECK(refused["findings"].empty());
+    CHECK(refused["refusals"][0]["code"] == "output_unit");
     CHECK_FALSE(std::filesystem::exists(bench.path("out/extended_model.json")));
     const auto [unchecked, next] = diagnose(bench, "--no-setup-check"); // reports the next reason
     CHECK_THAT(unchecked.out, !ContainsSubstring("looks like mA") && ContainsSubstring("causes need 10 s"));
+    CHECK(next["refusals"][0]["code"] == "too_little_information");
 }
 
 TEST_CASE("diagnose reports an unusable clock even without the check") {
     const Bench bench("time in ms");
     CHECK_THAT(diagnose(bench, "").first.out, StartsWith("! column t: expected seconds"));
-    CHECK_THAT(diagnose(bench, "--no-setup-check").first.out, StartsWith("! rows are 8 s apart"));
+    const auto [outcome, json] = diagnose(bench, "--no-setup-check");
+    CHECK_THAT(outcome.out, StartsWith("! rows are 8 s apart"));
+    CHECK(json["refusals"][0]["code"] == "clock");
 }
 
 TEST_CASE("an output that cannot be written is rejected before the recording is read") {
