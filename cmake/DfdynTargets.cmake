@@ -35,8 +35,9 @@ function(dfdyn_compile_strictly target)
 endfunction()
 
 # dfdyn_compile_by_folder(TARGET [HEADER...]): with DFDYN_COMPILE_BY_FOLDER, compiles the sources of a target that lie in one
-# folder as one, and the headers, which most of them include, once for all; call it when all sources have been added. What is
-# compiled together depends on the folder alone, so that two files whose names clash do so in every build.
+# folder of the caller's as one, with its subfolders, and the headers, which most of them include, once for all; call it when all
+# sources have been added. What is compiled together depends on the folder alone, so that two files whose names clash do so in
+# every build.
 function(dfdyn_compile_by_folder target)
     if(NOT DFDYN_COMPILE_BY_FOLDER)
         return()
@@ -45,8 +46,9 @@ function(dfdyn_compile_by_folder target)
     foreach(source IN LISTS sources)
         get_filename_component(folder "${source}" ABSOLUTE)
         get_filename_component(folder "${folder}" DIRECTORY)
-        file(RELATIVE_PATH folder "${PROJECT_SOURCE_DIR}" "${folder}")
-        string(MAKE_C_IDENTIFIER "${folder}" group)
+        file(RELATIVE_PATH folder "${CMAKE_CURRENT_SOURCE_DIR}" "${folder}")
+        string(REGEX REPLACE "^([^/]+)/.*" "\\1" folder "${folder}")
+        string(MAKE_C_IDENTIFIER "${target}_${folder}" group)
         set_source_files_properties("${source}" TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${group})
     endforeach()
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)

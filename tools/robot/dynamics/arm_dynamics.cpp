@@ -13,12 +13,11 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr std::size_t most_joints = largest_simulated_chain;
-
 void check(const Robot& robot) {
-    if (robot.joints.empty() || robot.joints.size() > most_joints) {
-        throw InputError("robot " + robot.name + ": expected a chain of 1 to " + std::to_string(most_joints) +
-                         " joints, found " + std::to_string(robot.joints.size()));
+    if (robot.joints.empty() || robot.joints.size() > largest_simulated_chain) {
+        throw InputError("robot " + robot.name + ": expected a chain of 1 to " +
+                         std::to_string(largest_simulated_chain) + " joints, found " +
+                         std::to_string(robot.joints.size()));
     }
     for (const RobotJoint& joint : robot.joints) {
         if (!(joint.inertia[0] >= 0)) {
@@ -29,7 +28,7 @@ void check(const Robot& robot) {
     }
 }
 
-Eigen::Isometry3d moved(const RobotJoint& joint, double position) {
+Eigen::Isometry3d placed_at(const RobotJoint& joint, double position) {
     Eigen::Isometry3d result = joint.placement;
     if (joint.prismatic) {
         result.translate(position * joint.axis);
@@ -54,7 +53,7 @@ void ArmDynamics::configure(const JointVector& position, Configuration& configur
     Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
     for (std::size_t i = 0; i < count; ++i) {
         const RobotJoint& joint = robot_.joints[i];
-        place = place * moved(joint, position[static_cast<Eigen::Index>(i)]);
+        place = place * placed_at(joint, position[static_cast<Eigen::Index>(i)]);
         const Eigen::Vector3d axis = place.linear() * joint.axis;
         if (joint.prismatic) {
             configuration.axis[i] = {Eigen::Vector3d::Zero(), axis};
@@ -86,7 +85,7 @@ SpatialForce ArmDynamics::net_force(const SpatialInertia& inertia, const LinkMot
 JointVector ArmDynamics::inverse(const Configuration& configuration, const JointVector& velocity,
                                  const JointVector& acceleration) const {
     const std::size_t count = robot_.joints.size();
-    std::array<SpatialForce, most_joints> force;
+    std::array<SpatialForce, largest_simulated_chain> force;
     LinkMotion motion = base_motion();
     for (std::size_t i = 0; i < count; ++i) {
         const auto k = static_cast<Eigen::Index>(i);

@@ -30,34 +30,34 @@ std::string fault_kind_names(const std::string& conjunction) {
 
 namespace {
 
-constexpr double longest_s = 1e6;
+constexpr double longest_fault_s = 1e6;
 
 std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
 
 } // namespace
 
 Fault FaultReader::lasting() const {
-    const double from_s = within("from_s", 0, longest_s, 0);
+    const double from_s = within("from_s", 0, longest_fault_s, 0);
     Fault fault;
     fault.from_ns = nanoseconds(from_s);
     if (json().has("for_s")) {
-        fault.until_ns = nanoseconds(from_s + json().number_within("for_s", 1e-6, longest_s));
+        fault.until_ns = nanoseconds(from_s + json().number_within("for_s", 1e-6, longest_fault_s));
     }
     return fault;
 }
 
 Fault FaultReader::since() const {
     Fault fault;
-    fault.from_ns = nanoseconds(json().number_within("at_s", 0, longest_s));
+    fault.from_ns = nanoseconds(json().number_within("at_s", 0, longest_fault_s));
     if (json().has("for_s")) {
-        fault.until_ns = fault.from_ns + nanoseconds(json().number_within("for_s", 1e-6, longest_s));
+        fault.until_ns = fault.from_ns + nanoseconds(json().number_within("for_s", 1e-6, longest_fault_s));
     }
     return fault;
 }
 
 Fault FaultReader::since(double for_s) const {
     Fault fault;
-    fault.from_ns = nanoseconds(json().number_within("at_s", 0, longest_s));
+    fault.from_ns = nanoseconds(json().number_within("at_s", 0, longest_fault_s));
     fault.until_ns = fault.from_ns + nanoseconds(for_s);
     return fault;
 }
