@@ -13,19 +13,20 @@
 
 namespace dfdyn::tools {
 
-/// How many bodies' inertial parameters the outputs depend on. Wrench: the links beyond the sensor, the first
-/// of them without its part on the base's side; what a sensor on the base carries of the base itself never
-/// moves and does not count. Throws std::logic_error for a wrench when the robot has no sensor.
+/// Returns the number of bodies whose inertial parameters influence the outputs. For a wrench: the links
+/// beyond the sensor, the first of them without its part on the base's side. The part of the base that a
+/// sensor on the base carries never moves and is not counted. Throws std::logic_error for a wrench if the
+/// robot has no sensor.
 int body_count(const Robot& robot, OutputKind outputs);
 
-/// The robot's own inertial parameters, body by body, that belong to the columns of the outputs' regressor:
-/// 10 body_count numbers.
+/// Returns the robot's own inertial parameters for the columns of the outputs' regressor, body by body: 10
+/// body_count numbers.
 Eigen::VectorXd nominal_parameters(const Robot& robot, OutputKind outputs);
 
-/// Names of those parameters: `link2 mcx`.
+/// Returns the names of these parameters: `link2 mcx`.
 std::vector<std::string> parameter_names(const Robot& robot, OutputKind outputs);
 
-/// Units of those parameters.
+/// Returns the units of these parameters.
 std::vector<std::string> parameter_units(const Robot& robot, OutputKind outputs);
 
 template <class Scalar>
@@ -49,7 +50,7 @@ ChainJoint<Scalar> firmware_joint(const RobotJoint& joint) {
     return result;
 }
 
-/// The run-time sizes of a dynamic chain for the robot; a fixed chain's are empty.
+/// Returns the run-time sizes of a dynamic chain for the robot; empty for a fixed chain.
 template <class ChainType>
 typename ChainType::Sizes firmware_sizes(const Robot& robot) {
     constexpr bool torques = std::is_same_v<typename ChainType::Output, JointTorques>;
@@ -59,15 +60,16 @@ typename ChainType::Sizes firmware_sizes(const Robot& robot) {
                 body_count(robot, torques ? OutputKind::joint_torque : OutputKind::wrench))};
 }
 
-/// What the firmware compiles in of the sensor.
+/// Returns the firmware's constants of the sensor.
 template <class Output, class Scalar>
 typename Output::template Constants<Scalar> firmware_sensor(const ForceTorqueSensor& sensor) {
     return {static_cast<std::int32_t>(sensor.link), firmware_placement<Scalar>(sensor.placement),
             static_cast<Scalar>(sensor.parent_to_child ? 1 : -1)};
 }
 
-/// The robot as the constants of `ChainType`, a dfdyn::Chain of fixed or dynamic sizes, for either kind of
-/// outputs. Throws std::logic_error when the sizes are not the robot's, or it has no sensor for a wrench.
+/// Returns the robot as constants of `ChainType`, a dfdyn::Chain of fixed or dynamic sizes, for torque or
+/// wrench outputs. Throws std::logic_error if the sizes differ from the robot's, or if it has no sensor for a
+/// wrench.
 template <class ChainType, class Scalar>
 typename ChainType::template Constants<Scalar> firmware_chain(const Robot& robot) {
     constexpr bool torques = std::is_same_v<typename ChainType::Output, JointTorques>;

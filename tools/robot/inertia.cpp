@@ -9,11 +9,11 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Relative; inertias in files have six digits or so.
+/// Relative; inertias in files have about six digits.
 constexpr double rounding = 1e-6;
 
-/// The linear map between an inertia and the second moments about the same point, which is its own inverse up
-/// to a factor: Σ = tr(I)/2 − I, I = tr(Σ) − Σ.
+/// The linear map between an inertia and the second moments about the same point. It is its own inverse up to
+/// a factor: Σ = tr(I)/2 − I, I = tr(Σ) − Σ.
 Eigen::Matrix3d trace_minus(const Eigen::Matrix3d& matrix, double factor) {
     return factor * matrix.trace() * Eigen::Matrix3d::Identity() - matrix;
 }
@@ -80,7 +80,7 @@ std::optional<std::string> inertia_fault(const InertialParameters& parameters) {
     if (principal[0] >= -std::abs(tolerance)) {
         return std::nullopt;
     }
-    // Principal inertias are sums of two principal moments: the smallest one of the two smallest.
+    // A principal inertia is the sum of two principal moments; the smallest one is that of the two smallest.
     return principal[0] + principal[1] < 0
                ? "its inertia about the centre of mass is not positive"
                : "one of its principal inertias is larger than the sum of the other two";

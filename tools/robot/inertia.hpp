@@ -15,19 +15,21 @@ using InertialParameters = Eigen::Matrix<double, 10, 1>;
 InertialParameters body_parameters(double mass, const Eigen::Vector3d& centre,
                                    const Eigen::Matrix3d& inertia_about_centre);
 
-/// Second moments of the mass distribution, as a 4x4 matrix linear in the parameters: the integral of
-/// (x, 1) (x, 1)ᵀ dm. A body can have these parameters exactly when it is positive definite (semidefinite for
-/// bodies without volume); mass > 0 and the triangle inequality of the principal inertias follow.
+/// Returns the second moments of the mass distribution, as a 4x4 matrix linear in the parameters: the
+/// integral of (x, 1) (x, 1)ᵀ dm. A body can have these parameters if and only if it is positive definite
+/// (semidefinite for bodies without volume). A positive mass and the triangle inequality of the principal
+/// inertias follow.
 Eigen::Matrix4d pseudo_inertia(const InertialParameters& parameters);
 
-/// The inverse of `pseudo_inertia`.
+/// Returns the inverse of `pseudo_inertia`.
 InertialParameters parameters_of(const Eigen::Matrix4d& pseudo_inertia);
 
-/// The same body seen from an outer frame in which its own frame sits at `placement`.
+/// Returns the same body in an outer frame; `placement` is the pose of the body's own frame in it.
 InertialParameters moved(const InertialParameters& parameters, const Eigen::Isometry3d& placement);
 
-/// What no body can have, in words that go after the body's name (`mass -1 kg is not positive`); nothing when
-/// a body can. Zero mass and inertia are no fault; nor is a body without volume, up to rounding.
+/// Returns why no body can have these parameters, as text after the body's name (`mass -1 kg is not
+/// positive`), or nothing if a body can. Zero mass and inertia are accepted, and so is a body without volume,
+/// within rounding.
 std::optional<std::string> inertia_fault(const InertialParameters& parameters);
 
 } // namespace dfdyn::tools

@@ -12,7 +12,8 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Uniform in [low, high); std::uniform_real_distribution differs between standard libraries.
+/// Returns a uniform number in [low, high). std::uniform_real_distribution differs between standard
+/// libraries.
 double uniform(std::mt19937_64& engine, double low, double high) {
     return low + (high - low) * 0x1p-53 * static_cast<double>(engine() >> 11U);
 }

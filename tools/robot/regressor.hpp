@@ -7,15 +7,15 @@
 
 namespace dfdyn::tools {
 
-/// The rigid-body regressor of every state, stacked: rows t m + k for output k of state t, columns in the
-/// order of `nominal_parameters`; evaluated by the firmware's own code in double. Outputs of motor current:
-/// the torques' regressor. Throws std::logic_error for a wrench when the robot has no sensor.
+/// Returns the rigid-body regressor of all states, stacked: row t m + k for output k of state t, columns in
+/// the order of `nominal_parameters`. It is evaluated by the firmware's code in double. For motor currents it
+/// is the torques' regressor. Throws std::logic_error for a wrench if the robot has no sensor.
 Eigen::MatrixXd stacked_regressor(const Robot& robot, OutputKind outputs, const RobotMotion& motion);
 
-/// The outputs, T x m, that a stacked vector holds.
+/// Returns the outputs, T x m, of a stacked vector.
 Eigen::MatrixXd unstacked(const Eigen::VectorXd& stacked, Eigen::Index outputs);
 
-/// The inverse of `unstacked`.
+/// Returns the inverse of `unstacked`.
 Eigen::VectorXd stacked(const Eigen::MatrixXd& outputs);
 
 } // namespace dfdyn::tools

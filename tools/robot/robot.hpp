@@ -11,8 +11,8 @@
 
 namespace dfdyn::tools {
 
-/// A moving joint of a chain and the link it moves, with everything that is fixed to that link. The link's
-/// frame is the joint's.
+/// A moving joint of a chain and its link, including everything fixed to that link. The link's frame is the
+/// joint's.
 struct RobotJoint {
     std::string name;
     std::string link;
@@ -22,14 +22,14 @@ struct RobotJoint {
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();         ///< unit, in the link's frame
     InertialParameters inertia = InertialParameters::Zero(); ///< of the merged link, in its frame
     std::optional<double> lower, upper;     ///< rad, m; both or none: continuous joints have none
-    std::optional<double> effort, velocity; ///< largest magnitudes, where the URDF has them
+    std::optional<double> effort, velocity; ///< largest magnitudes, if the URDF has them
 };
 
 /// A force/torque sensor at a fixed joint within the chain.
 struct ForceTorqueSensor {
     std::string joint;    ///< the fixed joint's name
-    std::size_t link = 0; ///< that carries it: 0 the base, i the link of joint i
-    /// Of its frame, that of the fixed joint's child, in that link's frame.
+    std::size_t link = 0; ///< link that carries it: 0 the base, i the link of joint i
+    /// Pose of its frame (that of the fixed joint's child) in the frame of the carrying link.
     Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();
     bool parent_to_child = false; ///< direction of the measured wrench
     InertialParameters inertia_beyond =
@@ -39,16 +39,17 @@ struct ForceTorqueSensor {
 /// A serial chain from base to tip; fixed joints are merged.
 struct Robot {
     std::string name, base, tip;
-    std::vector<RobotJoint> joints; ///< base to tip
+    std::vector<RobotJoint> joints; ///< from base to tip
     Eigen::Isometry3d tip_placement =
-        Eigen::Isometry3d::Identity();                          ///< of the tip's frame in the last link's
-    Eigen::Vector3d gravity{0, 0, -9.81};                       ///< m/s², in the base's frame
-    Eigen::Matrix3d base_in_root = Eigen::Matrix3d::Identity(); ///< base's axes into root's
+        Eigen::Isometry3d::Identity();    ///< of the tip's frame in the last link's
+    Eigen::Vector3d gravity{0, 0, -9.81}; ///< m/s², in the base's frame
+    /// rotation from the base's axes to the root's
+    Eigen::Matrix3d base_in_root = Eigen::Matrix3d::Identity();
     std::optional<ForceTorqueSensor> sensor;
-    std::vector<std::string> notes; ///< what the file has that is odd but usable; a line each
+    std::vector<std::string> notes; ///< unusual but usable contents of the file; one line each
 };
 
-/// Per joint, whether it slides.
+/// Returns, per joint, whether it is prismatic.
 std::vector<bool> prismatic_joints(const Robot& robot);
 
 } // namespace dfdyn::tools

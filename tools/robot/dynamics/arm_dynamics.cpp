@@ -65,7 +65,7 @@ void ArmDynamics::configure(const JointVector& position, Configuration& configur
     }
 }
 
-/// Gravity as an acceleration of the base.
+/// Gravity, represented as an acceleration of the base.
 ArmDynamics::LinkMotion ArmDynamics::base_motion() const {
     return {{}, {Eigen::Vector3d::Zero(), -robot_.gravity}};
 }
@@ -158,7 +158,7 @@ Wrench ArmDynamics::at_sensor(const SpatialForce& beyond, const Eigen::Isometry3
 Wrench ArmDynamics::wrench_of_force(const Configuration& configuration, const Eigen::Vector3d& point,
                                     const Eigen::Vector3d& force) const {
     const std::size_t link = robot_.sensor->link;
-    // what the surroundings carry the base's side need not
+    // the external force reduces the load on the base's side
     const SpatialForce spared{point.cross(-force), -force};
     return at_sensor(spared, link == 0 ? Eigen::Isometry3d::Identity() : configuration.place[link - 1]);
 }

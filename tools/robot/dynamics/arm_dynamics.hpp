@@ -8,57 +8,58 @@
 
 namespace dfdyn::tools {
 
-/// Rigid-body dynamics of a chain, in double precision, without a regressor: recursive Newton-Euler and
-/// composite rigid bodies over spatial vectors. Rotors count as inertia about their own joint only (their
+/// Rigid-body dynamics of a chain in double precision, without a regressor: recursive Newton-Euler and
+/// composite rigid bodies with spatial vectors. Rotors have inertia about their own joint only (their
 /// gyroscopic moments are neglected, as usual for geared drives). All vectors have one entry per joint;
 /// positions in rad or m. No heap. Cost: O(n), the mass matrix O(n²).
 class ArmDynamics {
   public:
-    /// `rotor_inertia`: kg·m² (prismatic: kg), seen at the joint. Throws InputError when the chain is longer
-    /// than the simulation holds, has no joint, or has a body with negative mass.
+    /// `rotor_inertia`: kg·m² (prismatic: kg), at the joint's side of the gear. Throws InputError if the
+    /// chain is longer than the simulation supports, has no joint, or has a body with negative mass.
     ArmDynamics(Robot robot, JointVector rotor_inertia);
 
     int joint_count() const noexcept { return static_cast<int>(robot_.joints.size()); }
     const Robot& robot() const noexcept { return robot_; }
 
-    /// What depends on the position only; made once per position and used by everything below.
+    /// Position-dependent quantities, computed once per position and used by all functions below.
     struct Configuration {
         std::vector<SpatialMotion> axis;      ///< per joint
         std::vector<SpatialInertia> inertia;  ///< per link
         std::vector<Eigen::Isometry3d> place; ///< per link, in the base's frame
     };
 
-    /// Fills `configuration`, whose memory is used again.
+    /// Computes `configuration` and reuses its memory.
     void configure(const JointVector& position, Configuration& configuration) const;
 
-    /// Torques (prismatic: forces) that cause this motion under gravity, rotors included.
+    /// Returns the torques (prismatic: forces) for this motion under gravity, including rotors.
     JointVector inverse(const Configuration& configuration, const JointVector& velocity,
                         const JointVector& acceleration) const;
 
-    /// Symmetric, positive definite; rotors included.
+    /// Returns the mass matrix, symmetric and positive definite, including rotors.
     JointMatrix mass_matrix(const Configuration& configuration) const;
 
-    /// The acceleration that these torques cause.
+    /// Returns the acceleration for these torques.
     JointVector forward(const Configuration& configuration, const JointVector& velocity,
                         const JointVector& torque) const;
 
-    /// What the robot's force/torque sensor would measure if it were perfect: the interaction of the parts on
-    /// its two sides, in its frame, about its origin, in its own measuring direction. The robot must have
-    /// one.
+    /// Returns the wrench that an ideal force/torque sensor of the robot would measure: between the parts on
+    /// its two sides, in its frame, about its origin, in its own measuring direction. The robot must have a
+    /// sensor.
     Wrench wrench(const Configuration& configuration, const JointVector& velocity,
                   const JointVector& acceleration) const;
 
-    /// What a force (N) on a point (m) of a part beyond the sensor adds to that; both in the base's frame.
+    /// Returns the contribution to that wrench of a force (N) on a point (m) beyond the sensor; both in the
+    /// base's frame.
     Wrench wrench_of_force(const Configuration& configuration, const Eigen::Vector3d& point,
                            const Eigen::Vector3d& force) const;
 
-    /// Kinetic (rotors included) plus potential energy; the latter is zero at the base's origin. J.
+    /// Returns kinetic (including rotors) plus potential energy, J; the latter is zero at the base's origin.
     double energy(const Configuration& configuration, const JointVector& velocity) const;
 
-    /// Of the tip frame's origin, in the base's frame, m.
+    /// Returns the origin of the tip frame in the base's frame, m.
     Eigen::Vector3d tip(const Configuration& configuration) const;
     PointJacobian tip_jacobian(const Configuration& configuration) const;
-    /// Of a point (m, in the base's frame) of the link that joint `link`, from 0, moves.
+    /// Returns the Jacobian of a point (m, in the base's frame) of the link that joint `link`, from 0, moves.
     PointJacobian point_jacobian(const Configuration& configuration, Eigen::Index link,
                                  const Eigen::Vector3d& point) const;
 
@@ -71,7 +72,7 @@ class ArmDynamics {
                     double velocity, double acceleration) const;
     SpatialForce net_force(const SpatialInertia& inertia, const LinkMotion& motion) const;
     LinkMotion base_motion() const;
-    /// `beyond`: the force that the part on the sensor's base side exerts on the other.
+    /// `beyond`: the force of the part on the sensor's base side on the other part.
     Wrench at_sensor(const SpatialForce& beyond, const Eigen::Isometry3d& sensor_link) const;
 
     Robot robot_;

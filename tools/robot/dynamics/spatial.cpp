@@ -5,7 +5,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// -[a]×[b]×, the part of an inertia that a shift adds.
+/// -[a]×[b]×, the change of an inertia by a shift.
 Eigen::Matrix3d shift(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return a.dot(b) * Eigen::Matrix3d::Identity() - b * a.transpose();
 }

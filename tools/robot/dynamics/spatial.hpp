@@ -7,9 +7,9 @@
 
 namespace dfdyn::tools {
 
-/// Angular part, and the linear part of the point of the body that passes the base's origin. Six-dimensional
-/// vectors of R. Featherstone, "Rigid Body Dynamics Algorithms", 2008, all in the base's frame: bodies then
-/// add without transforms.
+/// Angular velocity, and the linear velocity of the body's point at the base's origin: six-dimensional
+/// vectors of R. Featherstone, "Rigid Body Dynamics Algorithms", 2008. All are in the base's frame, so that
+/// bodies add without transforms.
 struct SpatialMotion {
     Eigen::Vector3d angular = Eigen::Vector3d::Zero();
     Eigen::Vector3d linear = Eigen::Vector3d::Zero();
@@ -19,7 +19,7 @@ struct SpatialMotion {
     }
     SpatialMotion operator*(double factor) const { return {factor * angular, factor * linear}; }
 
-    /// The rate of `other` when it moves along with this motion.
+    /// Returns the rate of `other` if it moves with this motion.
     SpatialMotion cross(const SpatialMotion& other) const {
         return {angular.cross(other.angular), angular.cross(other.linear) + linear.cross(other.angular)};
     }
@@ -38,7 +38,7 @@ struct SpatialForce {
         return torque.dot(motion.angular) + force.dot(motion.linear);
     }
 
-    /// The rate of this force when it moves along with `motion`.
+    /// Returns the rate of this force if it moves with `motion`.
     SpatialForce moved_by(const SpatialMotion& motion) const {
         return {motion.angular.cross(torque) + motion.linear.cross(force), motion.angular.cross(force)};
     }
@@ -54,14 +54,14 @@ struct SpatialInertia {
         return {mass + other.mass, moment + other.moment, inertia + other.inertia};
     }
 
-    /// Momentum of the body that moves so, or the force that accelerates it so from rest.
+    /// Returns the momentum of the body for this velocity, or the force for this acceleration from rest.
     SpatialForce operator*(const SpatialMotion& motion) const {
         return {inertia * motion.angular + moment.cross(motion.linear),
                 mass * motion.linear + motion.angular.cross(moment)};
     }
 };
 
-/// `body`, known in a frame that sits at `placement`, in the base's frame.
+/// Converts `body` from a frame at `placement` to the base's frame.
 SpatialInertia at_base(const InertialParameters& body, const Eigen::Isometry3d& placement);
 
 } // namespace dfdyn::tools

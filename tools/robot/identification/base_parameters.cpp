@@ -14,9 +14,10 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double rank_limit = 1e-6; ///< the rank is never cut above it, relative to the first diagonal entry
-constexpr double relative_rounding = 1e-14; ///< relative; below it all is zero
-constexpr double no_part = 1e-9; ///< of a combination's coefficients, with columns of the same length
+/// upper limit of the rank threshold, relative to the first diagonal entry
+constexpr double rank_limit = 1e-6;
+constexpr double relative_rounding = 1e-14; ///< relative; smaller values are zero
+constexpr double no_part = 1e-9;            ///< of a combination's coefficients, for columns of equal length
 
 struct Rank {
     Eigen::Index rank = 0;
@@ -37,7 +38,7 @@ Rank rank_at_largest_drop(const Eigen::VectorXd& diagonal) {
     return best;
 }
 
-/// Signed coefficient before a name, as ` + 0.39·`, ` - `; three digits.
+/// Returns a signed coefficient for the text before a name, as ` + 0.39·`, ` - `; three digits.
 std::string coefficient_text(double coefficient) {
     std::string text = coefficient < 0 ? " - " : " + ";
     if (std::abs(std::abs(coefficient) - 1) > 5e-4) {
@@ -58,7 +59,7 @@ BaseParameters find_base_parameters(const Eigen::MatrixXd& regressor) {
     if (!(longest > 0)) {
         return base;
     }
-    // A column that is nothing but rounding must not be scaled up to count.
+    // A column of rounding errors only must not be scaled up.
     length = (length.array() > relative_rounding * longest).select(length, longest);
     const auto [r, order] = pivoted_factor(regressor * length.cwiseInverse().asDiagonal());
     const auto [rank, gap] = rank_at_largest_drop(r.diagonal().cwiseAbs());

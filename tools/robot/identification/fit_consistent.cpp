@@ -18,7 +18,8 @@ constexpr int evaluations_most = 2000;
 constexpr double least_mass_part = 1e-3; ///< of the whole arm's mass, for nominal bodies without mass
 constexpr double least_size = 0.01;      ///< m
 
-/// |data_factor π(θ) − data_target|² + |(θ − start) / spread|²: what Levenberg and Marquardt's method sees.
+/// |data_factor π(θ) − data_target|² + |(θ − start) / spread|²: the objective of the Levenberg-Marquardt
+/// method.
 struct Problem : Eigen::DenseFunctor<double> {
     Eigen::MatrixXd data_factor; ///< p x p: triangular factor of the weighted regressor
     Eigen::VectorXd data_target;
@@ -52,7 +53,7 @@ struct Problem : Eigen::DenseFunctor<double> {
     }
 };
 
-/// How far a body's coordinates are expected from their start: e-folds, and its size in m.
+/// Expected deviation of a body's coordinates from their start: e-folds, and its size in m.
 LogCholesky expected_spread(const LogCholesky& start) {
     const double size = std::max(
         {std::exp(start[1]), std::exp(start[2]), std::exp(start[3]), start.tail<3>().norm(), least_size});
@@ -76,7 +77,7 @@ void add_start(const Eigen::VectorXd& nominal, Problem& problem) {
     }
 }
 
-/// The weighted samples as p equations.
+/// Reduces the weighted samples to p equations.
 void add_data(const FitData& data, const FitNoise& noise, Problem& problem) {
     const Eigen::VectorXd weight =
         (noise.deviation.array() * noise.correlation_length.array().sqrt()).inverse().matrix();

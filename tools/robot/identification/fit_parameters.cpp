@@ -13,8 +13,9 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double not_excited = 1e-10; ///< singular values below it, relative: directions without information
-constexpr double negligible = 1e-6;   ///< part of a unit vector
+/// relative limit of singular values; smaller ones are directions without information
+constexpr double not_excited = 1e-10;
+constexpr double negligible = 1e-6; ///< part of a unit vector
 
 Eigen::MatrixXd errors(const FitData& data, const Eigen::VectorXd& parameters) {
     return data.outputs - unstacked(data.regressor * parameters, data.outputs.cols());
@@ -24,7 +25,7 @@ FitNoise noise_of(const Eigen::MatrixXd& left) {
     const Eigen::Index rows = left.rows();
     FitNoise noise{left.colwise().norm().transpose() / std::sqrt(static_cast<double>(rows)),
                    Eigen::VectorXd::Ones(left.cols())};
-    // An output that is met exactly must not weigh infinitely.
+    // avoids an infinite weight for an exact fit
     const double least = std::max(1e-9 * noise.deviation.maxCoeff(), 1e-15);
     noise.deviation = noise.deviation.cwiseMax(least);
     for (Eigen::Index k = 0; k < left.cols(); ++k) {
@@ -36,7 +37,7 @@ FitNoise noise_of(const Eigen::MatrixXd& left) {
     return noise;
 }
 
-/// Weight of every stacked row.
+/// Returns the weight of every stacked row.
 Eigen::VectorXd row_weights(const Eigen::VectorXd& per_output, Eigen::Index rows) {
     return per_output.replicate(rows, 1);
 }
@@ -46,7 +47,7 @@ struct Solution {
     double condition = 0;
 };
 
-/// Least change that explains `error` best, and its standard deviations.
+/// Returns the smallest change that minimizes the residual of `error`, and its standard deviations.
 Solution solve(const Eigen::MatrixXd& columns, const Eigen::VectorXd& error, const FitNoise& noise) {
     const Eigen::Index samples = columns.rows() / noise.deviation.size();
     const Eigen::VectorXd weight = row_weights(noise.deviation.cwiseInverse(), samples);
@@ -60,7 +61,7 @@ Solution solve(const Eigen::MatrixXd& columns, const Eigen::VectorXd& error, con
     Solution solution;
     solution.condition = s[0] / s[s.size() - 1];
     solution.change = (spread * (u.transpose() * weight.cwiseProduct(error))).cwiseQuotient(length);
-    // Each output's rows count with the correlation of its noise: (A⁺) diag(correlation) (A⁺)ᵀ.
+    // The covariance includes the correlation of each output's noise: (A⁺) diag(correlation) (A⁺)ᵀ.
     const Eigen::VectorXd root = row_weights(noise.correlation_length.cwiseSqrt(), samples);
     const Eigen::MatrixXd middle = root.asDiagonal() * u * spread.transpose();
     solution.deviation = middle.colwise().norm().transpose().cwiseQuotient(length);
@@ -74,7 +75,7 @@ Solution solve(const Eigen::MatrixXd& columns, const Eigen::VectorXd& error, con
     return solution;
 }
 
-/// All parameters, the independent ones changed.
+/// Returns all parameters after a change of the independent ones.
 Eigen::VectorXd changed(const FitData& data, const BaseParameters& base, const Eigen::VectorXd& change) {
     Eigen::VectorXd parameters = data.nominal;
     parameters(base.independent) += change;

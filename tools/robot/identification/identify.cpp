@@ -38,7 +38,7 @@ ordered_json base_to_json(const Identification& identification) {
     return list;
 }
 
-/// Bodies as links have them: mass, centre of mass, inertia about the link frame's origin.
+/// Writes mass, centre of mass, and inertia about the link frame's origin of each body.
 ordered_json bodies_to_json(const Robot& robot, const Eigen::VectorXd& parameters) {
     ordered_json list = ordered_json::array();
     const std::size_t count = static_cast<std::size_t>(parameters.size()) / 10;

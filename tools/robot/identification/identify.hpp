@@ -12,7 +12,7 @@
 
 namespace dfdyn::tools {
 
-/// What a recording says of a robot's inertial parameters.
+/// Estimate of a robot's inertial parameters from a recording.
 struct Identification {
     OutputKind outputs = OutputKind::joint_torque;
     std::vector<std::string> output_names;
@@ -20,16 +20,16 @@ struct Identification {
     BaseParameters base;
     std::vector<std::string> base_names, base_units; ///< per base parameter
     BaseFit fit;
-    std::optional<Eigen::VectorXd> consistent; ///< all parameters, of bodies that can be
-    /// Per output: what the nominal, the fitted and, where there are any, the consistent parameters leave.
+    std::optional<Eigen::VectorXd> consistent; ///< all parameters, of physically consistent bodies
+    /// Residuals per output for the nominal, the fitted and, if present, the consistent parameters.
     Eigen::VectorXd rms_nominal, rms_fitted, rms_consistent;
 };
 
-/// Identifies the parameters that the outputs of `motion` depend on.
+/// Identifies the parameters that influence the outputs of `motion`.
 Identification identify(const Robot& robot, OutputKind outputs, const RecordedMotion& recorded,
                         std::vector<std::string> output_names, bool consistent);
 
-/// The identification as JSON, schema `dfdyn.parameters/1`.
+/// Returns the identification as JSON, schema `dfdyn.parameters/1`.
 std::string identification_to_json(const Robot& robot, const Identification& identification);
 
 } // namespace dfdyn::tools

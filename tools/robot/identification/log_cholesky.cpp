@@ -47,7 +47,7 @@ Eigen::Matrix<double, 10, 10> parameters_slope(const LogCholesky& coordinates) {
 }
 
 LogCholesky coordinates_of(const InertialParameters& parameters) {
-    // J = U Uᵀ with U upper triangular is the Cholesky factorisation of J read from its last row up.
+    // J = U Uᵀ with an upper triangular U is the Cholesky factorization of J with reversed order.
     const Eigen::Matrix4d reversed = pseudo_inertia(parameters).reverse();
     Eigen::Matrix4d u = reversed.llt().matrixL().toDenseMatrix().reverse();
     LogCholesky c;

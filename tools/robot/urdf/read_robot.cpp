@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t most_joints = 64;
 
-/// Builds the robot while it walks from base to tip.
+/// Builds the robot from base to tip.
 class ChainBuilder {
   public:
     ChainBuilder(std::string file, urdf::JointConstSharedPtr sensor_joint)
@@ -34,7 +34,7 @@ class ChainBuilder {
         }
     }
 
-    /// Counts a link of the chain, and the branches beside it, into the merged link at hand.
+    /// Adds a link of the chain, and the branches attached to it, to the current merged link.
     void count(const urdf::Link& link, const urdf::Joint* next) {
         const InertialParameters inertia = moved(inertia_of_branch(link, next), placement_);
         if (!robot_.joints.empty()) {

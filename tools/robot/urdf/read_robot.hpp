@@ -12,27 +12,32 @@ namespace dfdyn::tools {
 struct ReadRobotOptions {
     std::string tip;  ///< link
     std::string base; ///< link; empty: the root
-    /// m/s², in the frame of the URDF's root link, turned into the base's with the joints between at zero.
+    /// m/s², in the frame of the URDF's root link. It is rotated into the base's frame with the joints
+    /// between at zero.
     Eigen::Vector3d gravity{0, 0, -9.81};
-    std::string ft_joint; ///< fixed joint of the F/T sensor; empty: found by itself
-    /// Direction of the measured wrench. None: the file's own `measure_direction`, child to parent without.
+    std::string ft_joint; ///< fixed joint of the F/T sensor; empty: determined automatically
+    /// Direction of the measured wrench. Empty: the file's `measure_direction`, or child to parent without
+    /// one.
     std::optional<bool> parent_to_child;
 };
 
 /// Reads the serial chain from base to tip of a URDF file. Revolute, continuous and prismatic joints of the
-/// chain move. Every link beside the chain is rigidly attached, its joints held at zero, and counts into the
-/// link it hangs on; so do those beyond the tip.
+/// chain move. Links outside the chain, including those beyond the tip, are rigidly attached with their
+/// joints at zero; their inertia is added to the link that carries them.
 ///
-/// The F/T sensor, where no option names its joint: the one fixed joint of the chain for which the file has
-/// a `<sensor type="force_torque">`, under `<gazebo reference="JOINT">` or with `<parent joint="JOINT"/>`;
-/// where the file has none for the chain, the one fixed joint of the chain with `force_torque`, `ft_sensor`
-/// or the word `ft` in its name. Several candidates: no sensor, and a note. The sensor's frame is always that
-/// of the joint's child; a pose or frame that the file gives for it is not used.
+/// The F/T sensor, unless an option names its joint, is the one fixed joint of the chain with a `<sensor
+/// type="force_torque">` in the file, under `<gazebo reference="JOINT">` or with `<parent joint="JOINT"/>`.
+/// If the file has none for the chain, it is the one fixed joint of the chain with `force_torque`,
+/// `ft_sensor` or the word `ft` in its name. For several candidates the robot has no sensor, and a note. The
+/// sensor's frame is always that of the joint's child; a pose or frame in the file is ignored.
 ///
-/// Throws InputError, one line that names the file, and link or joint: not XML, no URDF (in urdfdom's words),
-/// no such link, tip not below base, no moving joint, more than 64 of them, a zero axis, a mimic, planar or
-/// floating joint within the chain, an `ft_joint` that is not fixed or not within the chain. Notes, not
-/// errors: an inertia that no body can have, a moving link without mass, unusable limits, a joint beside the
+/// Throws InputError, one line with the file and the link or joint, for:
+/// - a file that is not XML or no URDF (with urdfdom's message), or a missing link;
+/// - a tip that is not below the base, no moving joint, or more than 64 of them;
+/// - a zero axis, or a mimic, planar or floating joint within the chain;
+/// - an `ft_joint` that is not fixed or not within the chain.
+///
+/// Adds notes for an impossible inertia, a moving link without mass, unusable limits, and a joint outside the
 /// chain that mimics another.
 Robot read_robot(const std::filesystem::path& path, const ReadRobotOptions& options);
 

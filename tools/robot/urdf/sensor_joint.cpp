@@ -20,7 +20,7 @@ std::vector<std::string> names_of(const Joints& joints) {
     return names;
 }
 
-/// Whether `ft` stands in `name` between characters that are no letters.
+/// Returns whether `name` contains `ft` between characters that are not letters.
 bool has_word_ft(const std::string& name) {
     const auto letter = [&name](std::size_t at) {
         return at < name.size() && std::isalpha(static_cast<unsigned char>(name[at])) != 0;

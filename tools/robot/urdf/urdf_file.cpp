@@ -17,7 +17,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// While it lives, urdfdom's messages are kept instead of printed.
+/// Collects urdfdom's messages during its lifetime instead of printing them.
 class KeptMessages : public console_bridge::OutputHandler {
   public:
     KeptMessages() { console_bridge::useOutputHandler(this); }
@@ -47,7 +47,7 @@ std::string content_of(const std::filesystem::path& path) {
     return content;
 }
 
-/// What the file says of itself may hold anything.
+/// Returns text from the file, which may contain any characters, on one line.
 std::string one_line(std::string text) {
     std::ranges::replace_if(
         text, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
@@ -75,7 +75,7 @@ urdf::ModelInterfaceSharedPtr parse_model(const std::string& content, const std:
     return model;
 }
 
-/// urdfdom lets a link be the child of several joints, and links hang together in a loop.
+/// Rejects a link that is the child of several joints, and loops of links, which urdfdom accepts.
 void check_tree(const urdf::ModelInterface& model, const std::string& file) {
     std::set<std::string> children;
     for (const auto& [name, joint] : model.joints_) {

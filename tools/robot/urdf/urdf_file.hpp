@@ -14,15 +14,15 @@ namespace dfdyn::tools {
 struct DeclaredSensor {
     std::string joint;
     bool parent_to_child = false;
-    std::string frame; ///< SDF's word for the frame of the wrench, or empty
+    std::string frame; ///< SDF's name for the frame of the wrench, or empty
 };
 
 struct UrdfFile {
-    urdf::ModelInterfaceSharedPtr model; ///< a tree: every link has one parent, but for the root
+    urdf::ModelInterfaceSharedPtr model; ///< a tree: every link except the root has one parent
     std::vector<DeclaredSensor> sensors; ///< in order; the first of each joint
 };
 
-/// Throws InputError that names the file, and line, link or joint where there is one.
+/// Reads a URDF file. Throws InputError with the file, and the line, link or joint if known.
 UrdfFile read_urdf_file(const std::filesystem::path& path);
 
 } // namespace dfdyn::tools
