@@ -6,7 +6,7 @@
 
 namespace dfdyn::tools {
 
-/// "1a2b3c4d, 12345 bytes": CRC-32 and size of a file. Throws InputError when it cannot be read.
+/// Returns "1a2b3c4d, 12345 bytes": CRC-32 and size of a file. Throws InputError if it cannot be read.
 std::string file_checksum(const std::filesystem::path& path);
 
 } // namespace dfdyn::tools

@@ -41,7 +41,7 @@ std::size_t count_of(const JsonReader& reader, const std::string& name, int low)
     return static_cast<std::size_t>(reader.whole_number(name, low, most_rows));
 }
 
-/// Reads the parts of a plan that name each other.
+/// Reads the parts of a plan that refer to each other.
 class PlanReader {
   public:
     PlanReader(const JsonReader& json, fs::path folder) : json_(json), folder_(std::move(folder)) {}
@@ -138,7 +138,7 @@ class PlanReader {
         throw json_.error("error_scale", "horizon or variance", in_quotes(text));
     }
 
-    /// Either "draws": N, which are the seeds 1 … N, or "seeds": [...].
+    /// Reads either "draws": N, which means the seeds 1 … N, or "seeds": [...].
     void read_seeds() {
         if (json_.has("seeds")) {
             for (const int seed : json_.whole_numbers("seeds", 0, most_rows)) {
@@ -213,7 +213,7 @@ Plan read_plan(const fs::path& path) {
         const fs::path other = folder / own.text("like");
         const nlohmann::json fields = parse_json(read_file(other), shown(other));
         const JsonReader must_be_an_object(fields, shown(other));
-        json.insert(fields.begin(), fields.end()); // only what is not there
+        json.insert(fields.begin(), fields.end()); // keeps existing fields
     }
     return PlanReader(JsonReader(json, shown(path)), folder).read();
 }

@@ -93,13 +93,13 @@ void read_settings(const JsonReader& entry, Case& one) {
     }
 }
 
-/// Of an entry with "combine".
+/// Reads an entry with "combine".
 Case combination_of(const JsonReader& entry) {
     entry.allow_only(combination_names);
     Case one;
     one.name = one.suffix = plain_name(entry, "name");
     one.members = names_in(entry, "combine");
-    one.lags = 0; // its window is its members'
+    one.lags = 0; // the members have their own windows
     return one;
 }
 

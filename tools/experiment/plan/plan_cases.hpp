@@ -8,12 +8,12 @@
 
 namespace dfdyn::tools {
 
-/// The cases of one entry of "cases": every combination of what it lists under model, input, hyper and
-/// rows_per_joint. What the entry does not say is as in `defaults`. A case is named MODEL-HYPER-INPUT, then
-/// -kN where rows_per_joint is a list, then the entry's "suffix". An entry with "combine" is one case.
+/// Returns the cases of one entry of "cases": every combination of its values of model, input, hyper and
+/// rows_per_joint. Missing fields are those of `defaults`. A case is named MODEL-HYPER-INPUT, then -kN if
+/// rows_per_joint is a list, then the entry's "suffix". An entry with "combine" is one case.
 std::vector<Case> expand_cases(const JsonReader& entry, const Case& defaults);
 
-/// The fields of a plan's "defaults", over those of a Case.
+/// Reads a plan's "defaults", which replace those of a Case.
 Case read_defaults(const JsonReader& entry);
 
 } // namespace dfdyn::tools

@@ -52,7 +52,7 @@ Phase phase_of(const JsonReader& entry) {
     throw entry.error("phase", "transient or steady", in_quotes(text));
 }
 
-/// The cases that the entry names, those of a set in the plan's order.
+/// Returns the cases named in the entry; those of a set in the plan's order.
 std::vector<std::string> cases_in(const JsonReader& entry, const std::string& field, const Plan& plan) {
     std::vector<std::string> cases;
     for (const std::string& name : names_in(entry, field)) {
@@ -69,7 +69,7 @@ std::vector<std::string> cases_in(const JsonReader& entry, const std::string& fi
     return cases;
 }
 
-/// Every combination of what the entry lists.
+/// Adds every combination of the entry's lists.
 void expand_comparison(const JsonReader& entry, const Plan& plan, std::vector<Comparison>& all) {
     entry.allow_only(comparison_names);
     const Phase phase = phase_of(entry);

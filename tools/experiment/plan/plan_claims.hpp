@@ -6,8 +6,8 @@
 
 namespace dfdyn::tools {
 
-/// Reads "figures", "comparisons" and "findings" into `plan`, which has its cases and groups. Without figures
-/// there is one with all cases.
+/// Reads "figures", "comparisons" and "findings" into `plan`, which already has its cases and groups. Without
+/// "figures", adds one with all cases.
 void read_claims(const JsonReader& json, Plan& plan);
 
 } // namespace dfdyn::tools

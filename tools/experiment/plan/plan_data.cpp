@@ -78,7 +78,7 @@ PlanData load_plan_data(const Plan& plan) {
     for (const TestLog& test : plan.tests) {
         data.checksums.emplace_back(test.log.filename(), file_checksum(test.log));
     }
-    if (fs::exists(plan.robot.urdf)) { // if not, it is an error of the cases that need it
+    if (fs::exists(plan.robot.urdf)) { // a missing file is an error of the cases that need it
         data.checksums.emplace_back(plan.robot.urdf.filename(), file_checksum(plan.robot.urdf));
     }
     return data;

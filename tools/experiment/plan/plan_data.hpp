@@ -10,19 +10,19 @@
 
 namespace dfdyn::tools {
 
-/// The recordings of a plan, cut as it says.
+/// The recordings of a plan, divided as the plan describes.
 struct PlanData {
-    Recording start;  ///< the first rows of the training log: hyperparameters and start
+    Recording start;  ///< first rows of the training log: for hyperparameters and the initial state
     Recording online; ///< the rest of it
     std::vector<Recording> subsets;
     std::vector<double> output_variance;                 ///< of each output over all subsets
-    std::vector<std::vector<std::size_t>> group_outputs; ///< the outputs of each group, by their number
+    std::vector<std::vector<std::size_t>> group_outputs; ///< indices of each group's outputs
     std::vector<std::pair<std::string, std::string>>
-        checksums; ///< of each recording and the robot: file name, checksum
+        checksums; ///< of each recording and of the robot: file name, checksum
 };
 
-/// Reads them. Throws InputError for recordings as `read_recording` does, for one with fewer rows than the
-/// plan asks for, and for an output that they do not have.
+/// Reads the recordings. Throws InputError as `read_recording` does, for a recording with fewer rows than the
+/// plan requires, and for missing outputs.
 PlanData load_plan_data(const Plan& plan);
 
 } // namespace dfdyn::tools

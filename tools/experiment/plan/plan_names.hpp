@@ -11,16 +11,16 @@
 
 namespace dfdyn::tools {
 
-/// Of a list in a plan.
+/// Largest number of entries of a list in a plan.
 inline constexpr int most_entries = 10000;
 
-/// A text that can be part of a file's name: letters, digits, '-' and '_'.
+/// Reads a text that can be part of a file's name: letters, digits, '-' and '_'.
 std::string plain_name(const JsonReader& reader, const std::string& name);
 
-/// A text, or a list of texts.
+/// Reads a text or a list of texts.
 std::vector<std::string> names_in(const JsonReader& reader, const std::string& name);
 
-/// Throws InputError about `field` when the last of `list` has the name of another.
+/// Throws InputError about `field` if the last entry of `list` has the name of another one.
 template <class Named>
 void refuse_twice(const JsonReader& reader, const std::string& field, const std::vector<Named>& list) {
     const std::string& name = list.back().name;
@@ -29,7 +29,7 @@ void refuse_twice(const JsonReader& reader, const std::string& field, const std:
     }
 }
 
-/// `name`; throws InputError about `field` when none of `list` has it.
+/// Returns `name`. Throws InputError about `field` if no entry of `list` has this name.
 template <class Named>
 const std::string& known(const JsonReader& reader, const std::string& field, const std::vector<Named>& list,
                          const std::string& name) {

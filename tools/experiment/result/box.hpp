@@ -7,17 +7,17 @@
 
 namespace dfdyn::tools {
 
-/// What a box plot shows of a distribution. NaN where there are no values.
+/// Quantiles of a distribution for a box plot. NaN without values.
 struct Box {
     std::size_t count = 0;
     double low, lower_quartile, median, upper_quartile, high; ///< at 5, 25, 50, 75, 95 %
     double mean;
 };
 
-/// Of `values` without the NaN; an infinite one counts like any other. O(n log n).
+/// Returns the quantiles of `values` without NaN; infinite values are included. O(n log n).
 Box box_of(std::vector<double> values);
 
-/// NaN without values.
+/// Returns the mean; NaN without values.
 double mean_of(std::span<const double> values);
 
 } // namespace dfdyn::tools

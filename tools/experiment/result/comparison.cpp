@@ -16,7 +16,7 @@ namespace {
 
 constexpr double significance = 0.05;
 
-/// The same draw of both cases.
+/// Results of both cases for the same draw.
 struct Pair {
     const UnitResult* better;
     const UnitResult* worse;
@@ -40,11 +40,11 @@ struct ErrorPair {
 
     bool there() const { return !std::isnan(better) && !std::isnan(worse); }
 
-    /// 1 also where both are 0 or both infinite.
+    /// 1 also if both are 0 or both infinite.
     double ratio() const { return better == worse ? 1 : better / worse; }
 
-    /// ln(ratio / threshold), within finite bounds where one error is 0 or infinite; 0, a tie, where both
-    /// are infinite.
+    /// Returns ln(ratio / threshold), limited to finite values if one error is 0 or infinite; 0 (a tie) if
+    /// both are infinite.
     double difference(double threshold) const {
         constexpr double most = 1e300;
         const bool tie = std::isinf(better) && std::isinf(worse);
@@ -64,7 +64,7 @@ class PairErrors {
         return {error(*pair.better, subset), error(*pair.worse, subset)};
     }
 
-    /// Summed over the subsets.
+    /// Returns the sum over the subsets.
     ErrorPair of(const Pair& pair) const {
         ErrorPair sum;
         for (std::size_t subset = 0; subset < subset_count(pair); ++subset) {
@@ -94,7 +94,7 @@ Verdict verdict_of(const ComparisonOutcome& outcome) {
     return outcome.p_contradicted < significance ? Verdict::contradicted : Verdict::undecided;
 }
 
-/// Of all draws in one subset.
+/// Returns the differences of all draws in one subset.
 std::vector<double> differences_in(const std::vector<Pair>& pairs, const PairErrors& errors,
                                    std::size_t subset, double threshold) {
     std::vector<double> differences;

@@ -12,23 +12,26 @@ namespace dfdyn::tools {
 
 enum class Verdict { holds, contradicted, undecided };
 
-/// What the numbers say about a comparison. A draw's ratio is `better`'s error over `worse`'s, both with the
-/// same draw and averaged over the subsets (`phase_error` of each). An infinite error is more than any other.
+/// Result of a comparison. A draw's ratio is the error of `better` divided by that of `worse`, both for the
+/// same draw and averaged over the subsets (`phase_error` of each). An infinite error is larger than any
+/// other.
 struct ComparisonOutcome {
     Comparison comparison;
-    std::size_t draws = 0;                                     ///< that both cases have, with errors
+    std::size_t draws = 0;                                     ///< draws for which both cases have errors
     double lower_ratio = 0, median_ratio = 0, upper_ratio = 0; ///< quartiles; NaN without draws
     std::size_t draws_agree = 0;
     std::size_t subsets = 0, subsets_agree = 0; ///< a subset agrees by its median ratio over the draws
-    double p_holds = 1;                         ///< of the signed-rank test over the draws
+    double p_holds = 1;                         ///< p-value of the signed-rank test over the draws
     double p_contradicted = 1;
     Verdict verdict = Verdict::undecided;
 };
 
-/// Draws and subsets agree when their ratio is below 1 - gain. The statement holds when the paired
-/// signed-rank test over the draws' ln(ratio / (1 - gain)), 0 where both errors are infinite, says so with p
-/// < 0.05 and more than half of the subsets agree; it is contradicted when the test says the opposite with p
-/// < 0.05; else it is undecided. With fewer than five draws the test can decide nothing.
+/// Compares two cases. Draws and subsets agree if their ratio is below 1 - gain. The test is the paired
+/// signed-rank test over the draws' ln(ratio / (1 - gain)), or 0 if both errors are infinite.
+///
+/// - The statement holds if the test confirms it with p < 0.05 and more than half of the subsets agree.
+/// - It is contradicted if the test confirms the opposite with p < 0.05.
+/// - Otherwise it is undecided. This is always so for fewer than five draws.
 ComparisonOutcome compare(const Comparison& comparison, const Plan& plan, std::span<const UnitResult> units);
 
 enum class FindingVerdict { reproduced, partly, not_reproduced, undecided };
@@ -51,7 +54,7 @@ std::vector<FindingOutcome> judge_findings(const Plan& plan, std::span<const Uni
 std::string to_string(Verdict verdict);
 std::string to_string(FindingVerdict verdict);
 
-/// "17 % less", "12 % more", "4.2 times as much": the error that this ratio means.
+/// Returns the change of the error as text: "17 % less", "12 % more", "4.2 times as much".
 std::string ratio_text(double ratio);
 
 } // namespace dfdyn::tools

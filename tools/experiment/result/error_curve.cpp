@@ -12,7 +12,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Mean over the subsets that have a value at the tick; NaN where none has.
+/// Returns the mean over the subsets with a value at the tick; NaN if there is none.
 double subset_mean(const UnitResult& draw, std::size_t group, std::size_t tick) {
     std::vector<double> values;
     for (const std::vector<double>& subset : draw.error[group]) {

@@ -9,8 +9,8 @@
 
 namespace dfdyn::tools {
 
-/// Writes what an evaluation found into `folder`: results.csv, tables.md, report.html, findings.md, and
-/// pictures/PLAN_FIGURE_GROUP_{curves,boxes}.svg. Each appears whole or not at all.
+/// Writes the results of an evaluation into `folder`: results.csv, tables.md, report.html, findings.md, and
+/// pictures/PLAN_FIGURE_GROUP_{curves,boxes}.svg. Each file is replaced atomically.
 void write_evaluation(const std::filesystem::path& folder, const Plan& plan, const PlanData& data,
                       const EvaluationResults& results);
 

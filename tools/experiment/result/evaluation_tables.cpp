@@ -23,7 +23,7 @@ double median_over(const std::vector<const UnitResult*>& draws, const Value& val
     return median(std::move(values));
 }
 
-/// The middle half of the draws' values.
+/// Returns the interquartile range of the draws' values as text.
 template <class Value>
 std::string spread_over(const std::vector<const UnitResult*>& draws, const Value& value) {
     std::vector<double> values;
@@ -36,7 +36,7 @@ std::string spread_over(const std::vector<const UnitResult*>& draws, const Value
     return shown_as(box.lower_quartile) + "–" + shown_as(box.upper_quartile);
 }
 
-/// A table with a row for each case that has a draw.
+/// Returns the rows of a table, one for each case that has a draw.
 template <class Cells>
 std::vector<std::vector<ReportCell>> rows_of_cases(const Plan& plan, std::span<const UnitResult> units,
                                                    const Cells& cells) {
@@ -88,7 +88,7 @@ std::vector<const UnitResult*> draws_of(std::span<const UnitResult> units, const
 
 namespace {
 
-/// A list of what `text_of` says of the cases that have results; those of which it says nothing are left out.
+/// Returns a list of the texts of all cases with results; empty texts are left out.
 template <class TextOf>
 std::string list_of_cases(const Plan& plan, std::span<const UnitResult> units, const TextOf& text_of) {
     std::vector<std::string> cases;
@@ -246,7 +246,7 @@ ReportTable finding_table(std::span<const FindingOutcome> findings) {
 
 namespace {
 
-/// An opponent has no draw, no group, no ε and no cost.
+/// Writes the row of an alternative method, which has no draw, no group, no ε and no cost.
 void write_opponent(std::ostream& out, const OpponentErrors& opponent) {
     const auto nothing = [&out](int columns) {
         for (int column = 0; column < columns; ++column) {

@@ -13,25 +13,27 @@
 
 namespace dfdyn::tools {
 
-/// The draws of one case, in the plan's order.
+/// Returns the draws of one case, in the plan's order.
 std::vector<const UnitResult*> draws_of(std::span<const UnitResult> units, const std::string& case_name);
 
-/// The distribution of one group's ε over all draws, subsets and times: a row per case.
+/// Returns the distribution of one group's ε over all draws, subsets and times: one row per case.
 ReportTable error_table(const Plan& plan, std::span<const UnitResult> units, std::size_t group);
 
-/// The one-step nRMSE of each output, a row per case (medians over the draws), then one per opponent.
+/// Returns the one-step nRMSE of each output: one row per case (medians over the draws), then one per
+/// alternative method.
 ReportTable step_error_table(const Plan& plan, std::span<const UnitResult> units,
                              const PlanOpponents& opponents, const std::vector<std::string>& outputs);
 
-/// What each case costs, a row per case.
+/// Returns the cost of each case, one row per case.
 ReportTable cost_table(const Plan& plan, std::span<const UnitResult> units);
 
 ReportTable comparison_table(const std::string& caption, std::span<const ComparisonOutcome> outcomes);
 
-/// Statement and verdict, a row per finding.
+/// Returns statement and verdict, one row per finding.
 ReportTable finding_table(std::span<const FindingOutcome> findings);
 
-/// One row per case, draw and group, then one per opponent: see docs/guide/evaluation.md for the columns.
+/// Writes one row per case, draw and group, then one per alternative method: see docs/guide/evaluation.md for
+/// the columns.
 void write_results_csv(std::ostream& out, const Plan& plan, std::span<const UnitResult> units,
                        const PlanOpponents& opponents, const std::vector<std::string>& outputs);
 

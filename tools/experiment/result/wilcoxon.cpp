@@ -11,7 +11,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Twice the ranks, so that the mean ranks of ties are whole.
+/// Returns twice the ranks, so that the mean ranks of ties are integers.
 std::vector<std::size_t> doubled_ranks(const std::vector<double>& ascending_magnitudes) {
     std::vector<std::size_t> ranks;
     for (const double magnitude : ascending_magnitudes) {
@@ -24,7 +24,8 @@ std::vector<std::size_t> doubled_ranks(const std::vector<double>& ascending_magn
     return ranks;
 }
 
-/// Probability of each sum of the ranks whose sign is positive, all choices of signs being equally likely.
+/// Returns the probability of each sum of the positive ranks, if all combinations of signs are equally
+/// likely.
 std::vector<double> sum_distribution(const std::vector<std::size_t>& ranks) {
     std::vector<double> probability{1};
     for (const std::size_t rank : ranks) {

@@ -9,7 +9,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Whether `output` is 0 in the rows first … last - 1.
+/// Returns whether `output` is 0 in the rows first … last - 1.
 bool rests_at_zero(const Recording& recording, std::size_t output, std::size_t first, std::size_t last) {
     for (std::size_t row = first; row < last; ++row) {
         if (recording.output.row(row)[output] != 0) {
@@ -44,7 +44,7 @@ std::vector<bool> common_ticks(const Plan& plan, const PlanData& data, std::size
     const Recording& recording = data.subsets[subset];
     const std::size_t lags = largest_window(plan);
     std::vector<bool> common(recording.row_count(), false);
-    std::size_t start = 0; // of the rows without a gap up to the horizon's end
+    std::size_t start = 0; // first row of the interval without a gap that reaches the horizon's end
     for (std::size_t end = 0; end < recording.row_count(); ++end) {
         start = recording.gap_before[end] != 0 ? end : start;
         if (end < start + lags + plan.horizon) {

@@ -10,17 +10,17 @@
 
 namespace dfdyn::tools {
 
-/// The largest window of any case of the plan, in rows before a tick.
+/// Returns the largest window of any case of the plan, in rows before a tick.
 std::size_t largest_window(const Plan& plan);
 
-/// Ticks of a subset that a group of outputs is scored at: those that every case of the plan can have. Since
-/// the subset's start, and since the last gap in it, there are the rows of the largest window of any case;
-/// the `horizon` samples that follow are there without a gap; and, where they are the scale of ε, no output
-/// of the group is 0 in all of them. Cost O(rows horizon outputs).
+/// Returns the ticks of a subset at which a group of outputs is scored: those that are available for every
+/// case of the plan. At such a tick, the largest window of any case lies within the subset without a gap, and
+/// so do the following `horizon` samples. If the outputs are the scale of ε, each output of the group is
+/// nonzero in at least one of these samples. Cost O(rows horizon outputs).
 std::vector<bool> common_ticks(const Plan& plan, const PlanData& data, std::size_t group, std::size_t subset);
 
-/// Makes the units' errors comparable: NaN at all other ticks, infinite at common ticks where a unit has no
-/// finite error, since it diverged or its estimator refused a sample.
+/// Makes the units' errors comparable: NaN at all other ticks, and infinite at common ticks without a finite
+/// error, where a unit diverged or its estimator rejected a sample.
 void keep_common_ticks(const Plan& plan, const PlanData& data, std::span<UnitResult> units);
 
 } // namespace dfdyn::tools

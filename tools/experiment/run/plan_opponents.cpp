@@ -21,7 +21,7 @@ namespace {
 
 using ForecastsOf = std::function<Forecasts(const Recording&)>;
 
-/// The subset's measurements as a replay has them, for the forecasts that look at nothing else.
+/// Returns the subset's measurements as a replay, for forecasts that use measurements only.
 ReplayedRecording measurements(const Recording& subset) {
     ReplayedRecording replayed;
     replayed.measured = subset.output.values;
@@ -54,7 +54,7 @@ void check_fit(const Plan& plan, const Robot& robot, const Recording& recording)
     }
 }
 
-/// Outputs per N·m: from the plan's torque constants, or estimated as in training.
+/// Returns the outputs per N·m: from the plan's torque constants, or estimated as in training.
 std::vector<double> output_gains(const Plan& plan, const Robot& robot, std::span<const Recording> training) {
     std::vector<double> gains(training.front().output.names.size(), 1);
     if (plan.outputs == OutputKind::motor_current && !plan.robot.torque_constants.empty()) {
@@ -78,7 +78,7 @@ struct FittedBodies {
     std::vector<RigidBodyFit> fits;
 };
 
-/// Throws InputError where the plan has no usable robot, or the training no motion.
+/// Throws InputError if the plan has no usable robot, or the training data no motion.
 FittedBodies fit_bodies(const Plan& plan, const PlanData& data) {
     if (plan.robot.urdf.empty()) {
         throw InputError("the plan has no robot");

@@ -9,16 +9,15 @@
 
 namespace dfdyn::tools {
 
-/// What a plan's cases are compared with.
+/// Alternative methods for comparison with a plan's cases.
 struct PlanOpponents {
-    std::vector<OpponentErrors> errors; ///< NaN where there is no forecast
+    std::vector<OpponentErrors> errors; ///< NaN without a forecast
     std::string no_rigid_body;          ///< why there is no rigid body; empty: there is one
 };
 
-/// nRMSE of each output over all subsets of a plan, one step ahead: of persistence and AR(2), which start
-/// again in each subset, and of the two rigid bodies with friction (`fit_rigid_body`), fitted to the whole
-/// training log. A subset's rows before the largest window of any case do not count, nor do rows without a
-/// forecast.
+/// Returns the one-step nRMSE of each output over all subsets of a plan, for persistence and AR(2), which
+/// restart in each subset, and for the two rigid bodies with friction (`fit_rigid_body`), fitted to the whole
+/// training log. Rows before the largest window of any case, and rows without a forecast, are left out.
 PlanOpponents plan_opponents(const Plan& plan, const PlanData& data);
 
 } // namespace dfdyn::tools

@@ -20,7 +20,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// One case with one draw, and what became of it.
+/// One case with one draw, and its result.
 struct Unit {
     Unit(const Case& its_case, std::uint64_t its_seed, std::filesystem::path its_path)
         : one(its_case), seed(its_seed), path(std::move(its_path)) {}
@@ -31,7 +31,7 @@ struct Unit {
     std::optional<UnitResult> result;
     std::string failure;
     bool reused = false;
-    std::atomic<double> done = 0; ///< share
+    std::atomic<double> done = 0; ///< completed share
 };
 
 /// The work of one call of run_plan.
@@ -95,8 +95,8 @@ class PlanRun {
         finished_.notify_all();
     }
 
-    /// All cases' first draws before any second: the cases tune at the same time, no draw waits for its own
-    /// case's.
+    /// Returns the units in the order of the work: the first draws of all cases before any second draw. The
+    /// cases are then tuned in parallel, and no draw waits for the tuning of its case.
     Unit& unit_in_turn(std::size_t turn) {
         const std::size_t cases = plan_.cases.size();
         return units_[turn % cases * plan_.seeds.size() + turn / cases];
@@ -132,9 +132,9 @@ class PlanRun {
     const Plan& plan_;
     const PlanData& data_;
     const RunOptions& options_;
-    CaseMemories memories_;  ///< its entries are there before the work begins
-    std::deque<Unit> units_; ///< case by case, draw by draw
-    int threads_ = 1;        ///< of each training
+    CaseMemories memories_;  ///< complete before the work begins
+    std::deque<Unit> units_; ///< in the order of cases, then draws
+    int threads_ = 1;        ///< per training
     std::atomic<std::size_t> next_ = 0;
     std::mutex mutex_;
     std::condition_variable finished_;

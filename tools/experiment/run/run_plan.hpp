@@ -12,7 +12,7 @@
 
 namespace dfdyn::tools {
 
-/// A unit that could not be done.
+/// A unit that failed.
 struct FailedUnit {
     std::string case_name;
     std::uint64_t seed;
@@ -20,24 +20,24 @@ struct FailedUnit {
 };
 
 struct EvaluationResults {
-    /// In the plan's order: case by case, draw by draw; with errors as `keep_common_ticks` leaves them.
+    /// In the plan's order (cases, then draws), with errors as after `keep_common_ticks`.
     std::vector<UnitResult> units;
     std::vector<FailedUnit> failed;
-    std::size_t reused = 0;  ///< of the units, found in the folder
-    PlanOpponents opponents; ///< what the units are compared with; `run_plan` leaves it empty
+    std::size_t reused = 0;  ///< units read from existing files
+    PlanOpponents opponents; ///< alternative methods; not set by `run_plan`
 };
 
 struct RunOptions {
     std::filesystem::path folder; ///< each unit is folder/cases/CASE/SEED.json
-    int jobs = 1;                 ///< units at a time, >= 1; the results do not depend on it
-    bool fresh = false;           ///< do everything again
+    int jobs = 1;                 ///< units in parallel, >= 1; the results do not depend on it
+    bool fresh = false;           ///< repeat all units
 };
 
-/// Does what is left to do of a plan. A unit whose file is there is read instead, if the file says that the
-/// plan's part that concerns it, the recordings' checksums and the program are the same. The files appear
-/// whole or not at all, so a run that was ended goes on where it was. `progress`: told how many units are
-/// done (reused and failed included, and the share of those in work), from the calling thread. An InputError
-/// in one unit does not end the others; any other exception does.
+/// Runs the remaining units of a plan. A unit with an existing file is read instead, if the file has the same
+/// plan (the part that concerns the unit), checksums of the recordings, and program. Files are replaced
+/// atomically, so that an aborted run can continue. `progress` receives the number of completed units
+/// (including reused and failed ones, and the share of those in progress), in the calling thread. After an
+/// InputError in one unit the others continue; any other exception ends the run.
 EvaluationResults run_plan(const Plan& plan, const PlanData& data, const RunOptions& options,
                            const std::function<void(double)>& progress);
 

@@ -13,9 +13,9 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double share_of_training = 0.5; ///< of the progress
+constexpr double share_of_training = 0.5; ///< share of the progress
 
-/// ε of one output at one tick, on the plan's scale.
+/// Returns ε of one output at one tick, with the plan's scale.
 double scaled_error(const HorizonIndex& index, std::size_t output, const Plan& plan, const PlanData& data) {
     if (plan.error_scale == ErrorScale::horizon) {
         return index.epsilon[output];
@@ -36,7 +36,7 @@ std::vector<double> group_error(const ReplayedRecording& replayed, const std::ve
     return error;
 }
 
-/// All subsets' ticks behind each other, for figures that do not depend on their order.
+/// Appends the ticks of a subset, for statistics that do not depend on their order.
 void append_ticks(const ReplayedRecording& subset, ReplayedRecording& all) {
     all.measured.insert(all.measured.end(), subset.measured.begin(), subset.measured.end());
     all.predicted.insert(all.predicted.end(), subset.predicted.begin(), subset.predicted.end());
@@ -54,7 +54,7 @@ double median_duration_us(const ReplayedRecording& replayed) {
     return median(std::move(durations));
 }
 
-/// Counts ticks of several recordings as one progress.
+/// Combines the ticks of several recordings into one progress value.
 class TickProgress {
   public:
     TickProgress(const PlanData& data, const std::function<void(double)>& progress) : progress_(&progress) {
@@ -79,7 +79,7 @@ class TickProgress {
     std::size_t done_ = 0;
 };
 
-/// Each subset from the state `trained`.
+/// Runs each subset from the state `trained`.
 void run_subsets(const Plan& plan, const PlanData& data, std::span<const TrainedModel> models,
                  HostEstimator& estimator, TickProgress& ticks, UnitResult& result) {
     const std::vector<std::byte> trained = estimator.snapshot();
@@ -101,7 +101,7 @@ void run_subsets(const Plan& plan, const PlanData& data, std::span<const Trained
     result.median_us = median_duration_us(all);
 }
 
-/// The models of the case, or of the cases that it combines.
+/// Returns the models of the case, or of the cases that it combines.
 std::vector<TrainedModel> train_unit(const Plan& plan, const CaseContext& context, const Case& one,
                                      std::uint64_t seed, CaseMemories& memories,
                                      const std::function<void(double)>& progress) {

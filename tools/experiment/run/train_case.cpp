@@ -14,7 +14,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Of the starts of the searches: the same for all draws, so that it does not matter which comes first.
+/// Seed of the searches' starts: equal for all draws, so that their order has no influence.
 constexpr std::uint64_t search_seed = 1;
 
 ModelTraining training_of(const Case& one, const RobotChoice& robot, int threads) {
@@ -33,7 +33,7 @@ ModelTraining training_of(const Case& one, const RobotChoice& robot, int threads
     options.likelihood_rows = one.likelihood_rows;
     options.starts = one.starts;
     options.refinement_evaluations = 0; // it would depend on the draw
-    options.shrinkage = false;          // the paper's predictions, and it would depend on the draw
+    options.shrinkage = false;          // the paper's predictions; shrinkage would depend on the draw
     options.seed = search_seed;
     options.threads = threads;
     options.physics.own_motion = one.physics_input == "own";
@@ -48,7 +48,7 @@ ModelTraining training_of(const Case& one, const RobotChoice& robot, int threads
     return training;
 }
 
-/// What does not depend on the draw.
+/// Trains the part that does not depend on the draw.
 TrainedModel tune(const CaseContext& context, const ModelTraining& training, const PreparedTraining& prepared,
                   const std::function<void(double)>& progress) {
     TrainedModel model =

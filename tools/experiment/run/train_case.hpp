@@ -12,31 +12,31 @@
 
 namespace dfdyn::tools {
 
-/// What the draws of one case share: the exact kernel's hyperparameters depend on no draw. Any thread may use
-/// it.
+/// Common data of all draws of one case: the exact kernel's hyperparameters do not depend on the draw.
+/// Thread-safe.
 struct CaseMemory {
-    std::mutex tuning;                 ///< held while the hyperparameters are sought
-    std::optional<TrainedModel> tuned; ///< with the features of some draw
+    std::mutex tuning;                 ///< held during the search for hyperparameters
+    std::optional<TrainedModel> tuned; ///< with the features of one of the draws
 };
 
 using CaseMemories = std::map<std::string, CaseMemory>; ///< by the case's name
 
-/// What every case of a plan shares.
+/// Common data of all cases of a plan.
 struct CaseContext {
     const RobotChoice& robot;
     OutputKind outputs;
-    const Recording& start; ///< hyperparameters and start come from it
-    int threads = 1;        ///< >= 1, of each training; does not change its result
+    const Recording& start; ///< source of hyperparameters and initial state
+    int threads = 1;        ///< >= 1, per training; does not change its result
 };
 
-/// Reads the plan's robot; throws InputError when it cannot.
+/// Reads the plan's robot. Throws InputError if this fails.
 Robot robot_of(const RobotChoice& choice);
 
 /// Trains `one` for the draw of random features `seed`: hyperparameters from `context.start`, unless `memory`
-/// has them already, then the batch solution over it as the start. No sample is refused for its
-/// innovation: the paper's protocol learns from all. `progress`: told the share that is done, 0 … 1. The same
-/// for the same case, seed and data, whatever was trained before. Throws InputError as `train` does, and for
-/// a case that is not available.
+/// already has them, then the batch solution over it as the initial state. No sample is rejected for its
+/// innovation, because the paper's protocol learns from all. `progress` receives the completed share, 0 … 1.
+/// Equal cases, seeds and data give equal models, independent of earlier calls. Throws InputError as `train`
+/// does, and for an unavailable case.
 TrainedModel train_case(const Case& one, const CaseContext& context, std::uint64_t seed, CaseMemory& memory,
                         const std::function<void(double)>& progress);
 

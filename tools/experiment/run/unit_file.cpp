@@ -35,7 +35,7 @@ ordered_json case_json(const Case& one) {
             {"starts", one.starts}};
 }
 
-/// Of the case, or of the cases that it combines.
+/// Returns the JSON of the case, or of the cases that it combines.
 ordered_json cases_json(const Plan& plan, const Case& one) {
     if (one.members.empty()) {
         return case_json(one);
@@ -64,7 +64,7 @@ ordered_json protocol_json(const Plan& plan) {
     return json;
 }
 
-/// The running program's build flags, and its checksum where the system shows its file.
+/// Build flags of the running program, and its checksum if its file is readable.
 const std::string& program() {
     static const std::string known = [] {
         const std::filesystem::path itself = "/proc/self/exe";

@@ -9,17 +9,17 @@
 
 namespace dfdyn::tools {
 
-/// Everything that a unit's result depends on, for a comparison: case, seed, protocol, checksums of the
-/// recordings (and of the robot's file), program: its build flags and, where it can be read, its checksum.
+/// Returns all inputs of a unit's result, for comparison: case, seed, protocol, checksums of the recordings
+/// (and of the robot's file), and the program's build flags and, if readable, its checksum.
 nlohmann::ordered_json unit_inputs(const Plan& plan, const PlanData& data, const Case& one,
                                    std::uint64_t seed);
 
-/// Writes a unit's result beside its inputs, whole or not at all; makes the folder. Returns the result as
-/// `read_unit` will give it. Throws InputError when it cannot.
+/// Writes a unit's result and inputs atomically, and creates the folder. Returns the result as `read_unit`
+/// will return it. Throws InputError if this fails.
 UnitResult write_unit(const std::filesystem::path& path, const nlohmann::ordered_json& inputs,
                       const UnitResult& result);
 
-/// The result in `path` if its inputs are these; nothing if they are not, or there is no such file.
+/// Returns the result in `path` if its inputs are equal; nothing if they differ or the file does not exist.
 std::optional<UnitResult> read_unit(const std::filesystem::path& path, const nlohmann::ordered_json& inputs);
 
 } // namespace dfdyn::tools

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// The double next to `value` with six significant digits.
+/// Returns `value` rounded to six significant digits.
 double rounded(double value) {
     std::array<char, 32> text{};
     const auto end =
