@@ -20,7 +20,7 @@ struct BenchCommandOptions {
     bool quick = false;
 };
 
-/// Shows that every part runs; the figures mean little.
+/// Runs every part briefly, as a functional test without meaningful times.
 BenchOptions quick_options(BenchOptions options) {
     options.columns = {100};
     options.repetitions.passes = 3;

@@ -25,7 +25,7 @@ struct BusCheckOptions {
     double duration_s = 10;
 };
 
-/// Everything in a log, on the log's own clock.
+/// Checks all frames of a log, with the log's time stamps.
 void check_log(const BusCheckOptions& options, BusCheck& check) {
     CandumpLog log(options.log, options.log_interface);
     hal::ReplayBus bus(log);
@@ -51,7 +51,7 @@ void check_interface(const BusCheckOptions& options, BusCheck& check) try {
             bus.wait(std::min<std::int64_t>(100'000'000, end_ns - bus.now_ns()));
         }
     }
-    constexpr int drains_at_end = 16; // what came before the end and waits
+    constexpr int drains_at_end = 16; // processes frames that wait for later ones
     for (int drain = 0; drain < drains_at_end && check.take(bus, room); ++drain) {
     }
 } catch (const hal::BusError& error) {

@@ -7,10 +7,10 @@
 
 namespace dfdyn::tools {
 
-/// A subcommand's work once its options are parsed; returns the program's exit status.
+/// The work of a subcommand after its options are parsed; returns the program's exit status.
 using Command = std::function<int()>;
 
-/// Each adds a subcommand to `app` and stores its work in `chosen` when the user calls it.
+/// Each function adds a subcommand to `app` and stores its work in `chosen` if the user calls it.
 void add_train_command(CLI::App& app, Command& chosen);
 void add_replay_command(CLI::App& app, Command& chosen);
 void add_identify_command(CLI::App& app, Command& chosen);

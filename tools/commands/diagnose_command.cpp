@@ -70,12 +70,12 @@ DiagnosisWork run_diagnosis(const Robot& robot, const std::vector<Recording>& re
     return diagnose(robot, joined_recording(recordings), how);
 }
 
-/// Whether a model can be made of what the diagnosis worked with.
+/// Returns whether the results of the diagnosis suffice for a model.
 bool answered(const DiagnosisWork& work) {
     return work.signals != nullptr && !work.explanation.candidates.empty();
 }
 
-/// The model is of the recordings' own rows, with their gaps, not of the joined one.
+/// Makes the model from the original recordings, with their gaps, instead of the joined one.
 std::optional<TrainedModel> make_model(const DiagnosisWork& work, const Extension& extension,
                                        const std::vector<Recording>& recordings) {
     const Progress progress("building the extended model", 0);
@@ -84,14 +84,14 @@ std::optional<TrainedModel> make_model(const DiagnosisWork& work, const Extensio
 
 void write_model(const DiagnoseOptions& options, const TrainedModel& model) {
     const std::string json = model_to_json(model);
-    model_from_json(json, shown(options.model())); // nothing is written that `replay` would refuse
+    model_from_json(json, shown(options.model())); // nothing is written that `replay` would reject
     write_file(options.model(), json);
     if (!options.header.empty()) {
         write_file(options.header, model_to_header(model, to_identifier(options.header.stem().string())));
     }
 }
 
-/// A model of an earlier run would be taken for this one's.
+/// Removes a model of an earlier run, which could be mistaken for a result of this one.
 void remove_model(const DiagnoseOptions& options) {
     std::error_code ignored;
     std::filesystem::remove(options.model(), ignored);

@@ -30,7 +30,7 @@ namespace {
 
 struct LoopOptions {
     std::filesystem::path robot, scenario, model, bus, folder;
-    std::filesystem::path restored, saved; ///< what was learned
+    std::filesystem::path restored, saved; ///< snapshots of the learned state
     std::string interface;
     bool simulate = false;
     bool from_prior = false;
@@ -59,7 +59,7 @@ LoopParts read_parts(const LoopOptions& options) {
         parts.model->learned.assign(whole.begin(), whole.end());
         parts.model->learned_source = shown(options.restored);
         make_control_loop(parts.robot, parts.scenario, shown(options.scenario),
-                          &*parts.model); // fits, or throws
+                          &*parts.model); // throws unless it fits
     }
     if (!options.saved.empty()) {
         check_writable(options.saved);
@@ -74,7 +74,7 @@ LoopParts read_parts(const LoopOptions& options) {
     return parts;
 }
 
-/// For the rows that the scenario's `recording` asks for.
+/// Makes a recording with the rate of the scenario's `recording`.
 LoopRecording make_recording(const LoopParts& parts, const LoopOptions& options) {
     const double rate_hz = parts.scenario.controller.rate_hz;
     const double ratio = rate_hz / parts.scenario.recording.rate_hz;
@@ -95,7 +95,7 @@ void show_tracking(const LoopParts& parts, const LoopOptions& options, const std
     }
 }
 
-/// What the learner's monitor found: on the terminal, and beside the tracking.
+/// Shows the findings of the learner's monitor on the terminal and in a file next to the tracking results.
 void show_changes(const LoopOptions& options, const ControlLoop& loop) {
     if (const LearnedFeedForward* const learned = loop.feed_forward().learned()) {
         const RecordedChanges changes = learned->changes();
@@ -107,7 +107,7 @@ void show_changes(const LoopOptions& options, const ControlLoop& loop) {
     }
 }
 
-/// Not after a stop by itself: what was learned last may be the fault.
+/// Saves the learned state, except after a stop by the loop itself: the last samples may be faulty.
 void save_learned(const LoopOptions& options, const ControlLoop& loop) {
     const LearnedFeedForward* const learned = loop.feed_forward().learned();
     const bool sound = loop.state() == LoopState::running || loop.cause() == StopCause::requested;
@@ -117,20 +117,20 @@ void save_learned(const LoopOptions& options, const ControlLoop& loop) {
     }
 }
 
-/// What makes the torque beside the feedback and the nominal rigid body.
+/// Sources of torque in addition to the feedback and the nominal rigid body.
 struct Contender {
     std::string name;
     bool observer = false;
     bool learned = false;
 };
 
-/// Whether the user left the observer in: a bandwidth of 0 takes it out.
+/// Returns whether the observer is enabled: a bandwidth of 0 disables it.
 bool has_observer(const LoopOptions& options) {
     const std::vector<double>& given = options.limits.observer_bandwidth;
     return given.empty() || std::ranges::any_of(given, [](double bandwidth) { return bandwidth > 0; });
 }
 
-/// Those that a simulation compares, the complete one last.
+/// Returns the variants that a simulation compares, the complete one last.
 std::vector<Contender> contenders(const LoopOptions& options) {
     const bool observer = has_observer(options);
     std::vector<Contender> all{{"nominal", false, false}};
@@ -146,7 +146,7 @@ std::vector<Contender> contenders(const LoopOptions& options) {
     return all;
 }
 
-/// Nothing where the loop stopped by itself.
+/// Returns nothing if the loop stopped by itself.
 std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOptions& options,
                                         const Contender& contender) {
     LoopLimits limits = options.limits;
@@ -246,7 +246,7 @@ int run(LoopOptions& options) {
     return run_on_bus(options);
 }
 
-/// Options of what is learned, and from where.
+/// Adds the options of the learned model and its initial state.
 void add_model(CLI::App& command, LoopOptions& options) {
     command.add_option("--model", options.model, "Of the joints' torques; none: the rigid body alone")
         ->type_name("M.json");
@@ -265,7 +265,7 @@ void add_model(CLI::App& command, LoopOptions& options) {
         ->type_name("CAUSE=ACTION");
 }
 
-/// Options of the limits within which the loop moves the arm.
+/// Adds the options of the loop's limits.
 void add_limits(CLI::App& command, LoopLimits& limits) {
     command
         .add_option(

@@ -27,7 +27,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Of --can, for the figures of the summary and the report: what has no end needs a bound.
+/// Number of ticks kept with --can for the summary and the report: a bound for replays of unlimited duration.
 constexpr std::size_t kept_live_ticks = 32'768;
 
 struct ReplayOptions {
@@ -40,12 +40,12 @@ struct ReplayOptions {
     bool frozen = false;
     MonitorOptions monitor;
 
-    std::filesystem::path bus; ///< the recordings are candump logs, or there is an interface
+    std::filesystem::path bus; ///< if given, the recordings are candump logs, or the source is an interface
     std::string log_interface;
     InterfaceOptions can;
 
     bool live() const { return !can.interface.empty(); }
-    /// In real time there is no time for it, unless asked for.
+    /// In real time the default is no index, because of its cost.
     std::size_t chosen_horizon() const { return horizon.value_or(live() ? 0 : 25); }
 };
 
@@ -66,13 +66,13 @@ void check_usage(const ReplayOptions& options) {
            "--duration, --record: expected --can, found a recording");
 }
 
-/// What replays, and what watches it, if anything does.
+/// The estimator of the replay, and its monitor if there is one.
 struct Replaying {
     std::unique_ptr<HostEstimator> estimator;
     MonitoredEstimator* monitor = nullptr;
     std::vector<RecordedChanges> changes;
 
-    /// Moves the changes of the recording that was just replayed.
+    /// Moves the changes of the last replayed recording to `changes`.
     void collect(const ReplayedRecording& replayed) {
         if (monitor != nullptr) {
             changes.push_back({std::filesystem::path(replayed.source).filename().string(),
@@ -95,7 +95,7 @@ Replaying make_replaying(const ReplayOptions& options, std::span<const TrainedMo
     return replaying;
 }
 
-/// Models of the same joints and outputs.
+/// Reads models, which must have the same joints and outputs.
 std::vector<TrainedModel> read_models(const std::vector<std::filesystem::path>& paths) {
     std::vector<TrainedModel> models;
     for (const std::filesystem::path& path : paths) {
@@ -176,7 +176,7 @@ void write_results(const ReplayOptions& options, std::span<const TrainedModel> m
 
 bool predicted(const ReplayedRecording& replayed) { return replayed.totals.predicted > 0; }
 
-/// Says on stderr why a recording gave no prediction: the most frequent reason.
+/// Prints on stderr the most frequent reason why a recording had no prediction.
 void explain_no_prediction(const ReplayedRecording& replayed) {
     const auto& counts = replayed.totals.reasons;
     std::cerr << shown(replayed.source) << ": nothing was predicted: ";
@@ -189,7 +189,8 @@ void explain_no_prediction(const ReplayedRecording& replayed) {
               << "; check that units, sample period and columns are those of the model's training\n";
 }
 
-/// Exit status. A bus that gave no prediction is a failure; of CSV recordings, when none gave any.
+/// Exit status. A bus without a prediction is a failure; CSV recordings are a failure if none had a
+/// prediction.
 int exit_status(std::span<const ReplayedRecording> replayed, bool bus) {
     const auto count = std::ranges::count_if(replayed, predicted);
     const bool done = bus ? count == std::ssize(replayed) : count > 0;

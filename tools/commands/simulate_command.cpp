@@ -26,7 +26,7 @@ struct SimulateOptions {
     std::optional<std::uint64_t> seed;
 };
 
-/// What the devices of a bus send, as a log.
+/// Writes the frames of a bus' devices as a log.
 class CandumpOutput {
   public:
     CandumpOutput(const SimulateOptions& options, const Robot& robot, const Scenario& scenario)
@@ -73,7 +73,7 @@ class CandumpOutput {
     Eigen::VectorXd output_;
 };
 
-/// A recording, the truth and the frames where asked for, that appear whole or not at all.
+/// The requested files: recording, true quantities and frames. Each is replaced atomically.
 class Outputs {
   public:
     Outputs(const SimulateOptions& options, const Scenario& scenario, const Robot& robot)

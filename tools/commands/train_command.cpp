@@ -30,7 +30,7 @@ namespace dfdyn::tools {
 namespace {
 
 struct TrainOptions {
-    const CLI::App* command = nullptr; ///< that filled them in
+    const CLI::App* command = nullptr; ///< the command whose options these are
     RecordingOptions recordings;
     RobotOptions robot;
     std::string outputs;
@@ -124,8 +124,8 @@ std::string file_names(const std::vector<Recording>& recordings, TrainingRecord&
     return listed(record.recordings);
 }
 
-/// Shows the search over hyperparameters, from whichever thread, then the computation of the start of
-/// learning until the callback is destroyed.
+/// Shows the progress of the hyperparameter search, from any thread, then the computation of the initial
+/// state, until the callback is destroyed.
 ProgressCallback progress_line(HyperMethod hyper) {
     struct Shown {
         std::unique_ptr<Progress> search;
@@ -162,7 +162,7 @@ ModelTraining model_training(const TrainOptions& options, OutputKind outputs) {
     return training;
 }
 
-/// Says which of the options that were given do nothing here.
+/// Reports given options that have no influence here.
 void note_ignored(const TrainOptions& options, OutputKind outputs) {
     const std::string model = "model " + options.structure;
     const bool physics = has_physics(options.structure);
@@ -188,7 +188,7 @@ void note_ignored(const TrainOptions& options, OutputKind outputs) {
     note(options.structure != "NP", {"--centred"}, model);
 }
 
-/// Checks the set-up behind the recordings. A model without physics reads its robot for this alone.
+/// Checks the set-up of the recordings. For a model without physics, the robot is read for this check only.
 bool accept_setup(const TrainOptions& options, const std::vector<Recording>& recordings, OutputKind outputs,
                   const ModelTraining& training) {
     std::optional<Robot> robot;
@@ -200,7 +200,7 @@ bool accept_setup(const TrainOptions& options, const std::vector<Recording>& rec
     return options.setup.accept(recordings, {outputs, robot ? &*robot : nullptr, options.torque_constants});
 }
 
-/// The sizes that no option gives.
+/// Returns the sizes that no option sets.
 FreeSizes free_sizes(const TrainOptions& options) {
     const ClockOptions& clock = options.clock;
     return {!clock.lags && !clock.window_s && !clock.every,
@@ -208,8 +208,8 @@ FreeSizes free_sizes(const TrainOptions& options) {
             !clock.forgetting_factor && !clock.memory_s};
 }
 
-/// Of a model with physics: the rigid body with friction that `replay` compares it with. Here, because only
-/// the training's recordings may decide its coefficients.
+/// For a model with physics, fits the rigid body with friction for comparison in `replay`. It is fitted here,
+/// because only the training recordings may determine its coefficients.
 void fit_rigid_body_of(TrainedModel& model, const ModelTraining& training,
                        std::span<const Recording> recordings) {
     if (model.physics) {
@@ -227,7 +227,7 @@ int run(const TrainOptions& options) {
     note_ignored(options, outputs);
     ReadOptions columns;
     columns.outputs = outputs;
-    columns.velocity = columns.acceleration = // of the features, and of the opponents of physics
+    columns.velocity = columns.acceleration = // for the features, and for the rigid body with friction
         training.physics ||
         (sees_derivatives(training) && training.derivatives != DerivativeSource::estimated);
     const std::vector<Recording> recordings = options.recordings.read(columns);
@@ -250,7 +250,7 @@ int run(const TrainOptions& options) {
     }
     fit_rigid_body_of(model, training, recordings);
     const std::string json = model_to_json(model);
-    model_from_json(json, shown(options.model)); // nothing is written that `replay` would refuse
+    model_from_json(json, shown(options.model)); // nothing is written that `replay` would reject
     write_file(options.model, json);
     if (!options.header.empty()) {
         write_file(options.header, model_to_header(model, to_identifier(options.header.stem().string())));

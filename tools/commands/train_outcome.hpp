@@ -7,7 +7,7 @@
 
 namespace dfdyn::tools {
 
-/// What `dfdyn train` says on stdout of a model trained on the recordings named `trained_on`.
+/// Prints the result of `dfdyn train` on stdout, for a model trained on the recordings named `trained_on`.
 void print_outcome(const ModelTrainingResult& result, const std::string& trained_on);
 
 } // namespace dfdyn::tools

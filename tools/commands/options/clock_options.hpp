@@ -10,9 +10,9 @@
 
 namespace dfdyn::tools {
 
-/// The options of `train` that state windows and memories: in seconds, or in samples.
+/// The options of `train` for windows and memories, in seconds or in samples.
 struct ClockOptions {
-    /// The window where none is given (s).
+    /// Default window (s).
     static constexpr double default_window_s = 0.08;
 
     std::optional<int> lags;
@@ -23,13 +23,14 @@ struct ClockOptions {
 
     void add_to(CLI::App& command);
 
-    /// Sets lags, their spacing and the forgetting factor for recordings with that sample period. Input and
-    /// method must be set: input STD and cross validation have lags one sample apart. Throws InputError for a
-    /// window of more than 1000 samples and a memory that is shorter than a sample period.
+    /// Sets lags, their spacing and the forgetting factor for recordings with this sample period. Input and
+    /// method must be set before, because input STD and cross validation require lags one sample apart.
+    /// Throws InputError for a window of more than 1000 samples and for a memory shorter than a sample
+    /// period.
     void apply(TrainingOptions& training, double period_s) const;
 };
 
-/// "sample period 0.001 s, window 0.08 s (20 lags, 4 samples apart), memory unlimited".
+/// Returns text like "sample period 0.001 s, window 0.08 s (20 lags, 4 samples apart), memory unlimited".
 std::string describe_clock(const TrainingOptions& training, double period_s);
 
 } // namespace dfdyn::tools

@@ -8,7 +8,7 @@
 
 namespace dfdyn::tools {
 
-/// The options of a replay that is watched.
+/// The options of a replay with a monitor.
 struct MonitorOptions {
     bool chosen = false;
     std::filesystem::path file; ///< changes.json; empty: none
@@ -19,11 +19,11 @@ struct MonitorOptions {
 
     void add_to(CLI::App& command);
 
-    /// Of the first model with physics, else of the robot; throws InputError, naming `source`, when there is
-    /// none.
+    /// Returns the set-up from the first model with physics, otherwise from the robot. Throws InputError,
+    /// naming `source`, if there is neither.
     MonitorSetup setup(std::span<const TrainedModel> models, const std::string& source) const;
 
-    /// Prints the changes, and writes the file if there is to be one.
+    /// Prints the changes, and writes the file if one was requested.
     void show(std::span<const RecordedChanges> changes) const;
 };
 

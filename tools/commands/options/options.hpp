@@ -12,7 +12,7 @@
 
 namespace dfdyn::tools {
 
-/// The options with which every subcommand names its recordings.
+/// The options for recordings, common to all subcommands.
 struct RecordingOptions {
     std::vector<std::filesystem::path> logs;
     std::string rows = ":";
@@ -20,22 +20,22 @@ struct RecordingOptions {
 
     void add_to(CLI::App& command);
 
-    /// Reads them all, and says once on stderr which columns were ignored and which rows skipped.
+    /// Reads all recordings. Reports ignored columns and skipped rows once on stderr.
     std::vector<Recording> read(std::size_t joint_count, OutputKind outputs) const;
 
-    /// Likewise, the columns that `options` says.
+    /// Reads all recordings with the columns of `options`. Reports as above.
     std::vector<Recording> read(ReadOptions options) const;
 };
 
-/// Throws InputError when two outputs, or an output and an input, are the same file. Empty paths are none.
+/// Throws InputError if two outputs, or an output and an input, are the same file. Empty paths are ignored.
 void check_distinct(const std::vector<std::filesystem::path>& outputs,
                     std::vector<std::filesystem::path> inputs);
 
-/// Call before the work: check_distinct(), and InputError when an output cannot be written.
+/// Call before the work: runs check_distinct(), and throws InputError if an output is not writable.
 void check_outputs(const std::vector<std::filesystem::path>& outputs,
                    std::vector<std::filesystem::path> inputs);
 
-/// The kind of outputs that has these column names; throws InputError when none has.
+/// Returns the kind of outputs with these column names. Throws InputError if there is none.
 OutputKind kind_of_outputs(const std::vector<std::string>& names, std::size_t joint_count);
 
 } // namespace dfdyn::tools

@@ -77,7 +77,7 @@ Robot read_scenario_robot(const std::filesystem::path& urdf, const std::filesyst
     reading.ft_joint = chain.ft_joint;
     reading.wrench_direction = chain.wrench_direction;
     reading.gravity = chain.gravity;
-    // whether a sensor is needed, the scenario tells
+    // the scenario determines whether a sensor is needed
     Robot robot = reading.read(OutputKind::joint_torque);
     robot.tip_placement.translate(chain.tip_point);
     return robot;

@@ -10,14 +10,14 @@
 
 namespace dfdyn::tools {
 
-/// The option that leaves out the check of the set-up.
+/// The option that skips the set-up check.
 struct SetupOptions {
     bool unchecked = false;
 
     void add_to(CLI::App& command);
 
-    /// Prints what check_setup() finds in each recording on stderr, a line each. Returns whether work may
-    /// start: no mistake, or unchecked.
+    /// Prints the findings of check_setup() for each recording on stderr, one line each. Returns whether work
+    /// may start: no mistake, or not checked.
     bool accept(const std::vector<Recording>& recordings, const SetupQuestion& question) const;
 };
 

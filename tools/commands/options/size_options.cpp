@@ -79,7 +79,7 @@ ModelTrainingResult train_within(const SizeOptions& sizes, const FreeSizes& free
             std::cout << "the model takes at most " << to_text(needs) << '\n';
             return result;
         }
-        // All rows may determine more parameters of the physics than the first 70 % did.
+        // With all rows, the physics may have more parameters than with the first 70 %.
         const int fewer = free.features ? next_smaller_features(training.options.feature_count) : 0;
         if (fewer == 0 || !has_features(result.model.structure)) {
             throw InputError("the budget (--flash, --ram, --tick-operations): expected room for " +

@@ -11,7 +11,7 @@
 
 namespace dfdyn::tools {
 
-/// The options of `train` that give a budget and so leave the sizes to the program.
+/// The options of `train` that set a budget, so that the program chooses the sizes.
 struct SizeOptions {
     std::optional<std::uint64_t> flash_bytes, ram_bytes;
     std::optional<std::int64_t> tick_operations;
@@ -22,8 +22,8 @@ struct SizeOptions {
     TargetBudget budget() const;
 };
 
-/// Chooses the free sizes within the budget, prints the choice on stdout, and trains with it. `training` gets
-/// the sizes. Throws InputError if nothing fits.
+/// Chooses the free sizes within the budget, prints the choice on stdout, and trains with it. Sets the sizes
+/// in `training`. Throws InputError if nothing fits.
 ModelTrainingResult train_within(const SizeOptions& sizes, const FreeSizes& free,
                                  std::span<const Recording> recordings, OutputKind outputs,
                                  ModelTraining& training, const ProgressCallback& progress);

@@ -7,7 +7,7 @@
 namespace dfdyn::tools {
 namespace {
 
-std::atomic<bool> stop = false, toggle = false; // a signal handler reaches nothing else
+std::atomic<bool> stop = false, toggle = false; // a signal handler can access static objects only
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
 
 extern "C" void set_stop(int /*signal*/) { stop = true; }
@@ -15,7 +15,7 @@ extern "C" void turn_over(int /*signal*/) { toggle = !toggle; }
 
 void handle(std::initializer_list<int> signals, void (*handler)(int)) {
     struct sigaction action {};
-    action.sa_handler = handler; // without SA_RESTART: the signal is to end the sleep
+    action.sa_handler = handler; // without SA_RESTART, so that the signal ends the sleep
     for (const int signal_number : signals) {
         ::sigaction(signal_number, &action, nullptr);
     }

@@ -5,10 +5,10 @@
 
 namespace dfdyn::tools {
 
-/// From now on Ctrl-C, SIGTERM and SIGHUP set the result, end a sleep, and nothing else.
+/// Installs handlers for Ctrl-C, SIGTERM and SIGHUP, which set the result and end a sleep.
 const std::atomic<bool>& stop_on_signals();
 
-/// From now on SIGUSR1 turns the result over, true and false, and ends a sleep.
+/// Installs a handler for SIGUSR1, which inverts the result and ends a sleep.
 const std::atomic<bool>& toggle_on_signal();
 
 } // namespace dfdyn::tools
