@@ -19,7 +19,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Sines and cosines of the angles, their sum and difference, beside accelerations and friction.
+/// Columns of sines and cosines of the angles, of their sums and differences, and of accelerations and
+/// friction.
 MatrixXd gravity_columns(const RobotMotion& motion, double radians_per_unit) {
     const MatrixXd angle = radians_per_unit * motion.position;
     std::vector<VectorXd> angles;

@@ -7,12 +7,12 @@
 
 namespace dfdyn::tools {
 
-/// Finds outputs that push a joint along where friction must brake it, without a robot: a mistake where
-/// friction_sign() says so.
+/// Detects outputs whose friction accelerates the joint instead of braking it, without a robot: a mistake if
+/// friction_sign() confirms it.
 SetupFindings check_friction_sign(const Recording& recording, const RecordedMotion& recorded);
 
-/// Finds positions of one or two joints beyond two turns that are in degrees: a mistake where gravity as a
-/// function of angles in degrees leaves less than half of the outputs' variance that it leaves in radians.
+/// Detects positions in degrees for one or two joints beyond two turns: a mistake if gravity as a function of
+/// angles in degrees leaves less than half of the variance that it leaves in radians.
 SetupFindings check_degrees_by_gravity(const Recording& recording, const RecordedMotion& recorded);
 
 } // namespace dfdyn::tools

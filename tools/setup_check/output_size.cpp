@@ -19,7 +19,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The factor between an output and the rigid body's, whatever its sign; none where that explains too little.
+/// Returns the magnitude of the factor between an output and the rigid body's; empty if the rigid body
+/// explains too little.
 std::optional<double> size_of(const ArmRecording& arm, const RigidParts& parts, Index k) {
     constexpr double clearly = 0.5;
     const VectorXd output = arm.output(k);
@@ -73,7 +74,7 @@ SetupFindings check_output_size(const ArmRecording& arm) {
     if (!mistake) {
         return {};
     }
-    const bool certain = several || arm.wrench() || arm.counted() == 1; // a payload can rule one joint
+    const bool certain = several || arm.wrench() || arm.counted() == 1; // a payload can dominate one joint
     return {{SetupFault::output_unit, certain ? Severity::mistake : Severity::warning,
              listed(arm.recording.output.names), unit_text(arm, factor)}};
 }

@@ -6,10 +6,11 @@
 
 namespace dfdyn::tools {
 
-/// Finds outputs in another unit by their size over the rigid body's, where that explains half of what
-/// friction leaves: a mistake where two outputs or more agree (to a factor of 10) on 50 times too much or too
-/// little; for an arm of one joint, and a wrench, 300 times; a warning where one joint of several shows 300
-/// times. Currents of unknown torque constants: from 50 A/N·m, one joint alone from 200.
+/// Detects outputs in a wrong unit by their ratio to the rigid body's, if that explains half of the variance
+/// left by friction. A mistake requires that two outputs or more agree (within a factor of 10) on a factor of
+/// 50 too large or too small; for an arm of one joint, and for a wrench, a factor of 300. A warning if one
+/// joint of several has a factor of 300. For currents with unknown torque constants: from 50 A/N·m, a single
+/// joint from 200.
 SetupFindings check_output_size(const ArmRecording& arm);
 
 } // namespace dfdyn::tools

@@ -23,15 +23,15 @@ using Eigen::VectorXd;
 constexpr double least_unexplained = 0.3;
 constexpr double far_better = 0.5;
 constexpr double likely_better = 0.6;
-constexpr int likely_turns = 2; ///< of a joint
+constexpr int likely_turns = 2; ///< plausible turns of a joint
 
-/// Another reading of the columns, and what it explains.
+/// An alternative interpretation of the columns, and its residual.
 struct Reading {
-    SetupFindings finding; ///< one
-    double left = 1;       ///< mean share of all outputs' variance
+    SetupFindings finding; ///< exactly one
+    double left = 1;       ///< mean remaining share of the outputs' variance
 };
 
-/// Keeps the reading that explains more: a mistake that is named wrongly helps less than a warning.
+/// Keeps the interpretation with the smaller residual: a wrongly named mistake is worse than a warning.
 void keep(std::optional<Reading>& best, Reading next) {
     if (!best || next.left < best->left) {
         best = std::move(next);
@@ -42,7 +42,7 @@ std::string name(const std::vector<std::string>& names, Index index) {
     return names[static_cast<std::size_t>(index)];
 }
 
-/// Shares that are left of output j (row) when it is read as output k (column).
+/// Remaining variance shares of output j (row) if it is interpreted as output k (column).
 MatrixXd shares_left(const ArmRecording& arm, const RobotMotion& motion, const RigidParts& parts) {
     const Index count = arm.counted();
     MatrixXd left(count, count);
@@ -55,7 +55,7 @@ MatrixXd shares_left(const ArmRecording& arm, const RobotMotion& motion, const R
     return left;
 }
 
-/// Shares that are left of each output along another motion.
+/// Remaining variance shares of each output for another motion.
 VectorXd own_shares_left(const ArmRecording& arm, const RobotMotion& motion) {
     const RigidParts parts = rigid_parts(arm.robot, arm.kind, motion);
     VectorXd left(arm.counted());
@@ -69,7 +69,7 @@ std::string comparison_text(double then, double now) {
     return "leaves " + percent(then) + " of the variance instead of " + percent(now);
 }
 
-/// Share that is left of output j read as output k along a motion, beside any payload.
+/// Remaining variance share of output j interpreted as output k along a motion, with any payload.
 double left_beside_payload(const ArmRecording& arm, const RobotMotion& motion, Index j, Index k) {
     const RigidParts parts = rigid_parts(arm.robot, arm.kind, motion);
     return fit_signed(arm.output(j), payload_columns(arm, motion, k), expected_columns(arm, motion, parts, k))
@@ -83,7 +83,7 @@ RobotMotion with_exchanged(RobotMotion motion, Index one, Index other) {
     return motion;
 }
 
-/// Whether an exchange explains each of its two outputs far better, whatever payload the arm has.
+/// Returns whether an exchange explains each of its two outputs much better, for any payload of the arm.
 bool certain_exchange(const ArmRecording& arm, bool positions, Index one, Index other) {
     if (arm.wrench()) {
         return false;
@@ -98,7 +98,7 @@ bool certain_exchange(const ArmRecording& arm, bool positions, Index one, Index 
            then_other < far_better * now_other;
 }
 
-/// `now` and `then`: mean shares left of the two outputs (of a wrench: all forces).
+/// `now` and `then`: mean remaining shares of the two outputs (for a wrench: of all forces).
 std::optional<Reading> exchange(const ArmRecording& arm, bool positions, Index one, Index other, double now,
                                 double then, double all) {
     if (!(now > least_unexplained && then < likely_better * now)) {
@@ -193,7 +193,7 @@ void try_reversed_positions(const ArmRecording& arm, const VectorXd& now, std::o
     }
 }
 
-/// What an output's parts show of its sign.
+/// Evidence of an output's parts on its sign.
 enum class SignEvidence { none, right, reversed, gravity_reversed, either_reversed };
 
 SignEvidence sign_of(const ArmRecording& arm, const RigidParts& parts, Index k) {
@@ -206,7 +206,7 @@ SignEvidence sign_of(const ArmRecording& arm, const RigidParts& parts, Index k) 
         return SignEvidence::none;
     }
     MatrixXd columns(motion.rows(), brakes ? 4 : 1);
-    if (brakes) { // the joint's own acceleration: its inertia is positive, whatever the payload
+    if (brakes) { // by the joint's own acceleration: its inertia is positive for any payload
         columns << parts.gravity.col(k), motion.acceleration.col(k), friction_columns(motion, k);
     } else {
         columns << (arm.wrench() ? parts.sum(k) : VectorXd(parts.gravity.col(k)));
@@ -226,7 +226,7 @@ SignEvidence sign_of(const ArmRecording& arm, const RigidParts& parts, Index k) 
                                                    : SignEvidence::either_reversed;
 }
 
-/// Outputs by what they show of their signs.
+/// Outputs by the evidence on their signs.
 struct SignVotes {
     std::vector<Index> reversed, gravity_reversed, either_reversed;
     std::size_t right = 0;
@@ -255,8 +255,8 @@ SignVotes sign_votes(const ArmRecording& arm, const RigidParts& parts) {
     return votes;
 }
 
-/// Whether half of the outputs whose joints move, two at least, show gravity of the wrong sign, and none of
-/// the right one: no payload does that.
+/// Returns whether at least half of the outputs with moving joints, and at least two, have gravity of the
+/// wrong sign, and none has the right one. No payload causes this.
 bool most_agree(const ArmRecording& arm, const SignVotes& votes) {
     std::size_t opposite = 0;
     std::size_t certain = 0;
@@ -282,7 +282,7 @@ std::string column_names(const ArmRecording& arm, const std::vector<Index>& outp
     return listed(names);
 }
 
-/// Mean share left with these outputs times -1.
+/// Mean remaining share if these outputs are multiplied by -1.
 double left_with_reversed(const ArmRecording& arm, const RigidParts& parts, const VectorXd& now,
                           const std::vector<Index>& outputs) {
     double left = now.sum();
@@ -311,7 +311,7 @@ void try_reversed_outputs(const ArmRecording& arm, const RigidParts& parts, cons
     std::vector<Index> opposite = votes.gravity_reversed;
     opposite.insert(opposite.end(), votes.either_reversed.begin(), votes.either_reversed.end());
     if (opposite.empty() || votes.right > 0) {
-        return; // a payload can turn the gravity at one joint
+        return; // a payload can reverse the gravity torque of one joint
     }
     const bool friction_is_right = votes.either_reversed.empty();
     const std::string cause =

@@ -17,7 +17,7 @@ namespace {
 constexpr double degrees_per_radian = 180 / std::numbers::pi;
 constexpr double two_turns = 4 * std::numbers::pi;
 
-// Clock: recordings of 50 Hz to 5 kHz are expected; milliseconds make their steps 0.2 to 20.
+// Clock: recordings are expected to have 50 Hz to 5 kHz, with steps of 0.2 to 20 in milliseconds.
 constexpr double suspicious_step_s = 0.19;
 constexpr double hopeless_step_s = 2;
 constexpr double shortest_step_s = 2e-5;
@@ -36,7 +36,7 @@ double duration_s(const Recording& recording, std::size_t row) {
     return 1e-9 * static_cast<double>(recording.time_ns[row] - recording.time_ns[row - 1]);
 }
 
-/// The 99 % quantile of a joint's speed, per second; 0 for too few rows.
+/// Returns the 99 % quantile of a joint's speed, per second; 0 for too few rows.
 double usual_speed(const Recording& recording, std::size_t joint) {
     std::vector<double> speeds;
     for (std::size_t row = 1; row < recording.row_count(); ++row) {
@@ -65,14 +65,14 @@ double largest_travel(const Recording& recording) {
     return largest;
 }
 
-/// Which unit makes steps of that length 150 ms at most.
+/// Returns the unit in which steps of this length are at most 150 ms.
 std::string clock_unit(double step) {
     return step < 150     ? "milliseconds; divide t by 1000"
            : step < 1.5e5 ? "microseconds; divide t by 1e6"
                           : "nanoseconds; divide t by 1e9";
 }
 
-/// Rows at which a joint jumps by `turn`, to 3 %.
+/// Returns the rows at which a joint jumps by `turn`, within 3 %.
 std::vector<std::size_t> jumps(const Recording& recording, std::size_t joint, double turn, double longest_s) {
     std::vector<std::size_t> rows;
     const auto step = [&](std::size_t row) {
@@ -94,7 +94,8 @@ std::vector<std::size_t> jumps(const Recording& recording, std::size_t joint, do
 
 bool constant(const Columns& columns, std::size_t index) { return !(travel(columns, index) > 0); }
 
-/// Whether the robot's file gives the links that joint `joint` moves any inertia; true without a robot.
+/// Returns whether the links that joint `joint` moves have any inertia in the robot's file; true without a
+/// robot.
 bool moves_mass(const Robot* robot, std::size_t joint) {
     if (robot == nullptr || joint >= robot->joints.size()) {
         return true;
@@ -117,10 +118,10 @@ struct BeyondLimits {
     bool certain = false;
 };
 
-/// Placeholder limits (0 to 0) and continuous joints count as none.
+/// Placeholder limits (0 to 0) and continuous joints have no limits.
 BeyondLimits beyond_limits(const Recording& recording, const Robot& robot) {
     constexpr double play = 1.2;
-    constexpr double another_unit = 5; // the zero of an encoder is off by less
+    constexpr double another_unit = 5; // above any error of an encoder's zero
     BeyondLimits result;
     for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
         const RobotJoint& one = robot.joints[joint];

@@ -35,7 +35,7 @@ Columns every_row(const Columns& columns, std::size_t stride, std::size_t rows) 
     return result;
 }
 
-/// Every `stride`-th row, positions and outputs only; a gap between two rows that are left stays one.
+/// Returns every `stride`-th row, positions and outputs only. A gap between two of these rows is preserved.
 Recording thinned(const Recording& recording, std::size_t stride) {
     const std::size_t rows = recording.row_count();
     Recording result;
@@ -58,7 +58,7 @@ MatrixXd outputs_of(const Robot& robot, OutputKind kind, const RobotMotion& moti
     return unstacked(outputs, outputs.size() / motion.rows());
 }
 
-/// Rounding errors must not count as a course.
+/// Sets rounding errors to zero, so that they are not taken for a signal.
 MatrixXd without_rounding(const MatrixXd& part, double largest) {
     return (part.array().abs() > 1e-9 * largest).select(part, 0);
 }
@@ -133,7 +133,8 @@ bool swings(const RobotMotion& motion, Index joint, int turns) {
 
 namespace {
 
-/// Positions, their sines and cosines, those of sums of two and three neighbours, and accelerations.
+/// Columns of positions, of their sines and cosines, of those of sums of two and three neighbours, and of
+/// accelerations.
 MatrixXd smooth_columns(const RobotMotion& motion) {
     const Index joints = motion.position.cols();
     std::vector<VectorXd> columns;
@@ -154,7 +155,7 @@ MatrixXd smooth_columns(const RobotMotion& motion) {
     return result;
 }
 
-/// Whether all but one of the parts that show friction, at least five, show this sign.
+/// Returns whether all but one of the parts with visible friction, at least five, have this sign.
 bool parts_agree(const VectorXd& output, const VectorXd& direction, double sign) {
     constexpr Index parts = 8;
     constexpr int fewest = 5;

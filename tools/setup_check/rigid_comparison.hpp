@@ -11,30 +11,31 @@
 
 namespace dfdyn::tools {
 
-/// Rows of a recording with derivatives, T of them: about 10 ms apart or more, at most 1,000, spread evenly.
-/// Velocities and accelerations come from the positions (zero phase), whatever columns the recording has.
-/// None where fewer than 100 rows have derivatives.
+/// Returns rows of a recording with derivatives, T of them: at least about 10 ms apart, at most 1,000, evenly
+/// spread. Velocities and accelerations are computed from the positions (zero phase), even if the recording
+/// has such columns. Returns nothing if fewer than 100 rows have derivatives.
 std::optional<RecordedMotion> checked_motion(const Recording& recording);
 
-/// A moving arm's measured outputs and the robot that they should belong to.
+/// The measured outputs of a moving arm, and the robot of the set-up.
 struct ArmRecording {
     const Robot& robot;
     const Recording& recording; ///< for the names of its columns
     OutputKind kind;
-    RecordedMotion recorded; ///< outputs: N·m for currents of known torque constants
+    RecordedMotion recorded; ///< outputs: N·m for currents with known torque constants
     bool gains_known;        ///< false: outputs are currents, in A
 
     bool wrench() const { return kind == OutputKind::wrench; }
-    /// How many outputs count: of a wrench the forces, for a payload changes the courses of its torques.
+    /// Number of outputs used: for a wrench only the forces, because a payload changes the shape of its
+    /// torques.
     Eigen::Index counted() const { return wrench() ? 3 : recorded.outputs.cols(); }
     Eigen::VectorXd output(Eigen::Index k) const { return recorded.outputs.col(k); }
 };
 
-/// Outputs of a robot's rigid body along a motion, T x m, in two parts that add up; N·m also for currents.
-/// What is below 1e-9 of the largest is 0.
+/// Outputs of a robot's rigid body along a motion, T x m, as a sum of two parts; N·m also for currents.
+/// Values below 1e-9 of the largest are 0.
 struct RigidParts {
-    Eigen::MatrixXd gravity; ///< what it takes to be stationary at each position
-    Eigen::MatrixXd inertia; ///< what the motion adds
+    Eigen::MatrixXd gravity; ///< torque at standstill at each position
+    Eigen::MatrixXd inertia; ///< additional torque of the motion
 
     Eigen::VectorXd sum(Eigen::Index k) const { return gravity.col(k) + inertia.col(k); }
 };
@@ -45,36 +46,36 @@ RigidParts rigid_parts(const Robot& robot, OutputKind kind, const RobotMotion& m
 /// Viscous and Coulomb friction of a joint: velocity and friction_direction(), T x 2.
 Eigen::MatrixXd friction_columns(const RobotMotion& motion, Eigen::Index joint);
 
-/// Coulomb friction's course, T: tanh of the velocity over 3 % of its largest magnitude (2e-3 rad/s at
-/// least).
+/// Shape of Coulomb friction, T: tanh of the velocity divided by 3 % of its largest magnitude (at least 2e-3
+/// rad/s).
 Eigen::VectorXd friction_direction(const Eigen::VectorXd& velocity);
 
-/// Whether a joint moves by 0.1 rad (m) or more and turns round `turns` times or more, from a tenth of its
-/// largest speed to the opposite.
+/// Returns whether a joint moves by at least 0.1 rad (m) and reverses at least `turns` times, from a tenth of
+/// its largest speed to the opposite.
 bool swings(const RobotMotion& motion, Eigen::Index joint, int turns);
 
-/// Turns of a joint from which on what its friction shows is no coincidence.
+/// Number of a joint's reversals after which its friction is reliable evidence.
 inline constexpr int certain_turns = 4;
 
-/// Columns that output `k` should be a sum of, with factors that are not negative: the rigid body's, for a
-/// joint's output gravity and inertia apart, and its friction.
+/// Returns the columns whose sum with nonnegative factors should be output `k`: the rigid body's (for a
+/// joint's output, gravity and inertia separately), and its friction.
 Eigen::MatrixXd expected_columns(const ArmRecording& arm, const RobotMotion& motion, const RigidParts& parts,
                                  Eigen::Index k);
 
-/// What a joint's output shows of the sign of its friction, beside all that gravity and inertia could be.
+/// Sign of the friction in a joint's output, in addition to any gravity and inertia.
 enum class FrictionSign { unclear, brakes, drives };
 
-/// Least squares of output `joint` on smooth functions of the positions (each position, its sine and cosine,
-/// sines and cosines of sums of neighbouring joints), on all accelerations, and on friction. Clear where
-/// friction of one sign leaves less than 60 % of what the other leaves, by 3 % of the variance at least, and
-/// all but one of eight parts of the recording that show it agree, at least five. Cost: T (7 n)^2.
+/// Fits output `joint` by least squares with smooth functions of the positions (each position, its sine and
+/// cosine, sines and cosines of sums of neighbouring joints), all accelerations, and friction. The sign is
+/// clear if friction of one sign leaves less than 60 % of the residual of the other, by at least 3 % of the
+/// variance, and all but one of eight parts of the recording with visible friction, at least five, agree.
+/// Cost: T (7 n)^2.
 FrictionSign friction_sign(const RecordedMotion& recorded, Eigen::Index joint);
 
-/// Columns of output `k` that a point of mass fixed to the last link would have: mass and its first moments,
-/// T x 4.
+/// Returns the columns of output `k` for a point mass fixed to the last link: mass and first moments, T x 4.
 Eigen::MatrixXd payload_columns(const ArmRecording& arm, const RobotMotion& motion, Eigen::Index k);
 
-/// Share of an output's variance that is left by columns with factors that are not negative, and an offset.
+/// Returns the share of an output's variance that remains after a fit with nonnegative factors and an offset.
 double left_by(const Eigen::VectorXd& output, const Eigen::MatrixXd& columns);
 
 } // namespace dfdyn::tools

@@ -21,7 +21,8 @@ void append(SetupFindings& findings, SetupFindings&& more) {
                     std::make_move_iterator(more.end()));
 }
 
-/// The first check that finds something wins: a second one would see the same mistake as another.
+/// Returns the finding of the first check with one, because later checks would report the same mistake
+/// differently.
 SetupFindings check_by_robot(const Recording& recording, const SetupQuestion& question,
                              RecordedMotion recorded) {
     const bool current = question.outputs == OutputKind::motor_current;
@@ -39,7 +40,7 @@ SetupFindings check_by_robot(const Recording& recording, const SetupQuestion& qu
     return findings;
 }
 
-/// Whether the question's parts fit each other.
+/// Returns whether the question's parts are consistent.
 bool robot_fits(const Recording& recording, const SetupQuestion& question) {
     const std::size_t joints = recording.joint_count();
     const std::vector<double>& constants = question.torque_constants;

@@ -8,7 +8,7 @@
 
 namespace dfdyn::tools {
 
-/// What can be wrong with the set-up behind a recording.
+/// Possible fault of the set-up of a recording.
 enum class SetupFault {
     time_unit,
     position_unit,
@@ -44,15 +44,15 @@ constexpr std::string_view name_of(SetupFault fault) {
 }
 
 enum class Severity {
-    warning, ///< likely; a right recording of an unusual arm could show it, too
-    mistake, ///< the evidence is overwhelming
+    warning, ///< likely; also possible for a correct recording of an unusual arm
+    mistake, ///< overwhelming evidence
 };
 
 struct SetupFinding {
     SetupFault fault;
     Severity severity;
     std::string columns; ///< names of the columns concerned, separated by commas
-    std::string text;    ///< one line: column, what was expected, what was found, what to do
+    std::string text;    ///< one line: column, expected, found, remedy
 };
 
 using SetupFindings = std::vector<SetupFinding>;
