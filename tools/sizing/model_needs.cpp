@@ -14,7 +14,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-// Of -O3 on a Cortex-M (docs/reference/performance.md), with some room.
+// Upper bounds for -O3 on a Cortex-M (docs/reference/performance.md).
 constexpr std::int64_t code_bytes = 20 * 1024;
 constexpr std::int64_t physics_code_bytes = 20 * 1024;
 constexpr std::int64_t stack_bytes = 2 * 1024;
@@ -30,7 +30,7 @@ std::int64_t count(const InputModel& input) {
     return static_cast<std::int64_t>(input.rows.size() + input.scale.size());
 }
 
-/// Numbers in the constants of the physics.
+/// Returns the number of values in the constants of the physics.
 std::int64_t count(const PhysicsModel& physics) {
     constexpr std::int64_t per_joint = 20;
     constexpr std::int64_t per_effect = 8;
@@ -49,7 +49,7 @@ std::int64_t window_bytes(const InputModel& input, int joints) {
                   : 0;
 }
 
-/// Of the learners' factors and weights; SPK's outputs carry weights for each parameter.
+/// Size of the learners' factors and weights; SPK's outputs have weights for each parameter.
 std::int64_t learned_bytes(const TrainedModel& model) {
     using Learner = UdCovariance<float, dynamic, dynamic>;
     const auto outputs = static_cast<int>(model.outputs.names.size());
@@ -59,7 +59,7 @@ std::int64_t learned_bytes(const TrainedModel& model) {
            Learner::state_bytes(parameters, 1);
 }
 
-/// Numbers that a tick keeps beside what is learned: inputs, features, rows of the physics.
+/// Number of values of a tick in addition to the learned ones: inputs, features, rows of the physics.
 std::int64_t work_numbers(const TrainedModel& model) {
     const auto outputs = static_cast<std::int64_t>(model.outputs.names.size());
     const std::int64_t inputs = std::int64_t{model.joints} * model.input.rows_per_joint;

@@ -22,7 +22,7 @@ namespace {
 constexpr double training_share = 0.7;
 constexpr double same_error = 1.01;
 constexpr std::array<int, 11> feature_counts{10, 16, 25, 40, 63, 100, 160, 250, 400, 630, 1000};
-constexpr int probe_features = 63; ///< while window and rows are chosen
+constexpr int probe_features = 63; ///< during the choice of window and rows
 constexpr std::array<double, 4> windows_s{0.04, 0.08, 0.16, 0.32};
 constexpr std::array<int, 3> row_counts{3, 4, 6};
 constexpr std::array<double, 3> memories_s{5, 30, 180};
@@ -50,7 +50,7 @@ Recording rows_between(Recording recording, std::size_t first, std::size_t last)
     return recording;
 }
 
-/// The first rows to train on, the last ones to judge by.
+/// The first rows for training, and the last ones for evaluation.
 struct Split {
     std::vector<Recording> training, judging;
 
@@ -153,7 +153,7 @@ class SizeSearch {
         return result;
     }
 
-    /// The candidate with these options, or with as many features fewer as the budget demands; nothing if
+    /// Returns the candidate with these options, with fewer features if the budget requires it; nothing if
     /// none fits.
     std::optional<SizeCandidate> fitting(TrainingOptions options, bool fewer_features) {
         for (;;) {
@@ -230,7 +230,8 @@ class SizeSearch {
         }
     }
 
-    /// The largest number of features that fits, unless a smaller one is as good; and its neighbours.
+    /// Chooses the largest number of features that fits, unless a smaller one is equally good; also sets its
+    /// neighbours.
     void choose_features(SizeChoice& choice) {
         std::vector<SizeCandidate> ladder;
         for (const int count : feature_counts) {
@@ -238,7 +239,7 @@ class SizeSearch {
             options.feature_count = count;
             const bool fitting_size = fits(needs_of(with_feature_count(model_, count)), budget_);
             if (!fitting_size && !ladder.empty() && !fits(ladder.back().needs, budget_)) {
-                break; // one beyond the budget is shown
+                break; // one candidate beyond the budget is shown
             }
             if (count < probe_features / 4 &&
                 fits(needs_of(with_feature_count(model_, probe_features)), budget_)) {
@@ -247,7 +248,7 @@ class SizeSearch {
             ladder.push_back(trained(options).candidate);
             if (ladder.size() >= 3 && ladder.back().error * same_error > ladder[ladder.size() - 2].error &&
                 ladder[ladder.size() - 2].error * same_error > ladder[ladder.size() - 3].error) {
-                break; // twice without a gain
+                break; // two steps without an improvement
             }
         }
         std::size_t best = 0;
@@ -271,7 +272,7 @@ class SizeSearch {
     const std::function<void()>& on_candidate_;
     double period_s_;
     std::optional<SizeCandidate> best_;
-    TrainedModel model_; ///< the last one trained: the sizes of its physics
+    TrainedModel model_; ///< the last model trained: its physics has the right sizes
     ModelNeeds smallest_;
     int tried_ = 0;
 };
