@@ -68,29 +68,29 @@ evaluate() {
 
 introduction() {
     cat <<'TEXT'
-# The paper's findings, tried again
+# Reproduction of the paper's findings
 
 Written by `tools/reproduce.sh`, with all comparisons, tables and pictures in `build/reproduction/full/`; every verdict follows from the numbers by the
-rule stated below. [evaluation.md](../guide/evaluation.md) describes the experiment.
+rule below. [evaluation.md](../guide/evaluation.md) describes the experiment.
 
 What differs from the paper:
 
-- Its recordings are not public. The iCub's are simulated (`dfdyn simulate`, [what is known and what is guessed](../../tests/data/scenarios/README.md)):
+- Its recordings are not public. The iCub's are simulated (`dfdyn simulate`, [known and assumed parameters](../../tests/data/scenarios/README.md)):
   beyond the sensor the simulated arm is exactly rigid, but its encoders are eccentric and its sensor's calibration is wrong. The UR5's are measured.
-- How good numerical derivatives are decides some findings. Those of the first chapter are estimated from readings every 10 ms, as they reach a program
-  on the robot's computer in the iCub's configuration; the second chapter has the same arm with derivatives estimated at 1 kHz.
-- Each output has a noise and a variance of its own, with a common ratio; the paper has one of each.
-- The physics learns the parameters that the recording can tell apart. With input DFR it sees rows 2 and 3, of length 1, times a factor each.
-- Hyperparameters are sought once per case, from four starts; the draws differ in the random features. P has none: its draws are the same.
-- P, SP, SP2 and SPK are not tried with full windows (DF, DFW), and cross validation with the inputs that a grid can serve.
-- All cases are judged at the same ticks, those at which the longest lag window is full.
-- UR5: 20 lags; 800 rows in the exact kernel; the outputs are motor currents, by torque constants estimated from the nominal robot; the start takes one of
-  the motion's cycles (3,421 rows), T is one second (125 samples), the steady state begins after 10 s since the tests last 20 s, and ε is relative to the
-  output's variance, because a current that rests near zero makes the paper's index as large as one likes.
+- Some findings depend on the accuracy of numerical derivatives. The first chapter estimates them from readings every 10 ms, the rate of a program
+  on the robot's computer in the iCub's configuration; the second chapter estimates them at 1 kHz for the same arm.
+- Each output has its own noise and variance, with a common ratio; the paper has one noise and one variance for all.
+- The physics learns the parameters that the recording identifies. With input DFR its inputs are rows 2 and 3, of length 1, each times a factor.
+- Hyperparameters are optimised once per case, from four starts; the draws differ in the random features. P has no features: its draws are equal.
+- P, SP, SP2 and SPK are not tested with full windows (DF, DFW). Cross validation is tested only with inputs whose hyperparameters fit on a grid.
+- All cases are scored at the same ticks, those at which the longest lag window is full.
+- UR5: 20 lags; 800 rows in the exact kernel; the outputs are motor currents, with torque constants estimated from the nominal robot. The start uses one of
+  the motion's cycles (3,421 rows), and T is one second (125 samples). The steady state begins after 10 s because the tests take 20 s. ε is relative to the
+  output's variance, because the paper's index is unbounded for a current near zero.
 
-What we chose with these tests in sight, and so what the p-values do not account for: the four models that "Beyond the paper" combines, the memory of 100
+Some settings were chosen with these tests in view, which the p-values do not account for: the four models that "Beyond the paper" combines, the memory of 100
 samples and the square in their weights, the filters of the physics' own motion, the named effects, and a forgetting factor of two samples per column. The
-chapters in which the motions exchange their roles were run after all of this was fixed, and changed nothing of it.
+chapters with exchanged motions were run after all these settings were fixed, and changed none of them.
 
 TEXT
 }
