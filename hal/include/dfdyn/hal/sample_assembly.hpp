@@ -3,19 +3,17 @@
 
 #include "dfdyn/hal/assembly/bus_watch.hpp"
 #include "dfdyn/hal/assembly/effort_output.hpp"
+#include "dfdyn/hal/assembly/joint_tracks.hpp"
 #include "dfdyn/hal/assembly/moment.hpp"
-#include "dfdyn/hal/assembly/position_track.hpp"
 #include "dfdyn/hal/assembly/sample_report.hpp"
 #include "dfdyn/hal/assembly/wrench_output.hpp"
 #include "dfdyn/hal/bus.hpp"
-#include "dfdyn/hal/gate/clock_step.hpp"
 #include "dfdyn/sample.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <optional>
 #include <span>
-#include <utility>
 
 namespace dfdyn::hal {
 
@@ -58,7 +56,9 @@ class SampleAssembly {
     };
 
     constexpr SampleAssembly(const Config& config, const Output& output) noexcept
-        : SampleAssembly(config, output, std::make_index_sequence<static_cast<std::size_t>(n)>{}) {}
+        : board_(config.board), position_(config.position, config.position_range, config.limits),
+          output_(output),
+          output_bus_(config.output_bus), watch_{BusWatch(config.clock), BusWatch(config.clock)} {}
 
     using Moment = SampleMoment;
 
@@ -125,9 +125,7 @@ class SampleAssembly {
     /// Whether a value of this instant is missing that may yet be interpolated: `assemble` gives more after
     /// the next frames. Never for longer than the sources' `max_age` and a period after the last value.
     [[nodiscard]] constexpr bool pending(std::int64_t instant_ns, std::int64_t now_ns) const noexcept {
-        return output_.pending(instant_ns, now_ns) || std::ranges::any_of(position_, [&](const auto& track) {
-                   return track.pending(instant_ns, now_ns);
-               });
+        return output_.pending(instant_ns, now_ns) || position_.pending(instant_ns, now_ns);
     }
 
     /// The sample of an instant not later than `now_ns`, both on the clock of the buses. The positions of
@@ -137,7 +135,7 @@ class SampleAssembly {
         result.sample.time_ns = instant_ns;
         fill_ages(result.report, now_ns);
         result.report.position = fill_positions(result.sample, result.report, now_ns);
-        const bool loss = take_losses();
+        const bool loss = watch_[static_cast<std::size_t>(output_bus_)].health.take_loss();
         if (result.valid()) {
             last_instant_ns_ = instant_ns;
             result.report.output = fill_output(result.sample, loss, now_ns);
@@ -177,16 +175,8 @@ class SampleAssembly {
 
   private:
     static constexpr int rounds = 8;
+    static constexpr auto joint_count = static_cast<std::size_t>(n);
     static constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::max();
-
-    template <std::size_t... i>
-    constexpr SampleAssembly(const Config& config, const Output& output,
-                             std::index_sequence<i...> /*joints*/) noexcept
-        : board_(config.board), position_{PositionTrack<capacity>(config.position, config.position_range[i],
-                                                                  config.limits[i])...},
-          output_(output), output_bus_(config.output_bus), joint_period_ns_(config.position.period_ns),
-          joint_jitter_ns_(config.position.jitter_ns), watch_{BusWatch(config.clock),
-                                                              BusWatch(config.clock)} {}
 
     /// To the boards and the sensor that are on this bus.
     constexpr Moment offer(const Frame& frame, int bus) noexcept {
@@ -202,7 +192,7 @@ class SampleAssembly {
         if (bus == output_bus_) {
             const Decoded decoded = output_.take(frame);
             if (decoded.kind == Decoded::Kind::part && decoded.part == 0) {
-                steps_.take(n, frame.stamp_ns, output_.period_ns(), joint_jitter_ns_);
+                position_.sensor_measured(frame.stamp_ns, output_.period_ns());
             }
             known = known || decoded.kind != Decoded::Kind::nothing || claims(output_, frame);
             moment = take_decoded(decoded, frame, bus, moment);
@@ -210,7 +200,8 @@ class SampleAssembly {
         if (!known) {
             watch_[static_cast<std::size_t>(bus)].unknown.add(frame, Reason::ok);
         }
-        return moment.kind == Moment::Kind::none ? completed_set() : moment;
+        return moment.kind == Moment::Kind::none && output_.heard() ? moments_.completed(output_.newest_ns())
+                                                                    : moment;
     }
 
     template <class Device>
@@ -248,40 +239,21 @@ class SampleAssembly {
             return;
         }
         const auto joint = static_cast<std::size_t>(value.joint);
-        PositionTrack<capacity>& track = position_[joint];
         JointValue judged = value;
         if (value.position_reason != Reason::waiting_for_position) {
-            steps_.take(value.joint, value.stamp_ns, joint_period_ns_, joint_jitter_ns_);
-            const Reason reason = track.push(value);
+            const Reason reason = position_.push(value);
             moments_.measured(joint);
-            follow_clock(track, value.stamp_ns);
             const bool other_source = reason == Reason::position_jump || reason == Reason::position_lost ||
                                       reason == Reason::position_frozen || reason == Reason::id_collision;
             if (other_source && judged.effort_reason == Reason::ok) {
                 judged.effort_reason = reason; // the same frame's
             }
         }
-        output_.take(judged, track.motion().position_rad());
-    }
-
-    /// A clock that was set by less than the clock gate sees moves each joint by its own velocity.
-    constexpr void follow_clock(PositionTrack<capacity>& track, std::int64_t stamp_ns) noexcept {
-        const std::int64_t tolerance_ns = 2 * joint_jitter_ns_;
-        if (!track.motion().lost()) {
-            return;
-        }
-        if (const auto step_ns = steps_.step_ns(stamp_ns, tolerance_ns)) {
-            track.motion().explain_by_clock(*step_ns);
-            track.motion().explain_by_clock(steps_.within_period(*step_ns, joint_period_ns_));
-        }
-    }
-
-    constexpr Moment completed_set() noexcept {
-        return output_.heard() ? moments_.completed(output_.newest_ns()) : Moment{};
+        output_.take(judged, position_[joint].motion().position_rad());
     }
 
     constexpr void fill_ages(Report& report, std::int64_t now_ns) const noexcept {
-        for (std::size_t i = 0; i < position_.size(); ++i) {
+        for (std::size_t i = 0; i < joint_count; ++i) {
             report.position_age_ns[i] = position_[i].heard() ? now_ns - position_[i].newest_ns() : never_ns;
         }
         report.output_age_ns = output_.heard() ? now_ns - output_.newest_ns() : never_ns;
@@ -293,7 +265,7 @@ class SampleAssembly {
             return down;
         }
         Reason first = Reason::ok;
-        for (std::size_t i = 0; i < position_.size(); ++i) {
+        for (std::size_t i = 0; i < joint_count; ++i) {
             const Measurement<1> measured = position_[i].at(sample.time_ns, now_ns);
             report.joint_reason[i] = explain(measured.reason, 0);
             if (measured.reason == Reason::ok) {
@@ -347,11 +319,6 @@ class SampleAssembly {
         return missing && doubtful ? Reason::clock_jumped : reason;
     }
 
-    /// Whether frames of the output's bus were lost since the last sample.
-    constexpr bool take_losses() noexcept {
-        return watch_[static_cast<std::size_t>(output_bus_)].health.take_loss();
-    }
-
     constexpr void count(const Assembled& result) noexcept {
         ++counters_.calls;
         counters_.samples += result.valid() ? 1U : 0U;
@@ -369,14 +336,11 @@ class SampleAssembly {
     }
 
     std::array<Board, static_cast<std::size_t>(boards)> board_;
-    std::array<PositionTrack<capacity>, static_cast<std::size_t>(n)> position_;
+    JointTracks<n, capacity> position_;
     Output output_;
     int output_bus_;
-    std::int64_t joint_period_ns_;
-    std::int64_t joint_jitter_ns_;
     std::array<BusWatch, buses> watch_;
     MomentWatch<n> moments_;
-    ClockStepWatch<n + 1> steps_;
 
     std::int64_t last_instant_ns_ = std::numeric_limits<std::int64_t>::min();
     std::int64_t last_output_ns_ = std::numeric_limits<std::int64_t>::min();

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/assembly/position_track.hpp"
+#include "dfdyn/hal/gate/clock_step.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+namespace dfdyn::hal {
+
+/// The recent positions of all joints of an arm. A clock that was set by less than the clock gate sees moves
+/// each joint by its own velocity; where all sources show the same step, the joints are believed again.
+template <int n, int capacity>
+class JointTracks {
+  public:
+    template <class T>
+    using PerJoint = std::array<T, static_cast<std::size_t>(n)>;
+
+    constexpr JointTracks(const TrackConfig& config, const PerJoint<Range>& range,
+                          const PerJoint<MotionLimits>& limits) noexcept
+        : JointTracks(config, range, limits, std::make_index_sequence<static_cast<std::size_t>(n)>{}) {}
+
+    /// Takes what a device says about a joint, 0 … n - 1; what became of it.
+    constexpr Reason push(const JointValue& value) noexcept {
+        PositionTrack<capacity>& track = track_[static_cast<std::size_t>(value.joint)];
+        steps_.take(value.joint, value.stamp_ns, period_ns_, jitter_ns_);
+        const Reason reason = track.push(value);
+        follow_clock(track, value.stamp_ns);
+        return reason;
+    }
+
+    /// A measurement of the arm's sensor, which shows steps of the clock too.
+    constexpr void sensor_measured(std::int64_t stamp_ns, std::int64_t period_ns) noexcept {
+        steps_.take(n, stamp_ns, period_ns, jitter_ns_);
+    }
+
+    /// Whether a position of this instant is missing and may yet be interpolated.
+    [[nodiscard]] constexpr bool pending(std::int64_t instant_ns, std::int64_t now_ns) const noexcept {
+        return std::ranges::any_of(track_,
+                                   [&](const auto& track) { return track.pending(instant_ns, now_ns); });
+    }
+
+    [[nodiscard]] constexpr PositionTrack<capacity>& operator[](std::size_t joint) noexcept {
+        return track_[joint];
+    }
+    [[nodiscard]] constexpr const PositionTrack<capacity>& operator[](std::size_t joint) const noexcept {
+        return track_[joint];
+    }
+
+  private:
+    template <std::size_t... i>
+    constexpr JointTracks(const TrackConfig& config, const PerJoint<Range>& range,
+                          const PerJoint<MotionLimits>& limits, std::index_sequence<i...> /*joints*/) noexcept
+        : track_{PositionTrack<capacity>(config, range[i], limits[i])...}, period_ns_(config.period_ns),
+          jitter_ns_(config.jitter_ns) {}
+
+    constexpr void follow_clock(PositionTrack<capacity>& track, std::int64_t stamp_ns) noexcept {
+        const std::int64_t tolerance_ns = 2 * jitter_ns_;
+        if (!track.motion().lost()) {
+            return;
+        }
+        if (const auto step_ns = steps_.step_ns(stamp_ns, tolerance_ns)) {
+            track.motion().explain_by_clock(*step_ns);
+            track.motion().explain_by_clock(steps_.within_period(*step_ns, period_ns_));
+        }
+    }
+
+    PerJoint<PositionTrack<capacity>> track_;
+    ClockStepWatch<n + 1> steps_;
+    std::int64_t period_ns_;
+    std::int64_t jitter_ns_;
+};
+
+} // namespace dfdyn::hal
