@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/assembly/position_track.hpp"
+
+#include "tests/support/catch.hpp"
+
+namespace position_track_test {
+
+using namespace dfdyn::hal;
+
+constexpr std::int64_t ms = 1'000'000;
+constexpr std::int64_t latency = ms / 4;
+constexpr double speed = 0.5; // rad/s
+
+/// Position of a joint in steady motion.
+double at(std::int64_t time_ns) { return 0.3 + speed * 1e-9 * static_cast<double>(time_ns); }
+
+/// A track of 2 ms, and the joint whose positions it gets.
+struct Joint {
+    PositionTrack<16> track{{.max_age_ns = 6 * ms,
+                             .latency_ns = latency,
+                             .qualification = {},
+                             .period_ns = 2 * ms,
+                             .jitter_ns = ms / 4},
+                            {-3, 3},
+                            {}};
+
+    /// The position measured at `time_ns`, off by `off_rad`, in a frame that comes `latency` later.
+    Reason push(std::int64_t time_ns, double off_rad = 0, Reason reason = Reason::ok) {
+        JointValue value;
+        value.joint = 0;
+        value.stamp_ns = time_ns + latency;
+        value.position_reason = reason;
+        value.position_rad = at(time_ns) + off_rad;
+        value.step_rad = 1e-5;
+        value.from_zero_rad = value.position_rad;
+        return track.push(value);
+    }
+    Reason reason_at(std::int64_t instant_ns, std::int64_t now_ns) {
+        return track.at(instant_ns, now_ns).reason;
+    }
+};
+
+/// Believed, with its last reading at 40 ms.
+Joint moving() {
+    Joint joint;
+    for (std::int64_t time_ns = 0; time_ns <= 40 * ms; time_ns += 2 * ms) {
+        const Reason reason = joint.push(time_ns);
+        CHECK(reason == (time_ns < 18 * ms ? Reason::qualifying : Reason::ok)); // ten readings
+    }
+    return joint;
+}
+
+TEST_CASE("a position between two readings is on the line between them, of the time of measurement") {
+    Joint joint = moving();
+    const Measurement<1> measured = joint.track.at(33 * ms, 41 * ms);
+    CHECK(measured.reason == Reason::ok);
+    CHECK(measured.value[0] == Approx(at(33 * ms)).epsilon(1e-12));
+    CHECK(joint.track.origin(33 * ms) == ValueOrigin::interpolated);
+    CHECK(joint.track.newest_ns() == 40 * ms);
+}
+
+TEST_CASE("a position that is not due yet is held; one that was due is missing, and interpolated later") {
+    Joint joint = moving();
+    CHECK(joint.track.at(41 * ms, 41 * ms).value[0] == at(40 * ms));
+    CHECK(joint.track.origin(41 * ms) == ValueOrigin::held);
+    CHECK(joint.reason_at(43 * ms, 43 * ms) == Reason::position_missing);
+    CHECK(joint.track.pending(43 * ms, 43 * ms));
+    CHECK(joint.push(44 * ms) == Reason::ok); // the one of 42 ms was lost
+    CHECK_FALSE(joint.track.pending(43 * ms, 45 * ms));
+    CHECK(joint.track.at(43 * ms, 45 * ms).value[0] == Approx(at(43 * ms)).epsilon(1e-12));
+    CHECK(joint.track.origin(43 * ms) == ValueOrigin::bridged);
+}
+
+TEST_CASE("a position that the motion does not lead to makes a hole, which is not interpolated over") {
+    Joint joint = moving();
+    CHECK(joint.push(42 * ms, 0.2) == Reason::position_jump);
+    CHECK(joint.push(44 * ms) == Reason::ok);
+    CHECK(joint.reason_at(41 * ms, 45 * ms) == Reason::position_jump);
+    CHECK(joint.reason_at(43 * ms, 45 * ms) == Reason::position_jump);
+    CHECK(joint.push(46 * ms) == Reason::ok);
+    CHECK(joint.reason_at(45 * ms, 47 * ms) == Reason::ok);
+}
+
+TEST_CASE("two positions of one instant make a hole of both") {
+    Joint joint = moving();
+    CHECK(joint.push(40 * ms, 0.2) == Reason::time_not_increasing);
+    CHECK(joint.reason_at(40 * ms, 41 * ms) == Reason::time_not_increasing);
+    CHECK(joint.track.not_later() == 1);
+}
+
+TEST_CASE("a second sender of a joint is seen by how often it sends, whatever it says") {
+    Joint joint = moving();
+    int collisions = 0;
+    for (std::int64_t time_ns = 42 * ms; time_ns < 60 * ms; time_ns += 2 * ms) {
+        collisions += joint.push(time_ns) == Reason::id_collision ? 1 : 0;
+        collisions += joint.push(time_ns + ms) == Reason::id_collision ? 1 : 0;
+    }
+    CHECK(collisions >= 14);
+    CHECK(joint.track.collisions() >= 7);
+}
+
+TEST_CASE("a device that is not itself makes its joint qualify; a value of an unknown SYNC does not") {
+    Joint unknown = moving();
+    CHECK(unknown.push(42 * ms, 0, Reason::sync_unknown) == Reason::sync_unknown);
+    CHECK(unknown.push(44 * ms) == Reason::ok);
+    Joint restarted = moving();
+    CHECK(restarted.push(42 * ms, 0, Reason::device_restarted) == Reason::device_restarted);
+    CHECK(restarted.push(44 * ms) == Reason::qualifying);
+}
+
+} // namespace position_track_test

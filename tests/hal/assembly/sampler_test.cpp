@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/assembly/sampler.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <limits>
+#include <vector>
+
+namespace sampler_test {
+
+using namespace dfdyn::hal;
+
+constexpr std::int64_t ms = 1'000'000;
+constexpr std::int64_t start = 100 * ms;
+
+/// An arm whose values for instants before `known_ns`, and from `known_again_ns` on, are there, and whose
+/// other values are missing for up to `patience_ns`. A frame of identifier 0x80 is a moment, of the frame
+/// before.
+struct ScriptedArm {
+    std::int64_t known_ns = std::numeric_limits<std::int64_t>::max();
+    std::int64_t known_again_ns = std::numeric_limits<std::int64_t>::max();
+    std::int64_t patience_ns = 0;
+    std::int64_t moment_ns = 0;
+    int updates = 0;
+    std::vector<std::int64_t> taken_ns; ///< the times at which frames were read
+
+    std::optional<std::int64_t> take(const Frame& frame, std::int64_t now_ns) {
+        taken_ns.push_back(now_ns);
+        if (frame.id != 0x80) {
+            return std::nullopt;
+        }
+        const std::int64_t before_ns = moment_ns;
+        moment_ns = frame.stamp_ns;
+        return before_ns == 0 ? std::nullopt : std::optional(before_ns);
+    }
+    void update(BusState /*state*/, const BusCounters& /*counters*/) { ++updates; }
+    bool pending(std::int64_t instant_ns, std::int64_t now_ns) const {
+        return instant_ns >= known_ns && instant_ns < known_again_ns && now_ns - instant_ns <= patience_ns;
+    }
+    std::int64_t assemble(std::int64_t instant_ns, std::int64_t /*now_ns*/) { return instant_ns; }
+};
+
+/// A sampler, its arm, and the instants and times of its samples.
+template <std::size_t capacity = 16>
+struct Bench {
+    explicit Bench(const SamplerConfig& config) : sampler(config) {}
+
+    void frame(std::int64_t stamp_ns, std::uint32_t id = 0x100) {
+        Frame frame;
+        frame.id = id;
+        frame.stamp_ns = stamp_ns;
+        sampler.take(arm, frame, BusState::active, {}, recorder());
+    }
+    void frames(std::int64_t from_ns, std::int64_t to_ns, std::int64_t step_ns) {
+        for (; from_ns <= to_ns; from_ns += step_ns) {
+            frame(from_ns);
+        }
+    }
+    auto recorder() {
+        return [this](std::int64_t instant_ns, std::int64_t now_ns) {
+            instants.push_back(instant_ns);
+            times.push_back(now_ns);
+        };
+    }
+
+    ScriptedArm arm;
+    Sampler<ScriptedArm, capacity> sampler;
+    std::vector<std::int64_t> instants, times;
+};
+
+const SamplerConfig timer{.timer = true, .period_ns = 2 * ms, .delay_ns = 3 * ms, .patience_ns = 6 * ms};
+const SamplerConfig moments{.timer = false, .period_ns = 2 * ms, .delay_ns = 0, .patience_ns = 6 * ms};
+
+TEST_CASE("a timer's samples come every period, of an instant that is its delay ago") {
+    Bench bench(timer);
+    bench.frames(start, start + 10 * ms, ms);
+    CHECK(bench.times == std::vector{start + 2 * ms, start + 4 * ms, start + 6 * ms, start + 8 * ms});
+    CHECK(bench.instants == std::vector{start - ms, start + ms, start + 3 * ms, start + 5 * ms});
+    bench.sampler.advance_to(bench.arm, start + 10 * ms, bench.recorder());
+    CHECK(bench.times.back() == start + 10 * ms); // no frame of that time can come any more
+}
+
+TEST_CASE("samples of moments are of their instants, and come at the period where there are none") {
+    Bench bench(moments);
+    for (int cycle = 0; cycle < 4; ++cycle) {
+        bench.frame(start + 2 * cycle * ms, 0x80);
+    }
+    CHECK(bench.instants == std::vector{start, start + 2 * ms, start + 4 * ms});
+    bench.frames(start + 7 * ms, start + 20 * ms, ms);
+    const std::vector<std::int64_t> late(bench.times.begin() + 3, bench.times.end());
+    CHECK(late ==
+          std::vector{start + 12 * ms, start + 14 * ms, start + 16 * ms, start + 18 * ms}); // after 6 ms
+}
+
+TEST_CASE("a sample with a missing value waits for it, and those after it wait too, in order") {
+    Bench bench(timer);
+    bench.arm.patience_ns = 20 * ms;
+    bench.arm.known_ns = start + 2 * ms;
+    bench.frames(start, start + 9 * ms, ms);
+    CHECK(bench.instants == std::vector{start - ms, start + ms});
+    bench.arm.known_ns = start + 4 * ms; // the value of 3 ms has come
+    bench.frame(start + 9 * ms + ms / 2);
+    CHECK(bench.instants == std::vector{start - ms, start + ms, start + 3 * ms});
+    CHECK(bench.times.back() == start + 9 * ms + ms / 2);
+    bench.sampler.finish(bench.arm, bench.recorder()); // which waits no longer
+    CHECK(bench.instants == std::vector{start - ms, start + ms, start + 3 * ms, start + 5 * ms});
+}
+
+TEST_CASE("a sample waits no longer than its value can still come") {
+    Bench bench(timer);
+    bench.arm.known_ns = start + 2 * ms;
+    bench.arm.patience_ns = 5 * ms;
+    bench.frames(start, start + 7 * ms, ms);
+    CHECK(bench.instants == std::vector{start - ms, start + ms});
+    bench.frames(start + 8 * ms, start + 9 * ms, ms);
+    CHECK(bench.instants == std::vector{start - ms, start + ms, start + 3 * ms}); // 5 ms later it is given up
+}
+
+TEST_CASE("a sample that is complete does not overtake one that waits") {
+    Bench bench(timer);
+    bench.arm.patience_ns = 20 * ms;
+    bench.arm.known_ns = start + 2 * ms;
+    bench.arm.known_again_ns = start + 4 * ms; // of 3 ms it is missing
+    bench.frames(start, start + 9 * ms, ms);
+    CHECK(bench.instants == std::vector{start - ms, start + ms});
+    bench.arm.known_ns = start + 4 * ms;
+    bench.frame(start + 10 * ms);
+    CHECK(bench.instants == std::vector{start - ms, start + ms, start + 3 * ms, start + 5 * ms});
+}
+
+TEST_CASE("no more samples wait than there is room for") {
+    Bench<2> bench(timer);
+    bench.arm.patience_ns = 1000 * ms;
+    bench.arm.known_ns = start;
+    bench.frames(start, start + 9 * ms, ms);
+    CHECK(bench.instants == std::vector{start - ms, start + ms}); // those of 3 and 5 ms wait
+    CHECK(bench.times.back() == start + 8 * ms);
+}
+
+TEST_CASE("a frame whose stamp is ahead is left out if the next one shows that it was a stray") {
+    Bench bench(timer);
+    bench.frames(start, start + 4 * ms, ms);
+    bench.frame(start + 700 * ms);
+    bench.frame(start + 5 * ms);
+    CHECK(bench.sampler.strays() == 1);
+    CHECK(bench.arm.taken_ns.size() == 6);
+    CHECK(bench.sampler.now_ns() == start + 5 * ms);
+    CHECK(bench.times == std::vector{start + 2 * ms, start + 4 * ms});
+}
+
+TEST_CASE("a frame whose stamp is ahead is taken if time goes on from it") {
+    Bench bench(timer);
+    bench.frames(start, start + 4 * ms, ms);
+    bench.frame(start + 700 * ms);
+    CHECK(bench.arm.taken_ns.size() == 5); // it waits
+    bench.frame(start + 701 * ms);
+    CHECK(bench.sampler.strays() == 0);
+    CHECK(bench.arm.taken_ns.size() == 7);
+    CHECK(bench.arm.taken_ns[5] == start + 700 * ms);
+    CHECK(bench.arm.updates == 7);
+}
+
+TEST_CASE("a long silence makes samples for a second, and none for the rest of it") {
+    Bench bench(timer);
+    bench.frames(start, start + 4 * ms, ms);
+    bench.frame(start + 5000 * ms);
+    bench.frame(start + 5001 * ms);
+    const auto count = bench.instants.size();
+    CHECK(count >= 500);
+    CHECK(count <= 504);
+    bench.frame(start + 5003 * ms);
+    CHECK(bench.times.back() > start + 5000 * ms); // from there on at the period again
+    CHECK(bench.instants.size() - count == 1);
+}
+
+} // namespace sampler_test
