@@ -23,6 +23,7 @@ enum class Trigger { timer, set, sync };
 constexpr std::int64_t bus_us = 1000;
 constexpr std::int64_t bus_period = 2000 * bus_us;
 constexpr std::int64_t bus_jitter = 200 * bus_us; ///< of a frame behind its device's measurement
+constexpr std::int64_t bus_track_jitter = bus_jitter + 50 * bus_us; ///< as the description has it
 constexpr std::int64_t bus_max_age = 3 * bus_period;
 constexpr std::int64_t timer_delay = 3 * bus_period / 2;
 
@@ -37,6 +38,7 @@ struct Sent {
     Role role = Role::noise;
     int unit = 0; ///< joint or board, from 0; half of a wrench
     int cycle = 0;
+    std::int64_t clock_ns = 0; ///< by which the clock of the stamps had been set
 };
 using Traffic = std::vector<Sent>;
 
@@ -60,7 +62,7 @@ inline hal::TrackConfig campaign_track() {
             .latency_ns = 0,
             .qualification = {},
             .period_ns = bus_period,
-            .jitter_ns = bus_jitter + 50 * bus_us};
+            .jitter_ns = bus_track_jitter};
 }
 
 template <class Sensor>
@@ -120,6 +122,7 @@ inline std::int64_t joint_phase(int joint) { return 100 * bus_us + 130 * bus_us 
 struct IcubArm {
     static constexpr const char* name = "icub_two_joint_board, icub_strain";
     static constexpr bool efforts = false;
+    static constexpr bool synchronous = false;
     static constexpr double step = 1 / (91.0 * degrees);
     static constexpr double output_range = 500;
     using Board = hal::icub::TwoJointBoard;
@@ -152,6 +155,7 @@ struct IcubArm {
 struct FocArm {
     static constexpr const char* name = "icub_2foc, efforts";
     static constexpr bool efforts = true;
+    static constexpr bool synchronous = false;
     static constexpr double step = turn / 65536 / 2;
     static constexpr double output_range = 0;
     using Board = hal::icub::FocBoard;
@@ -185,6 +189,7 @@ struct FocArm {
 struct FocWrenchArm {
     static constexpr const char* name = "icub_2foc, robotous_rft";
     static constexpr bool efforts = false;
+    static constexpr bool synchronous = false;
     static constexpr double step = FocArm::step;
     static constexpr double output_range = 32768.0 / 50;
     using Assembly =
@@ -207,6 +212,7 @@ struct FocWrenchArm {
 struct DriveArm {
     static constexpr const char* name = "cia402, efforts";
     static constexpr bool efforts = true;
+    static constexpr bool synchronous = true; ///< values belong to the SYNC before
     static constexpr double step = turn / 1048576;
     static constexpr double output_range = 0;
     using Board = hal::Cia402Drive;
@@ -261,6 +267,7 @@ struct DriveArm {
 /// Drives without a SYNC.
 struct FreeDriveArm : DriveArm {
     static constexpr const char* name = "cia402 without SYNC, efforts";
+    static constexpr bool synchronous = false;
     static Assembly make(const hal::MotionLimits& limits) {
         return {campaign_config<Assembly>({drive(1, 0, 32, false), drive(2, 1, 32, false)}, limits),
                 campaign_efforts()};
@@ -294,6 +301,7 @@ struct WrappingArm : DriveArm {
 struct OdriveArm {
     static constexpr const char* name = "odrive, ati_netcan";
     static constexpr bool efforts = false;
+    static constexpr bool synchronous = false;
     static constexpr double step = 2e-6;
     static constexpr double output_range = 512;
     using Board = hal::OdriveAxis;

@@ -3,7 +3,7 @@
 
 #include "dfdyn/hal/assembly/sampler.hpp"
 #include "dfdyn/hal/bus_event.hpp"
-#include "tests/hal/campaign/faults.hpp"
+#include "tests/hal/campaign/judge.hpp"
 
 #include <deque>
 #include <optional>
@@ -17,17 +17,12 @@ struct CampaignRow {
     Trigger trigger = Trigger::timer;
     std::uint64_t frames = 0, faults = 0, samples = 0, accepted = 0, outputs = 0;
     std::uint64_t wrong_positions = 0, wrong_outputs = 0;
-    std::uint64_t good = 0;           ///< samples outside of every fault's own time
-    std::uint64_t refused_good = 0;   ///< of them: without positions
+    std::uint64_t unseen_positions = 0, unseen_outputs = 0; ///< see Match; samples
+    std::uint64_t good = 0;                                 ///< samples outside of every fault's own time
+    std::uint64_t refused_good = 0;                         ///< of them: without positions
     std::uint64_t unlearned_good = 0; ///< of them: with positions and without an output, where it is due
     std::vector<std::uint64_t> wrong_by_fault;   ///< of the last fault that began before
     std::vector<std::uint64_t> refused_by_fault; ///< likewise, of good samples
-};
-
-/// A fault in its place.
-struct PlacedFault {
-    const Fault* fault;
-    std::int64_t begin_ns, end_ns;
 };
 
 /// An assembly as a Sampler takes it.
@@ -72,6 +67,15 @@ class Campaign {
     }
 
   private:
+    struct ErrorRange {
+        std::int64_t least_ns, range_ns;
+    };
+    /// A sample with the sampler's time and the true one.
+    struct Unjudged {
+        typename Arm::Assembly::Assembled assembled;
+        std::int64_t now_ns, true_ns;
+    };
+
     static constexpr std::int64_t second = 1'000'000'000;
     static constexpr int cycles = 1500;
     static constexpr std::int64_t clock_shows_ns = 60 * bus_period; ///< after it was set
@@ -136,10 +140,6 @@ class Campaign {
                                        .patience_ns = 3 * bus_period});
         hal::BusState state = hal::BusState::active;
         hal::BusCounters counters;
-        struct Unjudged {
-            typename Assembly::Assembled assembled;
-            std::int64_t true_ns;
-        };
         std::deque<Unjudged> samples;
         std::int64_t now_ns = 0;
         errors_.clear();
@@ -147,25 +147,22 @@ class Campaign {
             hal::note_frame(sent.frame, state, counters);
             ++row_.frames;
             now_ns = sent.true_ns;
-            sampler.take(arm, sent.frame, state, counters, [&](const auto& assembled, std::int64_t) {
-                samples.push_back({assembled, now_ns});
+            sampler.take(arm, sent.frame, state, counters, [&](const auto& assembled, std::int64_t time_ns) {
+                samples.push_back({assembled, time_ns, now_ns});
             });
-            note_error(sent.frame.stamp_ns + sampler.clock().offset_ns() - now_ns, now_ns);
+            note_error(sent.clock_ns + sampler.clock().offset_ns(), now_ns);
             for (; !samples.empty() && samples.front().true_ns + clock_shows_ns < now_ns;
                  samples.pop_front()) {
-                judge(scene, samples.front().assembled, samples.front().true_ns);
+                judge(scene, samples.front());
             }
         }
         for (const Unjudged& sample : samples) {
-            judge(scene, sample.assembled, sample.true_ns);
+            judge(scene, sample);
         }
     }
 
-    /// Of the sampler's time against the truth; a stray stamp is not the clock's.
     void note_error(std::int64_t error_ns, std::int64_t true_ns) {
-        const bool steady = std::abs(error_ns - last_error_ns_) < 100 * bus_us;
-        last_error_ns_ = error_ns;
-        if (steady && (errors_.empty() || std::abs(error_ns - errors_.back().error_ns) > 100 * bus_us)) {
+        if (errors_.empty() || error_ns != errors_.back().error_ns) {
             errors_.push_back({error_ns, true_ns});
         }
     }
@@ -180,20 +177,8 @@ class Campaign {
         return last;
     }
     bool in_own_time(std::int64_t time_ns) const {
-        return std::ranges::any_of(placed_, [&](const PlacedFault& placed) {
-            return time_ns >= placed.begin_ns - 5 * bus_period &&
-                   time_ns <= placed.end_ns + nanoseconds(placed.fault->recovery_s);
-        });
-    }
-    /// By how much stamps of that time may be late, beyond the jitter.
-    double delay_at(std::int64_t time_ns) const {
-        double delay_s = 0;
-        for (const PlacedFault& placed : placed_) {
-            const bool covers = time_ns >= placed.begin_ns - 5 * bus_period &&
-                                time_ns <= placed.end_ns + nanoseconds(placed.fault->recovery_s);
-            delay_s = covers ? std::max(delay_s, placed.fault->delay_s) : delay_s;
-        }
-        return delay_s;
+        return std::ranges::any_of(placed_,
+                                   [&](const PlacedFault& placed) { return placed.covers(time_ns); });
     }
     bool undetectable_at(std::int64_t time_ns) const {
         return std::ranges::any_of(placed_, [&](const PlacedFault& placed) {
@@ -202,8 +187,8 @@ class Campaign {
         });
     }
 
-    template <class Assembled>
-    void judge(const Scene& scene, const Assembled& assembled, std::int64_t true_ns) {
+    void judge(const Scene& scene, const Unjudged& sample) {
+        const auto& [assembled, now_ns, true_ns] = sample;
         ++row_.samples;
         const bool good = !in_own_time(true_ns) && true_ns > scene.cycle_ns(0) + start_up_ns;
         row_.good += good ? 1 : 0;
@@ -215,81 +200,71 @@ class Campaign {
             return;
         }
         ++row_.accepted;
-        bool position = false;
-        bool output = !assembled.sample.output_valid || undetectable_at(true_ns);
-        for (std::size_t i = 0; i < errors_.size(); ++i) {
-            if (i + 1 < errors_.size() && errors_[i + 1].since_ns + clock_shows_ns < true_ns) {
-                continue; // that clock is long gone
-            }
-            if (errors_[i].since_ns > true_ns + clock_shows_ns) {
-                break;
-            }
-            const std::int64_t time_ns = assembled.sample.time_ns - errors_[i].error_ns;
-            position = position || right_position(scene.truth, assembled, time_ns);
-            output = output || right_output(scene, assembled, time_ns);
+        const bool output_valid = assembled.sample.output_valid;
+        const Judge<Arm> judge(scene.truth, limits_, placed_);
+        Match position = Match::wrong;
+        Match output = output_valid && !undetectable_at(true_ns) ? Match::wrong : Match::right;
+        for (const ErrorRange& error : errors_at(true_ns)) {
+            position = std::max(position, match_positions(judge, sample, error));
+            output = std::max(output, output == Match::right ? output : match_outputs(judge, sample, error));
         }
-        row_.wrong_positions += position ? 0 : 1;
-        row_.outputs += assembled.sample.output_valid ? 1 : 0;
-        row_.wrong_outputs += output ? 0 : 1;
-        row_.wrong_by_fault[number] += position && output ? 0 : 1;
+        row_.outputs += output_valid ? 1 : 0;
+        row_.wrong_positions += position == Match::wrong ? 1 : 0;
+        row_.wrong_outputs += output == Match::wrong ? 1 : 0;
+        row_.unseen_positions += position == Match::unseen ? 1 : 0;
+        row_.unseen_outputs += output == Match::unseen ? 1 : 0;
+        row_.wrong_by_fault[number] += position == Match::wrong || output == Match::wrong ? 1 : 0;
         const bool due = assembled.report.output != hal::Reason::output_not_new;
-        row_.unlearned_good += good && due && !assembled.sample.output_valid ? 1 : 0;
+        row_.unlearned_good += good && due && !output_valid ? 1 : 0;
     }
 
-    /// How long before its stamp a value may have been measured: by the jitter of its frame and that of the
-    /// one before, which says where this one must be; a held value is up to a period and a quarter older.
-    double earliest_s(hal::ValueOrigin origin, std::int64_t time_ns) const {
-        const double held_s = origin == hal::ValueOrigin::held ? 1.25 * seconds_of(bus_period) : 0;
-        return 0.6e-3 + held_s + delay_at(time_ns);
-    }
-    double latest_s(std::int64_t time_ns) const { return 0.6e-3 + delay_at(time_ns); }
-
-    /// What a motion within the limits may do unseen, from one reading to the next that is trusted: `max_age`
-    /// and twice the jitter later, after four readings.
-    double unseen_rad() const {
-        const double jitter_s = seconds_of(bus_jitter + 50 * bus_us);
-        const double age_s = seconds_of(bus_max_age) + 2 * jitter_s;
-        const double change = 2 * limits_.acceleration * age_s; // of the velocity
-        return limits_.acceleration * age_s * age_s * 13 / 12 + 2.25 * (Arm::step + change * jitter_s);
-    }
-
-    template <class Assembled>
-    bool right_position(const Truth& truth, const Assembled& assembled, std::int64_t time_ns) const {
-        bool all = true;
-        for (std::size_t i = 0; i < Truth::joints; ++i) {
-            const double found = assembled.sample.position[static_cast<int>(i)];
-            const double earliest = earliest_s(assembled.report.position_origin[i], time_ns);
-            bool right = false;
-            for (double late = latest_s(time_ns); late >= -earliest && !right; late -= 0.1e-3) {
-                right = std::abs(found - truth.position(i, seconds_of(time_ns) + late)) <= unseen_rad();
+    /// Of the sampler's time at that time. A clock that was set shows for a while after. A value between two
+    /// measurements, one by the old clock and one by the new, is of an instant between.
+    std::vector<ErrorRange> errors_at(std::int64_t true_ns) const {
+        std::vector<ErrorRange> errors;
+        for (std::size_t i = 0; i < errors_.size(); ++i) {
+            const auto [error_ns, since_ns] = errors_[i];
+            const bool gone = i + 1 < errors_.size() && errors_[i + 1].since_ns + clock_shows_ns < true_ns;
+            if (gone || since_ns > true_ns + clock_shows_ns) {
+                continue;
             }
-            all = all && right;
+            errors.push_back({error_ns, 0});
+            const std::int64_t before_ns = i > 0 ? errors_[i - 1].error_ns : error_ns;
+            if (std::abs(error_ns - before_ns) <= bus_max_age) {
+                errors.push_back({std::min(error_ns, before_ns), std::abs(error_ns - before_ns)});
+            }
+        }
+        return errors;
+    }
+
+    /// The least good of the joints, of a sample by a clock with that error. A held value is of its reading's
+    /// instant, which the report tells.
+    static Match match_positions(const Judge<Arm>& judge, const Unjudged& sample, const ErrorRange& error) {
+        const auto& [assembled, now_ns, true_ns] = sample;
+        Match all = Match::right;
+        for (std::size_t i = 0; i < Truth::joints; ++i) {
+            const hal::ValueOrigin origin = assembled.report.position_origin[i];
+            const std::int64_t time_ns = origin == hal::ValueOrigin::held
+                                             ? now_ns - assembled.report.position_age_ns[i]
+                                             : assembled.sample.time_ns;
+            const Claim claim{assembled.sample.position[static_cast<int>(i)],
+                              seconds_of(time_ns - error.least_ns), seconds_of(error.range_ns), origin};
+            all = std::min(all, judge.position(i, claim, true_ns));
         }
         return all;
     }
 
-    template <class Assembled>
-    bool right_output(const Scene& scene, const Assembled& assembled, std::int64_t time_ns) const {
-        const double earliest = earliest_s(assembled.report.output_origin, time_ns);
-        for (double late = latest_s(time_ns); late >= -earliest; late -= 0.1e-3) {
-            if (right_output_at(scene.truth, assembled, seconds_of(time_ns) + late)) {
-                return true;
-            }
-        }
-        return false;
-    }
-    /// To the noise, the chord between two measurements, and what the jump gate cannot tell.
-    template <class Assembled>
-    bool right_output_at(const Truth& truth, const Assembled& assembled, double time_s) const {
-        const double age_s = seconds_of(bus_max_age);
-        bool all = true;
+    static Match match_outputs(const Judge<Arm>& judge, const Unjudged& sample, const ErrorRange& error) {
+        const auto& [assembled, now_ns, true_ns] = sample;
+        const hal::ValueOrigin origin = assembled.report.output_origin;
+        const std::int64_t time_ns = origin == hal::ValueOrigin::held
+                                         ? now_ns - assembled.report.output_age_ns
+                                         : assembled.sample.time_ns;
+        Match all = Match::right;
         for (std::size_t k = 0; k < static_cast<std::size_t>(assembled.sample.output.size()); ++k) {
-            const double found = assembled.sample.output[static_cast<int>(k)];
-            const double expected =
-                Arm::efforts ? truth.effort(k, time_s) : Arm::output_range * truth.load(k, time_s);
-            const double range = Arm::efforts ? 8 : 0.2 * Arm::output_range;
-            const double chord = range * 20 * 20 * age_s * age_s / 8;
-            all = all && std::abs(found - expected) <= chord + 0.12 * range;
+            const Claim claim{assembled.sample.output[static_cast<int>(k)],
+                              seconds_of(time_ns - error.least_ns), seconds_of(error.range_ns), origin};
+            all = std::min(all, judge.output(k, claim, true_ns));
         }
         return all;
     }
@@ -303,7 +278,6 @@ class Campaign {
         std::int64_t since_ns;
     };
     std::vector<ClockError> errors_;
-    std::int64_t last_error_ns_ = 0;
 };
 
 } // namespace dfdyn::tests

@@ -55,18 +55,25 @@ struct FaultSite {
 
 /// What a fault does to what can be known of a joint's motion.
 enum class Effect {
-    none,     ///< nothing: it is about the output
-    spoils,   ///< single positions are bad, late or missing
-    hides,    ///< for a while nothing is known of the joint
-    misleads, ///< the joint shows another motion than its own
+    none,        ///< nothing: it is about the output
+    spoils,      ///< single values are bad, late or missing
+    hides,       ///< for a while nothing is known of the joint
+    contradicts, ///< the joint jumps to another motion than its own
+    imitates,    ///< another motion, or a standstill, follows from its own
 };
 
-/// Whether two faults may be at the same time. A motion that is not the joint's own cannot be told from it by
-/// anybody where it begins while the joint's own is not seen well.
+/// Whether two faults may be at the same time. Nobody can tell a motion that is not the joint's own where it
+/// begins while nothing is known of the joint, or while it shows a third one; nor one that follows from its
+/// own where single values are bad.
 constexpr bool mix(Effect one, Effect other) {
-    return one == Effect::none || other == Effect::none ||
-           (one != Effect::misleads && other != Effect::misleads && one != other) ||
-           (one == Effect::spoils && other == Effect::spoils);
+    const auto either = [&](Effect effect) { return one == effect || other == effect; };
+    if (either(Effect::none)) {
+        return true;
+    }
+    if (either(Effect::imitates)) {
+        return false;
+    }
+    return either(Effect::spoils); // one with another, with a silence, or with a jump
 }
 
 /// One fault of the legend (docs/reference/faults.md).
@@ -80,8 +87,12 @@ struct Fault {
     bool ends = true; ///< false: what it changed stays so
     /// For so long from its begin no receiver can tell what it shows from good outputs.
     double undetectable_s = 0;
-    /// By how much frames without a stamp of their device come late.
-    double delay_s = 0;
+    /// It may change values by so little that no limit shows it.
+    bool alters_positions = false, alters_outputs = false;
+    /// By how much outputs may be older, or newer, than their stamps without a sign of it.
+    double late_s = 0, early_s = 0;
+    /// By how much all frames without a stamp of their device come late, one as much as the next.
+    double waits_s = 0;
 };
 
 /// The faults of the legend that are on a bus.

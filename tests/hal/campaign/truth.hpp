@@ -37,13 +37,14 @@ struct Truth {
     [[nodiscard]] double effort(std::size_t i, double t) const {
         return 6 * std::sin(20 * t + phase[i]) + 2 * position(i, t) / 2;
     }
-    static constexpr double effort_rate = 6 * 20 + 3;
+    static constexpr double effort_bend = 6 * 20 * 20 + most_acceleration; ///< largest second derivative
 
     /// Share of the sensor's range, channel by channel; changes by at most 3 per second.
     [[nodiscard]] double load(std::size_t channel, double t) const {
         return 0.15 * std::sin(20 * t + static_cast<double>(channel) + phase[0]) + 0.02;
     }
     static constexpr double load_rate = 0.15 * 20;
+    static constexpr double load_bend = 0.15 * 20 * 20;
 
     std::array<double, 2> slow{}, fast{}, phase{}, centre{};
 };
