@@ -1,50 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random mixtures of every fault of the legend, for every family and trigger: no accepted value is wrong.
-#include "tests/hal/campaign/campaign.hpp"
-#include "tests/support/catch.hpp"
-#include "tests/support/seed.hpp"
+#include "tests/hal/campaign/campaign_table.hpp"
 
 #include <fstream>
-#include <iomanip>
-#include <iostream>
 #include <sstream>
 
 namespace {
 
 using namespace dfdyn::tests;
-
-const char* name_of(Trigger trigger) {
-    return trigger == Trigger::timer ? "timer" : trigger == Trigger::set ? "set" : "sync";
-}
-
-void print_header() {
-    std::cout << "seed " << seed()
-              << "\n| family and output | trigger | frames | faults | accepted | outputs | wrong | "
-              << "refused although good |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n";
-}
-double share(std::uint64_t part, std::uint64_t of) {
-    return static_cast<double>(part) / std::max(1.0, static_cast<double>(of));
-}
-void print(const CampaignRow& row) {
-    std::cout << "| " << row.family << " | " << name_of(row.trigger) << " | " << row.frames << " | "
-              << row.faults << " | " << row.accepted << " | " << row.outputs << " | "
-              << row.wrong_positions + row.wrong_outputs << " | " << std::fixed << std::setprecision(2)
-              << 100 * share(row.refused_good, row.good) << " % |\n";
-}
-
-/// Adds the row of one family and trigger to the sum.
-template <class Arm>
-void fight(Trigger trigger, std::uint64_t frames, std::mt19937_64& engine, CampaignRow& sum) {
-    const CampaignRow row = Campaign<Arm>(trigger, engine).run(frames, campaign_faults());
-    print(row);
-    CAPTURE(row.family, name_of(row.trigger), row.wrong_by_fault);
-    CHECK(row.wrong_positions == 0);
-    CHECK(row.wrong_outputs == 0);
-    CHECK(row.accepted > row.frames / 10); // it is not right by saying nothing
-    sum.good += row.good;
-    sum.refused_good += row.refused_good;
-    sum.unlearned_good += row.unlearned_good;
-}
 
 void fight_all(std::uint64_t frames, double most_refused) {
     DFDYN_SEEDED_ENGINE(engine);

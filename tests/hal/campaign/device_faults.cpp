@@ -87,8 +87,9 @@ void saturate_effort(FaultSite& site) {
     site.change([&](Sent& sent) {
         if (is_joint(sent, unit) && has_effort(sent.frame)) {
             const auto place = static_cast<std::size_t>(effort_bytes(sent.frame).begin);
-            sent.frame.data[place] = high ? 0xFF : 0x00;
-            sent.frame.data[place + 1] = high ? 0x7F : 0x80;
+            const std::size_t last = is_dbc(sent.frame) ? place : place + 1; // the more significant one
+            sent.frame.data[2 * place + 1 - last] = high ? 0xFF : 0x00;
+            sent.frame.data[last] = high ? 0x7F : 0x80;
         }
     });
 }

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the campaign prints and checks.
+#pragma once
+
+#include "tests/hal/campaign/campaign.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+
+#include <iomanip>
+#include <iostream>
+
+namespace dfdyn::tests {
+
+inline const char* name_of(Trigger trigger) {
+    return trigger == Trigger::timer ? "timer" : trigger == Trigger::set ? "set" : "sync";
+}
+
+inline double share(std::uint64_t part, std::uint64_t of) {
+    return static_cast<double>(part) / std::max(1.0, static_cast<double>(of));
+}
+
+inline void print_header() {
+    std::cout << "seed " << seed()
+              << "\n| family and output | trigger | frames | faults | accepted | outputs | unseen | wrong | "
+              << "refused although good |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+}
+inline void print(const CampaignRow& row) {
+    std::cout << "| " << row.family << " | " << name_of(row.trigger) << " | " << row.frames << " | "
+              << row.faults << " | " << row.accepted << " | " << row.outputs << " | "
+              << row.unseen_positions + row.unseen_outputs << " | " << row.wrong_positions + row.wrong_outputs
+              << " | " << std::fixed << std::setprecision(2) << 100 * share(row.refused_good, row.good)
+              << " % |\n";
+}
+
+/// Runs one family and trigger, and adds its row to the sum.
+template <class Arm>
+void fight(Trigger trigger, std::uint64_t frames, std::mt19937_64& engine, CampaignRow& sum) {
+    const CampaignRow row = Campaign<Arm>(trigger, engine).run(frames, campaign_faults());
+    print(row);
+    CAPTURE(row.family, name_of(row.trigger), row.wrong_by_fault);
+    CHECK(row.wrong_positions == 0);
+    CHECK(row.wrong_outputs == 0);
+    CHECK(row.accepted > row.samples / 3); // it is not right by saying nothing
+    CHECK(row.unseen_positions < row.accepted / 50);
+    sum.good += row.good;
+    sum.refused_good += row.refused_good;
+    sum.unlearned_good += row.unlearned_good;
+}
+
+} // namespace dfdyn::tests
