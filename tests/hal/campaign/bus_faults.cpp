@@ -122,10 +122,13 @@ void overload(FaultSite& site) {
     std::uniform_real_distribution<double> load(0.7, 1.15);
     const double others = load(site.engine);
     Traffic dummy;
+    std::int64_t clock_ns = 0; // of the stamps, against true time
+    site.change([&](const Sent& sent) { clock_ns = sent.clock_ns; });
     for (std::int64_t t = site.begin_ns; t < site.end_ns; t += 130 * bus_us) {
         if (site.chance(others * 0.8)) {
             dummy.push_back({wire::frame(site.chance(0.7) ? 0x0F0 : 0x380, {1, 2, 3, 4, 5, 6, 7, 8}), t});
-            dummy.back().frame.stamp_ns = t; // before faults of the clock
+            dummy.back().frame.stamp_ns = t + clock_ns;
+            dummy.back().clock_ns = clock_ns;
         }
     }
     site.traffic.insert(site.traffic.end(), dummy.begin(), dummy.end());

@@ -228,11 +228,14 @@ class Campaign {
             if (gone || since_ns > true_ns + clock_shows_ns) {
                 continue;
             }
-            errors.push_back({error_ns, 0});
-            const std::int64_t before_ns = i > 0 ? errors_[i - 1].error_ns : error_ns;
-            if (std::abs(error_ns - before_ns) <= bus_max_age) {
-                errors.push_back({std::min(error_ns, before_ns), std::abs(error_ns - before_ns)});
+            for (std::size_t k = 0, before = errors.size(); k < before; ++k) {
+                const std::int64_t other_ns = errors[k].least_ns;
+                const std::int64_t apart_ns = std::abs(error_ns - other_ns);
+                if (errors[k].range_ns == 0 && apart_ns <= bus_max_age) {
+                    errors.push_back({std::min(error_ns, other_ns), apart_ns});
+                }
             }
+            errors.push_back({error_ns, 0});
         }
         return errors;
     }

@@ -8,8 +8,7 @@ namespace dfdyn::tests {
 namespace {
 
 constexpr auto hides = Effect::hides;
-constexpr auto contradicts = Effect::contradicts;
-constexpr auto imitates = Effect::imitates;
+constexpr auto misleads = Effect::misleads;
 constexpr auto spoils = Effect::spoils;
 
 constexpr std::array faults{
@@ -53,7 +52,7 @@ constexpr std::array faults{
           .longest_s = 0.2,
           .apply = zero_positions,
           .recovery_s = 0.5,
-          .effect = contradicts,
+          .effect = misleads,
           .alters_positions = true},
     Fault{.number = 10,
           .name = "a board with an absolute encoder restarts",
@@ -69,7 +68,7 @@ constexpr std::array faults{
           .longest_s = 0.1,
           .apply = restart_incremental,
           .recovery_s = 0,
-          .effect = imitates,
+          .effect = misleads,
           .ends = false,
           .alters_positions = true},
     Fault{.number = 12,
@@ -78,10 +77,10 @@ constexpr std::array faults{
           .longest_s = 0.3,
           .apply = freeze_encoder,
           .recovery_s = 0.5,
-          .effect = imitates,
+          .effect = misleads,
           .alters_positions = true},
-    Fault{13, "an effort is frozen", 0.1, 0.3, freeze_effort, 0.06, imitates, true, 0.05},
-    Fault{14, "the sensor is frozen", 0.05, 0.3, freeze_sensor, 0.06, imitates, true, 0.012},
+    Fault{13, "an effort is frozen", 0.1, 0.3, freeze_effort, 0.06, misleads, true, 0.05},
+    Fault{14, "the sensor is frozen", 0.05, 0.3, freeze_sensor, 0.06, misleads, true, 0.012},
     Fault{15, "an effort is saturated", 0.01, 0.2, saturate_effort, 0.06, spoils},
     Fault{16, "the sensor is saturated", 0.01, 0.2, saturate_sensor, 0.06, spoils},
     Fault{.number = 17,
@@ -90,7 +89,7 @@ constexpr std::array faults{
           .longest_s = 0.3,
           .apply = second_joint,
           .recovery_s = 0.5,
-          .effect = contradicts,
+          .effect = misleads,
           .alters_positions = true,
           .late_s = 1.8e-3},
     Fault{.number = 18,
@@ -107,7 +106,7 @@ constexpr std::array faults{
           .longest_s = 0.3,
           .apply = replay_old,
           .recovery_s = 0.5,
-          .effect = contradicts,
+          .effect = misleads,
           .alters_positions = true},
     Fault{.number = 20,
           .name = "a stamp ahead",
@@ -145,8 +144,9 @@ constexpr std::array faults{
           .longest_s = 0.5,
           .apply = late_answers,
           .recovery_s = 0.3,
-          .effect = contradicts,
-          .alters_positions = true},
+          .effect = misleads,
+          .alters_positions = true,
+          .late_s = 2e-3},
     Fault{.number = 28,
           .name = "the bus is overloaded",
           .shortest_s = 0.1,
@@ -164,7 +164,7 @@ constexpr std::array faults{
           .longest_s = 0.3,
           .apply = stick_bit,
           .recovery_s = 0.5,
-          .effect = contradicts,
+          .effect = misleads,
           .alters_positions = true},
     Fault{.number = 32,
           .name = "two nodes swapped",
@@ -172,7 +172,7 @@ constexpr std::array faults{
           .longest_s = 0.3,
           .apply = swap_nodes,
           .recovery_s = 0.5,
-          .effect = contradicts,
+          .effect = misleads,
           .alters_positions = true},
 };
 

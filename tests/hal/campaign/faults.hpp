@@ -55,25 +55,17 @@ struct FaultSite {
 
 /// What a fault does to what can be known of a joint's motion.
 enum class Effect {
-    none,        ///< nothing: it is about the output
-    spoils,      ///< single values are bad, late or missing
-    hides,       ///< for a while nothing is known of the joint
-    contradicts, ///< the joint jumps to another motion than its own
-    imitates,    ///< another motion, or a standstill, follows from its own
+    none,    ///< nothing: it is about the output
+    spoils,  ///< single values are bad, late or missing
+    hides,   ///< for a while nothing is known of the joint
+    misleads ///< the joint shows another motion than its own
 };
 
 /// Whether two faults may be at the same time. Nobody can tell a motion that is not the joint's own where it
-/// begins while nothing is known of the joint, or while it shows a third one; nor one that follows from its
-/// own where single values are bad.
+/// begins while the joint's own is not seen well; nor how long a silence was during which the clock was set.
 constexpr bool mix(Effect one, Effect other) {
     const auto either = [&](Effect effect) { return one == effect || other == effect; };
-    if (either(Effect::none)) {
-        return true;
-    }
-    if (either(Effect::imitates)) {
-        return false;
-    }
-    return either(Effect::spoils); // one with another, with a silence, or with a jump
+    return either(Effect::none) || (either(Effect::spoils) && !either(Effect::misleads));
 }
 
 /// One fault of the legend (docs/reference/faults.md).

@@ -54,6 +54,7 @@ class JumpGate {
     static constexpr int enough_after_silence = 3;
     static constexpr double usual_times = 10;
     static constexpr double share_of_largest = 0.005;
+    static constexpr double implausible = 3; ///< times the usual: more is learned as this; ten would run away
 
     /// The last outputs of those that follow each other.
     struct Line {
@@ -89,7 +90,7 @@ class JumpGate {
             const double usual = straight ? usual_bend_[i] : usual_change_[i];
             const double limit = usual_times * usual + share_of_largest * largest_[i];
             near = near && (straight ? bend : change) <= limit;
-            const double most = learned_ < first_outputs ? change + bend : 2 * limit;
+            const double most = learned_ < first_outputs ? change + bend : implausible * usual;
             usual_change_[i] +=
                 (std::min(change, std::max(most, usual_change_[i])) - usual_change_[i]) / memory;
             if (line.count > 1) {
