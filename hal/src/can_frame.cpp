@@ -43,7 +43,7 @@ Origin origin_of(int message_flags) noexcept {
 
 Ancillary ancillary_of(const msghdr& message) noexcept {
     Ancillary out;
-    msghdr walked = message; // CMSG_NXTHDR takes a pointer to what it does not change
+    msghdr walked = message; // CMSG_NXTHDR takes a non-const pointer but changes nothing
     for (cmsghdr* item = CMSG_FIRSTHDR(&walked); item != nullptr; item = CMSG_NXTHDR(&walked, item)) {
         if (item->cmsg_level != SOL_SOCKET) {
             continue;

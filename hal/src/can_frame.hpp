@@ -16,16 +16,16 @@ inline std::int64_t nanoseconds(const timespec& time) noexcept {
     return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
 }
 
-/// Fills `frame`, which is empty, from the first `size` bytes of `raw`: those of a classic or of an FD frame.
+/// Decodes the first `size` bytes of `raw`, a classic or FD frame, into `frame`, which must be empty.
 void decode_can_frame(const canfd_frame& raw, std::size_t size, Frame& frame) noexcept;
 
-/// A well-formed frame as the kernel takes it; of a classic one its first CAN_MTU bytes.
+/// Converts a well-formed frame to the kernel's format. For a classic frame, use the first CAN_MTU bytes.
 canfd_frame encode_can_frame(const Frame& frame) noexcept;
 
-/// Whose frame it was, by the flags of its message.
+/// Returns the sender of a frame according to the flags of its message.
 Origin origin_of(int message_flags) noexcept;
 
-/// What came with a frame, beside its bytes.
+/// Ancillary data received with a frame.
 struct Ancillary {
     std::int64_t software_ns = 0; ///< 0: none
     std::int64_t hardware_ns = 0; ///< 0: none

@@ -58,7 +58,7 @@ int open_can_socket(const SocketCanOptions& options, std::span<const std::uint64
     address.can_ifindex = static_cast<int>(::if_nametoindex(options.interface.c_str()));
     if (!set_options(descriptor, filters, options.receive_own)) {
         fault = {"a CAN socket with filters, error frames, CAN FD, stamps and drop counts", errno};
-    } else if (address.can_ifindex == 0) { // bound to 0 it would receive from every interface
+    } else if (address.can_ifindex == 0) { // bound to 0, the socket would receive from every interface
         fault = {"a CAN interface of this name", errno};
     } else if (::bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
         fault = {"a CAN interface", errno};

@@ -9,24 +9,24 @@
 
 namespace dfdyn::hal {
 
-/// `filter` as the kernel's struct can_filter.
+/// Converts `filter` to the bytes of the kernel's struct can_filter.
 std::uint64_t kernel_filter(const IdFilter& filter) noexcept;
 
-/// What opening a socket expected when it failed, and what the system said.
+/// Failure to open a socket: what was expected, and the error number of the system.
 struct OpenFault {
     const char* expected = nullptr;
     int error_number = 0;
 };
 
-/// Opens a non-blocking socket on `options.interface`, with filters, error frames, CAN FD, stamps and drop
-/// counts; -1 and `fault` where that fails. Does not allocate.
+/// Opens a non-blocking socket on `options.interface` with filters, error frames, CAN FD, time stamps and
+/// drop counts. Returns its descriptor, or -1 with `fault` filled in. Does not allocate.
 int open_can_socket(const SocketCanOptions& options, std::span<const std::uint64_t> filters,
                     OpenFault& fault) noexcept;
 
-/// `fault` in words.
+/// Formats `fault` as an error message.
 BusError open_error(const std::string& interface, const OpenFault& fault);
 
-/// Whether the interface of this name is there and up. `descriptor`: any socket.
+/// Returns true if an interface of this name exists and is up. `descriptor`: any socket.
 bool interface_is_up(int descriptor, const std::string& interface) noexcept;
 
 } // namespace dfdyn::hal

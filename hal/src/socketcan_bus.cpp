@@ -38,13 +38,14 @@ std::int64_t clock_ns(clockid_t clock) noexcept {
     return nanoseconds(time);
 }
 
-/// What both clocks show at one time.
+/// Both clocks at the same time.
 struct Clocks {
     std::int64_t monotonic_ns = 0;
     std::int64_t wall_ns = 0;
 };
 
-/// Reads both, again where the program was held up in between, and at most four times.
+/// Reads both clocks. Repeats the reading, up to four times in all, if the program was interrupted in
+/// between.
 Clocks read_clocks() noexcept {
     constexpr std::int64_t close_ns = 50'000;
     Clocks best;
@@ -113,12 +114,12 @@ void SocketCanBus::wait(std::int64_t timeout_ns) const noexcept {
     constexpr std::int64_t nanoseconds_per_s = 1'000'000'000;
     const timespec timeout{static_cast<time_t>(timeout_ns / nanoseconds_per_s),
                            static_cast<long>(timeout_ns % nanoseconds_per_s)};
-    // A socket of an interface that is down has no frames and is always ready, with an error.
+    // The socket of an interface that is down has no frames, but is always ready with an error.
     pollfd waiting{state_ == BusState::interface_down ? -1 : descriptor_, POLLIN, 0};
     ::ppoll(&waiting, 1, &timeout, nullptr);
 }
 
-/// One read: at most one frame.
+/// Reads at most one frame, with one system call.
 SocketCanBus::Reading SocketCanBus::read_frame(Frame& frame) noexcept {
     canfd_frame raw{};
     iovec part{&raw, sizeof(raw)};
@@ -157,7 +158,8 @@ SocketCanBus::Reading SocketCanBus::no_frame(int error_number) noexcept {
         nothing_waiting();
         return Reading::nothing;
     }
-    // ENETDOWN, ENODEV, or what no interface that works would say. It comes before frames that still wait.
+    // ENETDOWN, ENODEV or another error that a working interface never gives. It is reported before waiting
+    // frames.
     go_down();
     return Reading::skipped;
 }
@@ -182,7 +184,7 @@ void SocketCanBus::stamp(const msghdr& message, Frame& frame) noexcept {
     }
 }
 
-/// The kernel's counter is 32 bits wide and wraps.
+/// Adds the increase of the kernel's counter, which has 32 bits and wraps.
 void SocketCanBus::count_drops(std::uint32_t total) noexcept {
     counters_.dropped += static_cast<std::uint32_t>(total - kernel_drops_);
     kernel_drops_ = total;
@@ -193,7 +195,7 @@ void SocketCanBus::go_down() noexcept {
     state_ = BusState::interface_down;
 }
 
-/// Always a new socket: the old one is bound to an interface that may have gone, and its filters with it.
+/// Opens a new socket: the interface of the old one may have been removed together with the filters.
 void SocketCanBus::reopen_if_up() noexcept {
     if (!interface_is_up(descriptor_, options_.interface)) {
         return;

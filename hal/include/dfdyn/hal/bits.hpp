@@ -15,17 +15,18 @@
 
 namespace dfdyn::hal {
 
-/// The unsigned integer that holds a number's bytes.
+/// Unsigned integer type with the size of `T`.
 template <class T>
 using BytesOf = std::conditional_t<sizeof(T) == 2, std::uint16_t,
                                    std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>;
 
-/// Numbers that frames carry: integers and IEEE floats of 2, 4 or 8 bytes.
+/// Types of the numbers in frames: integers and IEEE 754 floats of 2, 4 or 8 bytes.
 template <class T>
 concept Loadable = (std::integral<T> || std::floating_point<T>)&&(sizeof(T) == 2 || sizeof(T) == 4 ||
                                                                   sizeof(T) == 8);
 
-/// The number whose bytes are at `bytes`, lowest first; any alignment, any host.
+/// Decodes a little-endian number at `bytes`, which need not be aligned. Independent of the host's byte
+/// order.
 template <Loadable T>
 [[nodiscard]] constexpr T load_little(const std::uint8_t* bytes) noexcept {
     std::uint64_t value = 0;
@@ -35,7 +36,7 @@ template <Loadable T>
     return std::bit_cast<T>(static_cast<BytesOf<T>>(value));
 }
 
-/// The number whose bytes are at `bytes`, highest first.
+/// Decodes a big-endian number at `bytes`, which need not be aligned. Independent of the host's byte order.
 template <Loadable T>
 [[nodiscard]] constexpr T load_big(const std::uint8_t* bytes) noexcept {
     std::uint64_t value = 0;
@@ -61,8 +62,8 @@ constexpr void store_big(std::uint8_t* bytes, T number) noexcept {
     }
 }
 
-/// The integer nearest to `value`, at the end of T's range if it is beyond; 0 for NaN. What an
-/// analog-to-digital converter does.
+/// Rounds `value` to the nearest integer and clamps it to the range of T, like an analog-to-digital
+/// converter. Returns 0 for NaN.
 template <std::integral T>
 requires(sizeof(T) <= 4) [[nodiscard]] inline T saturated(double value) noexcept {
     constexpr auto lowest = static_cast<double>(std::numeric_limits<T>::min());
@@ -70,7 +71,8 @@ requires(sizeof(T) <= 4) [[nodiscard]] inline T saturated(double value) noexcept
     return std::isnan(value) ? T{} : static_cast<T>(std::clamp(std::round(value), lowest, highest));
 }
 
-/// Whether an integer is at an end of its type, where a converter or a controller that limits stops.
+/// Returns true if a number is at the end of its type's range, where converters and controllers saturate. The
+/// lower end is -max; min counts as well.
 template <std::signed_integral T>
 [[nodiscard]] constexpr bool is_at_end(T number) noexcept {
     return number >= std::numeric_limits<T>::max() || number <= -std::numeric_limits<T>::max();
@@ -79,20 +81,22 @@ template <std::signed_integral T>
 [[nodiscard]] constexpr double magnitude(double value) noexcept { return value < 0 ? -value : value; }
 
 enum class ByteOrder : std::uint8_t {
-    intel,   ///< `@1` in a DBC: the start bit is the lowest, the number goes on to higher bits and bytes
-    motorola ///< `@0` in a DBC: the start bit is the highest, the number goes on to lower bits and higher
-             ///< bytes
+    /// `@1` in a DBC: the start bit is the lowest bit, and the number continues at higher bits and bytes
+    intel,
+    /// `@0` in a DBC: the start bit is the highest bit, and the number continues at lower bits and higher
+    /// bytes
+    motorola
 };
 
 enum class Encoding : std::uint8_t {
-    unsigned_integer, ///< `+`
-    signed_integer,   ///< `-`, two's complement
+    unsigned_integer, ///< `+` in a DBC
+    signed_integer,   ///< `-` in a DBC, two's complement
     float32,          ///< SIG_VALTYPE_ 1; 32 bits
     float64           ///< SIG_VALTYPE_ 2; 64 bits
 };
 
-/// A number somewhere in a frame's data, as a DBC file describes it. Bit b is bit b % 8 (0 the lowest) of
-/// byte b / 8.
+/// A number at some position in a frame's data, as described in a DBC file. Bit b is bit b % 8 of byte b / 8,
+/// where bit 0 is the least significant one.
 struct Signal {
     int start_bit = 0;
     int length = 8; ///< bits, 1 … 64
@@ -101,7 +105,7 @@ struct Signal {
     double factor = 1; ///< physical = factor * raw + offset
     double offset = 0;
 
-    /// Whether it is well-formed and lies wholly within `bytes` bytes of data.
+    /// Returns true if the signal is well-formed and lies within `bytes` bytes of data.
     [[nodiscard]] constexpr bool fits(int bytes) const noexcept {
         const bool whole = length >= 1 && length <= 64 && start_bit >= 0 && start_bit / 8 < bytes;
         const bool sized = (encoding != Encoding::float32 || length == 32) &&
@@ -109,7 +113,7 @@ struct Signal {
         return whole && sized && last_byte() < bytes;
     }
 
-    /// The bits as they are, unsigned. Requires `fits(data.size())`. O(length / 8).
+    /// Returns the bits of the signal as an unsigned integer. Requires `fits(data.size())`. O(length / 8).
     [[nodiscard]] constexpr std::uint64_t extract_raw(std::span<const std::uint8_t> data) const noexcept {
         std::uint64_t raw = 0;
         for_each_piece([&](std::size_t byte, int shift, int width, int place) {
@@ -118,7 +122,8 @@ struct Signal {
         return raw;
     }
 
-    /// Sets the signal's bits to the lowest of `raw`, and no others. Requires `fits(data.size())`.
+    /// Replaces the signal's bits by the lowest bits of `raw` and leaves all other bits unchanged. Requires
+    /// `fits(data.size())`.
     constexpr void insert_raw(std::span<std::uint8_t> data, std::uint64_t raw) const noexcept {
         for_each_piece([&](std::size_t byte, int shift, int width, int place) {
             const std::uint64_t bits = (raw >> place & mask(width)) << shift;
@@ -126,7 +131,7 @@ struct Signal {
         });
     }
 
-    /// Whether an integer is at an end of its bits. Requires `fits(data.size())`.
+    /// Returns true if the signal is an integer at an end of its range. Requires `fits(data.size())`.
     [[nodiscard]] constexpr bool is_at_end(std::span<const std::uint8_t> data) const noexcept {
         const std::uint64_t raw = extract_raw(data);
         const std::uint64_t highest = mask(length) >> 1U;
@@ -142,7 +147,7 @@ struct Signal {
         return false;
     }
 
-    /// What one count of an integer stands for, and all of them together; 0 for a float.
+    /// Physical size of one count of an integer, and of its whole range of counts. Both are 0 for a float.
     [[nodiscard]] constexpr double step() const noexcept { return is_integer() ? magnitude(factor) : 0; }
     [[nodiscard]] constexpr double span() const noexcept {
         double counts = 1;
@@ -152,13 +157,14 @@ struct Signal {
         return counts * step();
     }
 
-    /// The physical value. Integers beyond 53 bits are rounded to a double. Requires `fits(data.size())`.
+    /// Returns the physical value. Integers of more than 53 bits are rounded to a double. Requires
+    /// `fits(data.size())`.
     [[nodiscard]] constexpr double extract(std::span<const std::uint8_t> data) const noexcept {
         return factor * number(extract_raw(data)) + offset;
     }
 
-    /// Sets the physical value, rounded to the nearest that the signal can show and clamped to its range; NaN
-    /// gives 0 where the signal is an integer. Requires `fits(data.size())` and a factor that is not 0.
+    /// Encodes a physical value, rounded to the nearest value that the signal can represent and clamped to
+    /// its range. An integer signal encodes NaN as 0. Requires `fits(data.size())` and a factor other than 0.
     void insert(std::span<std::uint8_t> data, double physical) const noexcept {
         insert_raw(data, raw_of((physical - offset) / factor));
     }
@@ -177,7 +183,7 @@ struct Signal {
         return start_bit / 8 + (bits_before + length - 1) / 8;
     }
 
-    /// Calls use(byte, shift in the byte, width, place in the number) for the signal's bits in each byte.
+    /// Calls use(byte, shift in the byte, width, position in the number) for the signal's bits in each byte.
     template <class Use>
     constexpr void for_each_piece(Use use) const noexcept {
         int bit = start_bit;
@@ -221,7 +227,8 @@ struct Signal {
         return std::isnan(value) ? 0 : integer_of(std::round(value));
     }
 
-    /// Clamped; the ends are compared as powers of two, which doubles hold exactly.
+    /// Converts a rounded value to the signal's integer and clamps it. The limits are compared as powers of
+    /// two, which a double represents exactly.
     [[nodiscard]] std::uint64_t integer_of(double value) const noexcept {
         if (encoding == Encoding::unsigned_integer) {
             const bool above = value >= std::ldexp(1.0, length);

@@ -9,22 +9,23 @@
 
 namespace dfdyn::hal {
 
-/// The classes of an error frame: bits of `Frame::id`, as numbered by Linux (linux/can/error.h).
+/// Classes of error frames: bits of `Frame::id` with the values of Linux (linux/can/error.h).
 namespace error_class {
 inline constexpr std::uint32_t transmit_timeout = 0x001;
 inline constexpr std::uint32_t lost_arbitration = 0x002;
-inline constexpr std::uint32_t controller = 0x004; ///< details: controller_detail, in data[1]
+inline constexpr std::uint32_t controller = 0x004; ///< details are in data[1]: see controller_detail
 inline constexpr std::uint32_t protocol = 0x008;
 inline constexpr std::uint32_t transceiver = 0x010;
 inline constexpr std::uint32_t no_acknowledgement = 0x020;
 inline constexpr std::uint32_t bus_off = 0x040;
 inline constexpr std::uint32_t bus_error = 0x080;
 inline constexpr std::uint32_t restarted = 0x100;
-inline constexpr std::uint32_t counters = 0x200; ///< data[6] counts errors of sending, data[7] of receiving
+/// error counters: data[6] for transmission, data[7] for reception
+inline constexpr std::uint32_t counters = 0x200;
 } // namespace error_class
 
-/// The bits of data[1] of an error frame of the class `controller`; where there are two, one is of receiving
-/// and one of sending.
+/// Bits of data[1] in an error frame of the class `controller`. Where a constant has two bits, one is for
+/// reception and one for transmission.
 namespace controller_detail {
 inline constexpr std::uint32_t receive_overflow = 0x01;
 inline constexpr std::uint32_t transmit_overflow = 0x02;
@@ -35,7 +36,8 @@ inline constexpr std::uint32_t active = 0x40;
 
 namespace detail {
 
-/// The state that the error counters tell. They end at 255, so they never tell bus-off, nor its end.
+/// Returns the state that follows from the error counters. A counter is at most 255, so it can indicate
+/// neither bus-off nor the end of bus-off.
 constexpr BusState state_of_counters(const Frame& frame, BusState before) noexcept {
     if (before == BusState::off) {
         return before;
@@ -47,8 +49,9 @@ constexpr BusState state_of_counters(const Frame& frame, BusState before) noexce
     return largest >= 96 ? BusState::warning : BusState::active;
 }
 
-/// The state after an error frame. Bus-off wins over all else in one frame; the worst level over the others.
-/// That the interface is down, only its backend knows: frames may still be waiting from before.
+/// Returns the state after an error frame. If one frame reports several states, bus-off has priority, and
+/// then the worst error level. An error frame does not change `interface_down`: frames from before may still
+/// be waiting, and only the backend knows when the interface is up again.
 constexpr BusState state_after(const Frame& frame, std::uint32_t details, BusState before) noexcept {
     if (before == BusState::interface_down) {
         return before;
@@ -70,13 +73,13 @@ constexpr BusState state_after(const Frame& frame, std::uint32_t details, BusSta
 
 } // namespace detail
 
-/// Takes note of what `frame` says about the controller: counts each class of an error frame and moves
-/// `state`. A controller that is bus-off and reports it again has not gone bus-off twice. Lost arbitration,
-/// missing acknowledgements and errors on the wire are counted and leave the state alone: the controller
-/// itself reports when they are too many. Unknown classes count as an error frame and nothing else.
-///
-/// A frame from the bus ends bus-off: a controller that is bus-off receives nothing, and not every driver
-/// reports the restart.
+/// Evaluates a received frame: counts each class of an error frame and updates `state`.
+/// - A repeated report of bus-off counts once.
+/// - Lost arbitrations, missing acknowledgements and errors on the wire are counted but do not change the
+///   state. The controller reports by itself when there are too many of them.
+/// - Unknown classes count only as an error frame.
+/// - A data frame from another node ends bus-off. A controller in bus-off receives nothing, and some drivers
+///   do not report the restart.
 constexpr void note_frame(const Frame& frame, BusState& state, BusCounters& counters) noexcept {
     if (!frame.error) {
         const bool back = state == BusState::off && frame.origin == Origin::remote;

@@ -9,7 +9,7 @@
 
 namespace dfdyn::hal {
 
-/// What was wrong with a line; `expected` says it in words.
+/// Kind of a syntax error in a line; `expected` returns it as text.
 enum class CandumpFault : std::uint8_t {
     none,
     line_start,
@@ -30,7 +30,7 @@ enum class CandumpFault : std::uint8_t {
     drop_note,
 };
 
-/// What a line with this fault should have had where it is faulty.
+/// Returns a description of the text that was expected at the error.
 constexpr std::string_view expected(CandumpFault fault) noexcept {
     switch (fault) {
     case CandumpFault::none:
@@ -71,21 +71,21 @@ constexpr std::string_view expected(CandumpFault fault) noexcept {
     return "";
 }
 
-/// One line of a candump log, read.
+/// Result of reading one line of a candump log.
 struct CandumpLine {
     enum class Kind : std::uint8_t {
-        nothing,  ///< empty, or a comment that starts with #
+        nothing,  ///< an empty line, or a comment that starts with #
         frame,    ///< `frame`
-        dropped,  ///< `dropped` frames were lost here
+        dropped,  ///< `dropped` frames were lost at this line
         malformed ///< `fault`, at `column`
     };
     Kind kind = Kind::nothing;
-    Frame frame{};                 ///< its stamp as in the log, in nanoseconds; `stamp_source` is `log`
+    Frame frame{};                 ///< its time stamp is the log's, in nanoseconds; `stamp_source` is `log`
     std::string_view interface {}; ///< a view into the line
     std::uint64_t dropped = 0;
     CandumpFault fault = CandumpFault::none;
-    std::size_t column = 0;   ///< from 1: where the line stops to make sense
-    std::string_view found{}; ///< what stands there, up to the next blank; empty at the end of the line
+    std::size_t column = 0;   ///< position of the syntax error, counted from 1
+    std::string_view found{}; ///< the text at `column` up to the next blank; empty at the end of the line
 };
 
 namespace detail {

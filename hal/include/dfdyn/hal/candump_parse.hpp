@@ -16,7 +16,7 @@ constexpr bool is_blank(char character) noexcept {
 }
 constexpr bool is_digit(char character) noexcept { return character >= '0' && character <= '9'; }
 
-/// The value of a hexadecimal digit, or 16 for anything else.
+/// Returns the value of a hexadecimal digit, or 16 for any other character.
 constexpr std::uint32_t hex_value(char character) noexcept {
     if (is_digit(character)) {
         return static_cast<std::uint32_t>(character - '0');
@@ -25,8 +25,8 @@ constexpr std::uint32_t hex_value(char character) noexcept {
     return lower >= 'a' && lower <= 'f' ? static_cast<std::uint32_t>(lower - 'a' + 10) : 16U;
 }
 
-/// Reads one line from left to right. Each step returns whether it found what it expects; the first that does
-/// not leaves the fault in `result`.
+/// Parses one line from left to right. Each step returns true if it found the expected text. The first step
+/// that fails stores the error in `result`.
 class CandumpParser {
   public:
     constexpr explicit CandumpParser(std::string_view line) noexcept : text_(line) {
@@ -54,7 +54,7 @@ class CandumpParser {
   private:
     constexpr bool at_end() const noexcept { return at_ == text_.size(); }
     constexpr char peek() const noexcept { return at_end() ? '\0' : text_[at_]; }
-    /// Not by substr, which may throw.
+    /// Does not use substr, which may throw.
     constexpr std::string_view rest() const noexcept { return {text_.data() + at_, text_.size() - at_}; }
     constexpr void skip_blanks() noexcept {
         while (is_blank(peek())) {
@@ -76,7 +76,7 @@ class CandumpParser {
         return true;
     }
 
-    /// From here to the next blank.
+    /// Returns the text up to the next blank.
     constexpr std::string_view token() const noexcept {
         std::size_t end = at_;
         while (end < text_.size() && !is_blank(text_[end])) {
@@ -96,7 +96,7 @@ class CandumpParser {
     }
     constexpr bool malformed(CandumpFault fault) noexcept { return malformed(fault, at_); }
 
-    /// A decimal number of at most 19 digits; returns how many it has.
+    /// Reads a decimal number of at most 19 digits and returns its number of digits.
     constexpr std::size_t number(std::uint64_t& value) noexcept {
         const std::size_t start = at_;
         value = 0;
@@ -172,7 +172,7 @@ class CandumpParser {
         return (remote ? remote_length() : data()) && raw_length_code();
     }
 
-    /// Bit 2 says only that it is CAN FD, which the second # says too.
+    /// Reads the flags of a CAN FD frame. Bit 2 is ignored: it marks CAN FD, which the second # does already.
     constexpr bool fd_flags() noexcept {
         ++at_;
         const std::uint32_t flags = hex_value(peek());
@@ -223,7 +223,7 @@ class CandumpParser {
         return true;
     }
 
-    /// What a controller was sent as length when that was beyond 8; it means 8 bytes.
+    /// Reads the raw length code of a classic frame: a code above 8 with 8 bytes of data.
     constexpr bool raw_length_code() noexcept {
         if (peek() != '_') {
             return true;
@@ -269,8 +269,8 @@ class CandumpParser {
 
 } // namespace detail
 
-/// Reads one line of a candump log, without its end. Views in the result point into `line`. A faulty line
-/// gives `malformed` with the place and the reason, never a frame.
+/// Parses one line of a candump log, without its line end. Views in the result point into `line`. A line with
+/// a syntax error gives `malformed` with the position and the expected text, never a frame.
 constexpr CandumpLine parse_candump_line(std::string_view line) noexcept {
     return detail::CandumpParser(line).parse();
 }

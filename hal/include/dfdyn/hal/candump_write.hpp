@@ -10,18 +10,18 @@
 
 namespace dfdyn::hal {
 
-/// How finely a log tells time.
+/// Resolution of the time stamps in a log.
 enum class StampDecimals : std::uint8_t {
-    microseconds = 6, ///< what every tool reads; the nanoseconds are cut off
-    nanoseconds = 9   ///< as by `candump -N`; can-utils before 2023 misread it
+    microseconds = 6, ///< readable by every tool; the nanoseconds are truncated
+    nanoseconds = 9   ///< like `candump -N`; can-utils before 2023 misread it
 };
 
-/// Room enough for any line.
+/// Buffer that is large enough for any line.
 using CandumpText = std::array<char, 192>;
 
 namespace detail {
 
-/// Puts characters into a CandumpText, which holds the longest line there can be.
+/// Appends characters to a CandumpText, which has room for the longest possible line.
 class CandumpWriter {
   public:
     constexpr explicit CandumpWriter(CandumpText& text) noexcept : text_(text) {}
@@ -70,9 +70,11 @@ constexpr void write_payload(const Frame& frame, CandumpWriter& out) noexcept {
 
 } // namespace detail
 
-/// Writes `frame` as candump does, without the end of the line, into `text`; a frame of this host with ` T`,
-/// others without ` R`. Nothing comes back for what no log can hold: a frame that is not well-formed, a stamp
-/// before 1970 or after 2262, a name of no or of more than 15 characters or with a blank in it.
+/// Writes `frame` into `text` in the format of candump, without the line end. Frames of this host are marked
+/// by ` T`, others by ` R`. Returns an empty view for a frame that a log cannot represent:
+/// - it is not well-formed,
+/// - its time stamp is before 1970 or after 2262, or
+/// - the interface name is empty, longer than 15 characters or contains a blank.
 constexpr std::string_view write_candump_line(const Frame& frame, std::string_view interface,
                                               StampDecimals decimals, CandumpText& text) noexcept {
     const std::int64_t seconds = frame.stamp_ns / 1'000'000'000;

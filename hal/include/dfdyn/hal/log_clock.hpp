@@ -6,19 +6,22 @@
 
 namespace dfdyn::hal {
 
-/// The time that passes in a recording: that of its stamps, but it never runs backward. A frame stamped
-/// before the latest by up to `overtaken_ns` was overtaken, and one further behind is a stray: both are due
-/// at once. Where the recorder's clock was set back, which `set_back_after` frames that go on from each other
-/// show, time goes on from the latest, and by as much as these frames took: from then on it is ahead of the
-/// stamps, as the clock of a live bus is (`ClockGate`), and the frames in between are a gap.
+/// Clock of a recording. It follows the time stamps of the frames and never runs backward.
+/// - A frame stamped at most `overtaken_ns` before the latest one was overtaken by it. It is due immediately.
+/// - A frame stamped earlier than that is an outlier or the first after a step of the clock. It is due
+///   immediately, too.
+/// - After `set_back_after` consecutive frames with such stamps the recorder's clock is known to have been
+///   set back. Time then continues from the latest time, advanced by the duration of these frames. From then
+///   on this clock is ahead of the stamps, like the clock of a live bus (`ClockGate`), and the frames in
+///   between are a gap.
 class LogClock {
   public:
     static constexpr std::int64_t overtaken_ns = 5'000'000;
     static constexpr std::int64_t longest_step_ns =
-        100'000'000; ///< between frames that go on from each other
+        100'000'000; ///< longest interval between consecutive frames
     static constexpr int set_back_after = 20;
 
-    /// The time at which the next frame of the recording is due. O(1).
+    /// Returns the time at which the next frame of the recording is due. O(1).
     constexpr std::int64_t due_ns(std::int64_t stamp_ns) noexcept {
         if (!started_) {
             started_ = true;
@@ -35,24 +38,25 @@ class LogClock {
         return latest_ns_;
     }
 
-    /// When a frame of that stamp would be due, as far as is known. Requires a frame.
+    /// Returns the time at which a frame with this time stamp would be due, without changing the clock.
+    /// Requires at least one frame before.
     [[nodiscard]] constexpr std::int64_t time_of(std::int64_t stamp_ns) const noexcept {
         return std::max(latest_ns_, sum(stamp_ns, offset_ns_));
     }
 
-    /// Whether a frame's stamp is so far ahead of the latest that it may be a stray.
+    /// Returns true if the time stamp is so far ahead of the latest that it may be an outlier.
     [[nodiscard]] constexpr bool leads(std::int64_t stamp_ns) const noexcept {
         return started_ && difference(sum(stamp_ns, offset_ns_), latest_ns_) > overtaken_ns;
     }
 
-    /// What is added to the stamps.
+    /// Offset from the time stamps to this clock.
     [[nodiscard]] constexpr std::int64_t offset_ns() const noexcept { return offset_ns_; }
 
-    /// How often the recorder's clock was set back.
+    /// Number of times the recorder's clock was set back.
     [[nodiscard]] constexpr std::uint64_t set_back() const noexcept { return set_back_; }
 
   private:
-    /// Stamps wrap instead of overflowing, whatever they are.
+    /// Sum modulo 2^64, because time stamps are arbitrary and must not overflow.
     [[nodiscard]] static constexpr std::int64_t sum(std::int64_t a, std::int64_t b) noexcept {
         return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
     }
@@ -60,7 +64,8 @@ class LogClock {
         return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
     }
 
-    /// Whether this stamp, which is behind, ends a run that is long enough.
+    /// Adds a time stamp that is behind the latest to the current run of such stamps. Returns true if the run
+    /// is long enough.
     constexpr bool goes_on(std::int64_t stamp_ns) noexcept {
         const std::int64_t step_ns = difference(stamp_ns, behind_ns_);
         const bool next = run_ > 0 && step_ns >= -overtaken_ns && step_ns <= longest_step_ns;
@@ -72,10 +77,10 @@ class LogClock {
 
     std::int64_t latest_ns_ = 0;
     std::int64_t offset_ns_ = 0;
-    std::int64_t behind_ns_ = 0;    ///< stamp of the last frame that was behind
-    std::int64_t run_begin_ns_ = 0; ///< stamp of the first of those in a row
+    std::int64_t behind_ns_ = 0;    ///< time stamp of the last frame that was behind
+    std::int64_t run_begin_ns_ = 0; ///< time stamp of the first frame of the current run
     std::uint64_t set_back_ = 0;
-    int run_ = 0; ///< frames that were behind, in a row
+    int run_ = 0; ///< number of consecutive frames that were behind
     bool started_ = false;
 };
 

@@ -5,110 +5,118 @@
 
 namespace dfdyn::hal {
 
-/// Why there is no sample, no output in it, or why a frame was refused; apart from the learner's own
-/// `dfdyn::Reason`. Below 32: limits, nothing is wrong. From 32: faults. The numbers are stable.
+/// Reason why there is no sample, why a sample has no output, or why a frame was rejected. It is distinct
+/// from the learner's `dfdyn::Reason`. Numbers below 32 are limitations, numbers from 32 are faults. The
+/// numbers are stable.
 enum class Reason : std::uint8_t {
     ok = 0,
 
-    /// A joint has not reported its position yet. Cure: wait; check the joint's identifier if it lasts.
+    /// A joint has not reported its position yet. Remedy: wait; if it persists, check the joint's identifier.
     waiting_for_position = 1,
-    /// The sensor has not reported yet. Cure: wait; start its transmission; check its identifiers if it
-    /// lasts.
+    /// The sensor has not reported yet. Remedy: wait; start its transmission; check its identifiers if it
+    /// persists.
     waiting_for_output = 2,
-    /// A source that has just come up (or back) has not shown enough readings that are not zero. Cure: wait;
-    /// a joint that stands exactly at zero is believed after a longer while, or once it moves.
+    /// A source that has just started or returned has not yet sent enough nonzero readings. Remedy: wait. A
+    /// joint that is stationary at exactly zero is accepted after a longer time, or once it moves.
     qualifying = 3,
-    /// The sensor's full scale, or calibration, is not known yet. Cure: request it (see the decoder).
+    /// The full scale or the calibration of the sensor is not known yet. Remedy: request it (see the
+    /// decoder).
     waiting_for_full_scale = 4,
-    /// The instant asked for is older than what the history holds. Cure: a shorter delay or a longer history.
+    /// The requested sample time is older than the stored history. Remedy: a shorter delay or a longer
+    /// history.
     history_too_short = 5,
-    /// Nothing was measured since the last valid output: predict only. Normal where the sensor is slower than
-    /// the tick.
+    /// No measurement has arrived since the last valid output, so only a prediction is possible. This is
+    /// normal if the sensor is slower than the tick.
     output_not_new = 6,
-    /// No such output: the arm is assembled without one, or its drives do not send it.
+    /// There is no such output: the arm is assembled without one, or its drives do not send it.
     no_output = 7,
 
-    /// A joint fell silent: its last position is older than its limit. Cure: check the board and its cable.
+    /// A joint has stopped sending: its last position is older than its limit. Remedy: check the board and
+    /// its cable.
     position_stale = 32,
-    /// The sensor fell silent. Cure: check the sensor and its cable.
+    /// The sensor has stopped sending. Remedy: check the sensor and its cable.
     output_stale = 33,
-    /// Positions are missing about the instant asked for: frames were lost.
+    /// Positions around the requested sample time are missing: frames were lost.
     position_gap = 34,
-    /// Outputs are missing about the instant asked for: frames were lost.
+    /// Outputs around the requested sample time are missing: frames were lost.
     output_gap = 35,
-    /// One of the frames that make up a wrench was lost, or came too far from the other.
+    /// One of the two frames of a wrench was lost, or they arrived too far apart.
     output_incomplete = 36,
-    /// The sensor is overloaded or its converter at its end; the values are not those of the moment.
+    /// The sensor is overloaded or its converter is saturated; its values are not the present ones.
     output_saturated = 37,
-    /// The sensor repeats the very same raw values: it is stuck, whatever its time stamps. Cure: restart it.
+    /// The sensor repeats identical raw values although its time stamps advance, so it is stuck. Remedy:
+    /// restart it.
     output_frozen = 38,
-    /// A position is beyond its joint's range, or not a number. Cure: check scale and zero of the encoder.
+    /// A position is beyond its joint's range or not a number. Remedy: check scale and zero of the encoder.
     position_out_of_range = 39,
-    /// An output is beyond the sensor's range, or not a number. Cure: check its full scale and calibration.
+    /// An output is beyond the sensor's range or not a number. Remedy: check its full scale and calibration.
     output_out_of_range = 40,
-    /// The full scale that the sensor reported, or the calibration given, cannot be: 0, a default, not a
-    /// number.
+    /// The full scale reported by the sensor, or the configured calibration, is impossible: 0, a factory
+    /// default, or not a number.
     full_scale_implausible = 41,
-    /// The device itself says that its encoder is in error. Ends when it says otherwise.
+    /// The device reports an encoder error. Ends when it reports none.
     encoder_fault = 42,
-    /// The device itself reports a fault. Ends when it reports none. Cure: read its error code; clear the
+    /// The device reports a fault. Ends when it reports none. Remedy: read its error code and clear the
     /// fault.
     device_fault = 43,
-    /// The device is not in its operational state. Ends with its heartbeat of that state, or where it sends
-    /// none with the next values. Cure: start the node.
+    /// The device is not in its operational state. Ends with a heartbeat that reports this state. If the
+    /// device sends no heartbeat, it ends with the next values. Remedy: start the node.
     device_not_operational = 44,
-    /// The device's heartbeat is missing, which must say that the values are good. Cure: enable it.
+    /// The device's heartbeat, which must confirm that the values are good, is missing. Remedy: enable it.
     heartbeat_missing = 45,
-    /// Stamps ran backward, or ahead of the bus' clock; a new clock is adopted after a while of consistency.
+    /// Time stamps ran backward, or ahead of the clock of the bus. A new clock is accepted after it has been
+    /// consistent for a while.
     clock_jumped = 46,
-    /// The stamp is not later than the last of its source: a frame that was overtaken or repeated. Or the
-    /// instant asked for is not later than the last sample's.
+    /// The time stamp is not later than the last one of its source: the frame was overtaken or repeated. Or
+    /// the requested sample time is not later than that of the last sample.
     time_not_increasing = 47,
-    /// The operating system or the controller dropped frames. Cure: read more often; a larger buffer.
+    /// The operating system or the controller dropped frames. Remedy: read more often, or use a larger
+    /// buffer.
     frames_lost = 48,
-    /// The controller is bus-off. Ends with its restart, or with the next frame that it receives. Cure: find
-    /// the fault on the bus; let it restart (restart-ms).
+    /// The controller is bus-off. Ends with its restart, or with the next frame that it receives. Remedy:
+    /// find the fault on the bus; let the controller restart (restart-ms).
     bus_off = 49,
-    /// The interface is down or gone.
+    /// The interface is down or removed.
     interface_down = 50,
-    /// A frame with one of our identifiers has another length than the message. Cure: check the mapping.
+    /// A frame with an identifier of a described device has the wrong length. Remedy: check the mapping.
     wrong_length = 51,
-    /// A frame with one of our identifiers is a remote request or CAN FD.
+    /// A frame with an identifier of a described device is a remote request or CAN FD.
     wrong_frame_type = 52,
-    /// Frames of one identifier come faster than one device sends them: two devices share it. Cure: give one
-    /// of them another.
+    /// Frames of one identifier arrive faster than one device sends them: two devices share it. Remedy: give
+    /// one of them another identifier.
     id_collision = 53,
 
-    /// The sensor reported another full scale than described, or than before. Ends when it agrees with its
-    /// description, or without one when it has reported all channels again. Cure: ask for all of them; check
-    /// which set of its calibration is in use.
+    /// The sensor reported a full scale that differs from the described or the previous one. Ends when it
+    /// agrees with its description. Without a description it ends when all channels have been reported again.
+    /// Remedy: request all of them; check which of its calibration sets is in use.
     full_scale_contradicted = 60,
-    /// The device restarted between two values: its zero may have moved. It must qualify again.
+    /// The device restarted between two values, so its zero may have moved. It must qualify again.
     device_restarted = 61,
-    /// The position of this instant was due and has not come: a frame was lost or is late. It is interpolated
-    /// once the next one comes. Cure: lower the load; see the counters of lost frames.
+    /// The position for this sample time was due and has not arrived: a frame was lost or is late. It is
+    /// interpolated once the next one arrives. Remedy: lower the load; see the counters of lost frames.
     position_missing = 62,
-    /// The output of this instant was due and has not come; likewise.
+    /// The output for this sample time was due and has not arrived: a frame was lost or is late.
     output_missing = 63,
-    /// A position that the joint cannot have reached since the last one that was believed. Ends with the next
-    /// one that it can have reached. Cure, where true motions are refused: joints.velocity_limit,
+    /// The joint cannot have reached this position since the last accepted one. Ends with the next position
+    /// that it can have reached. Remedy, if real motions are rejected: joints.velocity_limit,
     /// acceleration_limit.
     position_jump = 64,
-    /// After a jump or a restart the joint's positions go on from elsewhere: the encoder has lost its zero,
-    /// or another device sends. Ends when they jump to where the joint can be. Cure: check the joint's
-    /// position; set its zero; start again.
+    /// After a jump or a restart the joint's positions continue from a different value: the encoder has lost
+    /// its zero, or another device sends. Ends when they return to values that the joint can have. Remedy:
+    /// check the joint's position; set its zero; start again.
     position_lost = 65,
-    /// A moving joint repeats its last position, bit for bit, and cannot have stopped. Ends when it changes.
+    /// A moving joint repeats its last position bit for bit and cannot have stopped. Ends when the position
+    /// changes.
     position_frozen = 66,
-    /// The answer to a SYNC came so late, or so early after one was missing, that it may belong to another
-    /// SYNC. Ends with an answer at the usual time. Cure: a lower load, or a longer period of the SYNC.
+    /// The answer to a SYNC arrived so late, or so early after a missing one, that it may belong to another
+    /// SYNC. Ends with an answer at the usual time. Remedy: a lower load, or a longer SYNC period.
     sync_unknown = 67,
-    /// An output that is further from the last one than outputs are that follow each other. Ends with the
-    /// next that agrees with the one before, or when several in a row agree with each other.
+    /// The output differs from the last one by more than consecutive outputs do. Ends with the next output
+    /// that agrees with its predecessor, or when several consecutive outputs agree with each other.
     output_jump = 68,
 };
 
-/// One past the largest number of a reason; sizes tables indexed by it.
+/// One more than the largest reason number; the size of tables that are indexed by a reason.
 inline constexpr int reason_count = 69;
 
 struct NamedReason {
@@ -158,7 +166,7 @@ inline constexpr NamedReason reason_names[] = {
     {Reason::output_jump, "output_jump"},
 };
 
-/// The reason's name as written in reports and logs ("ok" for none). O(number of reasons).
+/// Returns the reason's name as written in reports and logs, "ok" for none. O(number of reasons).
 constexpr const char* name(Reason reason) noexcept {
     for (const NamedReason& named : reason_names) {
         if (named.reason == reason) {

@@ -15,22 +15,23 @@
 
 namespace dfdyn::hal {
 
-/// A frame of a recording.
+/// One frame of a recording.
 struct ReplayEntry {
     Frame frame{};
-    std::uint64_t dropped_before = 0; ///< frames that the recorder lost since the one before
+    std::uint64_t dropped_before = 0; ///< frames that the recorder lost since the previous one
 };
 
-/// Gives the frames of a recording in the recording's order. `next(entry)` fills `entry` and returns true; at
-/// the end, or where the recording becomes unreadable, it returns false, with only `dropped_before` filled.
+/// Source of the frames of a recording, in its order. `next(entry)` fills `entry` and returns true. At the
+/// end, or where the recording becomes unreadable, it fills only `dropped_before` and returns false.
 template <class S>
 concept ReplaySource = requires(S source, ReplayEntry& entry) {
     { source.next(entry) }
     noexcept->std::same_as<bool>;
 };
 
-/// A recording as a bus (`Bus`), on the recording's own clock, which moves only when told to: the same calls
-/// give the same frames. O(1) memory, and O(1) per frame beyond what `Source::next` costs.
+/// A recording with the interface of a `Bus`. Its clock is that of the recording and moves only by
+/// `advance_to`, so the same calls give the same frames. O(1) memory, and O(1) per frame besides the cost of
+/// `Source::next`.
 ///
 ///     ReplayBus bus(source);
 ///     while (!bus.ended()) {
@@ -38,28 +39,29 @@ concept ReplaySource = requires(S source, ReplayEntry& entry) {
 ///         decode(bus.drain(frames));
 ///     }
 ///
-/// Frames are handed out in the recording's order with the stamps they have there, when they are due by the
-/// recording's clock (`LogClock`): one whose stamp runs backward at once. Error frames move `state()`, frames
-/// that the recorder lost count as `dropped`.
+/// Frames come in the order and with the time stamps of the recording when they are due on its clock
+/// (`LogClock`). A frame whose time stamp runs backward is due immediately. Error frames change `state()`;
+/// frames that the recorder lost count as `dropped`.
 template <ReplaySource Source>
 class ReplayBus {
   public:
-    /// Frames sent and not yet taken that it keeps; further ones are refused.
+    /// Number of sent frames that are stored until `take_sent`; further frames are refused.
     static constexpr std::size_t sent_capacity = 64;
 
-    /// Starts at the stamp of the first frame. `source` has to outlive the bus.
+    /// Sets the clock to the time stamp of the first frame. `source` must outlive the bus.
     explicit ReplayBus(Source& source) noexcept : source_(source) {
         fetch();
         now_ns_ = due_ns_;
     }
 
-    /// Moves the clock to `time_ns`; a time that has passed leaves it where it is.
+    /// Moves the clock to `time_ns`. Has no effect if that time has passed.
     void advance_to(std::int64_t time_ns) noexcept { now_ns_ = std::max(now_ns_, time_ns); }
 
-    /// When the next frame is due: now, or later. Now when the recording has ended.
+    /// Returns the time at which the next frame is due, at least the current time. Returns the current time
+    /// after the end of the recording.
     std::int64_t next_stamp_ns() const noexcept { return ended_ ? now_ns_ : std::max(now_ns_, due_ns_); }
 
-    /// Whether all frames were handed out.
+    /// Returns true if all frames have been returned by `drain`.
     bool ended() const noexcept { return ended_; }
 
     std::span<const Frame> drain(std::span<Frame> into) noexcept {
@@ -76,7 +78,7 @@ class ReplayBus {
         return into.first(count);
     }
 
-    /// Keeps `frame` for `take_sent`, stamped with the time.
+    /// Stores `frame` for `take_sent`, stamped with the current time.
     SendResult send(const Frame& frame) noexcept {
         if (!is_well_formed(frame) || frame.error) {
             return SendResult::invalid;
@@ -97,8 +99,8 @@ class ReplayBus {
         return SendResult::sent;
     }
 
-    /// The frames sent and not yet taken, in order, at most `into.size()` of them: what a simulated plant, or
-    /// a test, would see on the wire.
+    /// Returns the sent frames that were not taken before, in order, at most `into.size()`. A simulated plant
+    /// or a test reads here what a real bus would carry.
     std::span<const Frame> take_sent(std::span<Frame> into) noexcept {
         std::size_t count = 0;
         while (count < into.size() && taken_ < counters_.sent) {
@@ -116,7 +118,7 @@ class ReplayBus {
   private:
     bool is_due() const noexcept { return !ended_ && due_ns_ <= now_ns_; }
 
-    /// Looks one frame ahead. What was lost before a frame counts when that frame is handed out.
+    /// Reads one frame ahead. Frames lost before a frame are counted when that frame is returned by `drain`.
     void fetch() noexcept {
         next_ = {};
         ended_ = !source_.next(next_);
@@ -131,12 +133,12 @@ class ReplayBus {
     ReplayEntry next_{};
     bool ended_ = false;
     LogClock clock_;
-    std::int64_t due_ns_ = 0; ///< of the next frame
+    std::int64_t due_ns_ = 0; ///< due time of the next frame
     std::int64_t now_ns_ = 0;
     BusState state_ = BusState::active;
     BusCounters counters_{};
     std::array<Frame, sent_capacity> sent_{};
-    std::uint64_t taken_ = 0; ///< of all that were sent
+    std::uint64_t taken_ = 0; ///< number of sent frames already taken
 };
 
 } // namespace dfdyn::hal

@@ -6,28 +6,28 @@
 
 namespace dfdyn::hal {
 
-/// Moves stamps of a wall clock, which may be set while we run, onto the monotonic clock. A stamp is moved by
-/// the difference of the two clocks at the time when it is read. Stamps that were waiting while the wall
-/// clock was set belong to the difference before; they are told by where they land: between the last time
-/// that nothing was waiting, and now. Heap-free; O(1) per stamp.
+/// Converts wall-clock time stamps to the monotonic clock, even if the wall clock is set meanwhile. A time
+/// stamp is shifted by the difference of the two clocks when it is read. Stamps that were waiting while the
+/// wall clock was set need the difference before. They are recognised because only that difference places
+/// them between now and the last time at which no frame was waiting. Allocates nothing; O(1) per stamp.
 class WallClock {
   public:
-    /// A change of the difference beyond this is a clock that was set; slewing moves it by far less.
+    /// A larger change of the difference means that the clock was set; slewing changes it by far less.
     static constexpr std::int64_t step_ns = 1'000'000;
 
     struct Converted {
         std::int64_t stamp_ns = 0; ///< on the monotonic clock, never after now
-        bool plausible = false;    ///< false: `stamp_ns` is now, because no difference explains the stamp
+        bool plausible = false;    ///< false: no difference explains the time stamp, and `stamp_ns` is now
     };
 
-    /// The clocks as they are when nothing is waiting to be read.
+    /// Reports both clocks at a time when no frame is waiting to be read.
     constexpr void nothing_waiting(std::int64_t monotonic_ns, std::int64_t wall_ns) noexcept {
         offset_ns_ = monotonic_ns - wall_ns;
         empty_ns_ = monotonic_ns;
         was_set_ = false;
     }
 
-    /// The wall clock's `stamp_ns`, read at `monotonic_ns`, when the wall clock shows `wall_ns`.
+    /// Converts the wall-clock time stamp `stamp_ns`, read when the clocks show `monotonic_ns` and `wall_ns`.
     constexpr Converted to_monotonic(std::int64_t stamp_ns, std::int64_t monotonic_ns,
                                      std::int64_t wall_ns) noexcept {
         const std::int64_t offset_ns = monotonic_ns - wall_ns;
@@ -52,23 +52,25 @@ class WallClock {
     }
 
     std::int64_t offset_ns_ = 0;
-    std::int64_t previous_offset_ns_ = 0; ///< before the wall clock was last set
+    std::int64_t previous_offset_ns_ = 0; ///< difference before the wall clock was last set
     std::int64_t empty_ns_ = 0;
-    bool was_set_ = false; ///< since nothing was waiting
+    bool was_set_ = false; ///< since the last time at which no frame was waiting
 };
 
-/// Moves stamps of a controller's own clock, of unknown origin and slightly other speed, onto the monotonic
-/// clock. No frame is read before it was stamped, so the least delay seen from stamp to reading is the best
-/// estimate of the clocks' difference; it is let go by `drift` so that it follows a clock that runs fast.
-/// What is left of the delay, in the least of the frames of the last seconds, is a constant lateness.
+/// Converts time stamps of a controller's own clock, with unknown origin and a slightly different rate, to
+/// the monotonic clock. No frame is read before it is stamped, so the smallest observed delay from stamp to
+/// reading is the best estimate of the difference of the clocks. The estimate is relaxed by 1 /
+/// `drift_divisor` of the elapsed time so that it can follow the drift of the clocks. The remaining delay,
+/// the smallest one among the frames of the last seconds, is a constant offset.
 class HardwareClock {
   public:
-    /// A difference beyond this is a clock that was reset, or wrapped.
+    /// An increase of the difference by more than this means that the clock was reset or wrapped.
     static constexpr std::int64_t reset_ns = 10'000'000'000;
-    /// Crystals agree to 100 ppm; one part in 5,000.
+    /// One part in 5,000 (200 ppm), because crystals agree to 100 ppm.
     static constexpr std::int64_t drift_divisor = 5'000;
 
-    /// The controller's `stamp_ns`, read at `monotonic_ns`, on the monotonic clock; never after now.
+    /// Converts the controller's time stamp `stamp_ns`, read at `monotonic_ns`. The result is never later
+    /// than `monotonic_ns`.
     constexpr std::int64_t to_monotonic(std::int64_t stamp_ns, std::int64_t monotonic_ns) noexcept {
         const std::int64_t difference_ns = monotonic_ns - stamp_ns;
         const std::int64_t relaxed_ns = offset_ns_ + (monotonic_ns - read_ns_) / drift_divisor;
@@ -80,7 +82,7 @@ class HardwareClock {
     }
 
   private:
-    std::int64_t offset_ns_ = 0; ///< monotonic minus the controller's
+    std::int64_t offset_ns_ = 0; ///< monotonic clock minus the controller's clock
     std::int64_t read_ns_ = 0;
     bool started_ = false;
 };

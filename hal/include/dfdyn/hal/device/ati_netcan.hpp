@@ -7,28 +7,26 @@
 
 namespace dfdyn::hal {
 
-/// An ATI force/torque sensor behind a NETCANOEM or NetCAN board. It sends strain gauges, not a wrench:
+/// An ATI force/torque sensor with a NETCANOEM or NetCAN board. It sends strain gauge counts, not a wrench.
+/// Frames by identifier, where B is the base; contents are big-endian:
+/// - 16 B, 0 bytes: a poll by the host
+/// - 16 B, 8 bytes: status u16, gauges 0, 2, 4 (int16)
+/// - 16 B + 1, 6 bytes: gauges 1, 3, 5 (int16)
 ///
-/// | id (B: base) | length | content, big-endian |
-/// | --- | --- | --- |
-/// | 16 B | 0 | a poll, from the host |
-/// | 16 B | 8 | status u16, gauges 0, 2, 4 (int16) |
-/// | 16 B + 1 | 6 | gauges 1, 3, 5 |
-///
-/// wrench = matrix * gauges / counts per unit. A gauge at the end of its numbers is saturated, which the
-/// sensor leaves to the receiver to see; it takes part in all six values.
+/// wrench = matrix * gauges / counts per unit. The sensor does not report saturation; a gauge at the end of
+/// its range is saturated and affects all six values.
 class AtiNetcan {
   public:
     struct Config {
         std::uint32_t base = 0x20;
-        std::array<SixValues, 6> matrix{}; ///< of this very sensor, one row per axis
-        double counts_per_newton = 0;      ///< 0: not known
+        std::array<SixValues, 6> matrix{}; ///< calibration matrix of this individual sensor, one row per axis
+        double counts_per_newton = 0;      ///< 0: unknown
         double counts_per_newton_metre = 0;
     };
 
     explicit AtiNetcan(const Config& config) noexcept : config_(config), calibration_(check(config)) {}
 
-    /// Of the matrix and the counts: not known, cannot be, or ok.
+    /// Returns ok if matrix and counts are known and plausible, otherwise the reason.
     [[nodiscard]] constexpr Reason calibration() const noexcept { return calibration_; }
 
     [[nodiscard]] constexpr bool claims(std::uint32_t id) const noexcept {
@@ -65,10 +63,11 @@ class AtiNetcan {
         return reading;
     }
 
-    /// Asks for one wrench.
+    /// Returns the frame that requests one wrench.
     [[nodiscard]] constexpr Frame poll() const noexcept { return make_frame(first_id(), 0); }
 
-    /// All gauges 0 without a calibration. Gauges saturate as the converter does.
+    /// Encodes a wrench (N, N·m). All gauges are 0 without a valid calibration. Gauges saturate like the
+    /// converter.
     [[nodiscard]] FrameList encode(const Wrench& value) const noexcept {
         FrameList frames;
         frames.count = 2;
@@ -86,10 +85,10 @@ class AtiNetcan {
     }
 
   private:
-    /// Bit 15 any error, 14 CAN error, 12 and 11 temperature, 7 … 3 critical.
+    /// Bit 15: any error, 14: CAN error, 12 and 11: temperature, 7 … 3: critical errors.
     static constexpr unsigned fault_bits = 0xD8F8;
 
-    /// Where a frame has the gauge: even ones follow the status word, odd ones have a frame for themselves.
+    /// Offset of the gauge in its frame: even gauges follow the status word, odd gauges fill their own frame.
     [[nodiscard]] static constexpr std::size_t gauge_place(std::size_t gauge) noexcept {
         return gauge % 2 == 0 ? 2 + gauge : gauge - 1;
     }

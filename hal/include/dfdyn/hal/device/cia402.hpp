@@ -11,50 +11,51 @@
 
 namespace dfdyn::hal {
 
-/// A CANopen drive with the CiA 402 profile, as its TPDOs are mapped.
+/// A CANopen drive with the CiA 402 profile and configurable TPDO mapping. Frames by identifier, where N is
+/// the node; contents are little-endian:
+/// - 0x080, 0 or 1 byte: SYNC
+/// - 0x080 + N, 8 bytes: EMCY: error code u16 (0: no error any more), error register, 5 bytes of the
+///   manufacturer
+/// - `position_pdo` + N, length as mapped: position actual value (0x6064) and other mapped objects
+/// - `effort_pdo` + N, length as mapped: torque actual value (0x6077); may be the same PDO
+/// - 0x200 + N, 2 bytes, to the drive: target torque (0x6071), in the unit of 0x6077
+/// - 0x700 + N, 1 byte: heartbeat: 0 boot-up, 4 stopped, 5 operational, 127 pre-operational
 ///
-/// | id (N: node) | length | content, little-endian |
-/// | --- | --- | --- |
-/// | 0x080 | 0 or 1 | SYNC |
-/// | 0x080 + N | 8 | EMCY: error code u16 (0: no error any more), error register, 5 bytes of the maker |
-/// | `position_pdo` + N | as mapped | position actual value (0x6064) and what else is mapped |
-/// | `effort_pdo` + N | as mapped | torque actual value (0x6077), perhaps in the same PDO |
-/// | 0x200 + N | 2 | to the drive: target torque (0x6071), in the unit of 0x6077 |
-/// | 0x700 + N | 1 | heartbeat: 0 boot-up, 4 stopped, 5 operational, 127 pre-operational |
+/// The scaling differs between axes and is part of the configured signals.
 ///
-/// Scaling is per axis and arbitrary: it is in the signals.
+/// Values carry `device_not_operational` from a heartbeat with another state until one with the operational
+/// state. Many drives send no heartbeat, but every drive sends a boot-up message. Without
+/// `heartbeat_timeout_ns` the next PDO therefore ends the condition, because a drive sends PDOs only while it
+/// is operational (CiA 301). The first value after a boot-up that interrupts the PDOs carries
+/// `device_restarted`.
 ///
-/// Values carry `device_not_operational` after a heartbeat of another state, until one of the operational
-/// state. Many drives send no heartbeat, but every drive a boot-up: without `heartbeat_timeout_ns` the next
-/// PDO ends it, because a drive sends PDOs only while it is operational (CiA 301). The first value after a
-/// boot-up that interrupts PDOs carries `device_restarted`.
-///
-/// Positions carry `encoder_fault` after an EMCY of a sensor (0x73xx), efforts `device_fault` after any EMCY,
-/// until the EMCY 0 or a boot-up. An effort at an end of its bits carries `output_saturated`. A remote frame
-/// on the heartbeat's identifier is a master's request (node guarding) and is ignored.
+/// Until EMCY 0 or a boot-up, positions carry `encoder_fault` after an EMCY of a sensor (0x73xx), and efforts
+/// carry `device_fault` after any EMCY. An effort at an end of its range carries `output_saturated`. A remote
+/// frame on the heartbeat's identifier is a master's request (node guarding) and is ignored.
 class Cia402Drive {
   public:
     static constexpr int joints = 1;
 
     struct Config {
         int node = 1;  ///< 1 … 127
-        int joint = 0; ///< of the arm, from 0
+        int joint = 0; ///< joint of the arm, from 0
         std::uint32_t position_pdo = 0x280;
-        int position_length = 8; ///< of the whole PDO, bytes
+        int position_length = 8; ///< bytes of the whole PDO
         Signal position{
             .start_bit = 0, .length = 32, .encoding = Encoding::signed_integer, .factor = 1e-3}; ///< rad
         std::uint32_t effort_pdo = 0; ///< 0: efforts are not mapped; may be `position_pdo`
         int effort_length = 8;
         Signal effort{
             .start_bit = 0, .length = 16, .encoding = Encoding::signed_integer, .factor = 1e-3}; ///< N·m
-        bool synchronous = true;               ///< measured at the SYNC before; else when the PDO came
-        std::int64_t heartbeat_timeout_ns = 0; ///< 0: the drive sends none (the default of CANopen)
+        bool synchronous = true; ///< measured at the preceding SYNC; otherwise when the PDO arrived
+        std::int64_t heartbeat_timeout_ns = 0; ///< 0: the drive sends none (the CANopen default)
     };
 
     explicit constexpr Cia402Drive(const Config& config) noexcept
         : config_(config), heartbeat_(config.heartbeat_timeout_ns) {}
 
-    /// Whether identifiers, lengths and signals can be: no PDO on an identifier that CANopen restricts.
+    /// Returns true if identifiers, lengths and signals are valid; no PDO may use an identifier that CANopen
+    /// restricts.
     [[nodiscard]] constexpr bool config_is_valid() const noexcept {
         const bool effort =
             !has_effort() ||
@@ -66,7 +67,7 @@ class Cia402Drive {
                !restricted(position_id()) && effort;
     }
 
-    /// Whether efforts are mapped.
+    /// Returns true if efforts are mapped.
     [[nodiscard]] constexpr bool has_effort() const noexcept { return config_.effort_pdo != 0; }
 
     [[nodiscard]] constexpr bool claims(std::uint32_t id) const noexcept {
@@ -116,15 +117,15 @@ class Cia402Drive {
         return frame;
     }
 
-    /// The command of this torque, N·m, saturated at what 16 bits hold; for drives whose efforts are mapped,
-    /// of which it has the unit.
+    /// Encodes a torque command (N·m), saturated to 16 bits. The unit is that of the mapped efforts, which
+    /// are required.
     [[nodiscard]] Frame encode_target_torque(double torque_Nm) const noexcept {
         Frame frame = make_frame(target_torque_pdo + static_cast<std::uint32_t>(config_.node), 2);
         target_torque().insert({frame.data.data(), 2}, torque_Nm);
         return frame;
     }
 
-    /// The torque that `frame` commands this drive, N·m; nothing where it is another frame.
+    /// Decodes the torque command (N·m) to this drive. Returns nothing for any other frame.
     [[nodiscard]] std::optional<double> decode_target_torque(const Frame& frame) const noexcept {
         const std::uint32_t id = target_torque_pdo + static_cast<std::uint32_t>(config_.node);
         if (!has_id(frame, id) || frame.remote || frame.fd || frame.length != 2) {
@@ -214,7 +215,7 @@ class Cia402Drive {
         return decoded;
     }
 
-    /// A value that may be the answer to another SYNC.
+    /// Reason for a value that may be the answer to another SYNC.
     [[nodiscard]] static constexpr Reason refused(Reason reason) noexcept {
         return reason == Reason::ok ? Reason::sync_unknown : reason;
     }
@@ -279,7 +280,7 @@ class Cia402Drive {
     bool synchronised_ = false;
     bool encoder_fault_ = false;
     bool device_fault_ = false;
-    bool sending_ = false;            ///< a PDO has come since the last boot-up
+    bool sending_ = false;            ///< a PDO has arrived since the last boot-up
     bool position_restarted_ = false; ///< the drive has booted since its last position
     bool effort_restarted_ = false;
 };

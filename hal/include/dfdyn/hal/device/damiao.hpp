@@ -10,21 +10,21 @@ namespace dfdyn::hal {
 
 /// A Damiao DM motor with its own protocol ("MIT mode"), on classic CAN or CAN FD.
 ///
-/// Frames, by identifier:
-/// - `feedback_id` (register MST_ID), a feedback: state and motor id (nibbles), position u16, velocity u12,
-///   torque u12, big-endian; two temperatures. Or about a register: motor id u16, 0x33 read, 0x55 written or
-///   0xAA saved, number, value (float), little-endian.
+/// Frames by identifier:
+/// - `feedback_id` (register MST_ID), feedback: state and motor id (nibbles), position u16, velocity u12,
+///   torque u12, big-endian; two temperatures. Or a register reply: motor id u16, 0x33 (read), 0x55 (written)
+///   or 0xAA (saved), register number, value (float), little-endian.
 /// - `motor_id`, to the motor: position u16, velocity, kp, kd, torque u12, big-endian.
-/// - 0x7FF, to all motors: about a register, or 0xCC, which asks for a feedback.
+/// - 0x7FF, to all motors: register access, or 0xCC, which requests a feedback.
 ///
-/// value = code / (2^n - 1) · 2 MAX - MAX, where MAX are the motor's registers 21, 22 and 23. They are not in
-/// the frames, and libraries disagree on the defaults: a motor that reports another value than `Config`
-/// refuses what depends on it (`full_scale_contradicted`) until it reports the same.
+/// value = code / (2^n - 1) · 2 MAX - MAX, where the MAX values are the motor's registers 21, 22 and 23. They
+/// are not in the frames, and libraries disagree about the defaults. If a motor reports a value that differs
+/// from `Config`, the values that depend on it carry `full_scale_contradicted` until it reports the same.
 ///
-/// Values carry `device_not_operational` while the motor is disabled and `device_fault` in every state but
-/// enabled. A position at an end of its code carries `position_out_of_range`, a torque `output_saturated`:
-/// codes saturate. Register answers have the motor id alone in their first byte, as feedback of a disabled
-/// motor has; they are told apart by the next two.
+/// Values carry `device_not_operational` while the motor is disabled, and `device_fault` in any other state
+/// except enabled. Codes saturate: a position at an end of its code carries `position_out_of_range`, a torque
+/// `output_saturated`. The first byte of a register reply is the motor id alone, like that of the feedback of
+/// a disabled motor; the next two bytes distinguish them.
 class DamiaoMotor {
   public:
     static constexpr int joints = 1;
@@ -32,12 +32,12 @@ class DamiaoMotor {
     struct Config {
         int motor_id = 1; ///< 1 … 15, register ESC_ID
         std::uint32_t feedback_id = 0x11;
-        int joint = 0;              ///< of the arm, from 0
+        int joint = 0;              ///< joint of the arm, from 0
         double position_max = 0;    ///< rad, register 21
         double velocity_max = 0;    ///< rad/s, register 22
         double torque_max = 0;      ///< N·m, register 23
-        double motor_per_joint = 1; ///< transmission behind the motor's own gear, with its sign
-        double zero_rad = 0;        ///< of the joint where the motor shows 0
+        double motor_per_joint = 1; ///< ratio of a transmission behind the motor's own gear, with its sign
+        double zero_rad = 0;        ///< position of the joint where the motor reports 0
     };
 
     /// Requires positive maxima.
@@ -60,12 +60,12 @@ class DamiaoMotor {
         return is_about_register(frame) ? decode_register(frame) : decode_feedback(frame);
     }
 
-    /// Of a feedback, in rad/s of the joint.
+    /// Returns the joint velocity (rad/s) of a feedback frame.
     [[nodiscard]] constexpr double velocity(const Frame& feedback) const noexcept {
         return value_of(velocity_code, feedback, config_.velocity_max) / config_.motor_per_joint;
     }
 
-    /// An enabled motor at rest.
+    /// Encodes the feedback of an enabled motor at rest.
     [[nodiscard]] FrameList encode(const std::array<JointValue, 1>& values) const noexcept {
         FrameList frames;
         frames.count = 1;
@@ -79,7 +79,7 @@ class DamiaoMotor {
         return frames;
     }
 
-    /// The command of a torque of the joint, N·m, saturated at `torque_max`; no stiffness, no damping.
+    /// Encodes a joint torque command (N·m) without stiffness and damping, saturated to `torque_max`.
     [[nodiscard]] Frame encode_torque(double torque_Nm) const noexcept {
         Frame frame = make_frame(motor_id(), 8);
         insert(commanded_position, 0, config_.position_max, frame);
@@ -88,8 +88,8 @@ class DamiaoMotor {
         return frame;
     }
 
-    /// The torque that `frame` commands this motor, N·m of the joint; nothing where it is another frame, as a
-    /// command with stiffness or damping, or one to enable or disable.
+    /// Decodes the joint torque command (N·m) to this motor. Returns nothing for any other frame, including
+    /// commands with stiffness or damping and those to enable or disable the motor.
     [[nodiscard]] constexpr std::optional<double> decode_torque(const Frame& frame) const noexcept {
         if (!has_id(frame, motor_id()) || check_message(frame) != Reason::ok ||
             commanded_gains.extract_raw(data_of(frame)) != 0) {
@@ -101,7 +101,8 @@ class DamiaoMotor {
   private:
     static constexpr unsigned enabled = 1;
     static constexpr unsigned disabled = 0;
-    static constexpr int first_maximum = 21; ///< register of `position_max`; the next two follow
+    /// register of `position_max`; those of the other two maxima follow
+    static constexpr int first_maximum = 21;
 
     static constexpr Signal position_code{.start_bit = 15, .length = 16, .byte_order = ByteOrder::motorola};
     static constexpr Signal velocity_code{.start_bit = 31, .length = 12, .byte_order = ByteOrder::motorola};
@@ -132,14 +133,16 @@ class DamiaoMotor {
         code.insert({frame.data.data(), 8}, (value + maximum) / (2 * maximum) * largest(code));
     }
 
-    /// Motors of one type send classic frames or CAN FD, as they are set.
+    /// Checks the form of a frame. Motors of one type send classic frames or CAN FD, depending on their
+    /// settings.
     [[nodiscard]] static constexpr Reason check_message(const Frame& frame) noexcept {
         return frame.remote        ? Reason::wrong_frame_type
                : frame.length == 8 ? Reason::ok
                                    : Reason::wrong_length;
     }
 
-    /// Also what another program asks, where it comes back on this identifier.
+    /// Returns true for a register reply to any program, and for a request that comes back on this
+    /// identifier.
     [[nodiscard]] constexpr bool is_about_register(const Frame& frame) const noexcept {
         const std::uint8_t what = frame.data[2];
         return frame.data[0] == motor_id() && frame.data[1] == 0 &&
@@ -154,7 +157,7 @@ class DamiaoMotor {
         const auto reported = static_cast<double>(load_little<float>(frame.data.data() + 4));
         const std::array<double, 3> expected{config_.position_max, config_.velocity_max, config_.torque_max};
         const double described = expected[static_cast<std::size_t>(index)];
-        const bool agrees = magnitude(reported - described) <= 1e-3 * described; // NaN does not
+        const bool agrees = magnitude(reported - described) <= 1e-3 * described; // false for NaN
         contradicted_[static_cast<std::size_t>(index)] = !agrees;
         return status(agrees ? Reason::ok : Reason::full_scale_contradicted);
     }
@@ -175,7 +178,7 @@ class DamiaoMotor {
         value.position_rad = value.from_zero_rad + config_.zero_rad;
         const double step_rad = 2 * config_.position_max / largest(position_code);
         value.step_rad = magnitude(step_rad / config_.motor_per_joint);
-        value.raw_zero = magnitude(motor_rad) < step_rad; // no code is exactly 0
+        value.raw_zero = magnitude(motor_rad) < step_rad; // no code represents exactly 0
         value.position_reason = condition != Reason::ok                   ? condition
                                 : contradicted_[0]                        ? Reason::full_scale_contradicted
                                 : position_code.is_at_end(data_of(frame)) ? Reason::position_out_of_range
@@ -189,7 +192,7 @@ class DamiaoMotor {
     }
 
     Config config_;
-    std::array<bool, 3> contradicted_{}; ///< the last report of each maximum
+    std::array<bool, 3> contradicted_{}; ///< the last report of each maximum differed
 };
 
 static_assert(JointSource<DamiaoMotor>);

@@ -10,35 +10,35 @@
 
 namespace dfdyn::hal {
 
-/// What a device says about one joint. A value that is not `ok` is not to be used; its number means nothing.
-/// What a frame does not carry is `waiting_for_position` or `no_output`.
+/// Values of one joint in a frame. A value whose reason is not `ok` must not be used; its number is
+/// meaningless. Values that the frame does not carry have the reason `waiting_for_position` or `no_output`.
 struct JointValue {
-    int joint = 0;             ///< of the arm, from base to tip, counted from 0
-    std::int64_t stamp_ns = 0; ///< when it was measured, as far as the device's protocol tells
+    int joint = 0;             ///< joint of the arm, counted from 0 at the base
+    std::int64_t stamp_ns = 0; ///< time of measurement, as far as the protocol defines it
     Reason position_reason = Reason::waiting_for_position;
     double position_rad = 0;
     bool raw_zero =
-        false; ///< the device sent a position of 0, before any zero or scale: perhaps it has none yet
+        false; ///< the device sent position 0, before any zero or scale; it may have no position yet
     Reason effort_reason = Reason::no_output;
-    double effort = 0;        ///< torque (N·m) or motor current (A), whichever the device measures
-    double step_rad = 0;      ///< one count of the position
-    double wrap_rad = 0;      ///< what the position's integer holds before it starts again; 0: endless
-    double from_zero_rad = 0; ///< from where the device's own number is 0
+    double effort = 0;        ///< torque (N·m) or motor current (A), depending on the device
+    double step_rad = 0;      ///< size of one count of the position
+    double wrap_rad = 0;      ///< range of the position's integer before it wraps; 0: it does not wrap
+    double from_zero_rad = 0; ///< position relative to the device's own zero
 };
 
-/// Marks a joint of a device that the arm does not have.
+/// Marks a joint of a device that is not a joint of the arm.
 inline constexpr int unused_joint = -1;
 
-/// What a decoder makes of one frame.
+/// Result of decoding one frame.
 struct Decoded {
     enum class Kind : std::uint8_t {
-        nothing, ///< not for this device, or a message of it that says nothing about a value
-        values,  ///< `joints` entries of `joint`; an entry without a position or effort says why
+        nothing, ///< a frame of another device, or one without information about values
+        values,  ///< `joints` entries of `joint`; an entry without a position or effort has the reason
         part,    ///< frame number `part` of a wrench, to be paired with the other one
-        status,  ///< the device's condition is now `reason`; its values carry it from here on
-        sync,    ///< the moment at which synchronous devices measure
-        lost,    ///< the device says that it lost messages
-        rejected ///< one of its identifiers, but not a frame that it sends: `reason` says why
+        status,  ///< the condition of the device is `reason` from now on, and its values carry it
+        sync,    ///< the time at which synchronous devices measure
+        lost,    ///< the device reports that it lost messages
+        rejected ///< one of its identifiers, but not a frame that the device sends; the cause is `reason`
     };
     Kind kind = Kind::nothing;
     Reason reason = Reason::ok;
@@ -50,8 +50,8 @@ struct Decoded {
 /// Force (N) and torque (N·m) in the sensor's frame: fx fy fz mx my mz.
 using Wrench = std::array<double, 6>;
 
-/// What a pair of frames says. `raw` are the numbers of the frames before any scaling, for whoever wants to
-/// know whether they move.
+/// A wrench decoded from a pair of frames. `raw` contains the numbers of the frames before any scaling, so
+/// that a frozen sensor can be detected.
 struct WrenchReading {
     Reason reason = Reason::ok;
     std::array<std::int32_t, 6> raw{};
@@ -64,13 +64,12 @@ struct FrameList {
     int count = 0;
 };
 
-/// A device (or board of a device) that reports joint positions, and perhaps efforts.
-/// - `joints`: how many at most.
-/// - `decode(frame)`: what the frame says. Any frame may be offered, also one that is not its own.
-/// - `claims(id)`: whether it is this device that sends the standard identifier; no other may.
-/// - `encode(values)`: the frames that the device sends for these values, one for each of its joints in its
-/// own
-///   order, with its quantisation and saturation: what a simulated device sends.
+/// A device, or one board of a device, that reports joint positions and possibly efforts.
+/// - `joints`: the largest number of joints.
+/// - `decode(frame)`: decodes any frame, including frames of other devices.
+/// - `claims(id)`: returns true if this device, and no other, may send the standard identifier.
+/// - `encode(values)`: the frames that the device sends for these values, with its quantisation and
+///   saturation; one value for each of its joints, in its own order. For simulated devices.
 template <class S>
 concept JointSource = requires(S source, const S constant, const Frame& frame, std::uint32_t id,
                                const std::array<JointValue, static_cast<std::size_t>(S::joints)>& values) {
@@ -82,11 +81,11 @@ concept JointSource = requires(S source, const S constant, const Frame& frame, s
     noexcept->std::same_as<FrameList>;
 };
 
-/// A force/torque sensor. Every one on CAN sends a wrench as two frames.
-/// - `decode(frame)`: part 0 or 1 of a wrench, or anything else. What the parts say is read once they are
-/// paired.
-/// - `wrench(first, second)`: the reading of two frames that `decode` called part 0 and part 1.
-/// - `claims`, `encode`: as of a JointSource.
+/// A force/torque sensor. Every CAN sensor sends a wrench as two frames.
+/// - `decode(frame)`: part 0 or 1 of a wrench, or any other result. The values are read once the parts are
+///   paired.
+/// - `wrench(first, second)`: the reading from two frames that `decode` identified as part 0 and part 1.
+/// - `claims`, `encode`: like those of a JointSource.
 template <class S>
 concept WrenchSource = requires(S source, const S constant, const Frame& frame, std::uint32_t id,
                                 const Wrench& value) {
@@ -100,12 +99,12 @@ concept WrenchSource = requires(S source, const S constant, const Frame& frame, 
     noexcept->std::same_as<FrameList>;
 };
 
-/// Whether the frame is on this standard identifier and not an error frame.
+/// Returns true if the frame has this standard identifier and is not an error frame.
 [[nodiscard]] constexpr bool has_id(const Frame& frame, std::uint32_t id) noexcept {
     return !frame.error && !frame.extended && frame.id == id;
 }
 
-/// What is wrong with a frame that should be a classic data frame of exactly `length` bytes.
+/// Checks that the frame is a classic data frame of exactly `length` bytes. Returns ok or the reason.
 [[nodiscard]] constexpr Reason check_form(const Frame& frame, int length) noexcept {
     if (frame.remote || frame.fd) {
         return Reason::wrong_frame_type;
@@ -127,7 +126,7 @@ concept WrenchSource = requires(S source, const S constant, const Frame& frame, 
     return decoded;
 }
 
-/// Frame number `part` of a wrench.
+/// Result for frame number `part` of a wrench.
 [[nodiscard]] constexpr Decoded wrench_part(int part) noexcept {
     Decoded decoded;
     decoded.kind = Decoded::Kind::part;
@@ -135,7 +134,7 @@ concept WrenchSource = requires(S source, const S constant, const Frame& frame, 
     return decoded;
 }
 
-/// An empty classic data frame.
+/// Returns a classic data frame of zeros.
 [[nodiscard]] constexpr Frame make_frame(std::uint32_t id, int length) noexcept {
     Frame frame;
     frame.id = id;

@@ -7,9 +7,9 @@
 
 namespace dfdyn::hal {
 
-/// What a device says of itself in its heartbeat, and whether it still says it. With a timeout of 0 no
-/// heartbeat is expected; one that comes counts for `unexpected_lifetime_ns`, so that a single frame of a
-/// device that sends no heartbeat does not refuse its values for ever.
+/// Condition of a device according to its heartbeat, with a timeout. A timeout of 0 means that no heartbeat
+/// is expected. One that arrives nevertheless is valid for `unexpected_lifetime_ns`, so that a single frame
+/// of a device that sends no heartbeats does not invalidate its values forever.
 class Heartbeat {
   public:
     static constexpr std::int64_t unexpected_lifetime_ns = 3'000'000'000;
@@ -22,7 +22,7 @@ class Heartbeat {
         condition_ = condition;
     }
 
-    /// For a value measured at `stamp_ns`.
+    /// Returns the reason for a value measured at `stamp_ns`.
     [[nodiscard]] constexpr Reason reason(std::int64_t stamp_ns) const noexcept {
         const std::int64_t age_ns = stamp_ns - stamp_ns_;
         if (!expected()) {

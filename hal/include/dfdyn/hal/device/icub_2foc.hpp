@@ -9,26 +9,24 @@
 
 namespace dfdyn::hal::icub {
 
-/// An iCub motor board of the 2FOC/AMC family: one motor a board; its current is the effort.
+/// An iCub motor board of the 2FOC/AMC family, with one motor. Its effort is the motor current. Frames by
+/// identifier, where A is the address; contents are little-endian:
+/// - 0x100 + 16 A, 8 bytes: current (mA) int16, velocity int16, position int32 in 1/65536 of a turn
+/// - 0x103 + 16 A, STATUS, 8 bytes: mode, encoder errors, PWM (2 bytes), fault word (4 bytes)
 ///
-/// | id (A: address) | length | content, little-endian |
-/// | --- | --- | --- |
-/// | 0x100 + 16 A | 8 | current (mA) int16, velocity int16, position int32 in 1/65536 of a turn |
-/// | 0x103 + 16 A STATUS | 8 | mode, encoder errors, PWM (2 bytes), fault word (4 bytes) |
-///
-/// From a STATUS with encoder errors on, positions carry `encoder_fault`; from one with a fault word that is
-/// not 0, currents carry `device_fault`; to the next without. A current at an end of its 16 bits carries
-/// `output_saturated`.
+/// Positions carry `encoder_fault` after a STATUS with encoder errors until one without. Currents carry
+/// `device_fault` after a STATUS with a nonzero fault word until one with 0. A current at an end of its 16
+/// bits carries `output_saturated`.
 class FocBoard {
   public:
     static constexpr int joints = 1;
 
     struct Config {
         int address = 1;
-        int joint = 0; ///< of the arm, from 0
+        int joint = 0; ///< joint of the arm, from 0
         double motor_per_joint =
-            1;               ///< transmission: turns of the encoder per turn of the joint, with its sign
-        double zero_rad = 0; ///< of the joint where the encoder shows 0
+            1; ///< ratio of the transmission: turns of the encoder per turn of the joint, with its sign
+        double zero_rad = 0; ///< position of the joint where the encoder reports 0
     };
 
     explicit constexpr FocBoard(const Config& config) noexcept : config_(config) {}
@@ -57,7 +55,7 @@ class FocBoard {
         return frames;
     }
 
-    /// The STATUS that the board sends with these errors.
+    /// Returns the STATUS frame that the board sends for these errors.
     [[nodiscard]] constexpr Frame encode_status(std::uint8_t encoder_errors,
                                                 std::uint32_t faults) const noexcept {
         Frame frame = make_frame(id_of(status_type), 8);

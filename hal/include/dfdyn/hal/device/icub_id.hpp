@@ -5,8 +5,9 @@
 
 namespace dfdyn::hal::icub {
 
-/// Identifiers of the iCub's CAN protocol: class (bits 10…8), address of the sender (7…4), and (3…0) the type
-/// of a periodic message, or the destination of a polling one. Boards have addresses 1 … 14; the host is 0.
+/// Identifiers of the iCub's CAN protocol: message class (bits 10…8), address of the sender (7…4), and in
+/// bits 3…0 the type of a periodic message or the destination of a polling message. Boards have addresses 1 …
+/// 14; the host has address 0.
 inline constexpr std::uint32_t periodic_motor_class = 0x100;
 inline constexpr std::uint32_t polling_analog_class = 0x200;
 inline constexpr std::uint32_t periodic_analog_class = 0x300;

@@ -8,28 +8,26 @@
 
 namespace dfdyn::hal::icub {
 
-/// The iCub's force/torque board: strain and strain2.
+/// The iCub's force/torque board (strain, strain2). Frames by identifier, where A is the address:
+/// - 0x30A + 16 A, 6 or 7 bytes: force x y z: u16 little-endian, offset binary (0x8000 is 0)
+/// - 0x30B + 16 A, 6 or 7 bytes: torque x y z in the same format
+/// - 0x200 + A, to the board, 2 bytes: 0x18, channel: requests a full scale
+/// - 0x200 + 16 A, from the board, 4 bytes: 0x18, set and channel (nibbles), full scale (N, N·m) u16
+///   big-endian
 ///
-/// | id (A: address) | length | content |
-/// | --- | --- | --- |
-/// | 0x30A + 16 A | 6 or 7 | force x y z: u16 little-endian, offset binary (0x8000 is 0) |
-/// | 0x30B + 16 A | 6 or 7 | torque x y z, likewise |
-/// | 0x200 + A, to the board | 2 | 0x18, channel: asks for a full scale |
-/// | 0x200 + 16 A, from it | 4 | 0x18, set and channel (nibbles), full scale (N, N·m) u16 big-endian |
+/// The seventh byte is present only while a strain gauge is saturated. The board then repeats its last good
+/// wrench, so such a frame is old regardless of its time stamp. A gauge affects all six values. There is no
+/// wrench before all six full scales are known: send `request_full_scale` until `full_scale().reason()` is
+/// ok.
 ///
-/// The seventh byte comes only while a strain gauge is saturated; the board then sends its last good wrench
-/// once more, so that such a frame is old whatever its time. A gauge takes part in all six values. No wrench
-/// before all six full scales are known: ask for them with `request_full_scale` until `full_scale().reason()`
-/// is ok.
-///
-/// A strain2 has several sets of calibration. A reply counts only if it is about the set in use, which is
-/// number 0 in requests and replies, or about `use_calibration_set`. One about another set, which some other
-/// program asked for, is counted (`other_sets`) and changes nothing.
+/// A strain2 has several calibration sets. A reply is used only if it belongs to the set in use, which is
+/// number 0 in requests and replies, or the number given to `use_calibration_set`. A reply about another set,
+/// requested by another program, is counted (`other_sets`) and changes nothing.
 class StrainBoard {
   public:
     using FullScale = FullScaleGate<6>;
 
-    /// Full scales that a sensor of an arm can have. The board's own default, 32767, is none.
+    /// Plausible full scales of a sensor in an arm. The board's factory default, 32767, is not plausible.
     static constexpr FullScale::Ranges plausible_ranges{
         {{10, 10000}, {10, 10000}, {10, 10000}, {0.5, 1000}, {0.5, 1000}, {0.5, 1000}}};
 
@@ -64,7 +62,7 @@ class StrainBoard {
         return reading;
     }
 
-    /// Asks the board for the full scale of a channel, 0 … 5.
+    /// Returns the frame that requests the full scale of a channel, 0 … 5.
     [[nodiscard]] constexpr Frame request_full_scale(int channel) const noexcept {
         Frame frame = make_frame(polling_analog_class | (static_cast<std::uint32_t>(address_) & 0xFU), 2);
         frame.data[0] = get_full_scale;
@@ -74,20 +72,20 @@ class StrainBoard {
 
     [[nodiscard]] constexpr const FullScale& full_scale() const noexcept { return full_scale_; }
 
-    /// The full scale of a channel, 0 … 5, as described: reports of the board have to agree with it.
+    /// Sets the described full scale of a channel, 0 … 5. The board's reports must agree with it.
     constexpr void describe_full_scale(int channel, double full_scale) noexcept {
         full_scale_.describe(channel, full_scale);
     }
 
-    /// The number of the set in use, where the board's replies name it: 1 … 15; 0: they do not.
+    /// Sets the number of the calibration set in use: 1 … 15, or 0 if the board's replies do not contain it.
     constexpr void use_calibration_set(int set) noexcept { set_ = set; }
 
-    /// How many full scales of other sets, different from those in use, were reported, and the last one's
-    /// set.
+    /// Number of reported full scales of other sets that differ from those in use, and the set of the last
+    /// one.
     [[nodiscard]] constexpr std::uint64_t other_sets() const noexcept { return other_sets_; }
     [[nodiscard]] constexpr int last_other_set() const noexcept { return last_other_set_; }
 
-    /// The board's answer to such a request, about a set of its calibration.
+    /// Encodes the board's answer to such a request, for a calibration set.
     [[nodiscard]] Frame encode_full_scale(int channel, double full_scale, int set = 0) const noexcept {
         Frame frame = make_frame(reply_id(), 4);
         frame.data[0] = get_full_scale;
@@ -96,8 +94,8 @@ class StrainBoard {
         return frame;
     }
 
-    /// With the full scales that it knows; all zero before. Beyond them: at the end of the range, as
-    /// saturated.
+    /// Encodes a wrench with the known full scales. All values are zero before these are known. Values beyond
+    /// the full scale are clamped and marked as saturated.
     [[nodiscard]] FrameList encode(const Wrench& value) const noexcept {
         bool beyond = false;
         for (std::size_t i = 0; i < 6; ++i) {
@@ -106,7 +104,7 @@ class StrainBoard {
         return encode(value, beyond && full_scale_.reason() == Reason::ok);
     }
 
-    /// What a saturated board sends: pass it the last good wrench.
+    /// Encodes the frames of a saturated board; `value` is the last good wrench.
     [[nodiscard]] FrameList encode(const Wrench& value, bool saturated) const noexcept {
         FrameList frames;
         frames.count = 2;
@@ -127,7 +125,7 @@ class StrainBoard {
   private:
     static constexpr std::uint8_t get_full_scale = 0x18;
     static constexpr std::uint8_t one_channel_high =
-        0b0000'1010; // some channel: high; the frame's first: high
+        0b0000'1010; // two bits each: some channel is too high, the first channel of the frame is too high
     static constexpr int half_range = 0x8000;
 
     [[nodiscard]] constexpr std::uint32_t force_id() const noexcept {

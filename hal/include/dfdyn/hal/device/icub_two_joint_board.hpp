@@ -9,24 +9,23 @@
 
 namespace dfdyn::hal::icub {
 
-/// One joint of an iCub motor board, in the words of the robot's configuration files.
+/// One joint of an iCub motor board, with the terms of the robot's configuration files.
 struct EncoderScale {
-    int joint = unused_joint;    ///< of the arm, from 0
-    double ticks_per_degree = 1; ///< `Encoder`; its sign is the direction; not 0
+    int joint = unused_joint;    ///< joint of the arm, from 0
+    double ticks_per_degree = 1; ///< `Encoder`; its sign gives the direction; not 0
     double zero_deg = 0;         ///< `Zeros`: angle = ticks / ticks_per_degree - zero
 };
 
-/// An iCub motor board of the MC4/BLL/DSP family: two joints a board.
+/// An iCub motor board of the MC4/BLL/DSP family, with two joints. Frames by identifier, where A is the
+/// address:
+/// - 0x101 + 16 A, POSITION, 8 bytes: ticks of joint A and of joint B, int32
+/// - 0x103 + 16 A, STATUS, 8 bytes: flags A, mode A, flags B, mode B, CAN status, board status, error
+///   counters
+/// - 0x105 + 16 A, OVERFLOW, any length: the board lost messages
 ///
-/// | id (A: address) | length | content, little-endian |
-/// | --- | --- | --- |
-/// | 0x101 + 16 A POSITION | 8 | ticks of joint A and of joint B, int32 |
-/// | 0x103 + 16 A STATUS | 8 | flags A, mode A, flags B, mode B, CAN status, board status, error counters |
-/// | 0x105 + 16 A OVERFLOW | any | the board lost messages |
-///
-/// Positions carry `encoder_fault` from a STATUS with a joint's bit 0x20 (absolute) or 0x40 (optical encoder)
-/// to the next without. The board has no efforts here. Other faults of the motor say nothing about the
-/// position.
+/// Positions carry `encoder_fault` after a STATUS with the joint's bit 0x20 (absolute encoder) or 0x40
+/// (optical encoder) until one without. The board reports no efforts. Other faults of the motor do not affect
+/// the position.
 class TwoJointBoard {
   public:
     static constexpr int joints = 2;
@@ -65,7 +64,7 @@ class TwoJointBoard {
         return frames;
     }
 
-    /// The STATUS that the board sends with these flags of its joints.
+    /// Returns the STATUS frame that the board sends for these flags of its joints.
     [[nodiscard]] constexpr Frame encode_status(std::uint8_t flags_a, std::uint8_t flags_b) const noexcept {
         Frame frame = make_frame(id_of(status_type), 8);
         frame.data[0] = flags_a;

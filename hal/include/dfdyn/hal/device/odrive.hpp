@@ -9,36 +9,34 @@
 
 namespace dfdyn::hal {
 
-/// Which firmware an ODrive has: they use byte 6 of the heartbeat, and the bits of the error word, for
-/// different things.
+/// Firmware version of an ODrive. The versions differ in the meaning of byte 6 of the heartbeat and of the
+/// bits of the error word.
 enum class OdriveFirmware : std::uint8_t {
-    any,  ///< decides by what both have in common: in both, no encoder is in error while the error word is 0
+    any,  ///< uses the common part: in both versions no encoder has an error while the error word is 0
     v0_5, ///< 0.5.1 to 0.5.6
     v0_6  ///< 0.6 and later: ODrive Pro, S1, Micro
 };
 
-/// An ODrive axis that speaks CANSimple.
+/// An ODrive axis with the CANSimple protocol. Frames by identifier, where N is the node; contents are
+/// little-endian:
+/// - 32 N + 0x09, 8 bytes: encoder estimates: position (turns), velocity (turns/s), float
+/// - 32 N + 0x01, 8 bytes, heartbeat of 0.5: axis error u32, state, flags: motor, encoder, controller
+/// - 32 N + 0x01, 8 bytes, heartbeat of 0.6: axis error u32, state, result of the procedure, trajectory done
 ///
-/// | id (N: node) | length | content, little-endian |
-/// | --- | --- | --- |
-/// | 32 N + 0x09 | 8 | encoder estimates: position (turns), velocity (turns/s), float |
-/// | 32 N + 0x01 | 8 | heartbeat of 0.5: axis error u32, state, flags: motor, encoder, controller |
-/// | 32 N + 0x01 | 8 | heartbeat of 0.6: axis error u32, state, result of the procedure, trajectory done |
-///
-/// An estimate that the axis does not have is sent as 0.0. So positions are good only while the heartbeat's
-/// error word is 0, and a 0.0 that follows another estimate carries `encoder_fault`: the heartbeat comes
-/// later. A fault ends with the first heartbeat without (`clear_errors`). Remote frames are the host's
-/// requests and are ignored.
+/// The axis sends 0.0 for an estimate that it does not have. Positions are therefore valid only while the
+/// error word of the heartbeat is 0. A 0.0 after a nonzero estimate carries `encoder_fault`, because the
+/// heartbeat arrives later. A fault ends with the first heartbeat without it (`clear_errors`). Remote frames
+/// are the host's requests and are ignored.
 class OdriveAxis {
   public:
     static constexpr int joints = 1;
 
     struct Config {
         int node = 0;                                    ///< 0 … 63
-        int joint = 0;                                   ///< of the arm, from 0
-        double motor_per_joint = 1;                      ///< transmission, with its sign
-        double zero_rad = 0;                             ///< of the joint where the estimate is 0
-        std::int64_t heartbeat_timeout_ns = 250'000'000; ///< it comes every 100 ms by default
+        int joint = 0;                                   ///< joint of the arm, from 0
+        double motor_per_joint = 1;                      ///< ratio of the transmission, with its sign
+        double zero_rad = 0;                             ///< position of the joint where the estimate is 0
+        std::int64_t heartbeat_timeout_ns = 250'000'000; ///< the default heartbeat period is 100 ms
         OdriveFirmware firmware = OdriveFirmware::any;
     };
 
@@ -70,7 +68,7 @@ class OdriveAxis {
         return frames;
     }
 
-    /// Of firmware 0.5.
+    /// Encodes a heartbeat of firmware 0.5.
     [[nodiscard]] constexpr Frame encode_heartbeat(bool encoder_error) const noexcept {
         Frame frame = make_frame(id_of(heartbeat_command), 8);
         store_little(frame.data.data(), encoder_error ? encoder_failed : 0U);
@@ -81,10 +79,11 @@ class OdriveAxis {
   private:
     static constexpr std::uint32_t heartbeat_command = 0x01;
     static constexpr std::uint32_t estimates_command = 0x09;
-    static constexpr std::size_t encoder_error_byte = 6;       ///< of 0.5
-    static constexpr std::uint32_t encoder_failed = 0x100;     ///< bits of the error word: of 0.5
-    static constexpr std::uint32_t unknown_position = 0x80000; ///< of 0.5
-    static constexpr std::uint32_t missing_estimate = 0x8;     ///< of 0.6; 0.5 does not use it
+    static constexpr std::size_t encoder_error_byte = 6;       ///< firmware 0.5
+    static constexpr std::uint32_t encoder_failed = 0x100;     ///< bit of the error word of firmware 0.5
+    static constexpr std::uint32_t unknown_position = 0x80000; ///< bit of the error word of firmware 0.5
+    /// bit of the error word of firmware 0.6; unused in 0.5
+    static constexpr std::uint32_t missing_estimate = 0x8;
     static constexpr double radians_per_turn = 2 * std::numbers::pi;
 
     [[nodiscard]] constexpr std::uint32_t id_of(std::uint32_t command) const noexcept {
@@ -110,7 +109,7 @@ class OdriveAxis {
                                                       : heartbeat_.reason(frame.stamp_ns);
         value.position_rad = turns * radians_per_turn / config_.motor_per_joint + config_.zero_rad;
         value.from_zero_rad = value.position_rad - config_.zero_rad;
-        constexpr double float_step = 1.2e-7; // of a number near 1
+        constexpr double float_step = 1.2e-7; // resolution of a float near 1
         value.step_rad =
             float_step * magnitude(radians_per_turn / config_.motor_per_joint) * (1 + magnitude(turns));
         return decoded;

@@ -6,15 +6,13 @@
 
 namespace dfdyn::hal {
 
-/// A Robotous RFT sensor. A record of 16 bytes over two frames of 8; the two bytes of Tx are in different
-/// frames:
+/// A Robotous RFT sensor. It sends a record of 16 bytes in two frames of 8; the two bytes of Tx are in
+/// different frames. Contents are big-endian:
+/// - first identifier: 0x0B, Fx, Fy, Fz (int16), high byte of Tx
+/// - second identifier: low byte of Tx, Ty, Tz (int16), overload bits, 2 bytes
 ///
-/// | frame | content, big-endian |
-/// | --- | --- |
-/// | first identifier | 0x0B, Fx, Fy, Fz (int16), high byte of Tx |
-/// | second identifier | low byte of Tx, Ty, Tz (int16), overload bits, 2 bytes |
-///
-/// The identifiers are configured in the sensor. Overload: a bit per axis, at 120 % of its range.
+/// The identifiers are configured in the sensor. Each axis has an overload bit, which is set at 120 % of its
+/// range.
 class RobotousRft {
   public:
     struct Config {
@@ -30,7 +28,7 @@ class RobotousRft {
         return id == config_.first_id || id == config_.second_id;
     }
 
-    /// Replies to other commands, whose first byte differs, are nothing.
+    /// Ignores replies to other commands, which have another first byte.
     [[nodiscard]] constexpr Decoded decode(const Frame& frame) const noexcept {
         const bool first = has_id(frame, config_.first_id);
         if (!first && !has_id(frame, config_.second_id)) {
@@ -57,14 +55,14 @@ class RobotousRft {
         return reading;
     }
 
-    /// Asks the sensor to send on and on; `command_id` as configured in it.
+    /// Returns the frame that starts continuous transmission; `command_id` as configured in the sensor.
     [[nodiscard]] static constexpr Frame start(std::uint32_t command_id) noexcept {
         Frame frame = make_frame(command_id, 8);
         frame.data[0] = continuous_output;
         return frame;
     }
 
-    /// An axis at the end of its numbers is shown as overloaded.
+    /// Encodes a wrench. An axis at the end of its integer range is marked as overloaded.
     [[nodiscard]] FrameList encode(const Wrench& value) const noexcept {
         std::array<std::uint8_t, 16> record{continuous_output};
         for (std::size_t i = 0; i < 6; ++i) {

@@ -13,9 +13,10 @@ namespace dfdyn::hal {
 
 using SixValues = std::array<double, 6>;
 
-/// Solves matrix * x = right by elimination with the largest pivot; nothing when the matrix is singular or
-/// holds what is no finite number. Some 150 multiply-adds. Written out because Eigen's solver takes 7 KB of
-/// an image's flash, and seconds of every source that knows a sensor.
+/// Solves matrix * x = right by Gaussian elimination with partial pivoting. Returns nothing if the matrix is
+/// singular or contains a number that is not finite. About 150 multiply-adds. Eigen's solver is not used
+/// because it takes 7 KB of flash and adds seconds to the compile time of every source that includes a
+/// sensor.
 [[nodiscard]] inline std::optional<SixValues> solve(std::array<SixValues, 6> matrix,
                                                     SixValues right) noexcept {
     for (std::size_t column = 0; column < 6; ++column) {
