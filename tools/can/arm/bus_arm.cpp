@@ -9,7 +9,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Measurements that are kept of each source: enough for the delays of any timer.
+/// Measurements stored per source; sufficient for the delay of any timer.
 constexpr int capacity = 64;
 
 using Wrenches = hal::WrenchOutput<AnySensor, capacity>;
@@ -109,7 +109,7 @@ class BusArmOf final : public BusArm {
     std::optional<std::uint32_t> colliding_id() const override { return assembly_.colliding_id(); }
 
   private:
-    /// No arm has more boards than joints; places that are left have no board.
+    /// An arm has no more boards than joints; the remaining places are empty.
     using Assembly = hal::SampleAssembly<double, n, AnyBoard, n, Output, capacity>;
 
     static typename Assembly::Config config_of(const BusDescription& description) {

@@ -10,28 +10,28 @@
 
 namespace dfdyn::tools {
 
-/// Makes the samples of a stream of frames when they are due, by the trigger of a bus description; see
+/// Assembles samples from a stream of frames at the times given by the trigger of a bus description; see
 /// hal::Sampler.
 class BusSampler {
   public:
-    /// Gets every sample, with positions or without, in the order of time.
+    /// Called for every sample in the order of time, with or without positions.
     using OnSample = std::function<void(const BusSample&)>;
 
     static constexpr std::int64_t longest_silence_ns = hal::Sampler<BusArm>::longest_silence_ns;
 
     BusSampler(const BusDescription& description, OnSample on_sample);
 
-    /// The next frame; state and counters of its bus as they are with it.
+    /// Takes the next frame with the state and counters of its bus at that time.
     void take(const hal::Frame& frame, hal::BusState state, const hal::BusCounters& counters);
 
-    /// No frame will come with a stamp up to `stamp_ns`: what is due by then is assembled. A frame must have
-    /// come.
+    /// Declares that no further frame has a time stamp up to `stamp_ns`, and assembles the samples that are
+    /// due by then. Requires at least one frame.
     void advance_to(std::int64_t stamp_ns);
 
-    /// No frame will come any more: samples that wait for a missing value are given without.
+    /// Declares the end of the frames. Samples that wait for a missing value are delivered without it.
     void finish();
 
-    /// The time of the first frame; 0 before.
+    /// Time of the first frame; 0 before it.
     std::int64_t start_ns() const noexcept { return sampler_.start_ns(); }
     bool started() const noexcept { return sampler_.started(); }
     std::uint64_t frames() const noexcept { return frames_; }

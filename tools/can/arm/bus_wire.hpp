@@ -9,24 +9,25 @@
 
 namespace dfdyn::tools {
 
-/// Bits of a classic frame on the wire, with as many stuffed bits as there can be and the space before the
-/// next one.
+/// Number of bits of a classic frame on the wire, with the largest number of stuff bits and the interframe
+/// space.
 int frame_bits(const hal::Frame& frame);
 
-/// The wire of a CAN bus: one frame at a time, of those that wait the one with the lowest identifier first.
+/// The wire of a CAN bus. It carries one frame at a time: among the waiting frames, the one with the lowest
+/// identifier.
 class BusWire {
   public:
-    /// Gets each frame, stamped with its end, in order.
+    /// Called for each frame in order; its time stamp is the time of its end.
     using OnFrame = std::function<void(const hal::Frame&)>;
 
     BusWire(double bit_rate, OnFrame on_frame);
 
-    /// A frame that its sender wants to send at `ready_ns`. Frames of one identifier keep their order.
+    /// Adds a frame that its sender wants to send at `ready_ns`. Frames with one identifier keep their order.
     void offer(const hal::Frame& frame, std::int64_t ready_ns);
 
-    /// Sends what begins before `time_ns`; nothing may be offered for an earlier time any more.
+    /// Sends all frames that begin before `time_ns`. Later offers must not be for an earlier time.
     void send_before(std::int64_t time_ns);
-    /// Sends all that was offered; returns the end of the last frame.
+    /// Sends all offered frames and returns the end of the last one.
     std::int64_t send_all();
 
     std::uint64_t bits() const noexcept { return bits_; }
@@ -41,8 +42,8 @@ class BusWire {
 
     double bit_rate_;
     OnFrame on_frame_;
-    std::vector<Waiting> waiting_; ///< in the order of their offers
-    std::int64_t free_ns_;         ///< the wire is free from then on
+    std::vector<Waiting> waiting_; ///< in the order of the offers
+    std::int64_t free_ns_;         ///< time from which the wire is free
     std::uint64_t bits_ = 0;
 };
 

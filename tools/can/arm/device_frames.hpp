@@ -9,32 +9,33 @@
 
 namespace dfdyn::tools {
 
-/// What the devices of a bus description send, with their quantisation and saturation: the frames of
-/// simulated devices, or of a recording that is put on a bus. Frames have no stamps; whoever sends them
-/// stamps them.
+/// Frames that the devices of a bus description send, with their quantisation and saturation. For simulated
+/// devices, and for a recording that is replayed on a bus. The frames have no time stamps; the caller stamps
+/// them.
 class DeviceFrames {
   public:
-    /// Throws InputError where a sensor's full scale or calibration is not in the description: it cannot send
-    /// without.
+    /// Throws InputError if the description lacks the full scale or calibration of a sensor, without which it
+    /// cannot send.
     explicit DeviceFrames(const BusDescription& description);
 
-    /// Positions (rad, all joints) and, where the joints measure the outputs, efforts; else none.
+    /// Frames of the joints from positions (rad, all joints) and efforts. `effort` is empty unless the joints
+    /// measure the outputs.
     std::vector<hal::Frame> joints(std::span<const double> position, std::span<const double> effort) const;
 
-    /// The sensor's frames of a wrench (6 values); none without a sensor.
+    /// Frames of the sensor for a wrench (6 values: N, N·m); empty without a sensor.
     std::vector<hal::Frame> wrench(std::span<const double> wrench) const;
 
-    /// That synchronous drives are to measure; none if no drive does.
+    /// The frame that triggers the measurement of synchronous drives; none if no drive is synchronous.
     std::optional<hal::Frame> sync() const;
 
-    /// What devices send unasked, every `heartbeat_period_ns`, to say that they are well.
+    /// Status frames that devices send by themselves every `heartbeat_period_ns`.
     std::vector<hal::Frame> heartbeats() const;
     static constexpr std::int64_t heartbeat_period_ns = 100'000'000;
 
-    /// The answer to a request of the host, as of BusArm::requests.
+    /// The reply to a request of the host (see BusArm::requests).
     std::optional<hal::Frame> answer(const hal::Frame& request) const;
 
-    /// The answers to all of them.
+    /// The replies to all such requests.
     std::vector<hal::Frame> full_scales() const;
 
   private:

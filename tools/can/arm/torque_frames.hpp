@@ -8,21 +8,21 @@
 
 namespace dfdyn::tools {
 
-/// Torque commands from a loop to the devices of a bus description, both sides.
+/// Encodes and decodes torque commands from a control loop to the devices of a bus description.
 ///
-/// - Boards whose family has a command of joint torques (Board::torque_command): that command.
-/// - All other joints: `dfdyn`'s own frames, since those families have no public one:
-///   29-bit identifier 0x1DFD000 + k, 8 bytes: the torques of joints 2k+1 and 2k+2 in N·m, float, little
-///   endian; 0 for a joint that is not there.
+/// - Boards of a family with a joint torque command (Board::torque_command) use that command.
+/// - All other joints use frames of `dfdyn`'s own, because their families have no public command: 29-bit
+///   identifier 0x1DFD000 + k, 8 bytes: torques of joints 2k+1 and 2k+2 (N·m, float, little-endian); 0 for a
+///   joint that does not exist.
 class TorqueFrames {
   public:
     explicit TorqueFrames(const BusDescription& description);
 
-    /// Of one torque per joint, N·m. The result lives until the next call.
+    /// Encodes one torque (N·m) per joint. The result is valid until the next call.
     std::span<const hal::Frame> encode(std::span<const double> torque);
 
-    /// Takes the torques that `frame` commands into `torque`; false where it is no command, or commands what
-    /// is not a number.
+    /// Writes the torques commanded by `frame` into `torque`. Returns false if `frame` is not a torque
+    /// command, or if a torque is not a number.
     bool take(const hal::Frame& frame, std::span<double> torque) const;
 
   private:
@@ -33,7 +33,7 @@ class TorqueFrames {
 
     std::size_t joints_;
     std::vector<Drive> drives_;
-    bool own_frames_ = false; ///< for the joints that are on no such board
+    bool own_frames_ = false; ///< some joints are on boards without a torque command
     std::vector<hal::Frame> frames_;
 };
 

@@ -23,12 +23,12 @@ BusCheck::BusCheck(std::optional<BusDescription> description) : description_(std
     }
 }
 
-/// What the description says of each identifier and joint.
+/// Sets the expected streams and joints from the description.
 void BusCheck::describe() {
     arm_ = make_bus_arm(*description_);
     boards_ = description_->boards;
     BusDescription joints = *description_;
-    joints.sensor.reset(); // which need not be able to send
+    joints.sensor.reset(); // the sensor may be unable to send
     const DeviceFrames devices(joints);
     const std::vector<double> zeros(static_cast<std::size_t>(joints.joint_count));
     expect(devices.joints(zeros, zeros), description_->joints.rate_hz);
@@ -58,7 +58,7 @@ void BusCheck::describe() {
     }
 }
 
-/// One after the other where there are several.
+/// Adds `name` to the senders of these frames; several names are separated by commas.
 void BusCheck::name_sender(std::span<const hal::Frame> frames, const std::string& name) {
     for (const hal::Frame& frame : frames) {
         std::string& sender = streams_[{frame.extended, frame.id}].sender;
@@ -84,7 +84,7 @@ bool BusCheck::claimed(const hal::Frame& frame) const {
             (description_->sensor && description_->sensor->claims(frame.id)));
 }
 
-/// Of the host, on the identifier on which the sensor answers.
+/// Returns true if the host sent the frame on the identifier on which the sensor answers.
 bool BusCheck::is_request(const hal::Frame& frame) const {
     return description_ && description_->sensor && (*description_->sensor)->is_request(frame);
 }
@@ -98,7 +98,7 @@ void BusCheck::update(hal::BusState state, const hal::BusCounters& counters) {
     }
 }
 
-/// The bus has been watched until then.
+/// Advances the end of the observed time.
 void BusCheck::pass(std::int64_t time_ns) {
     first_ns_ = started_ ? first_ns_ : time_ns;
     last_ns_ = started_ ? std::max(last_ns_, time_ns) : time_ns;
@@ -159,7 +159,7 @@ void BusCheck::watch_joints(const hal::Frame& frame) {
     }
 }
 
-/// Null where there is no room for another one.
+/// Returns the stream of the frame's identifier; null if there is no room for another stream.
 BusStream* BusCheck::stream_of(const hal::Frame& frame) {
     const BusStreamKey key{frame.extended, frame.id};
     const auto found = streams_.find(key);
@@ -175,7 +175,7 @@ BusStream* BusCheck::stream_of(const hal::Frame& frame) {
     return &stream;
 }
 
-/// What the devices say of themselves, at the sample rate.
+/// Assembles the samples that are due at the sample rate, and counts their reasons.
 void BusCheck::assemble(std::int64_t now_ns) {
     if (now_ns < next_sample_ns_) {
         return;
@@ -218,7 +218,7 @@ bool BusCheck::dropped_all_missing() const {
         missing += stream.missing();
     }
     const std::uint64_t dropped = counters_.dropped + counters_.controller_overruns;
-    return dropped > 0 && 2 * missing <= 3 * dropped; // with what would be missing by chance
+    return dropped > 0 && 2 * missing <= 3 * dropped; // up to 50 % more may be missing by chance
 }
 
 double BusCheck::duration_s() const { return seconds_of(last_ns_ - first_ns_); }

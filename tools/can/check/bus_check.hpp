@@ -18,16 +18,16 @@
 
 namespace dfdyn::tools {
 
-/// Watches a bus: who sends how often, and what the description makes of it; without a description who sends
-/// how steadily. Sends nothing. Stamps count without the jumps of their clock (StreamClock). Memory: at most
-/// `most_streams` identifiers.
+/// Observes a bus and checks who sends how often, and whether the frames agree with the description. Without
+/// a description it checks how regularly each identifier is sent. It sends nothing. Jumps of the clock are
+/// removed from the time stamps (StreamClock). Memory: at most `most_streams` identifiers.
 class BusCheck {
   public:
     static constexpr std::size_t most_streams = 4096;
 
     explicit BusCheck(std::optional<BusDescription> description);
 
-    /// Takes what a bus has, as much as there is room for; whether there was anything.
+    /// Reads the waiting frames, up to the size of its buffer. Returns true if there were any.
     template <hal::Bus B>
     bool take(B& bus, std::span<hal::Frame> room) {
         const std::span<const hal::Frame> frames = bus.drain(room);
@@ -41,42 +41,44 @@ class BusCheck {
         return !frames.empty();
     }
 
-    /// Nothing comes any more; call once, last.
+    /// Declares the end of the frames. Call once, at the end.
     void finish();
 
-    /// Null where nobody described the bus.
+    /// The description; null if there is none.
     const BusDescription* description() const noexcept { return description_ ? &*description_ : nullptr; }
-    double bit_rate() const noexcept { return description_ ? description_->bit_rate : 0; } ///< 0: not known
+    double bit_rate() const noexcept { return description_ ? description_->bit_rate : 0; } ///< 0: unknown
     const BusStreams& streams() const noexcept { return streams_; }
     const hal::BusCounters& counters() const noexcept { return counters_; }
     hal::BusState state() const noexcept { return state_; }
     hal::BusState worst_state() const noexcept { return worst_; }
     const StreamClock& clock() const noexcept { return clock_; }
-    /// Times that a device said that it lost messages.
+    /// Number of times that a device reported lost messages.
     std::uint64_t device_losses() const noexcept;
-    std::uint64_t from_host() const noexcept { return from_host_; } ///< frames of programs of this computer
-    double duration_s() const;                                      ///< of what was watched
-    double age_s(const BusStream& stream) const;                    ///< of its last frame, at the end
-    /// Whether this computer dropped as many frames as all sources together miss.
+    /// frames sent by programs of this computer
+    std::uint64_t from_host() const noexcept { return from_host_; }
+    double duration_s() const;                   ///< duration of the observation
+    double age_s(const BusStream& stream) const; ///< age of the last frame at the end of the observation
+    /// Returns true if frames dropped by this computer explain all missing frames.
     bool dropped_all_missing() const;
-    double load() const;          ///< share of the bit rate that the frames took, each at its worst
-    double expected_load() const; ///< that the description's sources would take; both 0 without a bit rate
+    double load() const; ///< share of the bit rate used by the frames, with worst-case bit stuffing
+    /// share of the bit rate that the described sources would use; both are 0 if the bit rate is unknown
+    double expected_load() const;
 
-    /// Samples assembled, and how many of them had a reason, of the positions or the output.
+    /// Number of assembled samples, and how many of them had a reason for their positions or their output.
     std::uint64_t samples() const noexcept { return samples_; }
     std::uint64_t refused(hal::Reason reason) const;
-    /// Whether the last sample had it.
+    /// Returns true if the last sample had this reason.
     bool still(hal::Reason reason) const;
 
-    /// Of each joint of the description.
+    /// One watch per joint of the description.
     const std::vector<ValueWatch>& joints() const noexcept { return joints_; }
-    /// Times that the device of a joint said that it restarted between its values.
+    /// Number of times that the joint's device reported a restart between its values.
     std::uint64_t restarts(std::size_t joint) const { return restarts_.at(joint); }
-    /// The stream that has a joint's positions; null where there is none.
+    /// The stream with the joint's positions; null if there is none.
     const BusStream* position_stream(std::size_t joint) const;
-    /// The boards as they are after all frames; none without a description.
+    /// The boards after all frames; empty without a description.
     const std::vector<BusBoard>& boards() const noexcept { return boards_; }
-    /// The sensor, likewise; null without one.
+    /// The sensor after all frames; null without one.
     const AnySensor* sensor() const noexcept { return arm_ ? arm_->sensor() : nullptr; }
 
   private:
@@ -98,7 +100,7 @@ class BusCheck {
     std::vector<BusBoard> boards_;
     std::vector<ValueWatch> joints_;
     std::vector<std::uint64_t> restarts_;
-    std::vector<BusStreamKey> position_keys_; ///< of each joint
+    std::vector<BusStreamKey> position_keys_; ///< one per joint
     StreamClock clock_;
     BusStreams streams_;
     hal::BusCounters counters_;
@@ -113,16 +115,16 @@ class BusCheck {
     hal::Reason last_position_ = hal::Reason::ok, last_output_ = hal::Reason::ok;
 };
 
-/// Those of the bus, of each source, of what the devices say, in this order.
+/// Findings about the bus, then about each source, then about what the devices report.
 std::vector<BusFinding> bus_findings(const BusCheck& check);
 
-/// Of each source alone.
+/// Findings about single sources.
 std::vector<BusFinding> source_findings(const BusCheck& check);
 
-/// Of the joints' values, and of what the sensor says of itself.
+/// Findings about the joints' values and about the condition reported by the sensor.
 std::vector<BusFinding> value_findings(const BusCheck& check);
 
-/// The table of sources, the bus, and the findings.
+/// Prints the table of sources, the state of the bus and the findings.
 void print_bus_check(std::ostream& out, const BusCheck& check, std::span<const BusFinding> findings);
 
 } // namespace dfdyn::tools

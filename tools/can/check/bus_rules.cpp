@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be wrong with a bus, and what devices say of themselves, one rule each.
+// Rules for faults of a bus and for conditions reported by devices, one rule each.
 #include "tools/can/check/bus_check.hpp"
 
 #include "tools/base/text/number.hpp"
@@ -14,7 +14,8 @@ namespace {
 
 constexpr double largest_load = 0.8;
 constexpr double largest_unknown_load = 0.1;
-constexpr double least_refused = 0.01; ///< of the samples or frames; for what may happen now and then
+/// share of the samples or frames; for conditions that may occur occasionally
+constexpr double least_refused = 0.01;
 
 std::string counted(std::uint64_t count, const char* of) {
     return count > 0 ? std::to_string(count) + of : std::string();
@@ -93,7 +94,7 @@ std::string repeated_times(const BusCheck& check) {
 struct BusRule {
     const char* name;
     const char* what;
-    std::string (*evidence)(const BusCheck&); ///< empty: all is well
+    std::string (*evidence)(const BusCheck&); ///< empty: no fault
     const char* confirm;
     const char* fix;
 };
@@ -192,7 +193,7 @@ constexpr std::array<DeviceRule, 13> device_rules{{
      "ask the sensor for the full scale of each channel", "correct it in the sensor or the description"},
 }};
 
-/// A source also qualifies after each gap.
+/// Returns true if zero readings are possible. A source also qualifies after each gap.
 bool may_be_zero(const BusCheck& check) {
     return check.sensor() != nullptr || std::ranges::any_of(check.joints(), &ValueWatch::at_zero);
 }
@@ -220,13 +221,13 @@ std::vector<BusFinding> bus_findings(const BusCheck& check) {
         }
     }
     if (is_silent(check)) {
-        return findings; // which of the sources is silent says nothing
+        return findings; // on a silent bus every source is silent
     }
     std::ranges::move(source_findings(check), std::back_inserter(findings));
     std::ranges::move(value_findings(check), std::back_inserter(findings));
     const bool sensor = check.sensor() != nullptr;
     for (const DeviceRule& rule : device_rules) {
-        // Efforts have their own rules, of each joint.
+        // Efforts of joints have their own rules.
         const bool of_sensor =
             rule.reason == hal::Reason::output_saturated || rule.reason == hal::Reason::output_frozen;
         if (holds(rule, check) && (sensor || !of_sensor)) {

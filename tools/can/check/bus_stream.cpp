@@ -11,9 +11,10 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr std::size_t intervals_to_infer = 32;
-constexpr double same_period = 0.3;   ///< of the period: intervals that differ by less are alike
-constexpr double phase_gain = 0.125;  ///< of the phase-locked loop
-constexpr double steady_share = 0.75; ///< of the first intervals
+/// share of the period: intervals that differ by less are considered equal
+constexpr double same_period = 0.3;
+constexpr double phase_gain = 0.125;  ///< gain of the phase-locked loop
+constexpr double steady_share = 0.75; ///< share of the first intervals
 
 } // namespace
 
@@ -44,7 +45,7 @@ void BusStream::take_interval(std::int64_t interval_ns) {
     }
 }
 
-/// The mean of the intervals that are close to the median, if most are.
+/// Infers the period as the mean of the intervals close to the median, if most intervals are.
 void BusStream::infer_period() {
     std::vector<std::int64_t> sorted = first_intervals_;
     std::ranges::sort(sorted);

@@ -13,38 +13,41 @@ namespace dfdyn::tools {
 
 constexpr double seconds_of(std::int64_t ns) noexcept { return 1e-9 * static_cast<double>(ns); }
 
-/// The frames of one identifier: how many, how steadily, and how many of a steady sequence are missing.
+/// Statistics of the frames with one identifier: their number, regularity, and missing frames of a regular
+/// sequence.
 ///
-/// Missing frames are counted against the sequence's phase, which a phase-locked loop follows: an early frame
-/// after a late one is no loss, nor is a sender whose clock differs by 1 %. With `infers` the period
-/// is that of the first frames, if they come steadily.
+/// Missing frames are counted by the phase of the sequence, which a phase-locked loop follows. An early frame
+/// after a late one is therefore not a loss, and a sender whose clock deviates by 1 % loses nothing. With
+/// `infers` the period is taken from the first frames if they are regular.
 class BusStream {
   public:
     std::uint64_t count = 0;
     std::int64_t first_ns = 0, last_ns = 0;
     std::int64_t longest_gap_ns = 0;
-    std::uint64_t rejected = 0;       ///< by the device's decoder
-    std::uint64_t not_increasing = 0; ///< frames with a stamp not after the one before
-    double bits = 0;                  ///< of all, at worst
-    int length = 0;                   ///< of the last frame, or of the one that is expected; bytes
-    bool known = false;               ///< the description says who sends it
-    std::string sender;               ///< such as `joint 2`; empty where that is not known
-    double expected_hz = 0;           ///< 0: not sent steadily, or nobody knows
-    bool infers = false;              ///< `expected_hz` becomes what the first frames show
-    double expected_bits = 0;         ///< per second
-    bool several = false;             ///< more than one frame per period
+    std::uint64_t rejected = 0; ///< frames rejected by the device's decoder
+    /// frames whose time stamp is not later than that of the previous frame
+    std::uint64_t not_increasing = 0;
+    double bits = 0;          ///< bits of all frames, with worst-case bit stuffing
+    int length = 0;           ///< bytes of the last frame, or of the expected one
+    bool known = false;       ///< the description names its sender
+    std::string sender;       ///< such as `joint 2`; empty if unknown
+    double expected_hz = 0;   ///< 0: not sent regularly, or unknown
+    bool infers = false;      ///< `expected_hz` is inferred from the first frames
+    double expected_bits = 0; ///< bits per second
+    bool several = false;     ///< more than one frame per period
 
-    /// Takes a frame of that stamp; `bits`: its length on the wire at worst.
+    /// Takes the next frame. `frame_bits`: its worst-case length on the wire.
     void take(const hal::Frame& frame, double frame_bits);
 
-    double rate_hz() const;  ///< 0 for fewer than two frames
-    double jitter_s() const; ///< standard deviation of the intervals; 0 for fewer than three frames
+    double rate_hz() const;  ///< 0 if there are fewer than two frames
+    double jitter_s() const; ///< standard deviation of the intervals; 0 if there are fewer than three frames
 
-    /// Frames that a steady sender sent and nobody received, outside of gaps of more than `gap_periods`.
+    /// Number of frames that a regular sender sent but nobody received, except in gaps of more than
+    /// `gap_periods`.
     std::uint64_t missing() const;
-    double missing_share() const; ///< of all that were sent
-    /// Whether the sender keeps the expected period: at least half of the intervals are close to it, and
-    /// their mean is within 5 %.
+    double missing_share() const; ///< share of all sent frames
+    /// Returns true if the sender keeps the expected period: at least half of the intervals are close to it,
+    /// and their mean deviates by at most 5 %.
     bool is_regular() const;
     static constexpr double gap_periods = 10;
 
@@ -54,14 +57,16 @@ class BusStream {
     void follow_phase(std::int64_t stamp_ns, std::int64_t interval_ns);
 
     double interval_square_sum_s2_ = 0;
-    std::vector<std::int64_t> first_intervals_; ///< until the period is inferred; at most a few
-    double next_ns_ = 0;                        ///< the next frame of the sequence, after `last_ns`
-    std::int64_t missing_ = 0;                  ///< less the frames that came beside the sequence
-    std::uint64_t followed_ = 0, regular_ = 0;  ///< intervals
-    double regular_periods_ = 0;                ///< sum of those
+    /// first intervals until the period is inferred; at most a few
+    std::vector<std::int64_t> first_intervals_;
+    double next_ns_ = 0;       ///< expected time of the next frame in the sequence, relative to `last_ns`
+    std::int64_t missing_ = 0; ///< minus the frames that arrived in addition to the sequence
+    /// intervals that were followed, and those close to the period
+    std::uint64_t followed_ = 0, regular_ = 0;
+    double regular_periods_ = 0; ///< sum of the regular intervals in periods
 };
 
-/// By extended, identifier.
+/// Extended flag and identifier.
 using BusStreamKey = std::pair<bool, std::uint32_t>;
 using BusStreams = std::map<BusStreamKey, BusStream>;
 std::string id_text(const BusStreamKey& key);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be wrong with one source on a bus, one rule each, and what a person does about it.
+// Rules for faults of one source on a bus, one rule each, with the remedy for the user.
 #include "tools/base/text/number.hpp"
 #include "tools/can/check/bus_check.hpp"
 
@@ -10,15 +10,16 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double least_rate = 0.9;     ///< of the expected one
-constexpr double largest_rate = 1.02;  ///< of the expected one; a device's clock is better
-constexpr double rate_of_two = 1.5;    ///< of the expected one
+constexpr double least_rate = 0.9;     ///< share of the expected rate
+constexpr double largest_rate = 1.02;  ///< ratio to the expected rate; the clock of a device is more accurate
+constexpr double rate_of_two = 1.5;    ///< ratio to the expected rate
 constexpr double largest_gap = 3;      ///< periods
-constexpr double largest_jitter = 0.4; ///< of the period
-constexpr double silent_periods = 10;  ///< before the end
+constexpr double largest_jitter = 0.4; ///< share of the period
+constexpr double silent_periods = 10;  ///< periods before the end
 constexpr double enough_frames = 20;
-constexpr double jitter_of_two = 0.25;   ///< of the period: what two senders of an identifier make of it
-constexpr double least_missing = 0.0005; ///< of the frames; below it a loss is not worth a word
+/// share of the period: typical jitter of two senders with one identifier
+constexpr double jitter_of_two = 0.25;
+constexpr double least_missing = 0.0005; ///< share of the frames; smaller losses are not reported
 constexpr std::uint64_t least_missing_frames = 3;
 
 struct Source {
@@ -34,7 +35,7 @@ struct Source {
     bool stopped() const {
         return stream.expected_hz > 0 && stream.count > 0 && periods(check.age_s(stream)) > silent_periods;
     }
-    /// It sends, and long enough to be judged.
+    /// Returns true if the source is active and has sent enough frames to be judged.
     bool runs() const {
         return stream.expected_hz > 0 && static_cast<double>(stream.count) > enough_frames && !stopped();
     }
@@ -43,15 +44,15 @@ struct Source {
         return is_described() &&
                (ratio() > rate_of_two || (ratio() > largest_rate && jitter_periods() > jitter_of_two));
     }
-    /// Some frames of a sender that keeps its period are missing. What this computer dropped itself is known
-    /// from elsewhere.
+    /// Returns true if frames of a sender that keeps its period are missing. Frames dropped by this computer
+    /// are excluded because they are reported elsewhere.
     bool loses() const {
         return runs() && !collides() && !check.dropped_all_missing() &&
                stream.missing() >= least_missing_frames && stream.missing_share() >= least_missing &&
                (stream.several || stream.is_regular());
     }
     bool slow() const { return is_described() && ratio() < least_rate && !loses() && !has_gaps(); }
-    /// A pause that scattered losses do not explain.
+    /// Returns true if there is a pause that scattered losses do not explain.
     bool has_gaps() const {
         return runs() && !collides() && gap_periods() > (loses() ? BusStream::gap_periods : largest_gap) &&
                stream.is_regular();
@@ -64,7 +65,7 @@ std::string rates(const Source& source) {
            formatted(" where %.4g are described", source.stream.expected_hz);
 }
 
-/// An identifier that nobody described and that looks like a silent one's; null for none.
+/// Returns an undescribed identifier with the properties of a silent described source; null if there is none.
 const BusStreams::value_type* impostor(const Source& source) {
     for (const auto& other : source.check.streams()) {
         const BusStream& stream = other.second;
@@ -82,7 +83,7 @@ struct Rule {
     const char* what;
     bool (*broken)(const Source&);
     std::string (*evidence)(const Source&);
-    const char* confirm; ///< ID stands for the identifier
+    const char* confirm; ///< ID is the placeholder of the identifier
     const char* fix;
 };
 

@@ -8,7 +8,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-/// Stamps wrap instead of overflowing, whatever they are.
+/// Sum modulo 2^64, because time stamps are arbitrary and must not overflow.
 std::int64_t sum(std::int64_t a, std::int64_t b) {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
 }
@@ -64,7 +64,7 @@ void StreamClock::follow(hal::Frame frame) {
     ready_.push_back({frame, false});
 }
 
-/// The first frame of the new clock comes a mean interval after the last of the old one.
+/// Adopts the new clock. Its first frame is placed one mean interval after the last frame of the old clock.
 void StreamClock::adopt() {
     const std::int64_t old_ns = sum(waiting_.front().stamp_ns, offset_ns_);
     const std::int64_t mean_ns = difference(waiting_.back().stamp_ns, waiting_.front().stamp_ns) /

@@ -9,35 +9,36 @@
 
 namespace dfdyn::tools {
 
-/// Takes the jumps out of the stamps of a bus, so that a clock that was set, or a stamp that is off, is not
-/// taken for silence, losses or slow sources.
+/// Removes jumps from the time stamps of a bus. A clock that was set, or a single wrong time stamp, would
+/// otherwise look like silence, losses or slow sources.
 ///
-/// A frame whose stamp is more than `overtaken_ns` behind the latest, or more than a while ahead, waits.
-/// Where the frames after it go on from the old stamps, it was a stray. Where `adopt_after` frames go on from
-/// it, the clock was set: time goes on without the step. A bus that is silent for so long looks the same in
-/// a recording. Memory: `adopt_after` frames.
+/// A frame waits if its time stamp is more than `overtaken_ns` behind the latest, or far ahead of it. If the
+/// following frames continue from the old time stamps, it was an outlier. If `adopt_after` frames continue
+/// from the new one, the clock was set, and time continues without the step. In a recording, a silence of the
+/// same length cannot be distinguished from that. Memory: `adopt_after` frames.
 class StreamClock {
   public:
     static constexpr std::int64_t overtaken_ns = 5'000'000;
-    static constexpr std::int64_t least_step_ns = 1'500'000'000; ///< ahead; or 20 mean intervals, if longer
+    /// minimum step ahead; 20 mean intervals if that is longer
+    static constexpr std::int64_t least_step_ns = 1'500'000'000;
     static constexpr std::size_t adopt_after = 20;
 
     struct Timed {
-        hal::Frame frame;   ///< its stamp without jumps
-        bool stray = false; ///< its stamp means nothing
+        hal::Frame frame;   ///< its time stamp has no jumps
+        bool stray = false; ///< its time stamp is meaningless
     };
 
-    /// The frames whose time is known now, in the order in which they came. Valid until the next call.
+    /// Returns the frames whose time is known now, in the order of their arrival. Valid until the next call.
     std::span<const Timed> take(const hal::Frame& frame);
 
-    /// The frames that still wait, after the last one.
+    /// Returns the frames that still wait. Call after the last frame.
     std::span<const Timed> finish();
 
-    /// A time of the same clock as the stamps, without jumps.
+    /// Converts a time of the same clock as the time stamps to time without jumps.
     std::int64_t time_of(std::int64_t stamp_ns) const noexcept;
 
     std::uint64_t strays() const noexcept { return strays_; }
-    /// How often the clock was set, and the largest step, signed.
+    /// Number of times the clock was set, and the largest step with its sign.
     std::uint64_t steps() const noexcept { return steps_; }
     std::int64_t largest_step_ns() const noexcept { return largest_step_ns_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be wrong with the values of a joint or of the sensor, one rule each.
+// Rules for faults of the values of a joint or of the sensor, one rule each.
 #include "tools/base/text/number.hpp"
 #include "tools/can/check/bus_check.hpp"
 
@@ -10,7 +10,8 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double rate_of_one = 1.02; ///< of the described one; of two senders the values alternate
+/// ratio to the described rate; above it, values of two senders may alternate
+constexpr double rate_of_one = 1.02;
 
 std::string share_text(std::uint64_t count, std::uint64_t of, const char* what) {
     return std::to_string(count) + " of " + std::to_string(of) + " " + what + " (" +
@@ -25,7 +26,7 @@ struct Joint {
 struct JointRule {
     const char* name;
     const char* what;
-    bool of_effort; ///< which matters where the joints measure the outputs
+    bool of_effort; ///< relevant only if the joints measure the outputs
     std::uint64_t (*count)(const Joint&);
     std::string (*evidence)(const Joint&, std::uint64_t count);
     const char* confirm;

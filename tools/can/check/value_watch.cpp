@@ -11,9 +11,9 @@ namespace dfdyn::tools {
 namespace {
 
 constexpr double few_counts = 3;
-constexpr std::uint64_t least_equal = 20; ///< positions in a row
+constexpr std::uint64_t least_equal = 20; ///< consecutive positions
 constexpr double least_equal_s = 0.1;
-constexpr std::uint64_t least_equal_efforts = 100; ///< in a row
+constexpr std::uint64_t least_equal_efforts = 100; ///< consecutive efforts
 constexpr double least_equal_efforts_s = 0.5;
 constexpr double least_motion_rad = 0.02;
 
@@ -26,7 +26,7 @@ void ValueWatch::take(const hal::JointValue& value) {
     if (value.position_reason == hal::Reason::ok) {
         take_position(value);
     } else if (value.position_reason != hal::Reason::waiting_for_position) {
-        started_ = false; // the device says what is wrong
+        started_ = false; // the device reports the fault itself
     }
     if (value.effort_reason != hal::Reason::no_output) {
         take_effort(value);
@@ -73,7 +73,7 @@ void ValueWatch::take_step(std::int64_t step_ns, double step_rad) {
         frozen_positions_ += pending_frozen();
         count_jump(jump, step_rad);
     }
-    // Since the last change, so that a coarse encoder's counts are no speed of their own.
+    // Measured since the last change, because single counts of a coarse encoder are not a speed.
     const double changed_s = step_s * static_cast<double>(equal_ + 1);
     steps_per_change_ += 0.3 * (static_cast<double>(equal_ + 1) - steps_per_change_);
     last_speed_rad_per_s_ = jump ? 0 : step_rad / changed_s;
@@ -91,12 +91,13 @@ void ValueWatch::count_jump(bool jump, double step_rad) {
     largest_jump_rad_ = std::max(largest_jump_rad_, std::abs(step_rad));
 }
 
-/// The deceleration of a joint whose position did not change in that time: at once, or within the time of one
-/// count, which is the last thing that a coarse encoder shows. A joint that brakes has slowed down before.
+/// Deceleration of a joint whose position did not change in `step_s`. A fine encoder shows the stop
+/// immediately; a coarse one shows it only within the time of one count. A joint that brakes has already
+/// slowed down.
 double ValueWatch::stop_within(double step_s) const {
     const double speed = std::min(std::abs(last_speed_rad_per_s_), std::abs(speed_rad_per_s_));
     const bool coarse = steps_per_change_ > 1.5;
-    // Over its last count a joint that brakes with a looks as if it did with 2 to 4 times a.
+    // Over the last count, a joint braking with deceleration a appears to brake with 2 to 4 times a.
     return coarse ? speed / (4 * step_s * steps_per_change_) : speed / step_s;
 }
 
@@ -104,13 +105,14 @@ bool ValueWatch::is_long() const noexcept {
     return equal_ >= least_equal && seconds_of(stamp_ns_ - equal_from_ns_) >= least_equal_s;
 }
 
-/// A late frame may be close behind its predecessor: half a mean interval at least.
+/// Returns true if the step exceeds the velocity limit. At least half a mean interval is assumed, because a
+/// late frame can be close to its successor.
 bool ValueWatch::jumped(std::int64_t step_ns, double step_rad) const {
     const double step_s = std::max(seconds_of(step_ns), 0.5e-9 * mean_interval_ns_);
     return std::abs(step_rad) > limits_.velocity * step_s;
 }
 
-/// Of the run of equal positions that has not ended.
+/// Frozen positions of the present run of equal positions.
 std::uint64_t ValueWatch::pending_frozen() const noexcept {
     return is_long() && stop_rad_per_s2_ > limits_.stop ? equal_ : 0;
 }

@@ -8,12 +8,12 @@
 
 namespace dfdyn::tools {
 
-/// What is odd about the values of one joint, frame by frame, that its device has no word for. Judges whole
-/// recordings afterwards, so it may use what came after a value; it refuses nothing.
+/// Detects implausible values of one joint that its device does not report. It evaluates whole recordings, so
+/// it may use later values to judge a value; it rejects nothing.
 class ValueWatch {
   public:
-    /// `turn_rad`: the positions at which the joint's encoder begins anew lie so far apart; 0: never.
-    /// `limits`: see hal::MotionGate, which refuses by them.
+    /// `turn_rad`: distance between the positions at which the joint's encoder wraps; 0: it does not wrap.
+    /// `limits`: see hal::MotionGate, which rejects positions by them.
     explicit ValueWatch(double turn_rad = 0, const hal::MotionLimits& limits = {})
         : turn_rad_(turn_rad), limits_(limits) {}
 
@@ -22,20 +22,19 @@ class ValueWatch {
     std::uint64_t positions() const noexcept { return positions_; }
     std::uint64_t efforts() const noexcept { return efforts_; }
 
-    /// Steps between two positions that no joint can do, and how many of them were a whole turn.
+    /// Number of steps between two positions that no joint can make, and how many of them were whole turns.
     std::uint64_t jumps() const noexcept { return jumps_; }
     std::uint64_t wraps() const noexcept { return wraps_; }
     double largest_jump_rad() const noexcept { return largest_jump_rad_; }
-    /// Whether the last position was exactly 0 counts.
+    /// True if the last position was exactly 0 counts.
     bool at_zero() const noexcept { return at_zero_; }
-    /// Positions of exactly 0 counts that lie apart from those before.
+    /// Number of positions of exactly 0 counts that are far from the preceding positions.
     std::uint64_t zeros() const noexcept { return zeros_; }
-    /// Positions that repeated the one before after the joint had stopped as no joint can, or until it
-    /// jumped.
+    /// Number of repeated positions after an impossibly sudden stop of the joint, or before a jump.
     std::uint64_t frozen_positions() const noexcept { return frozen_positions_ + pending_frozen(); }
-    /// Efforts that repeated the one before while the joint moved.
+    /// Number of repeated efforts while the joint moved.
     std::uint64_t frozen_efforts() const noexcept { return frozen_efforts_; }
-    /// Efforts at an end of their numbers.
+    /// Number of efforts at an end of their range.
     std::uint64_t saturated_efforts() const noexcept { return saturated_efforts_; }
 
   private:
@@ -59,20 +58,20 @@ class ValueWatch {
     bool zero_ = false; ///< the last position was one of `zeros_`
     std::int64_t stamp_ns_ = 0;
     double position_rad_ = 0;
-    double mean_interval_ns_ = 0; ///< of positions
-    double speed_rad_per_s_ = 0;  ///< mean of the last steps
+    double mean_interval_ns_ = 0; ///< mean interval between positions
+    double speed_rad_per_s_ = 0;  ///< moving average of the speed
     double last_speed_rad_per_s_ = 0;
-    double steps_per_change_ = 1;    ///< positions until the encoder shows another one
-    double smallest_step_rad_ = 1;   ///< that was not 0
-    double stop_rad_per_s2_ = 0;     ///< what the joint did when the run of equal positions began
-    std::uint64_t equal_ = 0;        ///< positions that repeated the one before, in a row
-    std::int64_t equal_from_ns_ = 0; ///< since when
+    double steps_per_change_ = 1;    ///< mean number of positions until the encoder shows a new one
+    double smallest_step_rad_ = 1;   ///< smallest nonzero step
+    double stop_rad_per_s2_ = 0;     ///< deceleration when the present run of equal positions began
+    std::uint64_t equal_ = 0;        ///< number of consecutive positions equal to the previous one
+    std::int64_t equal_from_ns_ = 0; ///< start of that run
     std::uint64_t frozen_positions_ = 0;
 
     bool effort_started_ = false;
     double effort_ = 0;
     std::uint64_t equal_efforts_ = 0;
-    double lowest_rad_ = 0, highest_rad_ = 0; ///< positions since the effort's last change
+    double lowest_rad_ = 0, highest_rad_ = 0; ///< range of positions since the last change of the effort
     std::int64_t effort_changed_ns_ = 0;
     std::uint64_t frozen_efforts_ = 0, saturated_efforts_ = 0;
 };

@@ -14,8 +14,8 @@
 
 namespace dfdyn::tools {
 
-/// A board with joints: a codec of the HAL, and what the program needs to know of its family. The rest of the
-/// program knows boards only by this interface; see families/.
+/// A board with joints: a codec of the HAL, and the properties of its family that the program needs. The rest
+/// of the program uses boards only through this interface; see families/.
 class Board {
   public:
     virtual ~Board() = default;
@@ -23,23 +23,24 @@ class Board {
 
     virtual std::unique_ptr<Board> clone() const = 0;
 
-    /// As of hal::JointSource. A board with one joint looks at the first value only.
+    /// Like hal::JointSource. A board with one joint uses only the first value.
     virtual hal::Decoded decode(const hal::Frame& frame) noexcept = 0;
     virtual bool claims(std::uint32_t id) const noexcept = 0;
     virtual hal::FrameList encode(const std::array<hal::JointValue, 2>& values) const noexcept = 0;
 
-    /// Whether its frames carry efforts.
+    /// True if its frames carry efforts.
     virtual bool measures_effort() const { return false; }
-    /// Distance (rad) between the positions of the joint at which the encoder begins again: one of its turns.
+    /// Distance (rad) of the joint between the positions at which the encoder wraps: one encoder turn.
     virtual double encoder_turn_rad() const { return 2 * std::numbers::pi; }
-    /// What the device sends unasked to say that it is well; none for most.
+    /// Status frame that the device sends by itself; none for most families.
     virtual std::optional<hal::Frame> heartbeat() const { return std::nullopt; }
-    /// What is wrong, from all that it decoded, that no single value shows.
+    /// Findings from all decoded frames that no single value shows.
     virtual std::vector<BusFinding> findings() const { return {}; }
 
-    /// The command of a joint torque (N·m); none where the family has no public one, or it is not known how.
+    /// Encodes a joint torque command (N·m); none if the family has no public command or its scale is
+    /// unknown.
     virtual std::optional<hal::Frame> torque_command(double /*torque_Nm*/) const { return std::nullopt; }
-    /// The torque (N·m) that `frame` commands this board; none where it is another frame.
+    /// Decodes the torque (N·m) that `frame` commands to this board; none for any other frame.
     virtual std::optional<double> commanded_torque(const hal::Frame& /*frame*/) const { return std::nullopt; }
 
   protected:
@@ -47,7 +48,7 @@ class Board {
     Board(const Board&) = default;
 };
 
-/// A force/torque sensor, likewise.
+/// A force/torque sensor: a codec of the HAL, and the properties of its family that the program needs.
 class Sensor {
   public:
     virtual ~Sensor() = default;
@@ -55,24 +56,23 @@ class Sensor {
 
     virtual std::unique_ptr<Sensor> clone() const = 0;
 
-    /// As of hal::WrenchSource.
+    /// Like hal::WrenchSource.
     virtual hal::Decoded decode(const hal::Frame& frame) noexcept = 0;
     virtual hal::WrenchReading wrench(const hal::Frame& first, const hal::Frame& second) const noexcept = 0;
     virtual bool claims(std::uint32_t id) const noexcept = 0;
     virtual hal::FrameList encode(const hal::Wrench& value) const noexcept = 0;
 
-    /// Whether its calibration is known and plausible; without one it sends nothing.
+    /// Returns ok if the calibration is known and plausible. Without it the sensor sends nothing.
     virtual hal::Reason calibration() const { return hal::Reason::ok; }
-    /// What the host sends so that it reports a calibration that is unknown or in doubt; none while it is
-    /// not.
+    /// Requests that the host sends to obtain a calibration that is unknown or in doubt; empty otherwise.
     virtual std::vector<hal::Frame> requests() const { return {}; }
-    /// What the sensor answers to such a request; none to another frame.
+    /// The sensor's reply to such a request; none for any other frame.
     virtual std::optional<hal::Frame> answer(const hal::Frame& /*request*/) const { return std::nullopt; }
-    /// The answers to all requests.
+    /// The replies to all requests.
     virtual std::vector<hal::Frame> answers() const { return {}; }
-    /// Whether a frame on one of its identifiers is a request of the host.
+    /// True if a frame on one of its identifiers is a request of the host.
     virtual bool is_request(const hal::Frame& /*frame*/) const { return false; }
-    /// What is wrong with it that no sample shows.
+    /// Findings about the sensor that no sample shows.
     virtual std::vector<BusFinding> findings() const { return {}; }
 
   protected:
@@ -80,7 +80,7 @@ class Sensor {
     Sensor(const Sensor&) = default;
 };
 
-/// A board with the codec `Codec`. `Derived`: the family's own class, which overrides what it knows better.
+/// A board with the codec `Codec`. `Derived` is the class of the family, which overrides the defaults.
 template <class Derived, hal::JointSource Codec>
 class BoardOf : public Board {
   public:
@@ -103,7 +103,7 @@ class BoardOf : public Board {
     Codec codec_;
 };
 
-/// A sensor, likewise.
+/// A sensor with the codec `Codec`. `Derived` is the class of the family, which overrides the defaults.
 template <class Derived, hal::WrenchSource Codec>
 class SensorOf : public Sensor {
   public:
@@ -125,7 +125,7 @@ class SensorOf : public Sensor {
     Codec codec_;
 };
 
-/// Owns a Board or a Sensor of any family; a copy owns a copy. Empty by default: a place without a device.
+/// Owns a Board or a Sensor of any family, with deep copies. Empty by default: a place without a device.
 template <class Device>
 class AnyDevice {
   public:
@@ -145,7 +145,7 @@ class AnyDevice {
     }
     [[nodiscard]] bool claims(std::uint32_t id) const noexcept { return device_ && device_->claims(id); }
 
-    /// Requires a device.
+    /// Requires that it is not empty.
     const Device* operator->() const noexcept { return device_.get(); }
     const Device& operator*() const noexcept { return *device_; }
 

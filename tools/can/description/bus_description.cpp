@@ -34,9 +34,9 @@ BusTrigger read_trigger(const JsonReader& reader) {
     throw reader.error("on", "sync, timer or set", in_quotes(kind));
 }
 
-constexpr double usual_jitter = 0.25; ///< of a period
+constexpr double usual_jitter = 0.25; ///< share of the period
 
-/// Three periods without a value are too many, unless the file says otherwise.
+/// Reads the timing of a source. By default its values expire after three periods.
 BusSource read_source(const JsonReader& reader, double default_rate_hz) {
     BusSource source;
     source.rate_hz = reader.number_or("rate_hz", default_rate_hz, 0.1, 100'000);
@@ -46,7 +46,7 @@ BusSource read_source(const JsonReader& reader, double default_rate_hz) {
     return source;
 }
 
-/// Which joints the boards have; each of 0 … joint_count - 1 has to be there once.
+/// Returns the number of joints of all boards. Each of 0 … joint_count - 1 must exist exactly once.
 int count_joints(const JsonReader& reader, const std::vector<BusBoard>& boards) {
     std::vector<int> joints;
     for (const BusBoard& board : boards) {
@@ -65,7 +65,7 @@ int count_joints(const JsonReader& reader, const std::vector<BusBoard>& boards) 
     return static_cast<int>(joints.size());
 }
 
-/// Velocity limits (rad/s) of a robot's file, which is beside the description; none for the joints without.
+/// Velocity limits (rad/s) from a robot file next to the description; none for joints without a limit.
 std::vector<std::optional<double>> robot_velocities(const JsonReader& joints,
                                                     const std::filesystem::path& folder, int joint_count) {
     std::vector<std::optional<double>> velocities(static_cast<std::size_t>(joint_count));
@@ -87,7 +87,7 @@ std::vector<std::optional<double>> robot_velocities(const JsonReader& joints,
     return velocities;
 }
 
-/// Numbers of `name`, one for all joints or one for each; none where the file has none.
+/// Reads the field `name`: one number for all joints or one per joint; none if the field is absent.
 std::vector<std::optional<double>> per_joint(const JsonReader& reader, const std::string& name,
                                              int joint_count) {
     std::vector<std::optional<double>> values(static_cast<std::size_t>(joint_count));
@@ -99,7 +99,7 @@ std::vector<std::optional<double>> per_joint(const JsonReader& reader, const std
     return values;
 }
 
-/// Of the description, else of the robot's file, else beyond what joints do.
+/// Motion limits from the description, otherwise from the robot file, otherwise beyond any joint's motion.
 std::vector<hal::MotionLimits> read_limits(const JsonReader& reader, const std::filesystem::path& folder,
                                            int joint_count) {
     const auto velocity = per_joint(reader, "velocity_limit", joint_count);
@@ -121,7 +121,7 @@ void read_joints(const JsonReader& reader, const std::filesystem::path& folder, 
     description.joint_limits = read_limits(reader, folder, description.joint_count);
 }
 
-/// Efforts of the joints' own boards.
+/// Reads the efforts that the joints' own boards measure as outputs.
 void read_efforts(const JsonReader& reader, bool measured, BusDescription& description) {
     reader.allow_only(std::array<std::string_view, 7>{"family", "quantity", "limit", "max_age_s", "latency_s",
                                                       "jitter_s", "frozen_after"});
@@ -147,15 +147,15 @@ double seconds_on_wire(std::span<const hal::Frame> frames, double bit_rate) {
     return bits / bit_rate;
 }
 
-/// How long the frames of all joints take on their bus.
+/// Time (s) that the frames of all joints take on the bus.
 double joints_on_wire_s(const BusDescription& description) {
     BusDescription joints = description;
-    joints.sensor.reset(); // which need not be able to send
+    joints.sensor.reset(); // the sensor may be unable to send
     const std::vector<double> zeros(static_cast<std::size_t>(description.joint_count));
     return seconds_on_wire(DeviceFrames(joints).joints(zeros, {}), description.bit_rate);
 }
 
-/// How long the frames of a wrench take; 0 where there is no sensor.
+/// Time (s) that the frames of a wrench take on the bus; 0 without a sensor.
 double wrench_on_wire_s(const BusDescription& description) {
     if (!description.sensor) {
         return 0;
@@ -165,7 +165,7 @@ double wrench_on_wire_s(const BusDescription& description) {
                            description.bit_rate);
 }
 
-/// How long a wrench takes on its bus at worst: it waits for whatever else of the arm is sent meanwhile.
+/// Worst-case time (s) of a wrench on the bus, including the frames of the joints that are sent meanwhile.
 double waiting_s(const BusDescription& description) {
     const double joints_s = joints_on_wire_s(description);
     const double wrench_s = wrench_on_wire_s(description);
@@ -178,7 +178,8 @@ double waiting_s(const BusDescription& description) {
     return wait_s;
 }
 
-/// Half a period, for what else is on the bus; more where the arm's own frames take longer.
+/// Reads the pairing window. Default: half a period, to allow for other traffic; longer if the arm's own
+/// frames take longer.
 void read_pairing(const JsonReader& reader, BusDescription& description) {
     const double period_s = 1 / description.output.rate_hz;
     const double absent_s = std::clamp(waiting_s(description), 0.5 * period_s, 0.9 * period_s);
@@ -209,8 +210,8 @@ void read_output(const JsonReader& reader, const std::filesystem::path& folder, 
     efforts ? read_efforts(reader, measured, description) : read_sensor(reader, folder, description);
 }
 
-/// A frame that waits until all other frames of the arm have been sent is late by the time they take, which
-/// on a loaded bus is more than usual. Values that are stamped by a SYNC do not wait.
+/// Increases the default jitter by the time that all other frames of the arm take on the bus. Values that are
+/// stamped by a SYNC do not need this.
 void allow_waiting(const JsonReader& reader, const BusDescription& description, BusSource& source) {
     if (!reader.has("jitter_s") && !description.synchronous) {
         const double all_s = joints_on_wire_s(description) + wrench_on_wire_s(description);
@@ -220,7 +221,7 @@ void allow_waiting(const JsonReader& reader, const BusDescription& description, 
     }
 }
 
-/// Long enough that every source has sent a value after the instant.
+/// Default delay: long enough that every source has sent a value after the sample time.
 double default_delay_s(const BusDescription& description) {
     const auto latency_ns = std::max(description.joints.latency_ns, description.output.latency_ns);
     const double slowest_hz = std::min(description.joints.rate_hz, description.output.rate_hz);

@@ -14,7 +14,7 @@ namespace {
 
 using Names = std::vector<std::string_view>;
 
-/// The fields of `joints`, or `output`, of any family, and those of one.
+/// Allows the fields of `joints` or `output` that all families have, and those of this family.
 void allow_only(const JsonReader& reader, Names names, const std::vector<FamilyField>& own) {
     std::ranges::copy(names_of(own), std::back_inserter(names));
     reader.allow_only(names);

@@ -10,22 +10,22 @@
 
 namespace dfdyn::tools {
 
-/// A field of a bus description that a file may leave out. Errors as of JsonReader. Seconds in the file, from
-/// 0 to 60.
+/// Reads an optional duration in seconds, from 0 to 60, and returns nanoseconds. Errors like those of
+/// JsonReader.
 std::int64_t nanoseconds_or(const JsonReader& reader, const std::string& name, double absent_s);
 
-/// `"0x280"`: an identifier of 11 bits.
+/// Reads an optional 11-bit identifier such as `"0x280"`.
 std::uint32_t identifier_or(const JsonReader& reader, const std::string& name, std::uint32_t absent);
 std::string identifier_text(std::uint32_t id);
 
-/// `family`, `boards` and what belongs to the family. `description` has its rates and trigger; the files that
-/// `joints` names are in `folder`.
+/// Reads `family`, `boards` and the fields of the family. `description` already has its rates and trigger.
+/// Files named in `joints` are relative to `folder`.
 void read_boards(const JsonReader& joints, const std::filesystem::path& folder, BusDescription& description);
 
-/// Whether the boards' frames carry efforts.
+/// Returns true if the boards' frames carry efforts.
 bool measures_efforts(const std::vector<BusBoard>& boards);
 
-/// `family` and what belongs to it; files likewise.
+/// Reads `family` and its fields for a sensor. Files named there are relative to `folder`.
 DescribedWrenchSensor read_wrench_sensor(const JsonReader& output, const std::filesystem::path& folder);
 
 } // namespace dfdyn::tools

@@ -5,12 +5,12 @@
 
 namespace dfdyn::tools {
 
-/// What is wrong, in words for whoever stands in front of the robot.
+/// A fault of the bus or a device, described for the person at the robot.
 struct BusFinding {
-    std::string rule; ///< its name, stable
+    std::string rule; ///< stable name of the rule
     std::string what;
-    std::string evidence; ///< what it was inferred from
-    std::string confirm;  ///< the check that would confirm it
+    std::string evidence; ///< observation from which the fault was inferred
+    std::string confirm;  ///< a check that would confirm it
     std::string fix;
 };
 

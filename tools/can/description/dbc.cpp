@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t";
 
-/// Reads a text piece by piece, and knows where it is.
+/// Reads a text token by token and keeps the position.
 class Cursor {
   public:
     Cursor(std::string_view text, std::string source) : rest_(text), source_(std::move(source)) {}
@@ -27,14 +27,15 @@ class Cursor {
 
     void skip_blanks() { skip(std::min(rest_.find_first_not_of(blanks), rest_.size())); }
 
-    /// Where the next piece begins.
+    /// Position of the next token.
     Cursor here() {
         skip_blanks();
         return *this;
     }
 
-    /// To the begin of the next line; texts in quotes may go over lines. A quote after a backslash belongs to
-    /// its text, unless the statement ends right after it: a text may also end with a backslash.
+    /// Moves to the beginning of the next line. Quoted strings may contain line ends. A quote after a
+    /// backslash belongs to the string, unless the statement ends directly after it: a string may also end
+    /// with a backslash.
     void skip_line() {
         Cursor quote = *this;
         for (bool quoted = false; !at_end();) {
@@ -71,7 +72,7 @@ class Cursor {
         }
     }
 
-    /// A name as of C.
+    /// Reads a name with the syntax of a C identifier.
     std::string name(const char* what) {
         skip_blanks();
         const auto part = [](char c) {
@@ -181,7 +182,8 @@ class Parser {
         message.name = cursor_.name("a message's name");
         message.extended = (message.id & extended_bit) != 0;
         message.id &= ~extended_bit;
-        current_ = message.name != "VECTOR__INDEPENDENT_SIG_MSG"; // signals of no message: not on a bus
+        // signals without a message, which are not on a bus
+        current_ = message.name != "VECTOR__INDEPENDENT_SIG_MSG";
         if (!current_) {
             return;
         }
@@ -218,7 +220,7 @@ class Parser {
         message.signals.push_back(std::move(read));
     }
 
-    /// `M`, `m3`, or `m3M`: it is multiplexed, and a multiplexor of others.
+    /// Reads `M`, `m3`, or `m3M`, which is multiplexed and a multiplexor of other signals.
     void multiplexing(DbcSignal& read) {
         if (cursor_.accept("m")) {
             read.multiplex = cursor_.whole("a multiplexor's value", 0xFFFFFFFF);
@@ -226,7 +228,8 @@ class Parser {
         read.multiplexor = cursor_.accept("M");
     }
 
-    /// `SG_MUL_VAL_ 641 NAME MULTIPLEXOR 0-3, 7-7;` Among the new symbols (NS_) the word stands alone.
+    /// `SG_MUL_VAL_ 641 NAME MULTIPLEXOR 0-3, 7-7;` In the list of new symbols (NS_) the keyword has no
+    /// arguments.
     void multiplexed_values() {
         cursor_.skip_blanks();
         if (cursor_.at_line_end()) {
@@ -286,8 +289,8 @@ class Parser {
         read.unit = cursor_.quoted();
     }
 
-    /// `SIG_VALTYPE_ 641 NAME : 1;` 1: float, 2: double, 0: an integer. Among the new symbols (NS_) the word
-    /// stands alone.
+    /// `SIG_VALTYPE_ 641 NAME : 1;` 1: float, 2: double, 0: an integer. In the list of new symbols (NS_) the
+    /// keyword has no arguments.
     void value_type() {
         cursor_.skip_blanks();
         if (cursor_.at_line_end()) {

@@ -8,12 +8,12 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double float_step = 1.2e-7; ///< of a float's value
+constexpr double float_step = 1.2e-7; ///< relative resolution of a float
 
 std::span<const std::uint8_t> data_of(const hal::Frame& frame) { return {frame.data.data(), frame.length}; }
 std::span<std::uint8_t> data_of(hal::Frame& frame) { return {frame.data.data(), frame.length}; }
 
-/// Whether the frame could carry the field: it is of its message, and of its variant if there are several.
+/// Returns true if a frame can carry the field: it has its message and, if there are several, its variant.
 bool carries(const hal::Frame& frame, const DbcField& field) {
     return field.is_in(frame) && field.is_there(frame);
 }
@@ -30,8 +30,8 @@ hal::Frame empty_frame(const DbcField& field) {
 
 bool claims(const DbcField& field, std::uint32_t id) { return !field.extended && field.id == id; }
 
-/// Changes with the raw value, whose width is the user's, and never looks like the end of 16 bits, which this
-/// sensor tells itself. 0 stays 0.
+/// Hashes the raw value, which may have any width, to 14 bits. The result changes with the value and is never
+/// at an end of 16 bits, because this sensor detects saturation itself. 0 remains 0.
 std::int32_t folded(std::uint64_t raw) {
     return static_cast<std::int32_t>((raw * 0x9E3779B97F4A7C15ULL) >> 50U);
 }
@@ -93,7 +93,8 @@ bool DbcField::is_at_end(const hal::Frame& frame) const noexcept { return signal
 
 std::size_t encode_fields(std::span<const DbcValue> values, std::span<hal::Frame> into) noexcept {
     std::size_t count = 0;
-    for (const bool multiplexed : {true, false}) { // what is in every variant needs none of its own
+    // a signal that is in every variant needs no variant of its own
+    for (const bool multiplexed : {true, false}) {
         for (const DbcValue& value : values) {
             const bool there = std::ranges::any_of(
                 into.first(count), [&](const hal::Frame& frame) { return carries(frame, *value.field); });
@@ -147,7 +148,7 @@ hal::Decoded DbcJoint::decode(const hal::Frame& frame) const noexcept {
     }
     if (effort && config_.effort->is_there(frame)) {
         value.effort = config_.effort->value(frame);
-        // A magnitude of 0 is the lowest that its bits can show, and no saturation.
+        // A magnitude of 0 is the lowest representable value, but not saturated.
         const bool saturated = config_.effort->is_at_end(frame) && value.effort != 0;
         value.effort_reason = config_.effort->is_void(value.effort) ? hal::Reason::output_out_of_range
                               : saturated                           ? hal::Reason::output_saturated

@@ -13,40 +13,41 @@
 
 namespace dfdyn::tools {
 
-/// What makes a multiplexed value be in a frame: the multiplexor's raw value is in one of the ranges.
+/// Condition for the presence of a multiplexed value: the multiplexor's raw value is in one of the ranges.
 struct DbcCondition {
     hal::Signal multiplexor;
     std::vector<DbcValueRange> ranges;
 
     [[nodiscard]] bool holds(const hal::Frame& frame) const noexcept;
-    /// Whether no frame can meet both: of one multiplexor, without a common value.
+    /// Returns true if no frame meets both conditions: they have the same multiplexor and no common value.
     [[nodiscard]] bool excludes(const DbcCondition& other) const noexcept;
 };
 
-/// A value in the frames of a user's DBC file, in the arm's unit: the factor and offset of `signal`, and
-/// `limits`, include the user's own.
+/// A value in the frames of a user's DBC file, in the unit of the arm. The factor and offset of `signal`, and
+/// `limits`, include those of the user.
 struct DbcField {
     std::uint32_t id = 0;
     bool extended = false;
-    int length = 0; ///< of the message, bytes
+    int length = 0; ///< bytes of the message
     hal::Signal signal;
-    std::optional<hal::Range> limits;     ///< of the DBC file; beyond them the signal says something else
-    std::vector<DbcCondition> conditions; ///< the value is there where all hold; none: in every frame
+    std::optional<hal::Range> limits; ///< limits in the DBC file; a value beyond them is not a measurement
+    /// all must hold for the value to be present; empty: it is in every frame
+    std::vector<DbcCondition> conditions;
 
-    /// Whether the frame is of this message, whatever its form.
+    /// Returns true if the frame has the identifier of this message, regardless of its form.
     [[nodiscard]] bool is_in(const hal::Frame& frame) const noexcept;
-    /// Of a frame of this message: a data frame of its length, classic or CAN FD.
+    /// Checks a frame of this message: it must be a data frame with the message's length, classic or CAN FD.
     [[nodiscard]] hal::Reason check(const hal::Frame& frame) const noexcept;
-    /// Whether a frame of this message and length has the value.
+    /// Returns true if a frame of this message and length contains the value.
     [[nodiscard]] bool is_there(const hal::Frame& frame) const noexcept;
-    /// Whether one frame may carry both.
+    /// Returns true if one frame can carry both values.
     [[nodiscard]] bool shares_frames_with(const DbcField& other) const noexcept;
 
     [[nodiscard]] std::uint64_t raw(const hal::Frame& frame) const noexcept;
     [[nodiscard]] double value(const hal::Frame& frame) const noexcept;
-    /// Not a number, or beyond the limits.
+    /// Returns true if the value is not a number or beyond the limits.
     [[nodiscard]] bool is_void(double value) const noexcept;
-    /// Whether an integer is at an end of its bits.
+    /// Returns true if an integer is at an end of its range.
     [[nodiscard]] bool is_at_end(const hal::Frame& frame) const noexcept;
 };
 
@@ -55,11 +56,12 @@ struct DbcValue {
     double value = 0;
 };
 
-/// The frames that carry the values, at most `into.size()`, which should not be smaller than `values.size()`;
-/// returns how many. Values share a frame where they can.
+/// Encodes the values into frames and returns the number of frames, at most `into.size()`, which should be at
+/// least `values.size()`. Values share a frame if possible.
 std::size_t encode_fields(std::span<const DbcValue> values, std::span<hal::Frame> into) noexcept;
 
-/// A joint whose position, and perhaps effort, a DBC file describes. Several joints may share a message.
+/// A joint whose position, and optionally effort, is described in a DBC file. Several joints may share a
+/// message.
 class DbcJoint {
   public:
     static constexpr int joints = 1;
@@ -68,7 +70,7 @@ class DbcJoint {
         int joint = 0;
         DbcField position;
         std::optional<DbcField> effort;
-        bool claims_position = true; ///< false: another joint with the same identifier does
+        bool claims_position = true; ///< false: another joint with the same identifier claims it
         bool claims_effort = true;
     };
 
@@ -85,14 +87,14 @@ class DbcJoint {
 
 static_assert(hal::JointSource<DbcJoint>);
 
-/// A force/torque sensor that a DBC file describes: six values in two frames, which are two messages, or one
-/// that is multiplexed. An integer at an end of its bits is taken for saturated.
+/// A force/torque sensor that is described in a DBC file: six values in two frames, which are two messages or
+/// two variants of a multiplexed one. An integer at an end of its range is considered saturated.
 class DbcSensor {
   public:
-    /// fx fy fz mx my mz.
+    /// Order: fx fy fz mx my mz.
     explicit DbcSensor(const std::array<DbcField, 6>& fields) noexcept;
 
-    /// Whether the fields are in just two frames.
+    /// Returns true if the fields are in exactly two frames.
     [[nodiscard]] static bool can_be(const std::array<DbcField, 6>& fields) noexcept;
 
     [[nodiscard]] bool claims(std::uint32_t id) const noexcept;
@@ -101,11 +103,11 @@ class DbcSensor {
     [[nodiscard]] hal::FrameList encode(const hal::Wrench& value) const noexcept;
 
   private:
-    /// Of a frame of this sensor.
+    /// Returns true if a frame of this sensor is the first of the two.
     [[nodiscard]] bool is_first(const hal::Frame& frame) const noexcept;
 
     std::array<DbcField, 6> fields_;
-    DbcField second_; ///< the first of the fields in the second frame
+    DbcField second_; ///< the first field in the second frame
 };
 
 static_assert(hal::WrenchSource<DbcSensor>);

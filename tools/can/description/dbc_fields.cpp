@@ -34,7 +34,8 @@ std::optional<hal::Range> limits_of(const DbcSignal& signal, double scale, doubl
     }
     const double one = scale * signal.lowest + offset;
     const double other = scale * signal.highest + offset;
-    const double slack = 1e-9 * std::abs(one - other); // an end that the factor does not hit exactly
+    // tolerance for an end that the factor does not reach exactly
+    const double slack = 1e-9 * std::abs(one - other);
     return hal::Range{std::min(one, other) - slack, std::max(one, other) + slack};
 }
 
@@ -60,7 +61,7 @@ const DbcSignal& signal_of(const JsonReader& field, const DbcMessage& message) {
     return *signal;
 }
 
-/// What makes a signal be in a frame of its message, from its own multiplexor to the outermost one.
+/// Conditions for the presence of a signal in its message, from its own multiplexor to the outermost one.
 std::vector<DbcCondition> conditions_of(const JsonReader& field, const DbcMessage& message,
                                         const DbcSignal& signal) {
     std::vector<DbcCondition> conditions;
@@ -82,8 +83,8 @@ std::vector<DbcCondition> conditions_of(const JsonReader& field, const DbcMessag
     return conditions;
 }
 
-/// `{"message": "Drive1", "signal": "Position", "scale": 1, "offset": 0}`: in the arm's unit the value is
-/// unit · (scale · what the DBC file says + offset).
+/// `{"message": "Drive1", "signal": "Position", "scale": 1, "offset": 0}`: the value in the unit of the arm
+/// is unit · (scale · value in the DBC file's unit + offset).
 DbcField read_field(const JsonReader& field, const Dbc& dbc, double unit) {
     const DbcMessage& message = message_of(field, dbc);
     const DbcSignal& signal = signal_of(field, message);
@@ -107,7 +108,7 @@ bool same_bits(const DbcField& one, const DbcField& other) {
     return one.shares_frames_with(other) && one.signal.start_bit == other.signal.start_bit;
 }
 
-/// Whether `test` holds for a field of one of the joints.
+/// Returns true if `test` holds for a field of any of the joints.
 template <class Test>
 bool any_field(std::span<const DbcJoint> joints, Test test) {
     return std::ranges::any_of(joints, [&](const DbcJoint& joint) {
@@ -115,7 +116,7 @@ bool any_field(std::span<const DbcJoint> joints, Test test) {
     });
 }
 
-/// A field of a joint, which no other joint has.
+/// Reads a field of a joint that no other joint uses.
 DbcField read_own_field(const JsonReader& board, const std::string& name, const Dbc& dbc, bool angle,
                         std::span<const DbcJoint> before) {
     const JsonReader reader = board.object(name);

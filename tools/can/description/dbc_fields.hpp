@@ -9,11 +9,11 @@
 
 namespace dfdyn::tools {
 
-/// The joint that an entry of `boards` maps to signals of `dbc`. `before`: the joints read so far. Errors as
-/// of JsonReader.
+/// Reads the joint that an entry of `boards` maps to signals of `dbc`. `before`: the joints read so far.
+/// Errors like those of JsonReader.
 DbcJoint read_dbc_joint(const JsonReader& board, const Dbc& dbc, std::span<const DbcJoint> before);
 
-/// The sensor whose six signals `output.wrench` names.
+/// Reads the sensor whose six signals are named in `output.wrench`.
 DbcSensor read_dbc_sensor(const JsonReader& output, const Dbc& dbc);
 
 } // namespace dfdyn::tools

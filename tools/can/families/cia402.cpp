@@ -9,7 +9,8 @@ namespace dfdyn::tools::families {
 
 namespace {
 
-/// Takes torques (RPDO 1, 0x200 + node: target torque 0x6071) where its efforts are mapped, in their unit.
+/// Accepts torque commands (RPDO 1, 0x200 + node: target torque 0x6071) if its efforts are mapped, in the
+/// unit of the efforts.
 class Cia402Drive final : public BoardOf<Cia402Drive, hal::Cia402Drive> {
   public:
     using BoardOf::BoardOf;
@@ -33,7 +34,8 @@ const std::vector<FamilyField> drive_fields{
     {"effort_per_count", "(N·m or A; where `effort` is mapped)"},
 };
 
-/// Where a drive's PDO has an object: `{"pdo": "0x280", "length": 8, "start_bit": 0, "bits": 32}`.
+/// Reads the position of an object in a drive's PDO: `{"pdo": "0x280", "length": 8, "start_bit": 0, "bits":
+/// 32}`.
 void read_drive_mapping(const JsonReader& mapping, std::uint32_t& pdo, int& length, hal::Signal& signal) {
     mapping.allow_only(std::array<std::string_view, 4>{"pdo", "length", "start_bit", "bits"});
     pdo = identifier_or(mapping, "pdo", pdo);
@@ -42,7 +44,7 @@ void read_drive_mapping(const JsonReader& mapping, std::uint32_t& pdo, int& leng
     signal.length = mapping.whole_or("bits", signal.length, 1, 64);
 }
 
-/// What is the same for all drives of a bus.
+/// Reads the properties that all drives of a bus have in common.
 hal::Cia402Drive::Config read_drive_mappings(const JsonReader& joints, bool synchronous) {
     hal::Cia402Drive::Config config;
     config.synchronous = synchronous;

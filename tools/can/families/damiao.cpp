@@ -11,7 +11,8 @@ namespace dfdyn::tools::families {
 
 namespace {
 
-/// Takes torques: its own command (identifier: the motor id) without stiffness and damping.
+/// Accepts torque commands: the motor's own command (identifier: the motor id) with zero stiffness and
+/// damping.
 class DamiaoMotor final : public BoardOf<DamiaoMotor, hal::DamiaoMotor> {
   public:
     using BoardOf::BoardOf;
@@ -34,7 +35,7 @@ class DamiaoMotor final : public BoardOf<DamiaoMotor, hal::DamiaoMotor> {
         return codec().decode_torque(frame);
     }
 
-    /// Software that has another VMAX than the motor shows velocities that its positions contradict.
+    /// If the configured VMAX differs from the motor's, the velocities contradict the positions.
     std::vector<BusFinding> findings() const override {
         const double ratio = squares_ > 0 ? products_ / squares_ : 1;
         if (distance_rad_ < least_distance_rad || std::abs(ratio - 1) < largest_deviation) {
@@ -51,12 +52,12 @@ class DamiaoMotor final : public BoardOf<DamiaoMotor, hal::DamiaoMotor> {
     }
 
   private:
-    static constexpr double least_speed = 0.1; ///< rad/s; below it, codes are coarse
+    static constexpr double least_speed = 0.1; ///< rad/s; below it the resolution is too coarse
     static constexpr double longest_step_s = 0.02;
     static constexpr double least_distance_rad = 1;
     static constexpr double largest_deviation = 0.1;
 
-    /// Positions against the mean velocity between them, by least squares.
+    /// Compares positions with the mean velocity between them by least squares.
     void compare(const hal::JointValue& value, double velocity) noexcept {
         const double step_s = 1e-9 * static_cast<double>(value.stamp_ns - last_.stamp_ns);
         const bool sound = value.position_reason == hal::Reason::ok;
@@ -78,14 +79,14 @@ class DamiaoMotor final : public BoardOf<DamiaoMotor, hal::DamiaoMotor> {
     double products_ = 0, squares_ = 0, distance_rad_ = 0;
 };
 
-/// Maxima of a motor as it is delivered; 0: two libraries in wide use (LeRobot and openarm_can) disagree, so
-/// that only the motor's own register can tell.
+/// Factory settings of a motor type. 0: two widely used libraries (LeRobot and openarm_can) disagree, so only
+/// the motor's own register is reliable.
 struct MotorType {
     std::string_view name;
     double velocity; ///< rad/s
     double torque;   ///< N·m
 };
-constexpr double delivered_position_max = 12.5; ///< rad, of all types
+constexpr double delivered_position_max = 12.5; ///< rad, all types
 constexpr std::array<MotorType, 13> motor_types{{{"DM3507", 0, 0},
                                                  {"DM4310", 30, 10},
                                                  {"DM4310_48V", 50, 10},
@@ -113,7 +114,7 @@ const std::vector<FamilyField> damiao_fields{
     {"zero_rad", "(0): angle = motor / motor_per_joint + zero, torque = motor · motor_per_joint"},
 };
 
-/// All zero without `motor`.
+/// Returns zeros if the field `motor` is absent.
 MotorType read_motor_type(const JsonReader& board) {
     const std::string name = board.has("motor") ? board.text("motor") : "";
     const auto* const type = std::ranges::find(motor_types, name, &MotorType::name);
@@ -129,7 +130,7 @@ MotorType read_motor_type(const JsonReader& board) {
     return {"", 0, 0};
 }
 
-/// `delivered`: 0 where it is not known.
+/// `delivered`: the factory setting; 0 if unknown.
 double read_maximum(const JsonReader& board, const std::string& name, const std::string& motor_register,
                     double delivered) {
     if (board.has(name)) {
@@ -146,7 +147,7 @@ BusBoard read_damiao_motor(const JsonReader& board) {
     board.allow_only(names_of(damiao_fields));
     hal::DamiaoMotor::Config config;
     config.motor_id = board.whole_number("motor_id", 1, 15);
-    board.text("feedback_id"); // required
+    board.text("feedback_id"); // a required field
     config.feedback_id = identifier_or(board, "feedback_id", 0);
     config.joint = read_joint(board);
     const MotorType type = read_motor_type(board);

@@ -32,7 +32,7 @@ DescribedWrenchSensor read_sensor(const JsonReader& output, const std::filesyste
     return {AnySensor(std::make_unique<DbcWrenchSensor>(sensor)), read_limit(output)};
 }
 
-/// Joints of a DBC file may share messages.
+/// Encodes all boards together, because joints of a DBC file may share messages.
 std::vector<hal::Frame> encode_together(std::span<const BusBoard> boards,
                                         std::span<const std::array<hal::JointValue, 2>> values) {
     std::vector<DbcValue> fields;

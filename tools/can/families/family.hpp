@@ -12,44 +12,46 @@
 
 namespace dfdyn::tools {
 
-/// A field of bus.json. `meaning` follows the name in docs/reference/can.md: range, unit, what it is without
-/// the field.
+/// A field of bus.json. `meaning` follows the name in docs/reference/can.md: range, unit, default.
 struct FamilyField {
     std::string_view name;
     std::string_view meaning;
 };
 
-/// A family of boards with joints: the only place that the program has it, beside its codec in the HAL.
+/// A family of boards with joints. Everything that the program knows about it is here, except its codec in
+/// the HAL.
 struct JointFamily {
-    std::string_view name;                 ///< `joints.family`
-    std::vector<FamilyField> board_fields; ///< of each entry of `boards`
-    std::vector<FamilyField> fields;       ///< of `joints`, besides those of every family
-    std::string_view dbc = "";             ///< in hal/dbc, for other programs; "": none
-    /// `joints` of an arm with two of them, for the tests; "": none, because it needs another file.
+    std::string_view name;                 ///< value of `joints.family`
+    std::vector<FamilyField> board_fields; ///< fields of each entry of `boards`
+    std::vector<FamilyField> fields;       ///< fields of `joints`, besides those of every family
+    std::string_view dbc = "";             ///< file in hal/dbc for other programs; "": none
+    /// `joints` of an arm with two joints, for the tests; "": none, because it needs another file.
     std::string_view example = "";
 
-    /// Adds the boards of `joints` to `description`, which has its trigger and rates. Files that `joints`
-    /// names are in `folder`. Errors as of JsonReader; that there are no other fields has been checked.
+    /// Adds the boards of `joints` to `description`, which has its trigger and rates. Files named in `joints`
+    /// are relative to `folder`. Errors like those of JsonReader; the names of the fields are already
+    /// checked.
     void (*read)(const JsonReader& joints, const std::filesystem::path& folder, BusDescription& description);
 
-    /// The frame at which its devices measure, where they can be synchronous; null: they cannot.
+    /// The frame at which its devices measure if they are synchronous; null: they cannot be.
     hal::Frame (*sync)() = nullptr;
-    /// The frames of all boards of an arm, `values` of each, where boards share frames; null: they do not.
+    /// Encodes the frames of all boards of an arm, with the `values` of each, if boards share frames; null:
+    /// they do not.
     std::vector<hal::Frame> (*encode_together)(
         std::span<const BusBoard> boards, std::span<const std::array<hal::JointValue, 2>> values) = nullptr;
 };
 
 struct DescribedWrenchSensor {
     AnySensor device;
-    std::array<double, 6> limit; ///< what it can measure, ±
+    std::array<double, 6> limit; ///< measuring range per axis, ±
 };
 
-/// A family of force/torque sensors, likewise.
+/// A family of force/torque sensors, with the same members as above.
 struct SensorFamily {
-    std::string_view name; ///< `output.family`
+    std::string_view name; ///< value of `output.family`
     std::vector<FamilyField> fields;
     std::string_view dbc = "";
-    std::string_view example = ""; ///< `output`
+    std::string_view example = ""; ///< `output` of an arm, for the tests
 
     DescribedWrenchSensor (*read)(const JsonReader& output, const std::filesystem::path& folder);
 };

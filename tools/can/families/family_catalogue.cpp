@@ -45,7 +45,7 @@ const std::vector<SensorFamily>& sensor_families() {
 
 namespace {
 
-/// `expected`: another value that `family` may have, or "".
+/// `expected`: another permitted value of `family`, or "".
 template <class Family>
 const Family& find_family(const JsonReader& reader, const std::vector<Family>& catalogue,
                           std::string expected) {

@@ -5,11 +5,11 @@
 
 namespace dfdyn::tools {
 
-/// All families of boards, and of sensors, in the order of the documentation.
+/// All families of boards and of sensors, in the order of the documentation.
 const std::vector<JointFamily>& joint_families();
 const std::vector<SensorFamily>& sensor_families();
 
-/// The family that `family` names. Throws InputError with the names of all for another one.
+/// Returns the family named in `family`. For an unknown name, throws InputError with all known names.
 const JointFamily& joint_family(const JsonReader& joints);
 const SensorFamily& sensor_family(const JsonReader& output);
 

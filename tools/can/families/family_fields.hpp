@@ -11,28 +11,28 @@
 
 namespace dfdyn::tools {
 
-/// Readers of fields that several families have. Errors as of JsonReader.
+/// Readers of fields that several families have. Errors like those of JsonReader.
 
-/// The names of a family's fields, for JsonReader::allow_only.
+/// Names of a family's fields, for JsonReader::allow_only.
 std::vector<std::string_view> names_of(const std::vector<FamilyField>& fields);
 
-/// `joint`, of a board with one: from 1 in the file, from 0 here.
+/// Reads `joint` of a board with one joint; it counts from 1 in the file and from 0 here.
 int read_joint(const JsonReader& board);
 
-/// Counts, ticks or turns per something: negative for the other direction, never 0.
+/// Reads a ratio of counts, ticks or turns: negative for the opposite direction, never 0.
 double read_ratio(const JsonReader& reader, const std::string& name);
 double read_ratio(double value, const JsonReader& reader, const std::string& name);
 double ratio_or(const JsonReader& reader, const std::string& name, double absent);
 
-/// `zero_rad` (0): the joint's position where the encoder shows 0.
+/// Reads `zero_rad` (default 0): the joint's position where the encoder shows 0.
 double read_zero_rad(const JsonReader& board);
 
-/// `limit`: ± per axis.
+/// Reads `limit`: the measuring range ± per axis.
 std::array<double, 6> read_limit(const JsonReader& output);
-/// Without the field, those of an axis of force and of torque.
+/// Reads `limit`. Without the field, returns `force` and `torque` for their axes.
 std::array<double, 6> limit_or(const JsonReader& output, double force, double torque);
 
-/// Adds `read(board)`, a BusBoard, of each entry of `boards`.
+/// Adds the BusBoard `read(board)` for each entry of `boards`.
 template <class Read>
 void read_each_board(const JsonReader& joints, Read read, BusDescription& description) {
     for (const JsonReader& board : joints.objects("boards", 1, largest_bus_joint_count)) {
@@ -40,7 +40,7 @@ void read_each_board(const JsonReader& joints, Read read, BusDescription& descri
     }
 }
 
-/// A board of the class `Board` with one joint, from 0.
+/// Makes a board of the class `Board` with one joint, counted from 0.
 template <class Board, class Codec>
 BusBoard one_joint(Codec codec, int joint) {
     return {AnyBoard(std::make_unique<Board>(std::move(codec))), {joint, hal::unused_joint}};

@@ -66,7 +66,7 @@ class StrainBoard final : public SensorOf<StrainBoard, hal::icub::StrainBoard> {
 DescribedWrenchSensor read_strain_board(const JsonReader& output, const std::filesystem::path& /*folder*/) {
     hal::icub::StrainBoard board(output.whole_number("address", 1, 14));
     board.use_calibration_set(output.whole_or("calibration_set", 0, 0, 15));
-    std::array<double, 6> limit = limit_or(output, 10'000, 1'000); // of any board of this kind
+    std::array<double, 6> limit = limit_or(output, 10'000, 1'000); // range of any board of this type
     if (output.has("full_scale")) {
         const std::vector<int> full_scales = output.whole_numbers("full_scale", 1, 0xFFFF);
         if (full_scales.size() != strain_channels) {

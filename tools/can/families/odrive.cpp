@@ -38,7 +38,7 @@ hal::OdriveFirmware read_firmware(const JsonReader& joints) {
     return hal::OdriveFirmware::any;
 }
 
-/// `config`: what is the same for all axes of a bus.
+/// `config`: the properties that all axes of a bus have in common.
 BusBoard read_odrive_axis(const JsonReader& board, hal::OdriveAxis::Config config) {
     board.allow_only(names_of(odrive_axis_fields));
     config.node = board.whole_number("node", 0, 63);

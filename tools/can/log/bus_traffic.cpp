@@ -73,7 +73,7 @@ void BusTraffic::finish() {
     }
 }
 
-/// Not by std::uniform_real_distribution, which differs between standard libraries.
+/// Does not use std::uniform_real_distribution, which differs between standard libraries.
 std::int64_t BusTraffic::jitter_ns() {
     return std::llround(largest_jitter_ns_ * std::ldexp(static_cast<double>(engine_() >> 11U), -53));
 }
@@ -84,7 +84,8 @@ void BusTraffic::offer(const std::vector<hal::Frame>& frames, std::int64_t ready
     }
 }
 
-/// Whether a source that sends at a period sends with a row of that time; `next_ns`: its next time.
+/// Returns true if a source with this period sends at the row of this time. `next_ns`: its next send time,
+/// which is updated.
 bool BusTraffic::due(std::int64_t time_ns, std::int64_t period_ns, std::int64_t& next_ns) const {
     const auto row_ns = static_cast<std::int64_t>(1e9 * row_period_s_);
     if (2 * period_ns <= 3 * row_ns) {

@@ -11,34 +11,34 @@
 namespace dfdyn::tools {
 
 struct TrafficOptions {
-    double jitter_us = 0; ///< joints' frames, and wrenches, are late by up to this, evenly distributed
+    double jitter_us = 0; ///< maximum delay of the joints' frames and of wrenches, uniformly distributed
     std::uint64_t seed = 1;
-    /// Sample period of rows whose times have jitter: a source that sends less than 1.5 times as rarely sends
-    /// with every row, a slower one with the row closest to its time. 0: the rows' times are exact.
+    /// Sample period of rows whose times have jitter; 0: the times are exact. A source with a period of at
+    /// most 1.5 times this value sends at every row, a slower one at the row closest to its time.
     double row_period_s = 0;
 };
 
-/// What the devices of a bus description would have sent while an arm did what is told row by row: frames
-/// with the devices' quantisation, one after the other as the bus has room. The same rows, description and
-/// options give the same frames.
+/// Simulates the frames that the devices of a bus description would have sent during a motion given row by
+/// row. Frames have the quantisation of the devices and wait until the bus is free. Equal rows, description
+/// and options give equal frames.
 class BusTraffic {
   public:
-    /// The devices come up, and tell what they are asked once, before the first row: stamps are the rows'
-    /// times and this.
+    /// Time before the first row in which the devices boot and reply once to each request. Time stamps are
+    /// the rows' times plus this.
     static constexpr std::int64_t lead_ns = 10'000'000;
 
-    /// Throws as DeviceFrames.
+    /// Throws like DeviceFrames.
     BusTraffic(const BusDescription& description, const TrafficOptions& options, BusWire::OnFrame on_frame);
 
-    /// The next row: positions (rad) and outputs (of the description's kind) at `time_ns`, later than the
-    /// last. A source that is slower than the rows leaves some out.
+    /// Adds the next row: positions (rad) and outputs (of the description's kind) at `time_ns`, which must be
+    /// later than that of the last row. A source that is slower than the rows skips some.
     void add(std::int64_t time_ns, std::span<const double> position, std::span<const double> output);
 
-    /// Sends what still waits; call once, last. Throws InputError where the rows came more slowly than the
-    /// fastest source of the description sends, or where the bus could not carry it all.
+    /// Sends the frames that still wait. Call once, at the end. Throws InputError if the rows were slower
+    /// than the fastest source of the description, or if the bus could not carry all frames.
     void finish();
 
-    /// Share of the time that the bus was busy, after `finish`.
+    /// Share of the time that the bus was busy; valid after `finish`.
     double load() const noexcept { return load_; }
 
   private:
@@ -50,7 +50,7 @@ class BusTraffic {
     std::string source_;
     double bit_rate_;
     std::int64_t joint_period_ns_, output_period_ns_;
-    bool efforts_; ///< the outputs come from the joints
+    bool efforts_; ///< the outputs are efforts of the joints
     DeviceFrames frames_;
     BusWire wire_;
     std::mt19937_64 engine_;
@@ -62,9 +62,9 @@ class BusTraffic {
     double load_ = 0;
 };
 
-/// Writes the traffic of a recording as a candump log; returns the load of the bus. `recording` has the
-/// outputs of the description; `options.row_period_s` is filled in. Throws InputError as BusTraffic, and
-/// where the recording has other joints; then there is no log.
+/// Writes the traffic of a recording as a candump log and returns the load of the bus. `recording` must have
+/// the outputs of the description; `options.row_period_s` is set here. Throws InputError like BusTraffic, and
+/// if the recording has other joints; in that case no log is written.
 double write_bus_log(const Recording& recording, const BusDescription& description,
                      const TrafficOptions& options, const std::filesystem::path& log);
 

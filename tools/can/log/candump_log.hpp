@@ -10,8 +10,8 @@
 
 namespace dfdyn::tools {
 
-/// A candump log, read line by line in bounded memory: the source of a ReplayBus (`ReplaySource`), or of any
-/// loop over its frames. A bus is one interface: where the log has several, one has to be chosen.
+/// Reads a candump log line by line in bounded memory. It is the source of a ReplayBus (`ReplaySource`) or of
+/// any loop over its frames. A bus is one interface: if the log has several, one must be chosen.
 ///
 ///     CandumpLog log(path);
 ///     hal::ReplayBus bus(log);
@@ -19,18 +19,19 @@ namespace dfdyn::tools {
 ///     log.check();
 class CandumpLog {
   public:
-    /// `interface`: the one whose frames to give; empty for a log that has only one. Throws InputError when
-    /// the file cannot be opened.
+    /// `interface`: the interface whose frames are read; empty for a log that has only one. Throws InputError
+    /// if the file cannot be opened.
     explicit CandumpLog(const std::filesystem::path& path, std::string interface = {});
 
-    /// The next frame; false at the end, and for good where the log becomes unreadable. A last line that is
-    /// malformed and has no end was torn when the recording was killed: it is left out, see `torn_line`.
+    /// Reads the next frame. Returns false at the end, and permanently once the log becomes unreadable. A
+    /// malformed last line without a line end was cut off when the recording was killed; it is skipped (see
+    /// `torn_line`).
     bool next(hal::ReplayEntry& entry) noexcept;
 
-    /// A warning that names the torn last line, once it was met; else empty.
+    /// A warning that names the skipped last line after it was read; otherwise empty.
     const std::string& torn_line() const noexcept { return torn_line_; }
 
-    /// Throws the InputError, with line and column, that ended the reading early, if one did.
+    /// Throws the InputError, with line and column, that ended the reading early, if there was one.
     void check() const;
 
   private:
@@ -40,13 +41,13 @@ class CandumpLog {
 
     std::filesystem::path path_;
     std::string interface_;
-    bool is_only_one_; ///< the log may not have another interface
+    bool is_only_one_; ///< the log must not have another interface
     LineReader lines_;
     std::string torn_line_;
     std::exception_ptr fault_;
 };
 
-/// Writes the warning about a torn last line to stderr, if there is one.
+/// Prints the warning about a skipped last line to stderr, if there is one.
 void warn_of_torn_line(const CandumpLog& log);
 
 } // namespace dfdyn::tools

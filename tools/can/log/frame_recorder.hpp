@@ -12,14 +12,14 @@
 
 namespace dfdyn::tools {
 
-/// Writes frames as a candump log with nanoseconds, which CandumpLog reads back as they were.
+/// Writes frames as a candump log with nanoseconds, which CandumpLog reads back unchanged.
 class FrameWriter {
   public:
-    /// `out` must outlive the writer. `interface`: the name that the log gives the bus.
+    /// `out` must outlive the writer. `interface`: the name of the bus in the log.
     FrameWriter(std::ostream& out, std::string interface);
 
-    /// `dropped`: frames that were lost since the one before. Throws std::logic_error for a frame that no
-    /// bus carries.
+    /// `dropped`: number of frames lost since the previous one. Throws std::logic_error for a frame that no
+    /// bus can carry.
     void write(const hal::Frame& frame, std::uint64_t dropped = 0);
 
   private:
@@ -28,7 +28,7 @@ class FrameWriter {
     std::uint64_t dropped_ = 0;
 };
 
-/// A log of frames that appears with `commit`.
+/// A log file of frames that becomes visible with `commit`.
 class FrameRecorder {
   public:
     FrameRecorder(const std::filesystem::path& path, std::string interface)

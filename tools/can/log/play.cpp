@@ -12,7 +12,7 @@
 namespace dfdyn::tools {
 namespace {
 
-/// Throws InputError unless the whole log can be read and has frames.
+/// Throws InputError unless the whole log is readable and contains frames.
 void read_through(const PlayOptions& options) {
     CandumpLog log(options.log, options.log_interface);
     hal::ReplayEntry entry;
@@ -28,7 +28,7 @@ void read_through(const PlayOptions& options) {
     }
 }
 
-/// Plays a log whose frames are known to be sound.
+/// Plays a log that was read successfully before.
 class Player {
   public:
     Player(const PlayOptions& options, const std::atomic<bool>& stop)
@@ -52,8 +52,8 @@ class Player {
     }
 
   private:
-    static constexpr std::int64_t start_delay_ns = 10'000'000; ///< for what the first frames need
-    /// A signal that comes just before a sleep does not end it.
+    static constexpr std::int64_t start_delay_ns = 10'000'000; ///< time to prepare the first frames
+    /// Bounds the delay if a signal arrives just before a sleep, which it then does not end.
     static constexpr std::int64_t longest_sleep_ns = 100'000'000;
 
     void play_frame(const hal::Frame& frame) {
@@ -69,7 +69,7 @@ class Player {
             ++outcome_.error_frames;
             return;
         }
-        // Draining keeps the bus informed: only so it comes back when its interface does.
+        // The bus reopens its interface only while it is drained.
         bus_.drain(room_);
         outcome_.refused += bus_.send(frame) == hal::SendResult::sent ? 0 : 1;
     }

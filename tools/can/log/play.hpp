@@ -9,27 +9,28 @@
 
 namespace dfdyn::tools {
 
-/// What to put on which CAN interface, how fast.
+/// Log, CAN interface and speed of a playback.
 struct PlayOptions {
     std::filesystem::path log;
-    std::string log_interface; ///< whose frames; empty for a log that has only one
+    std::string log_interface; ///< interface in the log; empty for a log that has only one
     std::string interface;
-    double rate = 1.0; ///< times the log's own speed
+    double rate = 1.0; ///< multiple of the log's own speed
 };
 
 struct PlayOutcome {
     std::uint64_t sent = 0;
-    std::uint64_t refused = 0;         ///< the interface was down, its queue full, or it is no CAN FD
-    std::uint64_t error_frames = 0;    ///< in the log; only a controller can send such
-    std::uint64_t backward_stamps = 0; ///< frames sent at once because their stamp was earlier than the last
-    std::int64_t median_lateness_us = 0; ///< of sending, behind the log's own time
+    std::uint64_t refused = 0; ///< the interface was down, its queue was full, or it does not support CAN FD
+    std::uint64_t error_frames = 0; ///< error frames in the log, which only a controller can send
+    /// frames sent immediately because their time stamp was earlier than the last
+    std::uint64_t backward_stamps = 0;
+    std::int64_t median_lateness_us = 0; ///< delay of sending relative to the log's time
     std::int64_t worst_lateness_us = 0;
-    bool stopped = false;      ///< before the log's end
-    std::string not_real_time; ///< why the timing is that of an ordinary program; empty: it is not
+    bool stopped = false;      ///< before the end of the log
+    std::string not_real_time; ///< the reason why the process has no real-time priority; empty: it has
 };
 
-/// When each frame of a log is due, on the clock of the machine that plays it. A stamp that runs backward
-/// starts the log's time anew at the frame before.
+/// Computes the time at which each frame of a log is due, on the clock of the playing machine. When a time
+/// stamp runs backward, the log's time restarts at the previous frame.
 class PlayTimes {
   public:
     PlayTimes(std::int64_t start_ns, double rate) : start_ns_(start_ns), rate_(rate) {}
@@ -48,11 +49,11 @@ class PlayTimes {
     bool started_ = false;
 };
 
-/// Counts latenesses; their median to 1 us up to 10 ms, in fixed memory.
+/// Histogram of the lateness. The median has a resolution of 1 us up to 10 ms; the memory is fixed.
 class Lateness {
   public:
     void add(std::int64_t lateness_us);
-    /// 0 where nothing was added; 10,000 when the median is beyond.
+    /// Returns 0 if nothing was added, and 10,000 if the median is larger.
     std::int64_t median_us() const;
     std::int64_t worst_us() const noexcept { return worst_us_; }
 
@@ -63,10 +64,10 @@ class Lateness {
     std::int64_t worst_us_ = 0;
 };
 
-/// Puts the frames of a log on a CAN interface with the log's own timing, each at an absolute time, so that
-/// lateness does not add up. Reads an ordinary file through before it sends the first frame. Ends early when
-/// `stop` becomes true; a signal that sets it also ends the wait for the next frame. Throws InputError for a
-/// log that is malformed or has no frames, and for an interface that cannot be opened.
+/// Sends the frames of a log on a CAN interface with the timing of the log. Each frame has an absolute due
+/// time, so that delays do not accumulate. A regular file is read completely before the first frame is sent.
+/// Ends early when `stop` becomes true; a signal that sets it also ends the wait for the next frame. Throws
+/// InputError for a log that is malformed or has no frames, and for an interface that cannot be opened.
 PlayOutcome play(const PlayOptions& options, const std::atomic<bool>& stop);
 
 } // namespace dfdyn::tools
