@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole receive path of every family, compiled for a microcontroller without an operating system. It is
-// compiled only: check_bare_metal.sh looks at what it would need.
+// The whole receive path of every device family, compiled for a microcontroller without an operating system.
+// It is never run: check_bare_metal.sh inspects the symbols that it needs.
 #include "dfdyn/hal/assembly/effort_output.hpp"
 #include "dfdyn/hal/assembly/wrench_output.hpp"
 #include "dfdyn/hal/candump.hpp"
@@ -8,7 +8,7 @@
 #include "dfdyn/hal/sample_assembly.hpp"
 #include "every_family.hpp"
 
-/// A CAN controller's driver: the application's own.
+/// Stands for the driver of a CAN controller, which the application provides.
 struct BareController {
     std::span<const dfdyn::hal::Frame> drain(std::span<dfdyn::hal::Frame> into) noexcept {
         return into.first(0);
@@ -76,10 +76,10 @@ struct Families {
 
 } // namespace
 
-/// One tick of each; whether all have a sample.
+/// Runs one tick of each arm. Returns true if all have a sample.
 bool tick_all(BareController& controller) {
     return dfdyn::tests::EveryFamily<Families>::tick_all(controller);
 }
 
-/// A log in memory, played on a board.
+/// Parses a log line in memory, as for a playback on a board.
 bool play(std::string_view line) { return parse_candump_line(line).kind == CandumpLine::Kind::frame; }

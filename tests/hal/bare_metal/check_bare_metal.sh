@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_bare_metal.sh COMPILER SOURCE INCLUDE...: compiles SOURCE for a Cortex-M7 without an operating system; a failure
-# unless nothing is asked of the outside but moving memory and arithmetic.
+# check_bare_metal.sh COMPILER SOURCE INCLUDE...: compiles SOURCE for a Cortex-M7 without an operating system. Fails if
+# the object needs external symbols other than memory and arithmetic functions.
 set -euo pipefail
 compiler=$1 source=$2
 shift 2

@@ -8,7 +8,7 @@
 
 using namespace dfdyn::hal;
 
-TEST_CASE("numbers are loaded from bytes in either order") {
+TEST_CASE("numbers are decoded from little-endian and big-endian bytes") {
     const std::array<std::uint8_t, 9> bytes{0xAA, 0x01, 0x02, 0x83, 0x04, 0x05, 0x06, 0x07, 0x88};
     const std::uint8_t* odd = bytes.data() + 1; // not aligned
     CHECK(load_little<std::uint16_t>(odd) == 0x0201);
@@ -20,14 +20,14 @@ TEST_CASE("numbers are loaded from bytes in either order") {
     CHECK(load_little<std::int16_t>(bytes.data() + 2) == -0x7CFE); // 0x8302
 }
 
-TEST_CASE("IEEE floats are loaded from bytes in either order") {
+TEST_CASE("IEEE floats are decoded from little-endian and big-endian bytes") {
     const std::array<std::uint8_t, 4> little{0x00, 0x00, 0x20, 0xC0}; // -2.5
     const std::array<std::uint8_t, 4> big{0xC0, 0x20, 0x00, 0x00};
     CHECK(load_little<float>(little.data()) == -2.5F);
     CHECK(load_big<float>(big.data()) == -2.5F);
 }
 
-TEST_CASE("storing puts the bytes where loading finds them") {
+TEST_CASE("stored numbers are decoded unchanged") {
     std::array<std::uint8_t, 6> bytes{1, 1, 1, 1, 1, 1};
     store_big<std::int16_t>(bytes.data() + 1, -2);
     CHECK(bytes == std::array<std::uint8_t, 6>{1, 0xFF, 0xFE, 1, 1, 1});
@@ -37,7 +37,7 @@ TEST_CASE("storing puts the bytes where loading finds them") {
     CHECK(bytes == std::array<std::uint8_t, 6>{0, 0, 0x80, 0x3F, 2, 1});
 }
 
-TEST_CASE("a converter rounds to nearest and saturates at its ends") {
+TEST_CASE("conversion to an integer rounds to nearest and saturates") {
     CHECK(saturated<std::int16_t>(2.5) == 3);
     CHECK(saturated<std::int16_t>(-2.4) == -2);
     CHECK(saturated<std::int16_t>(1e9) == 32767);

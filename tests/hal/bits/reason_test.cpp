@@ -9,7 +9,7 @@
 
 namespace {
 
-/// The numbers and names that logs hold: they never change.
+/// Numbers and names of the reasons in logs. They must never change.
 constexpr std::pair<int, const char*> published_reasons[] = {
     {0, "ok"},
     {1, "waiting_for_position"},

@@ -21,7 +21,7 @@ constexpr auto intel = ByteOrder::intel;
 constexpr auto motorola = ByteOrder::motorola;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The definition, bit by bit: the places of a signal's bits, lowest first.
+/// Reference: the positions of a signal's bits in the data, from the lowest bit to the highest.
 std::vector<int> places_of(const Signal& signal) {
     std::vector<int> places;
     int bit = signal.start_bit;
@@ -40,7 +40,7 @@ bool bit_of(const Bytes& data, int place) {
     return (data[static_cast<std::size_t>(place / 8)] >> (place % 8) & 1) != 0;
 }
 
-/// The physical value by the definition; of integers up to 53 bits it is exact.
+/// Reference: the physical value, exact for integers of up to 53 bits.
 double reference_value(const Signal& signal, const Bytes& data) {
     const std::vector<int> places = places_of(signal);
     double value = 0;
@@ -90,7 +90,8 @@ TEST_CASE("signals of known frames have their known values") {
     const Bytes data{0x12, 0x34, 0x56, 0x78, 0x9A, 0xBC, 0xDE, 0xF0};
     CHECK(Signal{0, 16, intel}.extract_raw(data) == 0x3412);
     CHECK(Signal{7, 16, motorola}.extract_raw(data) == 0x1234);
-    CHECK(Signal{4, 12, intel}.extract_raw(data) == 0x341);    // 3 4 | 1 of the low byte's high nibble
+    // nibbles 3 4 of byte 1, then 1, the high nibble of byte 0
+    CHECK(Signal{4, 12, intel}.extract_raw(data) == 0x341);
     CHECK(Signal{3, 12, motorola}.extract_raw(data) == 0x234); // low nibble of byte 0, then byte 1
     CHECK(Signal{8, 3, intel}.extract_raw(data) == 0b100);
     CHECK(Signal{13, 3, motorola}.extract_raw(data) == 0b110); // bits 5..3 of 0x34
@@ -102,7 +103,7 @@ TEST_CASE("signals of known frames have their known values") {
     CHECK(Signal{47, 1, intel, signed_integer}.extract(data) == -1); // a signed bit
 }
 
-TEST_CASE("floats are signals too") {
+TEST_CASE("float signals are decoded and encoded") {
     const Bytes data{0x00, 0x00, 0x20, 0xC0, 0xC0, 0x20, 0x00, 0x00};
     CHECK(Signal{0, 32, intel, Encoding::float32, 2, 1}.extract(data) == -4);
     CHECK(Signal{39, 32, motorola, Encoding::float32}.extract(data) == -2.5);
@@ -116,7 +117,7 @@ TEST_CASE("floats are signals too") {
     CHECK(Signal{0, 32, intel, Encoding::float32}.extract(into) == -infinity);
 }
 
-TEST_CASE("a signal fits where all of its bits are data") {
+TEST_CASE("a signal fits if and only if all its bits are in the data") {
     CHECK(Signal{0, 64, intel}.fits(8));
     CHECK_FALSE(Signal{1, 64, intel}.fits(8));
     CHECK_FALSE(Signal{6, 64, motorola}.fits(8));
@@ -134,7 +135,7 @@ TEST_CASE("a signal fits where all of its bits are data") {
     }
 }
 
-TEST_CASE("signals equal their definition, bit by bit") {
+TEST_CASE("random signals equal a bit-by-bit reference") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int i = 0; i < 20000; ++i) {
         const int bytes = between(engine, 0, 9) == 0 ? 64 : 8;
@@ -147,7 +148,7 @@ TEST_CASE("signals equal their definition, bit by bit") {
     }
 }
 
-TEST_CASE("inserting sets a signal's bits and no others") {
+TEST_CASE("inserting a signal changes no other bits") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int i = 0; i < 20000; ++i) {
         const Signal signal = random_signal(engine, 8, 64);
@@ -167,20 +168,21 @@ TEST_CASE("inserting sets a signal's bits and no others") {
     }
 }
 
-TEST_CASE("a physical value comes back as it was inserted, to half a step") {
+TEST_CASE("encoding and decoding a physical value changes it by at most half a step") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int i = 0; i < 20000; ++i) {
         Signal signal = random_signal(engine, 8, 52);
         signal.factor = std::uniform_real_distribution<double>(0.001, 2)(engine);
         signal.offset = between(engine, -1000, 1000);
         Bytes data = random_bytes(engine, 8);
-        const double value = signal.extract(random_bytes(engine, 8)); // one that it can show
+        // a value that the signal represents exactly
+        const double value = signal.extract(random_bytes(engine, 8));
         signal.insert(data, value + 0.4 * signal.factor);
         REQUIRE(signal.extract(data) == Approx(value).margin(1e-9 * std::abs(value) + 1e-9));
     }
 }
 
-TEST_CASE("what a signal cannot show is clamped to its ends") {
+TEST_CASE("values beyond a signal's range are clamped") {
     for (const ByteOrder order : {intel, motorola}) {
         for (const int length : {1, 2, 7, 8, 12, 16, 31, 32, 33, 63, 64}) {
             const int start = order == intel ? 0 : 7;

@@ -38,7 +38,7 @@ BusState state_after(BusState before, const std::vector<Frame>& frames) {
     return before;
 }
 
-/// The counters that differ from zero, each as its name and value.
+/// Nonzero counters as text, each with its name and value.
 std::string counted(const BusCounters& counters) {
     const std::pair<const char*, std::uint64_t> all[] = {
         {"received", counters.received},
@@ -64,7 +64,8 @@ std::string counted(const BusCounters& counters) {
 
 } // namespace
 
-TEST_CASE("each class of error frame counts as what it is and moves the state only where it says so") {
+TEST_CASE(
+    "each class of error frame increments its own counters and changes the state only if it reports one") {
     struct Case {
         std::uint32_t classes;
         Bytes bytes;
@@ -97,9 +98,9 @@ TEST_CASE("each class of error frame counts as what it is and moves the state on
         {0x204, {.controller = 0x08, .transmit_errors = 200}, BusState::warning, "errors 1 "},
         {0x400, {.controller = 0x31, .transmit_errors = 200}, BusState::active, "errors 1 "},
         {0x000, {.controller = 0x31}, BusState::active, "errors 1 "},
-        // data that belong to a class that is not there
+        // data bytes of a class whose bit is not set
         {0x002, {.controller = 0x31, .transmit_errors = 200}, BusState::active, "arbitration 1 errors 1 "},
-        // several at once: bus-off wins
+        // several classes at once: bus-off has priority
         {0x0e4, {.controller = 0x20}, BusState::off, "unacknowledged 1 bus_errors 1 errors 1 off 1 "},
     };
     for (const Case& expected : cases) {
@@ -112,7 +113,7 @@ TEST_CASE("each class of error frame counts as what it is and moves the state on
     }
 }
 
-TEST_CASE("a controller comes back from every level, and from bus-off when it says so") {
+TEST_CASE("a controller recovers from every error level and from a reported restart after bus-off") {
     const Frame active = error_frame(0x004, {.controller = 0x40});
     const Frame warning = error_frame(0x004, {.controller = 0x08});
     const Frame passive = error_frame(0x004, {.controller = 0x20});
@@ -129,7 +130,7 @@ TEST_CASE("a controller comes back from every level, and from bus-off when it sa
     CHECK(state_after(BusState::interface_down, {active, off, restarted}) == BusState::interface_down);
 }
 
-TEST_CASE("bus-off that is reported twice happened once") {
+TEST_CASE("a repeated report of bus-off is counted once") {
     BusState state = BusState::active;
     BusCounters counters;
     for (const std::uint32_t classes : {0x040U, 0x040U, 0x100U, 0x040U}) {
@@ -141,7 +142,7 @@ TEST_CASE("bus-off that is reported twice happened once") {
     CHECK(counters.error_frames == 4);
 }
 
-TEST_CASE("what is received ends bus-off, what this computer sends does not") {
+TEST_CASE("a frame received from another node ends bus-off but a frame of this computer does not") {
     Frame data;
     data.id = 0x281;
     CHECK(state_after(BusState::off, {data}) == BusState::active);
@@ -153,7 +154,7 @@ TEST_CASE("what is received ends bus-off, what this computer sends does not") {
     }
 }
 
-TEST_CASE("a frame that is no error frame says nothing else about the bus, whatever its identifier") {
+TEST_CASE("the identifier of a data frame is never evaluated as error classes") {
     Frame frame = error_frame(0x040, {.controller = 0xff});
     frame.error = false;
     BusState state = BusState::warning;

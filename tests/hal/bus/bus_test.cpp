@@ -7,7 +7,7 @@
 
 using dfdyn::hal::Frame;
 
-TEST_CASE("a frame is plain data, as large as its contract says") {
+TEST_CASE("a frame is trivially copyable and has its documented size") {
     STATIC_REQUIRE(std::is_trivially_copyable_v<Frame>);
     CHECK(sizeof(Frame) == 88);
 }

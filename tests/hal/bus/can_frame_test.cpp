@@ -16,7 +16,7 @@ namespace {
 using dfdyn::hal::Ancillary;
 using dfdyn::hal::Frame;
 
-/// A message with control data as the kernel lays them out.
+/// A message with ancillary data in the kernel's layout.
 class Message {
   public:
     template <class Value>
@@ -49,7 +49,7 @@ scm_timestamping stamps(timespec software, timespec hardware) {
 
 } // namespace
 
-TEST_CASE("stamps of kernel and controller, and drops, are read from what comes with a frame") {
+TEST_CASE("time stamps and drop counts are read from ancillary data") {
     const Ancillary nothing = Message().read();
     CHECK(nothing.software_ns == 0);
     CHECK(nothing.hardware_ns == 0);
@@ -70,12 +70,12 @@ TEST_CASE("stamps of kernel and controller, and drops, are read from what comes 
     CHECK(other.read().software_ns == 0);
 }
 
-TEST_CASE("random frames survive the kernel's layout") {
+TEST_CASE("random frames are unchanged after conversion to the kernel's layout and back") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int round = 0; round < 5'000; ++round) {
         const Frame frame = dfdyn::tests::random_frame(engine);
         if (frame.error) {
-            continue; // those one only receives
+            continue; // error frames can only be received
         }
         Frame read;
         dfdyn::hal::decode_can_frame(dfdyn::hal::encode_can_frame(frame), frame.fd ? CANFD_MTU : CAN_MTU,
@@ -87,7 +87,7 @@ TEST_CASE("random frames survive the kernel's layout") {
     }
 }
 
-TEST_CASE("a length beyond what a frame holds is cut") {
+TEST_CASE("a length above the maximum is clamped") {
     canfd_frame raw{};
     raw.len = 200;
     Frame classic;

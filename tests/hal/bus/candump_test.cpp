@@ -41,7 +41,7 @@ const std::string head = "(1700000000.123456) can0 ";
 
 } // namespace
 
-TEST_CASE("candump lines of every kind are read") {
+TEST_CASE("candump lines of every kind are parsed") {
     Frame extended = frame_of(0x1abcdef, {});
     extended.extended = true;
     Frame remote = frame_of(0x123, {});
@@ -93,7 +93,7 @@ TEST_CASE("candump lines of every kind are read") {
     }
 }
 
-TEST_CASE("candump stamps have 6 or 9 decimals and any second that nanoseconds can count") {
+TEST_CASE("candump time stamps have 6 or 9 decimals and any second that fits in nanoseconds") {
     const std::pair<std::string, std::int64_t> cases[] = {
         {"(0000000000.000000)", 0},
         {"(0.000001)", 1'000},
@@ -109,7 +109,7 @@ TEST_CASE("candump stamps have 6 or 9 decimals and any second that nanoseconds c
     }
 }
 
-TEST_CASE("candump lines without a frame are told apart") {
+TEST_CASE("candump lines without a frame are classified") {
     for (const std::string line : {"", " ", "\t\r", "# (1.000000) can0 123#", "  #"}) {
         CAPTURE(line);
         CHECK(parse_candump_line(line).kind == CandumpLine::Kind::nothing);
@@ -126,7 +126,7 @@ TEST_CASE("candump lines without a frame are told apart") {
     }
 }
 
-TEST_CASE("a malformed candump line is refused with column, expectation and find") {
+TEST_CASE("a malformed candump line is rejected with column and expected text and found text") {
     struct Case {
         std::string line;
         CandumpFault fault;
@@ -204,7 +204,7 @@ TEST_CASE("a malformed candump line is refused with column, expectation and find
     }
 }
 
-TEST_CASE("candump lines are written as candump writes them") {
+TEST_CASE("lines are written in the format of candump") {
     CHECK(written(frame_of(0x12, {0xde, 0xad}), StampDecimals::microseconds) == head + "012#DEAD");
     CHECK(written(frame_of(0x12, {}), StampDecimals::nanoseconds) == "(1700000000.123456000) can0 012#");
     Frame frame = frame_of(0x12, {1});
@@ -214,7 +214,7 @@ TEST_CASE("candump lines are written as candump writes them") {
     CHECK(written(frame, StampDecimals::microseconds) == "(0000000001.999999) can0 00000012#01 T");
 }
 
-TEST_CASE("what no candump log can hold is not written") {
+TEST_CASE("a frame that no candump log can represent is not written") {
     Frame early = frame_of(0x12, {});
     early.stamp_ns = -1;
     Frame late = frame_of(0x12, {});
@@ -229,7 +229,7 @@ TEST_CASE("what no candump log can hold is not written") {
     }
 }
 
-TEST_CASE("random frames survive a candump log, without the heap") {
+TEST_CASE("random frames are unchanged after writing and reading a candump log without the heap") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int round = 0; round < 20'000; ++round) {
         const Frame frame = dfdyn::tests::random_frame(engine);
@@ -244,7 +244,7 @@ TEST_CASE("random frames survive a candump log, without the heap") {
     }
 }
 
-TEST_CASE("candump lines with random bytes changed are read or refused, and never beyond their end") {
+TEST_CASE("candump lines with random byte errors are parsed or rejected without reading beyond their end") {
     DFDYN_SEEDED_ENGINE(engine);
     std::uniform_int_distribution<int> byte(0, 255);
     int refused = 0;
@@ -255,7 +255,8 @@ TEST_CASE("candump lines with random bytes changed are read or refused, and neve
             line.at(std::uniform_int_distribution<std::size_t>(0, line.size() - 1)(engine)) =
                 static_cast<char>(byte(engine));
         }
-        const std::vector<char> exact(line.begin(), line.end()); // its end is known to the sanitizer
+        // the address sanitizer detects reads beyond its end
+        const std::vector<char> exact(line.begin(), line.end());
         const CandumpLine read = parse_candump_line({exact.data(), exact.size()});
         if (read.kind == CandumpLine::Kind::malformed) {
             ++refused;

@@ -66,7 +66,7 @@ using Ids = std::vector<std::uint32_t>;
 
 } // namespace
 
-TEST_CASE("a replay hands a frame out when its clock has come to the frame's stamp") {
+TEST_CASE("a replay returns a frame once its clock has reached the frame's time stamp") {
     Entries entries({entry(1000, 1), entry(1000, 2), entry(2000, 3), entry(5000, 4)});
     ReplayBus bus(entries);
     CHECK(bus.now_ns() == 1000);
@@ -90,7 +90,7 @@ TEST_CASE("a replay hands a frame out when its clock has come to the frame's sta
     CHECK(bus.counters().saturated_drains == 0);
 }
 
-TEST_CASE("a replay of nothing has ended") {
+TEST_CASE("a replay without frames has ended") {
     Entries entries({}, 5);
     ReplayBus bus(entries);
     CHECK(bus.ended());
@@ -98,7 +98,7 @@ TEST_CASE("a replay of nothing has ended") {
     CHECK(bus.counters().dropped == 5);
 }
 
-TEST_CASE("a replay drains no more than there is room for, and says that frames are left") {
+TEST_CASE("a replay fills at most the given buffer and reports that frames are left") {
     Entries entries({entry(0, 1), entry(0, 2), entry(0, 3), entry(0, 4)});
     ReplayBus bus(entries);
     CHECK(drained_ids(bus, 3) == Ids{1, 2, 3});
@@ -107,7 +107,7 @@ TEST_CASE("a replay drains no more than there is room for, and says that frames 
     CHECK(bus.counters().saturated_drains == 1);
 }
 
-TEST_CASE("a replay keeps the recording's order and stamps where they run backward, and its clock does not") {
+TEST_CASE("a replay keeps order and time stamps that run backward but its clock never does") {
     Entries entries({entry(5000, 1), entry(2000, 2), entry(3000, 3), entry(6000, 4)});
     ReplayBus bus(entries);
     std::array<Frame, 8> room;
@@ -119,7 +119,7 @@ TEST_CASE("a replay keeps the recording's order and stamps where they run backwa
     CHECK(bus.next_stamp_ns() == 6000);
 }
 
-TEST_CASE("a replay counts what the recorder lost when it hands out the frame after the loss") {
+TEST_CASE("a replay counts lost frames when it returns the frame after the loss") {
     Entries entries({entry(1000, 1), entry(2000, 2, 7)}, 2);
     ReplayBus bus(entries);
     CHECK(drained_ids(bus) == Ids{1});
@@ -129,7 +129,7 @@ TEST_CASE("a replay counts what the recorder lost when it hands out the frame af
     CHECK(bus.counters().dropped == 9);
 }
 
-TEST_CASE("error frames of a recording move the state of the bus, and close it for sending") {
+TEST_CASE("error frames of a recording change the state of the bus and disable sending") {
     ReplayEntry off = entry(2000, 0x40);
     off.frame.error = true;
     ReplayEntry restarted = entry(3000, 0x100);
@@ -150,7 +150,7 @@ TEST_CASE("error frames of a recording move the state of the bus, and close it f
     CHECK(bus.counters().sent == 1);
 }
 
-TEST_CASE("what is sent to a replay can be fetched in order, and a full queue refuses") {
+TEST_CASE("frames sent to a replay can be read in order and a full queue refuses further frames") {
     using AnyBus = ReplayBus<Entries>;
     Entries entries({entry(1000, 1)});
     AnyBus bus(entries);
@@ -180,7 +180,8 @@ TEST_CASE("what is sent to a replay can be fetched in order, and a full queue re
     CHECK(bus.counters().sent == 65);
 }
 
-TEST_CASE("a replay gives random recordings back whole, whatever the steps of its clock, without the heap") {
+TEST_CASE("a replay returns random recordings completely whatever the steps of its clock and without heap "
+          "allocations") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int round = 0; round < 50; ++round) {
         std::vector<ReplayEntry> recording(200);
@@ -216,7 +217,7 @@ namespace {
 
 constexpr std::int64_t ms = 1'000'000;
 
-/// Frames each millisecond; from the one numbered `from` to before `to` their stamps are off by `error_ns`.
+/// One frame per millisecond. The time stamps of frames `from` to `to` - 1 are wrong by `error_ns`.
 std::vector<ReplayEntry> stepping_clock(int frames, int from, int to, std::int64_t error_ns) {
     std::vector<ReplayEntry> recording;
     for (int number = 0; number < frames; ++number) {
@@ -226,7 +227,7 @@ std::vector<ReplayEntry> stepping_clock(int frames, int from, int to, std::int64
     return recording;
 }
 
-/// What a clock gate makes of a recording, read each millisecond.
+/// Result of a clock gate for a recording that is read every millisecond.
 struct Gated {
     dfdyn::hal::ClockGate gate{{}};
     int good = 0; ///< frames that were accepted with a stamp less than 1 ms old
@@ -250,7 +251,7 @@ struct Gated {
 
 } // namespace
 
-TEST_CASE("a recording whose clock was set back goes on from there, and the new clock is adopted once") {
+TEST_CASE("a recording continues after its clock was set back and the new clock is adopted once") {
     for (const std::int64_t jump_ns : {-6'000 * ms, -90'000 * ms, -50 * ms}) {
         const Gated gated(stepping_clock(10'000, 3'000, 10'000, jump_ns));
         CHECK(gated.gate.adopted() == 1);
@@ -260,18 +261,18 @@ TEST_CASE("a recording whose clock was set back goes on from there, and the new 
     }
 }
 
-TEST_CASE("a stray stamp in a recording moves its clock for no longer than the stray lasts") {
+TEST_CASE("an outlier among the time stamps affects a recording's clock only while it lasts") {
     const Gated back(stepping_clock(5'000, 3'000, 3'001, -6'000 * ms));
     CHECK(back.gate.adopted() == 0);
     CHECK(back.good == 5'000 - 1);
     CHECK(back.took_ns == 4'999 * ms);
-    const Gated ahead(stepping_clock(5'000, 3'000, 3'001, 6'000 * ms)); // not told from a silence
+    const Gated ahead(stepping_clock(5'000, 3'000, 3'001, 6'000 * ms)); // looks like a silence
     CHECK(ahead.gate.adopted() == 1);
     CHECK(ahead.good == 5'000 - 19);
 }
 
 TEST_CASE(
-    "frames that overtake each other, however many, leave a recording's clock in step with its stamps") {
+    "frames that overtake each other repeatedly keep the recording's clock in step with its time stamps") {
     std::vector<ReplayEntry> recording;
     for (int number = 0; number < 5'000; ++number) {
         recording.push_back(entry(number * ms + 400'000, 1));

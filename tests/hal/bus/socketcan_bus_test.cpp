@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be tested without CAN in the kernel; the rest is in tests/vcan.
+// Tests that need no CAN support in the kernel; the others are in tests/vcan.
 #include "dfdyn/hal/socketcan_bus.hpp"
 
 #include "tests/support/catch.hpp"
@@ -22,7 +22,7 @@ using dfdyn::hal::SocketCanBus;
 
 namespace {
 
-/// From now on this process can open no socket, as where a container's rules forbid it.
+/// From now on this process cannot open sockets, as in a container that forbids it.
 bool forbid_sockets(int error_number) {
     std::array<sock_filter, 4> program{{
         BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
@@ -35,7 +35,7 @@ bool forbid_sockets(int error_number) {
            ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter) == 0;
 }
 
-/// What a process says that may open no socket, for this reason.
+/// Error message of a process that may not open a socket, for this error number.
 std::string refusal_without_permission(int error_number) {
     std::array<int, 2> ends{};
     REQUIRE(::pipe(ends.data()) == 0);
@@ -65,7 +65,7 @@ std::string refusal_without_permission(int error_number) {
 
 } // namespace
 
-TEST_CASE("an interface that cannot be opened is refused in one line with its name") {
+TEST_CASE("an interface that cannot be opened is rejected in one line with its name") {
     const auto open = [](const std::string& name) {
         SocketCanBus({.interface = name, .filters = {}, .receive_own = false});
     };
@@ -78,7 +78,7 @@ TEST_CASE("an interface that cannot be opened is refused in one line with its na
     CHECK_THROWS_AS(open("a_name_of_16_let"), BusError);
 }
 
-TEST_CASE("without permission the refusal says so, and what to allow") {
+TEST_CASE("without permission the error message names the permission that is needed") {
     for (const int error_number : {EPERM, EACCES}) {
         CHECK_THAT(refusal_without_permission(error_number),
                    Catch::Matchers::StartsWith("can0: expected a CAN socket, found: a system that keeps CAN "

@@ -12,11 +12,12 @@ using dfdyn::hal::HardwareClock;
 using dfdyn::hal::WallClock;
 
 constexpr std::int64_t second_ns = 1'000'000'000;
-constexpr std::int64_t boot_ns = 1'700'000'000 * second_ns; ///< the wall clock when the monotonic one was 0
+/// wall-clock time when the monotonic clock was 0
+constexpr std::int64_t boot_ns = 1'700'000'000 * second_ns;
 
 } // namespace
 
-TEST_CASE("stamps of a wall clock land on the monotonic clock") {
+TEST_CASE("wall-clock time stamps are converted to the monotonic clock") {
     WallClock clock;
     clock.nothing_waiting(5 * second_ns, boot_ns + 5 * second_ns);
     const auto [stamp_ns, plausible] =
@@ -25,7 +26,7 @@ TEST_CASE("stamps of a wall clock land on the monotonic clock") {
     CHECK(stamp_ns == 6 * second_ns);
 }
 
-TEST_CASE("a wall clock that is set moves no stamp, whether it waited meanwhile or came later") {
+TEST_CASE("setting the wall clock moves no time stamp of frames that were waiting or came later") {
     const std::int64_t step_ns = GENERATE(3600 * second_ns, -3600 * second_ns, second_ns, -second_ns);
     CAPTURE(step_ns);
     WallClock clock;
@@ -46,7 +47,7 @@ TEST_CASE("a wall clock that is set moves no stamp, whether it waited meanwhile 
             .stamp_ns == 6 * second_ns);
 }
 
-TEST_CASE("a stamp that no difference of the clocks explains is the time of reading") {
+TEST_CASE("a time stamp that no difference of the clocks explains becomes the time of reading") {
     WallClock clock;
     clock.nothing_waiting(5 * second_ns, boot_ns + 5 * second_ns);
     const auto [stamp_ns, plausible] =
@@ -55,7 +56,8 @@ TEST_CASE("a stamp that no difference of the clocks explains is the time of read
     CHECK(stamp_ns == 7 * second_ns);
 }
 
-TEST_CASE("stamps of a controller's clock that drifts land near the truth, and never after the reading") {
+TEST_CASE(
+    "time stamps of a drifting controller clock are converted closely and never later than the reading") {
     DFDYN_SEEDED_ENGINE(engine);
     const double speed = GENERATE(1.0, 1.0 + 1e-4, 1.0 - 1e-4);
     CAPTURE(speed);
@@ -73,13 +75,13 @@ TEST_CASE("stamps of a controller's clock that drifts land near the truth, and n
             worst_ns = std::max(worst_ns, std::abs(late_ns));
         }
     }
-    // The least delay is 20 us; in the some 200 ms from one small delay to the next, 100 or 200 ppm make 40
+    // The smallest delay is 20 us. Small delays are about 200 ms apart, in which 100 or 200 ppm amount to 40
     // us.
     CHECK(worst_ns < 80'000);
     CHECK(worst_ns > 10'000);
 }
 
-TEST_CASE("a controller's clock that starts anew is followed") {
+TEST_CASE("a controller's clock that restarts is followed") {
     HardwareClock clock;
     CHECK(clock.to_monotonic(500 * second_ns, 10 * second_ns) == 10 * second_ns);
     CHECK(clock.to_monotonic(0, 11 * second_ns) == 11 * second_ns);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The DBC files say what the decoders do, as far as a DBC file can.
+// The DBC files agree with the decoders, as far as a DBC file can describe a protocol.
 #include "every_family.hpp"
 #include "tests/hal/support/frames.hpp"
 #include "tests/support/catch.hpp"
@@ -18,11 +18,11 @@ namespace {
 
 struct NamedSignal {
     std::uint32_t id;
-    int length; ///< of the message, bytes
+    int length; ///< bytes of the message
     Signal signal;
 };
 
-/// Just what our own files need: messages, signals, float marks.
+/// Parser of the statements that our own files use: messages, signals, float marks.
 class DbcFile {
   public:
     explicit DbcFile(const std::string& name) {
@@ -37,7 +37,7 @@ class DbcFile {
 
     [[nodiscard]] const std::map<std::string, NamedSignal>& signals() const { return signals_; }
 
-    /// The signal's value in its frame, which must be one of these.
+    /// Returns the signal's value in the one of these frames that contains it.
     [[nodiscard]] double value(const std::string& name, std::initializer_list<Frame> frames) const {
         const NamedSignal& named = signals_.at(name);
         for (const Frame& frame : frames) {
@@ -94,7 +94,7 @@ Values random_values(std::mt19937_64& engine, double size) {
     return values;
 }
 
-/// What the decoder and the DBC file make of a frame agree, for one joint.
+/// Checks that decoder and DBC file give the same values for a frame with one joint.
 template <class Board>
 void check_joint(const char* name, Board board, bool effort, const char* effort_name) {
     DFDYN_SEEDED_ENGINE(engine);
@@ -113,7 +113,7 @@ void check_joint(const char* name, Board board, bool effort, const char* effort_
 
 constexpr std::array axis_names{"fx", "fy", "fz", "mx", "my", "mz"};
 
-/// The DBC files of all families.
+/// DBC files of all families.
 template <class... Family>
 struct DbcNames {
     static std::set<std::string> get() {
@@ -135,7 +135,7 @@ TEST_CASE("every signal of the DBC files lies within its message") {
     }
 }
 
-TEST_CASE("the DBC file of the iCub's two-joint boards decodes as the decoder") {
+TEST_CASE("the DBC file of the iCub's two-joint boards agrees with the decoder") {
     DFDYN_SEEDED_ENGINE(engine);
     const DbcFile dbc("icub_two_joint_boards.dbc");
     icub::TwoJointBoard board(2, {2, -11.375, 0}, {3, -11.375, 0});
@@ -153,7 +153,7 @@ TEST_CASE("the DBC file of the iCub's two-joint boards decodes as the decoder") 
     CHECK(dbc.value("optical_encoder_error4", {status}) == 1);
 }
 
-TEST_CASE("the DBC files of single joints decode as their decoders") {
+TEST_CASE("the DBC files of single joints agree with their decoders") {
     const icub::FocBoard foc({.address = 1, .joint = 0});
     check_joint("icub_2foc.dbc", foc, true, "i1");
     CHECK(DbcFile("icub_2foc.dbc").value("encoder_errors1", {foc.encode_status(0x12, 7)}) == 0x12);
@@ -168,7 +168,7 @@ TEST_CASE("the DBC files of single joints decode as their decoders") {
     CHECK(DbcFile("odrive.dbc").value("encoder_error1", {axis.encode_heartbeat(true)}) == 1);
 }
 
-TEST_CASE("the DBC file of the strain board decodes as the decoder") {
+TEST_CASE("the DBC file of the strain board agrees with the decoder") {
     DFDYN_SEEDED_ENGINE(engine);
     const DbcFile dbc("icub_strain.dbc");
     icub::StrainBoard board(13);
@@ -190,7 +190,7 @@ TEST_CASE("the DBC file of the strain board decodes as the decoder") {
     }
 }
 
-TEST_CASE("the DBC file of the Robotous sensor decodes as the decoder, Tx in two parts") {
+TEST_CASE("the DBC file of the Robotous sensor agrees with the decoder with Tx in two parts") {
     DFDYN_SEEDED_ENGINE(engine);
     const DbcFile dbc("robotous_rft.dbc");
     const RobotousRft sensor(RobotousRft::Config{});
@@ -210,7 +210,7 @@ TEST_CASE("the DBC file of the Robotous sensor decodes as the decoder, Tx in two
     CHECK(dbc.value("overload", {overload.frame[1]}) == 0b100001);
 }
 
-TEST_CASE("the DBC file of the ATI sensor decodes its gauges") {
+TEST_CASE("the DBC file of the ATI sensor agrees with the decoder") {
     DFDYN_SEEDED_ENGINE(engine);
     const DbcFile dbc("ati_netcan.dbc");
     AtiNetcan::Config config;

@@ -14,7 +14,7 @@ using namespace dfdyn::hal;
 using namespace dfdyn::tests;
 using Kind = Decoded::Kind;
 
-/// Fx is 2 x gauge 0 - gauge 5, every other axis its own gauge; 100 counts per N, 1000 per N·m.
+/// Fx is 2 x gauge 0 - gauge 5; every other axis is its own gauge. 100 counts per N, 1000 per N·m.
 AtiNetcan::Config plain_config() {
     AtiNetcan::Config config;
     for (std::size_t i = 0; i < 6; ++i) {
@@ -51,7 +51,7 @@ TEST_CASE("an ATI sensor's gauges become a wrench by its matrix") {
     }
 }
 
-TEST_CASE("an ATI sensor's fault bits refuse the wrench") {
+TEST_CASE("an ATI sensor's fault bits reject the wrench") {
     const AtiNetcan sensor(plain_config());
     for (int bit = 0; bit < 16; ++bit) {
         const auto high = static_cast<std::uint8_t>(bit >= 8 ? 1 << (bit - 8) : 0);
@@ -62,7 +62,7 @@ TEST_CASE("an ATI sensor's fault bits refuse the wrench") {
     }
 }
 
-TEST_CASE("an ATI sensor without a sound calibration gives no wrench") {
+TEST_CASE("an ATI sensor without a valid calibration gives no wrench") {
     AtiNetcan::Config config = plain_config();
     config.counts_per_newton = 0;
     CHECK(AtiNetcan(config).wrench(first_frame, second_frame).reason == Reason::waiting_for_full_scale);
@@ -75,7 +75,7 @@ TEST_CASE("an ATI sensor without a sound calibration gives no wrench") {
     CHECK(AtiNetcan(config).calibration() == Reason::full_scale_implausible);
 }
 
-TEST_CASE("a poll of an ATI sensor is nothing, and its frames have their lengths") {
+TEST_CASE("a poll of an ATI sensor is ignored and its frames have fixed lengths") {
     const AtiNetcan sensor(plain_config());
     CHECK(sensor.poll().id == 0x200);
     CHECK(sensor.poll().length == 0);
@@ -85,7 +85,7 @@ TEST_CASE("a poll of an ATI sensor is nothing, and its frames have their lengths
     CHECK(sensor.decode(frame_of(0x202, {0, 0, 0, 0, 0, 0, 0, 0})).kind == Kind::nothing);
 }
 
-TEST_CASE("what a simulated ATI sensor sends decodes to within what its gauges resolve") {
+TEST_CASE("a simulated ATI sensor's wrench is decoded to within the resolution of its gauges") {
     DFDYN_SEEDED_ENGINE(engine);
     const AtiNetcan sensor(plain_config());
     std::uniform_real_distribution<double> share(-1, 1);

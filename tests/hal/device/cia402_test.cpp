@@ -30,7 +30,7 @@ Cia402Drive::Config elbow_config() {
 
 const Frame minus_two = frame_of(0x285, {0x30, 0xF8, 0xFF, 0xFF, 0x11, 0x22, 0x33, 0x44}, 7 * ms); // -2000
 
-TEST_CASE("a CiA 402 drive's PDOs are read as they are mapped") {
+TEST_CASE("a CiA 402 drive's PDOs are decoded by their mapping") {
     Cia402Drive drive(elbow_config());
     const Decoded decoded = drive.decode(minus_two);
     REQUIRE(decoded.kind == Kind::values);
@@ -45,7 +45,7 @@ TEST_CASE("a CiA 402 drive's PDOs are read as they are mapped") {
     CHECK(torque.joint[0].effort == Approx(-2));
 }
 
-TEST_CASE("a synchronous drive measures at the SYNC before") {
+TEST_CASE("values of a synchronous drive were measured at the preceding SYNC") {
     Cia402Drive drive(elbow_config());
     const auto answer = [&](std::int64_t stamp_ns) {
         Frame frame = minus_two;
@@ -56,7 +56,7 @@ TEST_CASE("a synchronous drive measures at the SYNC before") {
     CHECK(answer(5 * ms + ms / 4).stamp_ns == 5 * ms);
     CHECK(drive.decode(frame_of(0x080, {0x17}, 6 * ms)).kind == Kind::sync); // with a counter
     CHECK(answer(6 * ms + ms / 4).stamp_ns == 6 * ms);
-    const JointValue late = answer(7 * ms + ms / 4); // to the SYNC of 7 ms, which was lost
+    const JointValue late = answer(7 * ms + ms / 4); // the answer to the SYNC of 7 ms, which was lost
     CHECK(late.position_reason == Reason::sync_unknown);
     CHECK(late.stamp_ns == 7 * ms + ms / 4);
     Cia402Drive::Config config = elbow_config();
@@ -77,14 +77,13 @@ TEST_CASE("a drive that is not operational has no values") {
     }
 }
 
-TEST_CASE(
-    "a boot-up of a drive without heartbeat ends with its PDOs, which only an operational drive sends") {
+TEST_CASE("a drive without heartbeat is operational from its first PDO after a boot-up") {
     Cia402Drive drive(elbow_config());
     CHECK(drive.decode(frame_of(0x705, {0})).reason == Reason::device_not_operational);
     CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::ok);
     const Frame torque = frame_of(0x485, {1, 0}, 7 * ms);
     CHECK(drive.decode(torque).joint[0].effort_reason == Reason::ok);
-    // in the middle: its zero may be another one now, so that it must show itself anew
+    // in the middle: its zero may have changed, so it must qualify again
     CHECK(drive.decode(frame_of(0x705, {0})).reason == Reason::device_restarted);
     CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::device_restarted);
     CHECK(drive.decode(torque).joint[0].effort_reason == Reason::device_restarted);
@@ -92,7 +91,7 @@ TEST_CASE(
     CHECK(drive.decode(torque).joint[0].effort_reason == Reason::ok);
 }
 
-TEST_CASE("a boot-up of a drive with heartbeat ends with the heartbeat of an operational drive") {
+TEST_CASE("a drive with heartbeat is operational from the first operational heartbeat after a boot-up") {
     Cia402Drive::Config config = elbow_config();
     config.heartbeat_timeout_ns = 100 * ms;
     Cia402Drive drive(config);
@@ -102,7 +101,7 @@ TEST_CASE("a boot-up of a drive with heartbeat ends with the heartbeat of an ope
     CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::ok);
 }
 
-TEST_CASE("a state that nobody repeats is forgotten where no heartbeat is expected") {
+TEST_CASE("a reported state expires if no heartbeat is expected") {
     Cia402Drive drive(elbow_config());
     drive.decode(frame_of(0x705, {127}));
     CHECK(drive.decode(at_time(minus_two, 2'900 * ms)).joint[0].position_reason ==
@@ -110,7 +109,7 @@ TEST_CASE("a state that nobody repeats is forgotten where no heartbeat is expect
     CHECK(drive.decode(at_time(minus_two, 3'100 * ms)).joint[0].position_reason == Reason::ok);
 }
 
-TEST_CASE("a drive that restarts has no emergency any more") {
+TEST_CASE("a restart of a drive clears its emergency") {
     Cia402Drive drive(elbow_config());
     drive.decode(frame_of(0x085, {0x05, 0x73, 0, 0, 0, 0, 0, 0}));
     CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::encoder_fault);
@@ -119,7 +118,7 @@ TEST_CASE("a drive that restarts has no emergency any more") {
     CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::ok);
 }
 
-TEST_CASE("a drive whose heartbeat is expected is believed only while it beats") {
+TEST_CASE("values of a drive with an expected heartbeat are valid only while it arrives") {
     Cia402Drive::Config config = elbow_config();
     config.heartbeat_timeout_ns = 3 * ms;
     Cia402Drive drive(config);
@@ -129,27 +128,28 @@ TEST_CASE("a drive whose heartbeat is expected is believed only while it beats")
     CHECK(drive.decode(at_time(minus_two, 7 * ms + 1)).joint[0].position_reason == Reason::heartbeat_missing);
 }
 
-TEST_CASE("an emergency refuses what it concerns until it is over") {
+TEST_CASE("an emergency rejects the values that it affects until it is cleared") {
     Cia402Drive drive(elbow_config());
     const Frame torque = frame_of(0x485, {1, 0});
-    // heartbeat error 0x8130 of the trace in ros_canopen's issue: not the sensor
+    // heartbeat error 0x8130, from a trace in an issue of ros_canopen: not a sensor error
     CHECK(drive.decode(frame_of(0x085, {0x30, 0x81, 0x11, 0, 0, 0, 0, 0})).reason == Reason::device_fault);
     CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::ok);
     CHECK(drive.decode(torque).joint[0].effort_reason == Reason::device_fault);
     CHECK(drive.decode(frame_of(0x085, {0x05, 0x73, 0, 0, 0, 0, 0, 0})).reason == Reason::encoder_fault);
     CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::encoder_fault);
-    drive.decode(frame_of(0x085, {0x30, 0x81, 0, 0, 0, 0, 0, 0})); // another one does not end the first
+    // a second emergency does not end the first
+    drive.decode(frame_of(0x085, {0x30, 0x81, 0, 0, 0, 0, 0, 0}));
     CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::encoder_fault);
     CHECK(drive.decode(frame_of(0x085, {0, 0, 0, 0, 0, 0, 0, 0})).reason == Reason::ok);
     CHECK(drive.decode(minus_two).joint[0].position_reason == Reason::ok);
     CHECK(drive.decode(torque).joint[0].effort_reason == Reason::ok);
 }
 
-TEST_CASE("a drive's frames have exactly their lengths") {
+TEST_CASE("a drive's frames have fixed lengths") {
     const Cia402Drive drive(elbow_config());
     CHECK(rejects_malformed(drive, minus_two, {8}));
     CHECK(rejects_malformed(drive, frame_of(0x485, {1, 2}), {2}));
-    CHECK(rejects_malformed(drive, frame_of(0x705, {5}), {1}, Kind::nothing)); // a guard's request
+    CHECK(rejects_malformed(drive, frame_of(0x705, {5}), {1}, Kind::nothing)); // a node guarding request
     CHECK(rejects_malformed(drive, frame_of(0x085, {0, 0, 0, 0, 0, 0, 0, 0}), {8}));
     CHECK(rejects_malformed(drive, frame_of(0x080, {}), {0, 1}));
     for (const std::uint32_t id : {0x284U, 0x185U, 0x084U, 0x704U, 0x385U}) {
@@ -157,7 +157,7 @@ TEST_CASE("a drive's frames have exactly their lengths") {
     }
 }
 
-TEST_CASE("mappings that cannot be are seen before the start") {
+TEST_CASE("impossible mappings are rejected before the start") {
     CHECK(Cia402Drive(elbow_config()).config_is_valid());
     const auto invalid = [](auto change) {
         Cia402Drive::Config config = elbow_config();
@@ -166,16 +166,17 @@ TEST_CASE("mappings that cannot be are seen before the start") {
     };
     CHECK(invalid([](auto& config) { config.node = 0; }));
     CHECK(invalid([](auto& config) { config.node = 128; }));
-    CHECK(invalid([](auto& config) { config.position.start_bit = 33; })); // runs out of the PDO
+    CHECK(invalid([](auto& config) { config.position.start_bit = 33; })); // exceeds the PDO
     CHECK(invalid([](auto& config) { config.position.factor = 0; }));
     CHECK(invalid([](auto& config) { config.position_pdo = 0x100; })); // 0x105: reserved
     CHECK(invalid([](auto& config) { config.position_pdo = 0x580; })); // SDO
     CHECK(invalid([](auto& config) { config.effort_length = 1; }));
     CHECK(invalid([](auto& config) { config.effort_pdo = 0x600; }));
-    CHECK(invalid([](auto& config) { config.effort_pdo = config.position_pdo; })); // of two lengths
+    // with two different lengths
+    CHECK(invalid([](auto& config) { config.effort_pdo = config.position_pdo; }));
 }
 
-TEST_CASE("what a simulated drive sends decodes to within half a unit, in one PDO or two") {
+TEST_CASE("a simulated drive's values are decoded to within half a unit with one or two PDOs") {
     DFDYN_SEEDED_ENGINE(engine);
     std::uniform_real_distribution<double> angle(-3, 3);
     for (const bool shared : {false, true}) {

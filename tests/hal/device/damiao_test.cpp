@@ -19,7 +19,7 @@ using Kind = Decoded::Kind;
 
 constexpr std::int64_t ms = 1'000'000;
 
-/// A DM4310 as motor 4, which answers on 0x14.
+/// A DM4310 as motor 4, which replies on 0x14.
 DamiaoMotor::Config elbow_config() {
     return {.motor_id = 4,
             .feedback_id = 0x14,
@@ -30,12 +30,12 @@ DamiaoMotor::Config elbow_config() {
 }
 DamiaoMotor elbow() { return DamiaoMotor(elbow_config()); }
 
-/// The code of a value, as the makers' examples compute it: rounded down.
+/// Code of a value, computed as in the manufacturers' examples: rounded down.
 unsigned code(double value, double maximum, int bits) {
     return static_cast<unsigned>((value + maximum) * ((1 << bits) - 1) / (2 * maximum));
 }
 
-/// A feedback from its codes, byte by byte.
+/// A feedback frame from its codes.
 Frame feedback_of(unsigned state, unsigned motor, unsigned position, unsigned velocity, unsigned torque,
                   std::int64_t stamp_ns = 0) {
     const auto byte = [](unsigned value) { return static_cast<std::uint8_t>(value & 0xFF); };
@@ -45,13 +45,13 @@ Frame feedback_of(unsigned state, unsigned motor, unsigned position, unsigned ve
                     stamp_ns);
 }
 
-/// An enabled DM4310 at rest.
+/// The feedback of an enabled DM4310 at rest.
 Frame feedback(unsigned motor, double position_rad, double torque_Nm, std::int64_t stamp_ns = 0) {
     return feedback_of(1, motor, code(position_rad, 12.5, 16), code(0, 30, 12), code(torque_Nm, 10, 12),
                        stamp_ns);
 }
 
-/// What a motor answers about a register.
+/// A motor's reply about a register.
 Frame answer(unsigned motor, int what, int number, float value) {
     const auto byte = [](auto field) { return static_cast<std::uint8_t>(field); };
     Frame frame = frame_of(0x10 + motor, {byte(motor), 0, byte(what), byte(number), 0, 0, 0, 0});
@@ -61,7 +61,7 @@ Frame answer(unsigned motor, int what, int number, float value) {
 
 JointValue value_of(const Frame& frame) { return elbow().decode(frame).joint[0]; }
 
-TEST_CASE("a Damiao motor's feedback is big-endian, with velocity and torque in nibbles of one byte") {
+TEST_CASE("a Damiao motor's feedback is big-endian with velocity and torque in nibbles of one byte") {
     const Frame frame = frame_of(0x14, {0x14, 0x9C, 0x40, 0xA1, 0x2B, 0xCD, 30, 31}, 77);
     DamiaoMotor motor = elbow();
     const Decoded decoded = motor.decode(frame);
@@ -73,14 +73,14 @@ TEST_CASE("a Damiao motor's feedback is big-endian, with velocity and torque in 
     CHECK(value.position_reason == Reason::ok);
     CHECK(value.position_rad == Approx(40000 / 65535.0 * 25 - 12.5).epsilon(1e-14));
     CHECK(value.step_rad == Approx(25 / 65535.0).epsilon(1e-14));
-    CHECK(value.wrap_rad == 0); // its code does not begin again
+    CHECK(value.wrap_rad == 0); // its code does not wrap
     CHECK_FALSE(value.raw_zero);
     CHECK(value.effort_reason == Reason::ok);
     CHECK(value.effort == Approx(0xBCD / 4095.0 * 20 - 10).epsilon(1e-14));
     CHECK(motor.velocity(frame) == Approx(0xA12 / 4095.0 * 60 - 30).epsilon(1e-14));
 }
 
-TEST_CASE("the same feedback is another torque with another TMAX, and another position with another PMAX") {
+TEST_CASE("TMAX scales the torque of a feedback and PMAX its position") {
     DamiaoMotor::Config config = elbow_config();
     config.position_max = 25;
     config.torque_max = 54;
@@ -101,7 +101,7 @@ TEST_CASE("a Damiao motor's joint has the transmission's direction and zero") {
     CHECK(value.step_rad == Approx(12.5 / 65535).epsilon(1e-12));
 }
 
-TEST_CASE("a Damiao motor's values are good in the state enabled only; unknown states are faults") {
+TEST_CASE("a Damiao motor's values are valid only in the enabled state and unknown states are faults") {
     for (unsigned state = 0; state < 16; ++state) {
         const JointValue value = value_of(feedback_of(state, 4, 40'000, 2048, 2048));
         const Reason expected = state == 1   ? Reason::ok
@@ -113,7 +113,7 @@ TEST_CASE("a Damiao motor's values are good in the state enabled only; unknown s
     }
 }
 
-TEST_CASE("a Damiao motor's answer about a register is no feedback") {
+TEST_CASE("a Damiao motor's register reply is not decoded as feedback") {
     for (const int what : {0x33, 0x55, 0xAA}) {
         for (int number = 0; number < 256; ++number) {
             CHECK(elbow().decode(answer(4, what, number, 12.5F)).kind != Kind::values);
@@ -121,14 +121,14 @@ TEST_CASE("a Damiao motor's answer about a register is no feedback") {
     }
 }
 
-TEST_CASE("another program's poll of a Damiao motor is no feedback, wherever it is seen") {
+TEST_CASE("another program's poll of a Damiao motor is not decoded as feedback on any identifier") {
     CHECK(elbow().decode(frame_of(0x7FF, {4, 0, 0xCC, 0})).kind == Kind::nothing);
-    // read as a feedback it would be a position of -12.42 rad
+    // decoded as feedback it would be a position of -12.42 rad
     CHECK(elbow().decode(frame_of(0x14, {4, 0, 0xCC, 0, 0, 0, 0, 0})).kind == Kind::nothing);
     CHECK(elbow().decode(frame_of(0x7FF, {4, 0, 0x33, 21})).kind == Kind::nothing);
 }
 
-TEST_CASE("a Damiao motor's commands are no feedback") {
+TEST_CASE("a Damiao motor's commands are not decoded as feedback") {
     CHECK(elbow().decode(frame_of(0x004, {0x7F, 0xFF, 0x7F, 0xF0, 0, 0, 7, 0xFF})).kind == Kind::nothing);
     CHECK(elbow().decode(frame_of(0x004, {255, 255, 255, 255, 255, 255, 255, 0xFC})).kind == Kind::nothing);
     CHECK_FALSE(elbow().claims(0x004));
@@ -136,7 +136,7 @@ TEST_CASE("a Damiao motor's commands are no feedback") {
     CHECK(elbow().claims(0x014));
 }
 
-TEST_CASE("a Damiao motor that reports another scale than described refuses what depends on it") {
+TEST_CASE("a Damiao motor that reports another scale than described rejects the values that depend on it") {
     DamiaoMotor motor = elbow();
     const Frame frame = feedback(4, 1, 5);
     CHECK(motor.decode(answer(4, 0x33, 23, 28.0F)).reason == Reason::full_scale_contradicted);
@@ -152,7 +152,7 @@ TEST_CASE("a Damiao motor that reports another scale than described refuses what
     CHECK(motor.decode(frame).joint[0].position_reason == Reason::ok);
 }
 
-TEST_CASE("a Damiao motor's position and torque at the ends of their codes are saturated, not wrapped") {
+TEST_CASE("a Damiao motor's position and torque saturate at the ends of their codes without wrapping") {
     for (const unsigned end : {0U, 0xFFFFU}) {
         const JointValue value = value_of(feedback_of(1, 4, end, 2048, 2048));
         CHECK(value.position_reason == Reason::position_out_of_range);
@@ -171,13 +171,13 @@ TEST_CASE("a Damiao motor's position and torque at the ends of their codes are s
     CHECK(sent.effort_reason == Reason::output_saturated);
 }
 
-TEST_CASE("a Damiao motor that shows 0 may have no position yet") {
+TEST_CASE("a Damiao motor at position 0 may have no position yet") {
     CHECK(value_of(feedback(4, 0, 0)).raw_zero);
     CHECK(value_of(feedback_of(1, 4, 0x8000, 0, 5)).raw_zero);
     CHECK_FALSE(value_of(feedback_of(1, 4, 0x8001, 0, 5)).raw_zero);
 }
 
-TEST_CASE("a Damiao motor's frames have eight bytes, classic or CAN FD, and its own motor id") {
+TEST_CASE("a Damiao motor's frames have eight bytes in classic CAN or CAN FD and its own motor id") {
     const Frame good = feedback(4, 1, 2);
     for (int length = 0; length < 8; ++length) {
         CHECK(elbow().decode(with_length(good, length)).reason == Reason::wrong_length);
@@ -202,7 +202,7 @@ TEST_CASE("a Damiao motor's frames have eight bytes, classic or CAN FD, and its 
     CHECK(elbow().decode(other).reason == Reason::id_collision);
 }
 
-TEST_CASE("what a simulated Damiao motor sends is what the makers' examples would, to a count") {
+TEST_CASE("a simulated Damiao motor's codes equal those of the manufacturers' examples within one count") {
     DFDYN_SEEDED_ENGINE(engine);
     std::uniform_real_distribution<double> angle(-12, 12);
     std::uniform_real_distribution<double> torque(-9.9, 9.9);
@@ -223,7 +223,8 @@ TEST_CASE("what a simulated Damiao motor sends is what the makers' examples woul
     }
 }
 
-TEST_CASE("a torque goes to a Damiao motor without stiffness and damping, and comes from no other command") {
+TEST_CASE(
+    "a torque command to a Damiao motor has no stiffness and damping and other commands are not decoded") {
     const Frame command = elbow().encode_torque(5);
     CHECK(command.id == 0x004);
     REQUIRE(command.length == 8);
@@ -241,7 +242,7 @@ TEST_CASE("a torque goes to a Damiao motor without stiffness and damping, and co
     CHECK_FALSE(elbow().decode_torque(with_length(command, 7)));
 }
 
-/// Motors 1 and 2 as an arm.
+/// An arm of motors 1 and 2.
 using Arm = SampleAssembly<double, 2, DamiaoMotor, 2, EffortOutput<2, 16>>;
 
 Arm arm() {
@@ -262,7 +263,7 @@ Arm arm() {
                EffortOutput<2, 16>({.track = track, .range = {Range{-10, 10}, Range{-10, 10}}}));
 }
 
-/// One millisecond after the other, of joints that move; `second`: the feedback of the second motor.
+/// Runs a motion of the joints for several milliseconds. `second`: makes the feedback of the second motor.
 template <class Second>
 Arm::Assembled run(Arm& arm, int from, int to, Second second) {
     for (int i = from; i < to; ++i) {
@@ -279,7 +280,7 @@ std::optional<Frame> sound(double angle, std::int64_t stamp_ns) {
     return feedback(2, -angle, 2 + 0.5 * angle, stamp_ns);
 }
 
-TEST_CASE("a Damiao motor that never answers is a missing joint, not one at zero") {
+TEST_CASE("a Damiao motor that never replies is a missing joint and not one at zero") {
     Arm silent = arm();
     const auto assembled = run(silent, 0, 200, [](double, std::int64_t) { return std::optional<Frame>(); });
     CHECK_FALSE(assembled.valid());
@@ -293,7 +294,7 @@ TEST_CASE("a Damiao motor that never answers is a missing joint, not one at zero
     CHECK(both.sample.output_valid);
 }
 
-TEST_CASE("a Damiao motor that stops answering is missed within its age, not used for ever") {
+TEST_CASE("the last value of a silent Damiao motor expires") {
     Arm bus = arm();
     REQUIRE(run(bus, 0, 200, sound).valid());
     const auto assembled = run(bus, 200, 210, [](double, std::int64_t) { return std::optional<Frame>(); });
@@ -301,7 +302,7 @@ TEST_CASE("a Damiao motor that stops answering is missed within its age, not use
     CHECK(assembled.report.joint == 1);
 }
 
-TEST_CASE("a stray position of a Damiao motor near -PMAX is no sample, and the next one is") {
+TEST_CASE("a single wrong position of a Damiao motor near -PMAX gives no sample and the next position does") {
     Arm bus = arm();
     REQUIRE(run(bus, 0, 200, sound).valid());
     const auto stray = run(bus, 200, 201, [](double, std::int64_t stamp_ns) {

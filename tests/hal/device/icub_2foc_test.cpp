@@ -16,7 +16,7 @@ using Kind = Decoded::Kind;
 
 FocBoard knee() { return FocBoard({.address = 2, .joint = 1, .motor_per_joint = -100, .zero_rad = 0.5}); }
 
-TEST_CASE("a 2FOC board sends current, velocity and position") {
+TEST_CASE("a 2FOC board's current and velocity and position are decoded") {
     FocBoard board = knee();
     // -1500 mA, velocity 7, a quarter turn (0x4000)
     const Decoded decoded =
@@ -32,7 +32,7 @@ TEST_CASE("a 2FOC board sends current, velocity and position") {
     CHECK(value.effort == Approx(-1.5));
 }
 
-TEST_CASE("a 2FOC board's faults refuse what they concern") {
+TEST_CASE("a 2FOC board's faults reject the values that they affect") {
     FocBoard board = knee();
     const Frame motion = frame_of(0x120, {1, 0, 0, 0, 1, 0, 0, 0});
     CHECK(board.decode(frame_of(0x123, {0, 0x04, 0, 0, 0, 0, 0, 0})).reason == Reason::encoder_fault);
@@ -51,7 +51,7 @@ TEST_CASE("a 2FOC board's frames have exactly eight bytes") {
     CHECK(knee().decode(frame_of(0x121, {1, 2, 3, 4, 5, 6, 7, 8})).kind == Kind::nothing);
 }
 
-TEST_CASE("what a simulated 2FOC board sends decodes to within half a step") {
+TEST_CASE("a simulated 2FOC board's values are decoded to within half a step") {
     DFDYN_SEEDED_ENGINE(engine);
     FocBoard board = knee();
     std::uniform_real_distribution<double> angle(-3, 3);

@@ -14,7 +14,7 @@ using namespace dfdyn::tests;
 using icub::StrainBoard;
 using Kind = Decoded::Kind;
 
-/// Full scales of an FT45: 1500 1500 2000 N, 35 35 25 N·m, as the board of the left arm answers.
+/// Full scales of an FT45 as reported by the left arm's board: 1500 1500 2000 N, 35 35 25 N·m.
 StrainBoard left_arm_board() {
     StrainBoard board(0x0D);
     board.decode(frame_of(0x2D0, {0x18, 0x00, 0x05, 0xDC}));
@@ -29,7 +29,7 @@ StrainBoard left_arm_board() {
 const Frame some_force = frame_of(0x3DA, {0x00, 0xC0, 0xFF, 0x7F, 0x01, 0x80});  // 0xC000 0x7FFF 0x8001
 const Frame some_torque = frame_of(0x3DB, {0x00, 0x00, 0x00, 0x80, 0xFF, 0xFF}); // 0 0x8000 0xFFFF
 
-TEST_CASE("a strain board's two frames are force and torque, offset binary, in shares of the full scale") {
+TEST_CASE("a strain board's two frames are force and torque in offset binary relative to the full scale") {
     StrainBoard board = left_arm_board();
     CHECK(board.decode(some_force).kind == Kind::part);
     CHECK(board.decode(some_force).part == 0);
@@ -53,7 +53,7 @@ TEST_CASE("a seventh byte in either frame of a strain board means that the wrenc
     CHECK(board.wrench(some_force, with_length(some_torque, 7)).reason == Reason::output_saturated);
 }
 
-TEST_CASE("a strain board gives no wrench before all six full scales are known and can be") {
+TEST_CASE("a strain board gives no wrench before all six full scales are known and plausible") {
     StrainBoard board(0x0D);
     for (int channel = 0; channel < 6; ++channel) {
         CHECK(board.wrench(some_force, some_torque).reason == Reason::waiting_for_full_scale);
@@ -62,7 +62,7 @@ TEST_CASE("a strain board gives no wrench before all six full scales are known a
     }
     CHECK(board.wrench(some_force, some_torque).reason == Reason::ok);
     CHECK(board.wrench(some_force, some_torque).value[3] == Approx(-200)); // 0x00C8, not 0xC800
-    // 0; the firmware's default; byte order swapped by a well-meaning gateway: 0xDC05
+    // 0; the firmware's default; 0xDC05, with bytes swapped by a gateway
     for (const auto& [high, low] : {std::pair{0x00, 0x00}, {0x7F, 0xFF}, {0xDC, 0x05}}) {
         board.decode(
             frame_of(0x2D0, {0x18, 0x02, static_cast<std::uint8_t>(high), static_cast<std::uint8_t>(low)}));
@@ -71,7 +71,7 @@ TEST_CASE("a strain board gives no wrench before all six full scales are known a
     CHECK(board.full_scale().changed() == 3);
 }
 
-TEST_CASE("a reply about another set of a strain board's calibration changes nothing, and is counted") {
+TEST_CASE("a reply about another calibration set of a strain board is counted and changes nothing") {
     StrainBoard board = left_arm_board();
     for (std::uint8_t channel = 0; channel < 6; ++channel) {
         const auto of_set_two = static_cast<std::uint8_t>(0x20 | channel);
@@ -81,7 +81,7 @@ TEST_CASE("a reply about another set of a strain board's calibration changes not
     CHECK(board.wrench(some_force, some_torque).value[0] == Approx(750));
     CHECK(board.other_sets() == 6);
     CHECK(board.last_other_set() == 2);
-    StrainBoard fresh(0x0D); // nor does it make a full scale known
+    StrainBoard fresh(0x0D); // it does not set an unknown full scale either
     for (int channel = 0; channel < 6; ++channel) {
         fresh.decode(fresh.encode_full_scale(channel, 500, 1));
     }
@@ -93,7 +93,7 @@ TEST_CASE("a reply about another set of a strain board's calibration changes not
     CHECK(fresh.full_scale().reason() == Reason::ok);
 }
 
-TEST_CASE("a reply that says the same of another set is no disagreement") {
+TEST_CASE("a reply with the same full scale for another set is not counted as different") {
     StrainBoard board = left_arm_board();
     board.decode(board.encode_full_scale(3, 35, 1));
     CHECK(board.other_sets() == 0);
@@ -115,7 +115,7 @@ TEST_CASE("a strain board that contradicts its description gives no wrench until
     CHECK(board.wrench(some_force, some_torque).value[0] == Approx(750));
 }
 
-TEST_CASE("a strain board is asked for a full scale, and its other answers are nothing") {
+TEST_CASE("a strain board's full scale is requested and its other replies are ignored") {
     const Frame request = left_arm_board().request_full_scale(4);
     CHECK(request.id == 0x20D);
     CHECK(request.length == 2);
@@ -128,7 +128,7 @@ TEST_CASE("a strain board is asked for a full scale, and its other answers are n
     CHECK(board.full_scale().reason() == Reason::waiting_for_full_scale);
 }
 
-TEST_CASE("a strain board's frames have exactly their lengths") {
+TEST_CASE("a strain board's frames have fixed lengths") {
     CHECK(rejects_malformed(left_arm_board(), some_force, {6, 7}));
     CHECK(rejects_malformed(left_arm_board(), some_torque, {6, 7}));
     StrainBoard board = left_arm_board();
@@ -140,7 +140,7 @@ TEST_CASE("a strain board's frames have exactly their lengths") {
     }
 }
 
-TEST_CASE("what a simulated strain board sends decodes to within half a step, or is saturated") {
+TEST_CASE("a simulated strain board's wrench is decoded to within half a step or is saturated") {
     DFDYN_SEEDED_ENGINE(engine);
     StrainBoard board = left_arm_board();
     const Wrench full_scale{1500, 1500, 2000, 35, 35, 25};

@@ -19,7 +19,7 @@ constexpr double degree = std::numbers::pi / 180;
 /// Board 3 of an iCub's arm: -11.375 ticks per degree; joints 2 and 3.
 TwoJointBoard arm_board() { return {3, {2, -11.375, 10}, {3, 8, 0}}; }
 
-TEST_CASE("an iCub board's POSITION holds the ticks of two joints") {
+TEST_CASE("an iCub board's POSITION contains the ticks of two joints") {
     TwoJointBoard board = arm_board();
     // -1024 ticks: 1024 / 11.375 - 10 deg; 0x01020304 ticks
     const Decoded decoded =
@@ -39,7 +39,7 @@ TEST_CASE("an iCub board's POSITION holds the ticks of two joints") {
     CHECK(board.decode(frame_of(0x131, {0, 0, 0, 0, 1, 0, 0, 0})).joint[0].raw_zero);
 }
 
-TEST_CASE("positions of an iCub board are refused while its STATUS says the encoder is in error") {
+TEST_CASE("positions of an iCub board are rejected while its STATUS reports an encoder error") {
     TwoJointBoard board = arm_board();
     const Frame position = frame_of(0x131, {1, 0, 0, 0, 1, 0, 0, 0});
     CHECK(board.decode(frame_of(0x133, {0x20, 0, 0, 0, 0, 0, 0, 0})).reason == Reason::encoder_fault);
@@ -48,16 +48,16 @@ TEST_CASE("positions of an iCub board are refused while its STATUS says the enco
     CHECK(board.decode(frame_of(0x133, {0, 0, 0x40, 0, 0, 0, 0, 0})).kind == Kind::status);
     CHECK(board.decode(position).joint[0].position_reason == Reason::ok);
     CHECK(board.decode(position).joint[1].position_reason == Reason::encoder_fault);
-    // Undervoltage … hall, modes, and the board's own flags are not the encoder's.
+    // Flags from undervoltage to hall sensor, modes and the board's own flags do not concern the encoder.
     CHECK(board.decode(frame_of(0x133, {0x1F, 0xFF, 0x1F, 0xFF, 0xFF, 0xFF, 9, 9})).reason == Reason::ok);
     CHECK(board.decode(position).joint[1].position_reason == Reason::ok);
 }
 
-TEST_CASE("an iCub board says that it lost messages") {
+TEST_CASE("an iCub board's report of lost messages is decoded") {
     CHECK(arm_board().decode(frame_of(0x135, {})).kind == Kind::lost);
 }
 
-TEST_CASE("frames of other boards and messages are nothing to an iCub board") {
+TEST_CASE("frames of other boards and other messages are ignored by an iCub board") {
     for (const std::uint32_t id : {0x121U, 0x130U, 0x132U, 0x137U, 0x13AU, 0x231U, 0x331U, 0x003U}) {
         CHECK(arm_board().decode(frame_of(id, {0, 0, 0, 0, 0, 0, 0, 0})).kind == Kind::nothing);
         CHECK_FALSE(arm_board().claims(id));
@@ -72,7 +72,7 @@ TEST_CASE("an iCub board's frames have exactly eight bytes") {
     CHECK(rejects_malformed(arm_board(), frame_of(0x133, {1, 2, 3, 4, 5, 6, 7, 8}), {8}));
 }
 
-TEST_CASE("what a simulated iCub board sends decodes to within half a tick") {
+TEST_CASE("a simulated iCub board's positions are decoded to within half a tick") {
     DFDYN_SEEDED_ENGINE(engine);
     TwoJointBoard board = arm_board();
     std::uniform_real_distribution<double> angle(-3, 3);

@@ -15,16 +15,17 @@ using Kind = Decoded::Kind;
 
 constexpr std::int64_t ms = 1'000'000;
 
-/// Node 3; eight turns of the motor to one of the joint.
+/// Node 3, with eight motor turns per joint turn.
 OdriveAxis shoulder() {
     return OdriveAxis({.node = 3, .joint = 2, .motor_per_joint = 8, .heartbeat_timeout_ns = 250 * ms});
 }
 
 const Frame half_a_turn = frame_of(0x069, {0x00, 0x00, 0x00, 0x3F, 1, 2, 3, 4}, 1000 * ms); // 0.5
 const Frame healthy = frame_of(0x061, {0, 0, 0, 0, 8, 0, 0, 0x80}, 900 * ms);
-/// ENCODER_FAILED in the error word and the encoder's flag: what firmware 0.5 sends.
+/// ENCODER_FAILED in the error word and the encoder's flag, as sent by firmware 0.5.
 const Frame encoder_error = frame_of(0x061, {0, 1, 0, 0, 1, 0, 1, 0}, 900 * ms);
-/// Byte 6 of firmware 0.6 is Trajectory_Done; of 0.5 it is the encoder's flag, which never comes alone.
+/// Byte 6 is Trajectory_Done in firmware 0.6. In 0.5 it is the encoder's flag, which never comes without an
+/// error word.
 const Frame byte_six = frame_of(0x061, {0, 0, 0, 0, 8, 0, 1, 0}, 900 * ms);
 const Frame no_estimate = frame_of(0x069, {0, 0, 0, 0, 0, 0, 0, 0}, 1000 * ms);
 
@@ -45,7 +46,7 @@ TEST_CASE("an ODrive's estimate is in turns of the motor") {
     CHECK_FALSE(decoded.joint[0].raw_zero);
 }
 
-TEST_CASE("an ODrive's estimate is good only while the heartbeat says so") {
+TEST_CASE("an ODrive's estimate is valid only while the heartbeat reports no error") {
     OdriveAxis axis = shoulder();
     CHECK(axis.decode(half_a_turn).joint[0].position_reason == Reason::heartbeat_missing);
     CHECK(axis.decode(encoder_error).reason == Reason::encoder_fault);
@@ -56,13 +57,13 @@ TEST_CASE("an ODrive's estimate is good only while the heartbeat says so") {
     CHECK(axis.decode(at_time(half_a_turn, 1151 * ms)).joint[0].position_reason == Reason::heartbeat_missing);
 }
 
-TEST_CASE("a finished trajectory of an ODrive with firmware 0.6 is no fault, without saying which firmware") {
+TEST_CASE("a finished trajectory of firmware 0.6 is not a fault without configuring the ODrive's version") {
     CHECK(with(OdriveFirmware::any, byte_six) == Reason::ok);
     CHECK(with(OdriveFirmware::v0_6, byte_six) == Reason::ok);
     CHECK(with(OdriveFirmware::v0_5, byte_six) == Reason::encoder_fault);
 }
 
-TEST_CASE("an ODrive's estimates are refused while any bit of its error word is set, in every firmware") {
+TEST_CASE("an ODrive's estimates are rejected while any bit of its error word is set in every firmware") {
     for (const OdriveFirmware firmware : {OdriveFirmware::any, OdriveFirmware::v0_5, OdriveFirmware::v0_6}) {
         for (int bit = 0; bit < 32; ++bit) {
             Frame heartbeat = healthy;
@@ -78,26 +79,27 @@ TEST_CASE("an ODrive's estimates are refused while any bit of its error word is 
     CHECK(with(OdriveFirmware::v0_6, missing_estimate) == Reason::encoder_fault);
     CHECK(with(OdriveFirmware::any, motor_failed) == Reason::device_fault);
     CHECK(with(OdriveFirmware::v0_6, encoder_error) ==
-          Reason::device_fault); // there 0x100 is an over-voltage
+          Reason::device_fault); // 0x100 is an over-voltage in that version
 }
 
-TEST_CASE("an ODrive's 0.0 after another estimate is a lost one, before the heartbeat says so") {
+TEST_CASE("an ODrive's 0.0 after another estimate is rejected before the heartbeat reports the loss") {
     OdriveAxis axis = shoulder();
     axis.decode(healthy);
-    CHECK(axis.decode(no_estimate).joint[0].position_reason == Reason::ok); // at the start: it must qualify
+    // at the start: the position must qualify
+    CHECK(axis.decode(no_estimate).joint[0].position_reason == Reason::ok);
     CHECK(axis.decode(half_a_turn).joint[0].position_reason == Reason::ok);
     CHECK(axis.decode(no_estimate).joint[0].position_reason == Reason::encoder_fault);
     CHECK(axis.decode(no_estimate).joint[0].raw_zero);
     CHECK(axis.decode(half_a_turn).joint[0].position_reason == Reason::ok);
 }
 
-TEST_CASE("a request for an ODrive's estimate is no frame of the ODrive") {
+TEST_CASE("a request for an ODrive's estimate is ignored") {
     Frame request = half_a_turn;
     request.remote = true;
     CHECK(shoulder().decode(request).kind == Kind::nothing);
 }
 
-TEST_CASE("what an ODrive sends for an estimate it does not have is a zero, or no number") {
+TEST_CASE("a missing estimate of an ODrive is zero or not a number") {
     OdriveAxis axis = shoulder();
     axis.decode(healthy);
     CHECK(axis.decode(frame_of(0x069, {0, 0, 0, 0, 0, 0, 0, 0}, 900 * ms)).joint[0].raw_zero);
@@ -114,7 +116,7 @@ TEST_CASE("an ODrive's frames have exactly eight bytes") {
     }
 }
 
-TEST_CASE("what a simulated ODrive sends decodes to a float's resolution") {
+TEST_CASE("a simulated ODrive's estimates are decoded to a float's resolution") {
     DFDYN_SEEDED_ENGINE(engine);
     OdriveAxis axis = shoulder();
     axis.decode(axis.encode_heartbeat(false));

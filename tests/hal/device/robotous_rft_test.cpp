@@ -31,7 +31,7 @@ TEST_CASE("a Robotous sensor's record is split in the middle of Tx") {
     CHECK(reading.value[4] == Approx(1));
 }
 
-TEST_CASE("any overload bit of a Robotous sensor refuses the whole wrench") {
+TEST_CASE("any overload bit of a Robotous sensor rejects the whole wrench") {
     for (int bit = 0; bit < 8; ++bit) {
         Frame second = second_frame;
         second.data[5] = static_cast<std::uint8_t>(1 << bit);
@@ -40,7 +40,7 @@ TEST_CASE("any overload bit of a Robotous sensor refuses the whole wrench") {
     }
 }
 
-TEST_CASE("a Robotous sensor's other replies are nothing, and its frames have eight bytes") {
+TEST_CASE("a Robotous sensor's other replies are ignored and its frames have eight bytes") {
     Frame reply = first_frame;
     reply.data[0] = 0x10;
     CHECK(small_sensor().decode(reply).kind == Kind::nothing);
@@ -53,7 +53,7 @@ TEST_CASE("a Robotous sensor's other replies are nothing, and its frames have ei
     CHECK(start.data[0] == 0x0B);
 }
 
-TEST_CASE("what a simulated Robotous sensor sends decodes to within half a step, or is overloaded") {
+TEST_CASE("a simulated Robotous sensor's wrench is decoded to within half a step or is overloaded") {
     DFDYN_SEEDED_ENGINE(engine);
     const RobotousRft sensor = small_sensor();
     std::uniform_real_distribution<double> share(-0.99, 0.99);

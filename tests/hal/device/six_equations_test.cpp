@@ -26,11 +26,12 @@ Matrix random_matrix(std::mt19937_64& engine) {
     return Matrix::NullaryExpr([&] { return normal(engine); });
 }
 
-TEST_CASE("six equations have Eigen's solution") {
+TEST_CASE("six equations have the solution computed by Eigen") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int i = 0; i < 1000; ++i) {
         Matrix matrix = random_matrix(engine);
-        matrix(i % 6, i % 6) = i % 2 == 0 ? 0 : matrix(i % 6, i % 6); // a pivot that must be exchanged
+        // a zero pivot, so that rows must be exchanged
+        matrix(i % 6, i % 6) = i % 2 == 0 ? 0 : matrix(i % 6, i % 6);
         const Vector right = random_matrix(engine).col(0);
         SixValues given{};
         Eigen::Map<Vector>(given.data()) = right;
@@ -43,7 +44,7 @@ TEST_CASE("six equations have Eigen's solution") {
     }
 }
 
-TEST_CASE("a singular matrix, or one with an element that is no number, has no solution") {
+TEST_CASE("a singular matrix and one with an element that is not finite have no solution") {
     DFDYN_SEEDED_ENGINE(engine);
     const Matrix sound = random_matrix(engine);
     for (int row = 0; row < 6; ++row) {

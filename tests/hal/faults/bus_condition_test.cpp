@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults of the controller and its interface: what their state and counters mean for the samples. What only a
-// socket can show is tested with the sockets: that error frames are asked for (F1) and read in their own size
-// (F2), how bus-off, ENOBUFS, dropped frames and a lost interface become state and counters (F3, F6, F7, F9),
-// which clock stamps a frame and how the stamp is read (F17, F22), and how the flags of a frame become its
-// origin (F19).
+// Faults of the controller and its interface: their effect on the samples, given the state and counters of
+// the bus. The socket tests check the other properties:
+// - F1, F2: error frames are requested and read with their own size.
+// - F3, F6, F7, F9: bus-off, ENOBUFS, dropped frames and a lost interface set state and counters.
+// - F17, F22: the clock that stamps a frame, and the conversion of the time stamp.
+// - F19: the flags of a frame give its origin.
 #include "tests/hal/support/arm_on_bus.hpp"
 
 namespace hal = dfdyn::hal;
@@ -25,11 +26,11 @@ void silence(Frames& frames) { frames.clear(); }
 
 } // namespace
 
-TEST_CASE("F1: error frames are not taken for data, whatever their bits") {
+TEST_CASE("F1: error frames are not decoded as data whatever their bits") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
-    // bus-off, lost arbitration, and classes that look like our identifiers
+    // bus-off, lost arbitration, and classes with the values of our identifiers
     for (const std::uint32_t error_class : {0x040U, 0x002U, 0x111U, 0x3DAU, 0x3DBU, 0x2D0U}) {
         CHECK(arm.tick([&](Frames& frames) {
                      frames.insert(frames.begin() + 1, error_frame(error_class, frames[0].stamp_ns));
@@ -40,7 +41,7 @@ TEST_CASE("F1: error frames are not taken for data, whatever their bits") {
     CHECK(arm.assembly.bus(0).rejected.count() == 0);
 }
 
-TEST_CASE("F3: on a bus-off controller there is no sample, and all goes on when it restarts") {
+TEST_CASE("F3: a bus-off controller gives no samples until it restarts") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -57,7 +58,7 @@ TEST_CASE("F3: on a bus-off controller there is no sample, and all goes on when 
     CHECK(arm.assembly.counters().positions_refused[static_cast<int>(Reason::bus_off)] == 50);
 }
 
-TEST_CASE("F3: values that are still fresh do not count on a bus-off controller") {
+TEST_CASE("F3: values that have not expired are not used while the controller is bus-off") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -65,7 +66,7 @@ TEST_CASE("F3: values that are still fresh do not count on a bus-off controller"
     CHECK(arm.tick().position() == Reason::bus_off);
 }
 
-TEST_CASE("F4: an error-passive controller is reported and what it receives is learned") {
+TEST_CASE("F4: an error-passive controller is reported and its data are learned") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -79,7 +80,7 @@ TEST_CASE("F4: an error-passive controller is reported and what it receives is l
     CHECK_FALSE(arm.assembly.bus(0).health.degraded());
 }
 
-TEST_CASE("F5: lost arbitration is normal") {
+TEST_CASE("F5: lost arbitration is not a fault") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -91,7 +92,7 @@ TEST_CASE("F5: lost arbitration is normal") {
     }
 }
 
-TEST_CASE("F6: a full send queue refuses our frames and nothing else") {
+TEST_CASE("F6: a full send queue refuses our frames and has no other effect") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -103,7 +104,7 @@ TEST_CASE("F6: a full send queue refuses our frames and nothing else") {
     CHECK(arm.bus.condition.send_refused == 50);
 }
 
-TEST_CASE("F9: an interface that is down is told apart from one that is silent") {
+TEST_CASE("F9: an interface that is down is distinguished from a silent one") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What devices say about themselves.
+// Faults that devices report themselves.
 #include "tests/hal/support/arm_on_bus.hpp"
 
 namespace hal = dfdyn::hal;
@@ -10,7 +10,7 @@ namespace {
 
 using Frames = std::vector<hal::Frame>;
 
-/// A STATUS of the joints' board at the begin of the tick.
+/// A STATUS of the joints' board at the beginning of the tick.
 auto with_status(std::uint8_t flags_a, std::uint8_t flags_b) {
     return [=](Frames& frames) {
         frames.insert(frames.begin(),
@@ -20,7 +20,7 @@ auto with_status(std::uint8_t flags_a, std::uint8_t flags_b) {
 
 } // namespace
 
-TEST_CASE("an encoder that its board says is in error has no positions, named by joint") {
+TEST_CASE("an encoder with an error reported by its board has no positions and its joint is named") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -34,17 +34,17 @@ TEST_CASE("an encoder that its board says is in error has no positions, named by
     }
     const auto cleared = arm.tick(with_status(0, 0));
     CHECK_FALSE(cleared.predicted);
-    const int ticks = arm.ticks_to_recover(); // it qualifies anew, then the window fills
+    const int ticks = arm.ticks_to_recover(); // it qualifies again, then the window fills
     CHECK(ticks >= ArmOnBus::qualification_ticks + ArmOnBus::lags - 1);
     CHECK(ticks <= ArmOnBus::qualification_ticks + ArmOnBus::lags + 1);
     CHECK(arm.run(20));
 }
 
-TEST_CASE("F14: faults of the encoders and of the sensor are reported side by side") {
+TEST_CASE("F14: faults of the encoders and of the sensor are reported independently") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
-    arm.tick([](Frames& frames) { // the cable is torn
+    arm.tick([](Frames& frames) { // the cable is broken
         frames.resize(1);
         with_status(0x20, 0)(frames);
     });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of others: echoes, collisions, wrong lengths.
+// Unexpected frames: echoes, collisions, wrong lengths.
 #include "tests/hal/support/arm_on_bus.hpp"
 
 namespace hal = dfdyn::hal;
@@ -12,7 +12,7 @@ using Frames = std::vector<hal::Frame>;
 
 } // namespace
 
-TEST_CASE("F2, F23: frames of another form or length than the message are rejected and named") {
+TEST_CASE("F2 and F23: frames with a wrong type or length are rejected and named") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -36,7 +36,7 @@ TEST_CASE("F2, F23: frames of another form or length than the message are reject
     CHECK(arm.assembly.bus(0).rejected.count() == 5);
 }
 
-TEST_CASE("F19: our own frames that come back are not taken for the devices'") {
+TEST_CASE("F19: our own frames that come back are not decoded as the devices' frames") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -53,7 +53,7 @@ TEST_CASE("F19: our own frames that come back are not taken for the devices'") {
     CHECK(arm.assembly.bus(0).own == 20);
 }
 
-TEST_CASE("F19: frames of this host are counted: a simulation, or a replay on a live bus") {
+TEST_CASE("F19: frames of this host such as a simulation or a replay on a live bus are counted") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -63,13 +63,13 @@ TEST_CASE("F19: frames of this host are counted: a simulation, or a replay on a 
     CHECK(arm.assembly.bus(0).from_host == 20);
 }
 
-TEST_CASE("F20: identifiers that nobody here sends are counted, and the first is named") {
+TEST_CASE("F20: unknown identifiers are counted and the first one is named") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
     CHECK(arm.tick([](Frames& frames) {
                  hal::Frame stranger = frame_of(0x111, {1, 2, 3, 4, 5, 6, 7, 8}, frames[0].stamp_ns);
-                 stranger.extended = true; // the same number, another identifier
+                 stranger.extended = true; // the same number, but a 29-bit identifier
                  frames.push_back(stranger);
                  frames.push_back(frame_of(0x3CA, {1, 2, 3, 4, 5, 6}, frames[0].stamp_ns));
              })
@@ -79,7 +79,7 @@ TEST_CASE("F20: identifiers that nobody here sends are counted, and the first is
     CHECK(arm.assembly.bus(0).unknown.first().extended);
 }
 
-TEST_CASE("F20: a second sensor on the same identifiers is seen, and neither is learned") {
+TEST_CASE("F20: a second sensor on the same identifiers is detected and neither is learned") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const std::int64_t behind : {60 * us, 300 * us, 500 * us}) {
         ArmOnBus arm(engine);
@@ -104,7 +104,7 @@ TEST_CASE("F20: a second sensor on the same identifiers is seen, and neither is 
     }
 }
 
-TEST_CASE("F20: two devices configured for one identifier are seen before the start") {
+TEST_CASE("F20: two devices configured for one identifier are detected before the start") {
     using Board = hal::icub::TwoJointBoard;
     using Assembly = hal::SampleAssembly<double, 4, Board, 2, hal::EffortOutput<4, 4>>;
     const auto colliding = [](int second_address) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames that are lost, late, or in the wrong order.
+// Frames that are lost, late or out of order.
 #include "tests/hal/support/arm_on_bus.hpp"
 
 namespace hal = dfdyn::hal;
@@ -18,7 +18,7 @@ auto without(std::size_t index) {
 
 } // namespace
 
-TEST_CASE("F7, F8: frames dropped by the kernel or the controller cost the output of that tick") {
+TEST_CASE("F7 and F8: frames dropped by the kernel or the controller invalidate the output of that tick") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -33,7 +33,8 @@ TEST_CASE("F7, F8: frames dropped by the kernel or the controller cost the outpu
     CHECK(arm.assembly.bus(0).health.losses() == 6);
 }
 
-TEST_CASE("F7: halves of a wrench on both sides of a loss are not paired, however near their stamps are") {
+TEST_CASE(
+    "F7: halves of a wrench on both sides of a loss are not paired even if their time stamps are close") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -42,7 +43,7 @@ TEST_CASE("F7: halves of a wrench on both sides of a loss are not paired, howeve
         without(torque_frame)(frames);
         frames[force_frame].stamp_ns += 700 * us;
     });
-    arm.bus.condition.dropped += 2; // the torque, and the force of the next
+    arm.bus.condition.dropped += 2; // the torque, and the force of the next wrench
     const auto lossy = arm.tick([](Frames& frames) {
         without(force_frame)(frames);
         frames[1].stamp_ns -= 200 * us; // the torque, 230 µs after that force
@@ -52,7 +53,7 @@ TEST_CASE("F7: halves of a wrench on both sides of a loss are not paired, howeve
     CHECK(arm.ticks_to_recover() <= 3);
 }
 
-TEST_CASE("F8: messages that a board lost itself cost the output of that tick") {
+TEST_CASE("F8: messages that a board lost invalidate the output of that tick") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -63,7 +64,7 @@ TEST_CASE("F8: messages that a board lost itself cost the output of that tick") 
     CHECK(arm.run(20));
 }
 
-TEST_CASE("F10: a joint that falls silent has no samples, named by joint") {
+TEST_CASE("F10: a silent joint gives no samples and is named") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -71,7 +72,7 @@ TEST_CASE("F10: a joint that falls silent has no samples, named by joint") {
     while (arm.tick(without(joint_frame)).position() == Reason::ok) {
         ++held;
     }
-    CHECK(held == 2); // to 1.9 ms after the last; 2.5 ms is the limit
+    CHECK(held == 2); // up to 1.9 ms after the last position; the limit is 2.5 ms
     for (int tick = 0; tick < 100; ++tick) {
         const auto silent = arm.tick(without(joint_frame));
         CHECK(silent.position() == Reason::position_stale);
@@ -82,7 +83,7 @@ TEST_CASE("F10: a joint that falls silent has no samples, named by joint") {
     CHECK(arm.run(50));
 }
 
-TEST_CASE("F10: without its sensor the arm is predicted and not learned") {
+TEST_CASE("F10: without its sensor the arm is predicted but not learned") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -99,7 +100,7 @@ TEST_CASE("F10: without its sensor the arm is predicted and not learned") {
     CHECK(arm.assembly.output().track().gap().count() == 1);
 }
 
-TEST_CASE("F11: a measurement is delivered as new just once") {
+TEST_CASE("F11: each measurement is delivered as new exactly once") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -112,7 +113,7 @@ TEST_CASE("F11: a measurement is delivered as new just once") {
     CHECK(arm.estimator.counters().learned - before >= 148);
 }
 
-TEST_CASE("a wrench that lost a half is not learned, and the next is") {
+TEST_CASE("a wrench that lost a half is not learned and the next one is") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -128,7 +129,7 @@ TEST_CASE("a wrench that lost a half is not learned, and the next is") {
     CHECK(pairing.orphans(1) == 1);
 }
 
-TEST_CASE("a sensor all of whose torques are lost is never learned") {
+TEST_CASE("a sensor that loses all its torque frames is never learned") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -141,14 +142,15 @@ TEST_CASE("a sensor all of whose torques are lost is never learned") {
     CHECK(arm.ticks_to_recover() <= 3);
 }
 
-TEST_CASE("F15: a burst beyond the bound of a tick is read in the next ones, and seen") {
+TEST_CASE("F15: a burst above the limit of a tick is counted and read in the next ticks") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
     const std::uint64_t bounded = arm.bus.condition.saturated_drains;
     arm.tick([](Frames& frames) {
         const Frames wanted = frames;
-        frames.assign(600, at_time(frame_of(0x7F0, {1}), wanted[0].stamp_ns)); // 8 drains of 64 are 512
+        // 8 drains of 64 frames are 512
+        frames.assign(600, at_time(frame_of(0x7F0, {1}), wanted[0].stamp_ns));
         frames.insert(frames.end(), wanted.begin(), wanted.end());
     });
     CHECK(arm.bus.waiting.size() == 600 + 3 - 512);
@@ -159,7 +161,7 @@ TEST_CASE("F15: a burst beyond the bound of a tick is read in the next ones, and
     CHECK(arm.assembly.bus(0).unknown.count() == 600);
 }
 
-TEST_CASE("F17: halves without stamps of their own are paired in their order") {
+TEST_CASE("F17: halves without their own time stamps are paired in their order") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -176,7 +178,7 @@ TEST_CASE("F17: halves without stamps of their own are paired in their order") {
     CHECK(arm.assembly.output().pairing().orphans(0) + arm.assembly.output().pairing().orphans(1) == 0);
 }
 
-TEST_CASE("F18: frames that overtook each other are put right by their stamps") {
+TEST_CASE("F18: frames that overtook each other are ordered by their time stamps") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -185,7 +187,7 @@ TEST_CASE("F18: frames that overtook each other are put right by their stamps") 
     }
 }
 
-TEST_CASE("F18: positions that were overtaken by newer ones are refused and counted") {
+TEST_CASE("F18: positions that were overtaken by newer ones are rejected and counted") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -199,13 +201,13 @@ TEST_CASE("F18: positions that were overtaken by newer ones are refused and coun
     CHECK(arm.run(20));
 }
 
-TEST_CASE("F21: all that has come is read in a tick, so that nothing gets old in the queue") {
+TEST_CASE("F21: all waiting frames are read in a tick so that none becomes old in the queue") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
     for (int burst = 0; burst < 10; ++burst) {
         Frames frames;
-        for (int k = 0; k < 10; ++k) { // the reader was away for 10 ms
+        for (int k = 0; k < 10; ++k) { // the reader paused for 10 ms
             for (const hal::Frame& frame : arm.frames_of(arm.number)) {
                 arm.bus.waiting.push_back(frame);
             }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wrenches that look alive and are not.
+// Wrong wrenches that look like valid ones.
 #include "tests/hal/support/arm_on_bus.hpp"
 
 namespace hal = dfdyn::hal;
@@ -10,7 +10,7 @@ namespace {
 
 using Frames = std::vector<hal::Frame>;
 
-/// The wrench of earlier frames under fresh stamps.
+/// The wrench of earlier frames with new time stamps.
 auto with_wrench_of(const Frames& earlier) {
     return [&earlier](Frames& frames) {
         for (const std::size_t half : {force_frame, torque_frame}) {
@@ -21,13 +21,13 @@ auto with_wrench_of(const Frames& earlier) {
 
 } // namespace
 
-TEST_CASE("F12: a sensor that repeats itself under fresh stamps is not learned") {
+TEST_CASE("F12: a sensor that repeats itself with new time stamps is not learned") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
     const Frames stuck = arm.frames_of(arm.number - 1);
-    // The first repetitions cannot be told from a coincidence, so they are not compared with the truth; the
-    // limit is.
+    // The first repetitions could be a coincidence, so their samples are not checked. The samples are checked
+    // from the limit on.
     for (int tick = 1; tick < ArmOnBus::frozen_limit; ++tick) {
         arm.bus.waiting.clear();
         ++arm.number;
@@ -51,11 +51,11 @@ TEST_CASE("F12: a sensor that repeats itself under fresh stamps is not learned")
     CHECK(arm.run(20));
 }
 
-TEST_CASE("F12: a standing encoder is constant by right") {
+TEST_CASE("F12: repeated positions of a slow joint are accepted") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
-    // 300 µrad of motion in a tick are less than a step of the encoder: positions repeat.
+    // A motion of 300 µrad per tick is less than a step of the encoder, so positions repeat.
     int repeated = 0;
     hal::Frame last;
     for (int tick = 0; tick < 200; ++tick) {
@@ -68,12 +68,12 @@ TEST_CASE("F12: a standing encoder is constant by right") {
     CHECK(repeated > 10);
 }
 
-TEST_CASE("F12: the last good wrench that a saturated sensor repeats is not learned") {
+TEST_CASE("F12: the last good wrench repeated by a saturated sensor is not learned") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
     const Frames last_good = arm.frames_of(arm.number);
-    for (const int length : {2, 1, 30}) { // saturated for so many ticks
+    for (const int length : {2, 1, 30}) { // number of saturated ticks
         for (int tick = 0; tick < length; ++tick) {
             const auto saturated = arm.tick([&](Frames& frames) {
                 with_wrench_of(last_good)(frames);
@@ -85,14 +85,14 @@ TEST_CASE("F12: the last good wrench that a saturated sensor repeats is not lear
             CHECK(saturated.predicted);
             CHECK(saturated.output() == Reason::output_saturated);
         }
-        CHECK(arm.ticks_to_recover() <= 3); // after a silence three wrenches must agree
+        CHECK(arm.ticks_to_recover() <= 3); // three wrenches must agree after the interruption
         CHECK(arm.run(10));
     }
     CHECK(arm.assembly.output().saturation().count() == 33);
     CHECK(arm.assembly.output().saturation().episodes() == 3);
 }
 
-TEST_CASE("F13: without its full scales the sensor is not learned, and positions are predicted") {
+TEST_CASE("F13: without its full scales the sensor is not learned and positions are predicted") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine, false);
     for (int tick = 0; tick < 50; ++tick) {
@@ -108,7 +108,7 @@ TEST_CASE("F13: without its full scales the sensor is not learned, and positions
     CHECK(arm.run(20));
 }
 
-TEST_CASE("F13: a full scale that cannot be stops the learning until all are told again") {
+TEST_CASE("F13: an impossible full scale stops the learning until all full scales are reported again") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -130,13 +130,13 @@ TEST_CASE("F13: a full scale that cannot be stops the learning until all are tol
     }
 }
 
-TEST_CASE("F13: a full scale that changes never rescales the wrench; of another set it changes nothing") {
+TEST_CASE("F13: a changed full scale never rescales the wrench and another set changes nothing") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
     arm.bus.waiting.push_back(frame_of(0x2D0, {0x18, 0x20, 0x01, 0xF4}, arm.bus.now)); // set 2: 500 N
     CHECK(arm.run(20));
-    arm.bus.waiting.push_back(frame_of(0x2D0, {0x18, 0x00, 0x01, 0xF4}, arm.bus.now)); // the one in use
+    arm.bus.waiting.push_back(frame_of(0x2D0, {0x18, 0x00, 0x01, 0xF4}, arm.bus.now)); // the set in use
     for (int tick = 0; tick < 20; ++tick) {
         CHECK(arm.tick().output() == Reason::full_scale_contradicted);
     }
@@ -145,10 +145,9 @@ TEST_CASE("F13: a full scale that changes never rescales the wrench; of another 
     CHECK(arm.run(10));
 }
 
-TEST_CASE("F13: wrenches beyond the sensor's range are refused") {
+TEST_CASE("F13: wrenches beyond the sensor's range are rejected") {
     DFDYN_SEEDED_ENGINE(engine);
-    // A plausible full scale that is not this sensor's, 9000 N instead of 1500: large forces go beyond its
-    // 1500 N.
+    // A plausible full scale of another sensor, 9000 N instead of 1500 N, so that large forces exceed 1500 N.
     ArmOnBus arm(engine, false);
     arm.answer_full_scales();
     arm.bus.waiting[0] = frame_of(0x2D0, {0x18, 0, 0x23, 0x28}, arm.bus.waiting[0].stamp_ns);
@@ -166,7 +165,7 @@ TEST_CASE("F13: wrenches beyond the sensor's range are refused") {
     CHECK(arm.assembly.output().track().range().count() > 20);
 }
 
-TEST_CASE("F24: zeros after power-on are not the arm's position") {
+TEST_CASE("F24: zeros after power-on are not accepted as positions") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     for (int tick = 0; tick < 100; ++tick) {
@@ -178,7 +177,7 @@ TEST_CASE("F24: zeros after power-on are not the arm's position") {
     CHECK(arm.run(50));
 }
 
-TEST_CASE("F24: a board that comes back from a restart qualifies anew") {
+TEST_CASE("F24: a board qualifies again after a restart") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     arm.warm_up();
@@ -192,7 +191,7 @@ TEST_CASE("F24: a board that comes back from a restart qualifies anew") {
     CHECK(arm.assembly.position(0).gap().count() >= 1);
 }
 
-TEST_CASE("F24: zeros of a sensor after power-on are not a wrench") {
+TEST_CASE("F24: zeros of a sensor after power-on are not accepted as a wrench") {
     DFDYN_SEEDED_ENGINE(engine);
     ArmOnBus arm(engine);
     for (int tick = 0; tick < 100; ++tick) {

@@ -44,7 +44,7 @@ auto fuzz_assembly(const std::array<Board, boards>& board, const Output& output)
                     output);
 }
 
-/// An arm of a family: boards with their efforts, or a sensor.
+/// An arm of one family: boards with their efforts, or a sensor.
 template <class Family>
 auto fuzz_arm() {
     if constexpr (JointFamily<Family>) {
@@ -54,7 +54,7 @@ auto fuzz_arm() {
     }
 }
 
-/// Frames that the devices of a family send for some values, and those besides.
+/// Frames that the devices of a family send for some values, and their other frames.
 template <class Family>
 void add_good_frames(double size, std::vector<hal::Frame>& frames) {
     const auto add = [&](const hal::FrameList& list) {
@@ -80,18 +80,18 @@ void add_good_frames(double size, std::vector<hal::Frame>& frames) {
     }
 }
 
-/// An arm of every family, listening to the same frames.
+/// One arm of every family; all receive the same frames.
 template <class... Family>
 class ArmsOf {
   public:
-    /// Whether all samples assembled so far were within the ranges of their sensors and later than the one
-    /// before.
+    /// Returns true if all samples assembled so far were within the ranges of their sensors and in increasing
+    /// order of time.
     bool take(const hal::Frame& frame, std::int64_t now_ns) {
         std::apply([&](auto&... arm) { (take(arm, frame, now_ns), ...); }, arms_);
         return sound_;
     }
 
-    /// Samples, and how many had a valid output.
+    /// Number of samples, and number of those with a valid output.
     [[nodiscard]] std::uint64_t samples() const { return samples_; }
     [[nodiscard]] std::uint64_t outputs() const { return outputs_; }
 

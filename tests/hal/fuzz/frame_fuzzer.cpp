@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames from bytes: id (2 bytes), flags and length, step of the stamp, step of the time, 8 bytes of data; 14
-// in all.
+// Decodes frames from 14 bytes each: id (2 bytes), flags and length, step of the time stamp, step of the
+// time, 8 bytes of data.
 #include "tests/hal/fuzz/assemblies.hpp"
 
 #include <cstdlib>

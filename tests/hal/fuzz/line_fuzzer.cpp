@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as lines of a candump log: each is read or refused with its place, and what is read can be
-// written and read again.
+// Parses arbitrary bytes as lines of a candump log. Each line is parsed or rejected with a position, and a
+// parsed line can be written and parsed again.
 #include "dfdyn/hal/candump.hpp"
 
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Anything at all on the bus.
+// Random frames and frames with random errors.
 #include "tests/hal/fuzz/assemblies.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/catch.hpp"
@@ -16,7 +16,7 @@ int pick(std::mt19937_64& engine, int count) {
     return std::uniform_int_distribution<int>(0, count - 1)(engine);
 }
 
-/// Any frame, mostly with an identifier of 11 bits.
+/// A random frame, mostly with an 11-bit identifier.
 hal::Frame random_frame(std::mt19937_64& engine) {
     hal::Frame frame;
     frame.id = static_cast<std::uint32_t>(engine()) & (pick(engine, 8) == 0 ? 0x1FFFFFFFU : 0x7FFU);
@@ -51,7 +51,7 @@ void mutate(hal::Frame& frame, std::mt19937_64& engine) {
     }
 }
 
-/// Mostly now, at times any number.
+/// A random time stamp: mostly now, sometimes any number.
 std::int64_t random_stamp(std::int64_t now_ns, std::mt19937_64& engine) {
     switch (pick(engine, 1000)) {
     case 0:
@@ -67,7 +67,7 @@ std::int64_t random_stamp(std::int64_t now_ns, std::mt19937_64& engine) {
 
 } // namespace
 
-TEST_CASE("whatever is on the bus, every valid sample is within the range of its sensors") {
+TEST_CASE("random frames never give a valid sample beyond the range of its sensors") {
     DFDYN_SEEDED_ENGINE(engine);
     EveryArm arms;
     std::int64_t now_ns = 1'000'000'000'000;
@@ -87,11 +87,11 @@ TEST_CASE("whatever is on the bus, every valid sample is within the range of its
         }
     }
     CHECK(sound);
-    CHECK(arms.samples() > 100'000); // it is not sound by saying nothing
-    CHECK(arms.outputs() > 20);      // several that agree are needed, which is rare here
+    CHECK(arms.samples() > 100'000); // the test must not pass by giving no samples
+    CHECK(arms.outputs() > 20);      // several agreeing values are needed, which is rare here
 }
 
-TEST_CASE("a frame costs no allocation, nor does a sample") {
+TEST_CASE("frames and samples cause no allocation") {
     EveryArm arms;
     const std::vector<hal::Frame> frames = arms.good_frames(0.5);
     const dfdyn::tests::AllocationGuard guard;

@@ -43,7 +43,7 @@ inline WrenchModel::Constants wrench_model_constants(std::mt19937_64& engine) {
     return constants;
 }
 
-/// The arm's motion and load.
+/// True positions of the arm; its true wrench follows.
 inline std::array<double, 2> true_position(double time_s) {
     return {0.3 + 0.6 * std::sin(1.5 * time_s), -0.7 + 0.5 * std::sin(1.1 * time_s + 1)};
 }
@@ -57,8 +57,8 @@ inline double seconds(std::int64_t time_ns) { return 1e-9 * static_cast<double>(
 
 constexpr hal::Wrench full_scales{1500, 1500, 2000, 35, 35, 25};
 
-/// An arm on a bus, the assembly that listens to it, and an estimator that learns from that. Every tick
-/// checks that what the estimator is given is true, and that it learns nothing else.
+/// An arm on a bus, the assembly that reads its frames, and an estimator that learns from the samples. Every
+/// tick checks that the samples are true and that only valid samples are learned.
 class ArmOnBus {
   public:
     using Board = hal::icub::TwoJointBoard;
@@ -88,7 +88,7 @@ class ArmOnBus {
     ArmOnBus(const ArmOnBus&) = delete;
     ArmOnBus& operator=(const ArmOnBus&) = delete;
 
-    /// The sensor tells its full scales.
+    /// Sends the full scales of the sensor.
     void answer_full_scales() {
         for (int channel = 0; channel < 6; ++channel) {
             const Frame frame =
@@ -98,7 +98,8 @@ class ArmOnBus {
         }
     }
 
-    /// Frames of tick `k`: positions 0.1 ms after its begin, force and torque 0.2 and 0.33 ms.
+    /// Frames of tick `k`: positions 0.1 ms after its beginning, force and torque 0.2 ms and 0.33 ms after
+    /// it.
     std::vector<hal::Frame> frames_of(int k) {
         std::array<hal::JointValue, 2> joints{};
         const std::array<double, 2> q = true_position(seconds(time_ns(k) + 100 * us));
@@ -115,12 +116,12 @@ class ArmOnBus {
                 at_time(halves.frame[1], time_ns(k) + 330 * us)};
     }
 
-    /// The next tick, with its frames as they are.
+    /// Runs the next tick with its frames unchanged.
     Tick tick() {
         return tick([](std::vector<hal::Frame>&) {});
     }
 
-    /// The next tick, with its frames as `fault` leaves them.
+    /// Runs the next tick with its frames changed by `fault`.
     Tick tick(const std::function<void(std::vector<hal::Frame>&)>& fault) {
         std::vector<hal::Frame> frames = frames_of(number);
         fault(frames);
@@ -144,7 +145,7 @@ class ArmOnBus {
         return tick;
     }
 
-    /// Many ticks; whether all of them predicted and learned.
+    /// Runs several ticks. Returns true if all of them predicted and learned.
     bool run(int ticks) {
         bool all = true;
         for (int i = 0; i < ticks; ++i) {
@@ -153,7 +154,7 @@ class ArmOnBus {
         return all;
     }
 
-    /// Until all is well again; the ticks that were not.
+    /// Runs ticks until one is good. Returns the number of ticks that were not.
     int ticks_to_recover() {
         int ticks = 0;
         while (ticks < 1000 && !tick().good()) {
@@ -162,7 +163,7 @@ class ArmOnBus {
         return ticks;
     }
 
-    /// Through qualification and the filling of the window.
+    /// Runs until the sources have qualified and the window is full.
     void warm_up() {
         REQUIRE(ticks_to_recover() <= qualification_ticks + lags + 2);
         REQUIRE(run(20));
@@ -196,8 +197,8 @@ class ArmOnBus {
                  .frozen_limit = frozen_limit}};
     }
 
-    /// What leaves the assembly is true at its instant, to the resolution of the sensors and the motion while
-    /// a value is held; what it did not vouch for is not learned.
+    /// Checks that a sample is true at its time, within the resolution of the sensors and the motion while a
+    /// value is held, and that an invalid output is not learned.
     void check(const Tick& tick) const {
         const auto& [sample, report] = tick.assembled;
         if (!tick.assembled.valid()) {
@@ -236,11 +237,11 @@ class ArmOnBus {
     TestBus bus;
     Assembly assembly{make_config(), make_output()};
     Estimator<WrenchModel> estimator;
-    int number = 0;                  ///< of the next tick
-    std::int64_t clock_error_ns = 0; ///< of stamps on a clock that was adopted
+    int number = 0;                  ///< number of the next tick
+    std::int64_t clock_error_ns = 0; ///< error of time stamps on an adopted clock
 };
 
-/// Which frames of a tick are which.
+/// Indices of the frames of a tick.
 constexpr std::size_t joint_frame = 0;
 constexpr std::size_t force_frame = 1;
 constexpr std::size_t torque_frame = 2;

@@ -29,8 +29,9 @@ inline hal::Frame with_length(hal::Frame frame, int length) {
     return frame;
 }
 
-/// Variants of a frame that no device sends on its identifier: other lengths, remote, CAN FD. `nothing` are
-/// those that are not on the identifier at all: extended, error. `request`: what a remote frame is.
+/// Variants of a frame that no device sends on its identifier: other lengths, remote, CAN FD. `nothing` is
+/// the result for extended and error frames, which do not have this identifier. `request` is the result for a
+/// remote frame.
 template <class Device>
 bool rejects_malformed(Device device, const hal::Frame& good, std::initializer_list<int> lengths,
                        hal::Decoded::Kind request = hal::Decoded::Kind::rejected) {

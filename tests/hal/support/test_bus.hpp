@@ -9,7 +9,7 @@
 
 namespace dfdyn::tests {
 
-/// A bus in memory: the test puts frames on it and sets its time and condition.
+/// A bus in memory. The test adds frames and sets its time and condition.
 class TestBus {
   public:
     std::span<const hal::Frame> drain(std::span<hal::Frame> into) noexcept {
@@ -35,12 +35,12 @@ class TestBus {
     [[nodiscard]] hal::BusState state() const noexcept { return bus_state; }
     [[nodiscard]] const hal::BusCounters& counters() const noexcept { return condition; }
 
-    std::deque<hal::Frame> waiting; ///< to be read
+    std::deque<hal::Frame> waiting; ///< frames to be read
     std::vector<hal::Frame> sent;
     std::int64_t now = 0;
     hal::BusState bus_state = hal::BusState::active;
     hal::BusCounters condition;
-    bool full = false; ///< nothing can be sent
+    bool full = false; ///< sending is refused
 };
 
 static_assert(hal::Bus<TestBus>);
