@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults that look like others: each is found by its own rule, with its rate, and no other rule holds.
+// Faults that resemble others: each is found by its own rule with its rate, and no other rule reports a
+// finding.
 #include "dfdyn/hal/device/icub_strain.hpp"
 
 #include "tests/tools/can/bus_check_support.hpp"
@@ -24,7 +25,7 @@ std::vector<BusDescription> every_family() {
     return descriptions;
 }
 
-/// The identifier of joint 1's positions.
+/// Identifier of joint 1's positions.
 std::uint32_t first_id(const BusDescription& description) {
     return description.boards.front().board.encode({}).frame[0].id;
 }
@@ -38,7 +39,7 @@ std::string evidence_of(const BusCheck& check, const std::string& rule) {
     return "";
 }
 
-/// `change` for the frames of one identifier from `from_s` to `to_s`.
+/// Applies `change` to the frames of one identifier from `from_s` to `to_s`.
 Frames changed_between(const Frames& frames, std::uint32_t id, double from_s, double to_s,
                        const std::function<void(Frame&)>& change) {
     return changed(frames, [&](Frame& frame) {
@@ -51,7 +52,7 @@ Frames changed_between(const Frames& frames, std::uint32_t id, double from_s, do
 
 } // namespace
 
-TEST_CASE("one in a hundred frames of a joint lost is found with its rate, in every family") {
+TEST_CASE("the loss of one in a hundred frames of a joint is found with its rate in every family") {
     for (const BusDescription& description : every_family()) {
         DFDYN_SEEDED_ENGINE(engine);
         CAPTURE(description.source);
@@ -69,7 +70,7 @@ TEST_CASE("one in a hundred frames of a joint lost is found with its rate, in ev
     }
 }
 
-TEST_CASE("a clock that was set is found, and no source is slow, silent or stopped for it") {
+TEST_CASE("a clock that was set is found and no source is reported as slow or silent or stopped") {
     for (const BusDescription& description : {icub(), drives(), described(odrive_and_ati)}) {
         const Frames good = sound(description);
         for (const double step_s : {3600.0, 2.0, -2.0, -3600.0}) {
@@ -84,7 +85,7 @@ TEST_CASE("a clock that was set is found, and no source is slow, silent or stopp
     }
 }
 
-TEST_CASE("one stamp that is off is found, and no source is slow, silent or stopped for it") {
+TEST_CASE("a single wrong time stamp is found and no source is reported as slow or silent or stopped") {
     for (const std::int64_t off_s : {100'000, 10, -10}) {
         Frames frames = sound(icub());
         frames[frames.size() / 2].stamp_ns += off_s * 1'000'000'000;
@@ -95,7 +96,7 @@ TEST_CASE("one stamp that is off is found, and no source is slow, silent or stop
     }
 }
 
-TEST_CASE("an effort at the end of its numbers is found, with its share") {
+TEST_CASE("an effort at the end of its range is found with its share") {
     const auto ends = [](std::size_t low) {
         return [low](Frame& frame) { frame.data[low] = 0xFF, frame.data[low + 1] = 0x7F; };
     };
@@ -107,7 +108,7 @@ TEST_CASE("an effort at the end of its numbers is found, with its share") {
     CHECK(rules_of(board) == Names{"effort_saturated"});
 }
 
-TEST_CASE("an effort that stays the same while its joint moves is found") {
+TEST_CASE("a constant effort of a moving joint is found") {
     const auto frozen = [](std::size_t low) {
         return [low](Frame& frame) { frame.data[low] = 0x12, frame.data[low + 1] = 0x03; };
     };
@@ -117,7 +118,7 @@ TEST_CASE("an effort that stays the same while its joint moves is found") {
           Names{"effort_frozen"});
 }
 
-TEST_CASE("an encoder that freezes while its joint moves is found, whether it recovers or not") {
+TEST_CASE("an encoder that freezes while its joint moves is found whether or not it recovers") {
     for (const double to_s : {3.0, 100.0}) {
         std::optional<Frame> last;
         const auto freeze = [&](Frame& frame) {
@@ -125,13 +126,13 @@ TEST_CASE("an encoder that freezes while its joint moves is found, whether it re
             std::copy_n(last->data.begin(), 4, frame.data.begin());
         };
         CAPTURE(to_s);
-        // joint 1 moves fastest about t = 0
+        // joint 1 moves fastest around t = 0
         CHECK(rules(drives(), changed_between(sound(drives()), 0x281, 0.2, to_s, freeze)) ==
               Names{"encoder_frozen"});
     }
 }
 
-TEST_CASE("a joint that stands, and one that stops as joints do, are no finding") {
+TEST_CASE("a joint at rest and one that decelerates normally give no finding") {
     const BusDescription bus = drives();
     Frames frames;
     dfdyn::tools::BusTraffic traffic(bus, {20, 1}, [&](const Frame& frame) { frames.push_back(frame); });
@@ -149,7 +150,7 @@ TEST_CASE("a joint that stands, and one that stops as joints do, are no finding"
     CHECK(rules(bus, frames) == Names{});
 }
 
-TEST_CASE("two senders of a joint's identifier are found, and not their positions") {
+TEST_CASE("two senders of a joint's identifier are found and their positions give no finding") {
     for (const BusDescription& description : every_family()) {
         CAPTURE(description.source);
         Frames frames = sound(description);
@@ -167,7 +168,7 @@ TEST_CASE("two senders of a joint's identifier are found, and not their position
     }
 }
 
-TEST_CASE("an encoder that begins anew after a turn is found, and so is a position out of nowhere") {
+TEST_CASE("an encoder that wraps after a turn is found and so is a single wrong position") {
     const auto moved_by = [](std::int32_t counts) {
         return [counts](Frame& frame) {
             const auto now = dfdyn::hal::load_little<std::int32_t>(frame.data.data());
@@ -183,7 +184,7 @@ TEST_CASE("an encoder that begins anew after a turn is found, and so is a positi
                 })) == Names{"position_zeros"});
 }
 
-TEST_CASE("a drive that restarts while it sends is found, one that boots before it sends is not") {
+TEST_CASE("a drive that restarts while it sends is found and one that boots before it sends is not") {
     const Frames good = sound(drives());
     CHECK(rules(drives(), with(good, make_frame(0x701, 1))) == Names{"device_restarted"});
     Frames early = good;
@@ -195,7 +196,7 @@ TEST_CASE("a drive that restarts while it sends is found, one that boots before 
     CHECK(rules(drives(), early) == Names{});
 }
 
-TEST_CASE("an ODrive with firmware 0.6 that has finished its trajectories is no finding") {
+TEST_CASE("an ODrive with firmware 0.6 that has finished its trajectories gives no finding") {
     const BusDescription arm = described(odrive_and_ati);
     CHECK(rules(arm, changed(sound(arm), [](Frame& frame) {
                     frame.data[6] = (frame.id & 0x1F) == 0x01 ? 1 : frame.data[6];
@@ -205,7 +206,7 @@ TEST_CASE("an ODrive with firmware 0.6 that has finished its trajectories is no 
                 })) == Names{"encoder_fault"});
 }
 
-TEST_CASE("a full scale of another set, and one that contradicts the description, are told apart") {
+TEST_CASE("a full scale of another set is distinguished from one that contradicts the description") {
     const dfdyn::hal::icub::StrainBoard board(13);
     const auto rules_with = [&](int set) {
         return rules(icub(), with(sound(icub()), board.encode_full_scale(0, 500, set)));
@@ -215,14 +216,14 @@ TEST_CASE("a full scale of another set, and one that contradicts the description
     CHECK(rules(icub(), with(sound(icub()), board.encode_full_scale(0, 1500, 2))) == Names{});
 }
 
-TEST_CASE("without a description a sound bus of any family has no finding") {
+TEST_CASE("without a description a valid bus of any family gives no finding") {
     for (const BusDescription& description : every_family()) {
         CAPTURE(description.source);
         CHECK(rules(std::nullopt, sound(description)) == Names{});
     }
 }
 
-TEST_CASE("without a description losses, gaps, silence and error frames are found") {
+TEST_CASE("without a description losses and gaps and silence and error frames are found") {
     const Frames good = sound(icub());
     int count = 0;
     CHECK(rules(std::nullopt, without(good, [&](const Frame& frame) {

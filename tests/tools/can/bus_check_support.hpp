@@ -10,7 +10,8 @@
 #include <functional>
 #include <set>
 
-/// Logs of sound arms, what can be done to them, and which rules of buscheck then hold.
+/// Logs of arms without faults, functions that add faults, and the rules of buscheck that then report a
+/// finding.
 namespace dfdyn::tests {
 
 using hal::Frame;
@@ -19,7 +20,7 @@ using tools::BusDescription;
 using Frames = std::vector<Frame>;
 using Names = std::set<std::string>;
 
-/// Frames as a recording, of which the recorder lost some.
+/// Frames as a recording whose recorder lost some of them.
 class Tape {
   public:
     explicit Tape(Frames frames, std::uint64_t dropped = 0) : frames_(std::move(frames)), dropped_(dropped) {}
@@ -82,12 +83,12 @@ inline BusDescription described(const std::string& text) {
     return tools::read_bus_description(directory.write("bus.json", text));
 }
 
-/// What an output of the arm is, but for its noise: within what the efforts of every description can show.
+/// An output of the arm without noise. It is within the range of the efforts of every description.
 inline double sound_output(const BusDescription& description, double time_s) {
     return (description.sensor ? 2 : 1) + 0.5 * std::sin(2 * time_s);
 }
 
-/// An arm in motion, for so long, as its devices would have sent it; `shift_rad`: of all positions.
+/// Frames that the devices of an arm in motion would have sent. `shift_rad` is added to all positions.
 inline Frames sound(const BusDescription& description, double duration_s = 4, double jitter_us = 20,
                     double shift_rad = 0) {
     Frames frames;
@@ -142,7 +143,7 @@ inline Frames changed(Frames frames, const std::function<void(Frame&)>& change) 
     return frames;
 }
 
-/// With a frame in the middle.
+/// Inserts a frame in the middle.
 inline Frames with(Frames frames, Frame frame) {
     const std::size_t at = frames.size() / 2;
     frame.stamp_ns = frames[at].stamp_ns;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each rule on a log that has its fault, and none of them on logs that have none.
+// Each rule reports a log with its fault, and no rule reports a log without faults.
 #include "tools/can/check/bus_check.hpp"
 
 #include "dfdyn/hal/replay_bus.hpp"
@@ -12,7 +12,7 @@ namespace {
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
 
-/// A recording whose interface was down for some of its frames, which no log tells of.
+/// A recording whose interface was down for some of its frames, which a log does not show.
 class BrokenBus {
   public:
     BrokenBus(TapeBus& bus, std::uint64_t down_from, std::uint64_t down_to)
@@ -56,7 +56,7 @@ bool is_wrench(const Frame& frame) { return frame.id == 0x3DA || frame.id == 0x3
 
 } // namespace
 
-TEST_CASE("nothing is wrong with a bus of any family where nothing is wrong") {
+TEST_CASE("a bus of any family without faults gives no finding") {
     for (const char* const name : {"icub_arm_strain", "ur5_cia402", "ur5_cia402_torque", "ur5_icub_2foc",
                                    "ur5_two_joint_boards", "ur5_dbc"}) {
         CAPTURE(name);
@@ -68,13 +68,13 @@ TEST_CASE("nothing is wrong with a bus of any family where nothing is wrong") {
     CHECK(rules(described(loaded), sound(described(loaded), 4, 50)) == Names{}); // 77 %
 }
 
-TEST_CASE("lost arbitration, and a stranger that sends little, are no finding") {
+TEST_CASE("lost arbitration and an unknown sender with a low rate give no finding") {
     const BusDescription bus = icub();
     CHECK(rules(bus, with(sound(bus), error_frame(dfdyn::hal::error_class::lost_arbitration))) == Names{});
     CHECK(rules(bus, with(sound(bus), dfdyn::hal::make_frame(0x7A5, 8))) == Names{});
 }
 
-TEST_CASE("a source that is wrong is found by its rule, and by no other") {
+TEST_CASE("a fault of a source is found by its rule and no other") {
     const BusDescription bus = icub();
     const Frames good = sound(bus);
     SECTION("never there") { CHECK(rules(bus, without(good, is_first)) == Names{"silent_source"}); }
@@ -121,7 +121,7 @@ TEST_CASE("a source that is wrong is found by its rule, and by no other") {
     }
 }
 
-TEST_CASE("two devices on one identifier, and one that is faster than described, are told apart") {
+TEST_CASE("two devices on one identifier are distinguished from one that is faster than described") {
     const BusDescription bus = icub();
     Frames twice = sound(bus);
     for (const Frame& frame : sound(bus)) {
@@ -137,7 +137,7 @@ TEST_CASE("two devices on one identifier, and one that is faster than described,
     CHECK(rules(slower, sound(bus)) == Names{"fast_source"});
 }
 
-TEST_CASE("a bus that is wrong is found by its rule, and by no other") {
+TEST_CASE("a fault of the bus is found by its rule and no other") {
     const BusDescription bus = icub();
     const Frames good = sound(bus);
     namespace error_class = dfdyn::hal::error_class;
@@ -150,7 +150,7 @@ TEST_CASE("a bus that is wrong is found by its rule, and by no other") {
     CHECK(rules_with(error_frame(error_class::bus_off)).contains("bus_off"));
     CHECK(rules(bus, good, 7) == Names{"frames_dropped"});
     CHECK(rules(bus, {}) == Names{"silent_bus"});
-    Frame overflow = dfdyn::hal::make_frame(0x115, 0); // the board's own message: packets lost
+    Frame overflow = dfdyn::hal::make_frame(0x115, 0); // the board's report of lost packets
     CHECK(rules_with(overflow) == Names{"device_lost_frames"});
     const Frames jumped = changed(good, [](Frame& frame) { frame.stamp_ns += 10'000'000'000; });
     Frames set_back = jumped;
@@ -158,7 +158,7 @@ TEST_CASE("a bus that is wrong is found by its rule, and by no other") {
     CHECK(rules(bus, set_back).contains("clock_jumped"));
 }
 
-TEST_CASE("an interface that went down is found, up again or not, beside what was not heard meanwhile") {
+TEST_CASE("an interface that went down is found in addition to the frames that are missing") {
     const BusDescription bus = icub();
     const Frames good = sound(bus); // 4 s
     const std::uint64_t count = good.size();
@@ -176,7 +176,7 @@ TEST_CASE("an interface that went down is found, up again or not, beside what wa
     CHECK(rules_down(count / 2, count) == Names{"interface_down", "source_stopped"});
 }
 
-TEST_CASE("stamps that repeat or run backward are found, now and then one is not") {
+TEST_CASE("time stamps that repeat or run backward are found unless they are rare") {
     const BusDescription bus = icub();
     const Frames good = sound(bus);
     const auto stamped = [&](int every, std::int64_t step_ns) {
@@ -194,13 +194,13 @@ TEST_CASE("stamps that repeat or run backward are found, now and then one is not
     CHECK(stamped(10, 0).contains("time_not_increasing"));
     CHECK(stamped(10, -200'000).contains("time_not_increasing"));
     CHECK_FALSE(stamped(10, 1).contains("time_not_increasing"));
-    CHECK_FALSE(stamped(100, 0).contains("time_not_increasing")); // of a quarter of the frames
+    CHECK_FALSE(stamped(100, 0).contains("time_not_increasing")); // in a quarter of the frames
 }
 
-TEST_CASE("the load is that of all frames, against the bit rate") {
+TEST_CASE("the load is that of all frames relative to the bit rate") {
     BusDescription bus = icub();
     const Frames good = sound(bus);
-    // 2 x 135 bits of joints and 2 x 115 of the sensor at 1 kHz
+    // per millisecond 2 x 135 bits of the joints and 2 x 115 of the sensor
     const BusCheck check = checked(bus, good);
     CHECK(check.load() == Approx(0.5).epsilon(0.01));
     CHECK(check.expected_load() == Approx(0.5));
@@ -217,7 +217,7 @@ TEST_CASE("the load is that of all frames, against the bit rate") {
     CHECK(rules(bus, changed(crowded, [](Frame&) {})) == Names{"unknown_traffic"});
 }
 
-TEST_CASE("what devices say of themselves is found by its rule") {
+TEST_CASE("a condition that a board or sensor reports is found by its rule") {
     const BusDescription bus = icub();
     const Frames good = sound(bus);
     const auto changed_wrench = [&](auto change) {
@@ -252,7 +252,7 @@ TEST_CASE("what devices say of themselves is found by its rule") {
                 })) == Names{"full_scale"});
 }
 
-TEST_CASE("what drives say of themselves is found by its rule") {
+TEST_CASE("a condition that a drive reports is found by its rule") {
     std::string text = dfdyn::tests::file_content(bus_folder + "ur5_cia402.json");
     const std::string family = "\"family\": \"cia402\",";
     text.insert(text.find(family) + family.size(), "\"heartbeat_timeout_s\": 0.25,");
@@ -267,13 +267,13 @@ TEST_CASE("what drives say of themselves is found by its rule") {
     Frame emcy = dfdyn::hal::make_frame(0x83, 8);
     emcy.data[1] = 0x23; // 0x2300: over-current
     CHECK(rules(drives, with(good, emcy)) == Names{"device_fault"});
-    // an encoder that stays at zero
+    // an encoder that remains at zero
     CHECK(rules(drives, changed(good, [](Frame& frame) {
                     frame.data = frame.id == 0x281 ? std::array<std::uint8_t, 64>{} : frame.data;
                 })) == Names{"zeros"});
 }
 
-TEST_CASE("frames of more identifiers than there is memory for are watched in bounded memory") {
+TEST_CASE("frames of more identifiers than fit into the memory are observed in bounded memory") {
     const BusDescription bus = icub();
     Frames flood = sound(bus, 1);
     for (std::uint32_t id = 0; id < 20'000; ++id) {

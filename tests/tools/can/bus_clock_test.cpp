@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings with uneven steps, and of any usual rate, on a bus and back.
+// Recordings with uneven steps, and with all common rates, put on a bus and read back.
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
@@ -17,7 +17,7 @@ using namespace dfdyn::tools;
 using dfdyn::tests::TemporaryDirectory;
 using dfdyn::tests::unlearned_model;
 
-/// One swinging joint at these times, with its current.
+/// One oscillating joint at these times, with its current.
 Recording swinging(const std::vector<std::int64_t>& times_ns) {
     Recording recording;
     recording.source = "made up";
@@ -34,7 +34,7 @@ Recording swinging(const std::vector<std::int64_t>& times_ns) {
     return recording;
 }
 
-/// One CiA 402 drive at that rate.
+/// One CiA 402 drive with this rate.
 BusDescription one_drive(const TemporaryDirectory& directory, double rate_hz) {
     std::ostringstream text;
     text << std::setprecision(12) << R"({"schema": "dfdyn.bus/1", "bit_rate": 1000000, "sample_rate_hz": )"
@@ -46,7 +46,7 @@ BusDescription one_drive(const TemporaryDirectory& directory, double rate_hz) {
     return read_bus_description(directory.write("bus.json", text.str()));
 }
 
-/// Ticks of the recording, put on a bus at its own rate and replayed, that are predicted.
+/// Number of predicted ticks after the recording was put on a bus at its own rate and replayed.
 std::ptrdiff_t predicted_over_bus(const Recording& recording) {
     const TemporaryDirectory directory;
     const double period_s = sample_period_s({&recording, 1});
@@ -62,9 +62,10 @@ std::ptrdiff_t predicted_over_bus(const Recording& recording) {
 }
 
 constexpr int rows = 600;
-constexpr int unpredicted = 10 + 4 + 1; // readings before a source is believed, lags, the SYNC after the last
+// readings until a source qualifies, lags, and the SYNC after the last row
+constexpr int unpredicted = 10 + 4 + 1;
 
-TEST_CASE("a recording of any rate from 50 Hz to 5 kHz goes over a bus") {
+TEST_CASE("a recording of any rate from 50 Hz to 5 kHz is unchanged by a bus") {
     for (const std::int64_t period_ns : {20'000'000, 8'000'000, 2'000'000, 1'000'000, 200'000}) {
         std::vector<std::int64_t> times_ns;
         for (int row = 0; row < rows; ++row) {
@@ -74,7 +75,7 @@ TEST_CASE("a recording of any rate from 50 Hz to 5 kHz goes over a bus") {
     }
 }
 
-TEST_CASE("a recording with steps of 10 and 12 ms goes over a bus without a lost tick") {
+TEST_CASE("a recording with steps of 10 and 12 ms loses no tick on a bus") {
     for (const int every : {2, 3}) { // every second or third step is 12 ms
         std::vector<std::int64_t> times_ns{0};
         for (int row = 1; row < rows; ++row) {
@@ -84,7 +85,7 @@ TEST_CASE("a recording with steps of 10 and 12 ms goes over a bus without a lost
     }
 }
 
-TEST_CASE("jitter of a third of a period goes over a bus without a lost tick") {
+TEST_CASE("jitter of a third of a period causes no lost tick on a bus") {
     DFDYN_SEEDED_ENGINE(engine);
     std::uniform_int_distribution<std::int64_t> jitter(0, 660'000);
     for (const std::int64_t period_ns : {8'000'000, 1'000'000}) {

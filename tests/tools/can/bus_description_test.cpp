@@ -24,8 +24,8 @@ BusDescription changed(const std::string& name, const std::string& from, const s
     return read_bus_description(directory.write("bus.json", text.replace(place, from.size(), to)));
 }
 
-/// An arm of Damiao motors: the fields of the first, besides those that say where it is, and all of the
-/// others.
+/// An arm of Damiao motors. `scale`: fields of the first motor in addition to its addresses; `others`: all
+/// fields of the others.
 BusDescription damiao_arm(const std::string& scale, const std::string& others = "") {
     return dfdyn::tests::described(
         R"({"schema": "dfdyn.bus/1", "bit_rate": 1000000, "sample_rate_hz": 500, "trigger": {"on": "set"},
@@ -42,7 +42,7 @@ std::string refusal_of_damiao_arm(const std::string& scale, const std::string& o
     return "";
 }
 
-/// The TMAX that the first motor is taken to have.
+/// TMAX assumed for the first motor.
 double torque_max_of(const BusDescription& arm) {
     dfdyn::hal::Frame frame = dfdyn::hal::make_frame(0x11, 8);
     frame.data = {0x11, 0x90, 0, 0x80, 0x0C, 0x00};
@@ -52,7 +52,7 @@ double torque_max_of(const BusDescription& arm) {
 
 } // namespace
 
-TEST_CASE("every example of a bus description can be read") {
+TEST_CASE("every example of a bus description is valid") {
     int examples = 0;
     for (const auto& file : std::filesystem::directory_iterator(bus_folder)) {
         if (file.path().extension() == ".json") {
@@ -64,7 +64,7 @@ TEST_CASE("every example of a bus description can be read") {
     CHECK(examples >= 5);
 }
 
-TEST_CASE("a bus description says what is on the bus") {
+TEST_CASE("a bus description gives devices and rates and limits") {
     const BusDescription icub = read_bus_description(bus_folder + "icub_arm_strain.json");
     CHECK(icub.joint_count == 4);
     CHECK(icub.outputs == OutputKind::wrench);
@@ -85,7 +85,7 @@ TEST_CASE("a bus description says what is on the bus") {
     CHECK_FALSE(ur5.sensor);
 }
 
-TEST_CASE("what a bus description cannot be is refused by field, expectation and finding") {
+TEST_CASE("an impossible bus description is rejected with field and expected value and found value") {
     struct Wrong {
         const char* example;
         const char* from;
@@ -142,7 +142,7 @@ TEST_CASE("what a bus description cannot be is refused by field, expectation and
     CHECK_THAT(found, EndsWith(message));
 }
 
-TEST_CASE("a Damiao motor's scale is its type's as delivered, or the one given") {
+TEST_CASE("a Damiao motor's scale is the factory setting of its type or the given one") {
     CHECK(torque_max_of(damiao_arm(R"(, "motor": "DM4310")")) == Approx(10));
     CHECK(torque_max_of(damiao_arm(R"(, "motor": "DM8009")")) == Approx(54));
     CHECK(torque_max_of(damiao_arm(R"(, "motor": "DM4310", "torque_max": 12)")) == Approx(12));
@@ -151,7 +151,7 @@ TEST_CASE("a Damiao motor's scale is its type's as delivered, or the one given")
           Approx(4));
 }
 
-TEST_CASE("a Damiao motor's scale has no default where libraries disagree on it") {
+TEST_CASE("a Damiao motor's scale has no default if libraries disagree about it") {
     const std::string unsure = ", for which no default is sure, found none";
     CHECK_THAT(refusal_of_damiao_arm(R"(, "motor": "DM4340")"),
                EndsWith("joints.boards[0].velocity_max: expected the motor's register 22 (VMAX)" + unsure));
@@ -168,7 +168,7 @@ TEST_CASE("a Damiao motor's scale has no default where libraries disagree on it"
         EndsWith("expected devices that do not share identifiers, found two that send 0x11"));
 }
 
-TEST_CASE("buscheck sees that a Damiao motor's velocities are of another scale than its positions") {
+TEST_CASE("buscheck finds that a Damiao motor's velocities have another scale than its positions") {
     const auto rules_with = [](double described_max, double true_max) {
         const BusDescription arm =
             damiao_arm(R"(, "motor": "DM4340", "velocity_max": )" + std::to_string(described_max));

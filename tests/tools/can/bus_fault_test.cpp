@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What replay makes of faults: nothing that it accepts is wrong, and what is good is not refused for ever.
+// Effect of faults on replay: it accepts no wrong value, and it rejects good values only for a limited time.
 #include "dfdyn/hal/device/icub_strain.hpp"
 
 #include "tests/tools/can/bus_check_support.hpp"
@@ -14,11 +14,11 @@ using dfdyn::hal::make_frame;
 using dfdyn::tools::BusSample;
 using dfdyn::tools::BusTraffic;
 
-/// What `replay` accepted of the frames of `sound`.
+/// Values that `replay` accepted from the frames of `sound`.
 struct Accepted {
     int samples = 0;
-    int positions = 0, outputs = 0; ///< of them with
-    int wrong = 0;                  ///< of them
+    int positions = 0, outputs = 0; ///< samples with positions, and with outputs
+    int wrong = 0;                  ///< accepted values that are wrong
     std::map<std::string, int> refused;
 
     void take(const BusDescription& description, const BusSample& sample) {
@@ -55,17 +55,17 @@ Accepted replayed(const BusDescription& description, const Frames& frames) {
     return accepted;
 }
 
-/// The iCub's arm whose full scales only the sensor itself reports.
+/// The iCub's arm with full scales that only the sensor itself reports.
 BusDescription icub_without_full_scales(const std::string& instead = "") {
     const std::string text = file_content(bus_folder + "icub_arm_strain.json");
     return described(text.substr(0, text.find(", \"full_scale\"")) + instead + "}}");
 }
 
-constexpr int few = 30; ///< samples: what it takes to qualify, and the frames of the fault
+constexpr int few = 30; ///< samples until a source qualifies, plus the frames of the fault
 
 } // namespace
 
-TEST_CASE("drives that boot, and send no heartbeat, are accepted, without a word in the description") {
+TEST_CASE("drives that boot without sending heartbeats are accepted without an entry in the description") {
     Frames frames = without(sound(drives()), [](const Frame& frame) { return frame.id > 0x700; });
     const int good = replayed(drives(), frames).outputs;
     CHECK(good > 450);
@@ -78,7 +78,7 @@ TEST_CASE("drives that boot, and send no heartbeat, are accepted, without a word
     CHECK(replayed(drives(), with(frames, make_frame(0x703, 1))).outputs > good - few); // one restarts
 }
 
-TEST_CASE("ODrives with firmware 0.6 are accepted, without a word in the description") {
+TEST_CASE("ODrives with firmware 0.6 are accepted without an entry in the description") {
     const BusDescription arm = described(odrive_and_ati);
     const Frames good = sound(arm);
     const auto is_heartbeat = [](const Frame& frame) {
@@ -93,7 +93,7 @@ TEST_CASE("ODrives with firmware 0.6 are accepted, without a word in the descrip
     CHECK(replayed(arm, failed).refused["encoder_fault"] > 150);
 }
 
-TEST_CASE("an ODrive's estimate that is lost between two heartbeats is not the arm's position") {
+TEST_CASE("an ODrive's estimate that is lost between two heartbeats is not accepted as the arm's position") {
     const BusDescription arm = described(odrive_and_ati);
     const Frames lost = changed(sound(arm), [](Frame& frame) {
         const bool between = frame.stamp_ns > 2'010'000'000 && frame.stamp_ns < 2'090'000'000;
@@ -102,7 +102,7 @@ TEST_CASE("an ODrive's estimate that is lost between two heartbeats is not the a
     CHECK(replayed(arm, lost).positions > 350); // of 400
 }
 
-TEST_CASE("bus-off ends with what is received, and needs no word of the restart") {
+TEST_CASE("bus-off ends with a received frame and needs no report of the restart") {
     const Frames good = sound(icub());
     Frames off = with(good, error_frame(dfdyn::hal::error_class::bus_off));
     off.erase(off.begin() + std::ssize(off) / 2 + 1, off.begin() + std::ssize(off) / 2 + 400); // 0.1 s
@@ -110,7 +110,7 @@ TEST_CASE("bus-off ends with what is received, and needs no word of the restart"
     CHECK(accepted.outputs > replayed(icub(), good).outputs - 100 - few);
 }
 
-TEST_CASE("a full scale of another set rescales no wrench and refuses none") {
+TEST_CASE("a full scale of another set neither rescales nor rejects a wrench") {
     const dfdyn::hal::icub::StrainBoard board(13);
     const Frames good = sound(icub());
     for (const BusDescription& description : {icub(), icub_without_full_scales()}) {
@@ -123,7 +123,7 @@ TEST_CASE("a full scale of another set rescales no wrench and refuses none") {
     }
 }
 
-TEST_CASE("a full scale that contradicts the description, or an earlier one, rescales no wrench") {
+TEST_CASE("a full scale that contradicts the description or an earlier one rescales no wrench") {
     const dfdyn::hal::icub::StrainBoard board(13);
     const Frames good = sound(icub());
     for (const BusDescription& description : {icub(), icub_without_full_scales()}) {
@@ -133,7 +133,7 @@ TEST_CASE("a full scale that contradicts the description, or an earlier one, res
         CHECK(refused.outputs < outputs / 2 + few);
         CHECK(refused.refused.at("full_scale_contradicted") > outputs / 2 - few);
         const std::array<double, 6> full_scale{1500, 1500, 2000, 35, 35, 25};
-        for (int channel = 0; channel < 6; ++channel) { // asked again, right away
+        for (int channel = 0; channel < 6; ++channel) { // requested again immediately
             Frame reply = board.encode_full_scale(channel, full_scale[static_cast<std::size_t>(channel)]);
             const auto at = contradicted.begin() + std::ssize(contradicted) / 2 + 10;
             reply.stamp_ns = at->stamp_ns;
@@ -144,7 +144,7 @@ TEST_CASE("a full scale that contradicts the description, or an earlier one, res
 }
 
 TEST_CASE(
-    "where only another set's full scales are known no wrench is accepted, unless it is the one in use") {
+    "if only another set's full scales are known then no wrench is accepted unless that set is in use") {
     const Frames numbered = changed(sound(icub()), [](Frame& frame) {
         frame.data[1] = static_cast<std::uint8_t>(frame.data[1] | (frame.id == 0x2D0 ? 0x10 : 0));
     });

@@ -16,7 +16,7 @@ namespace dfdyn::tests {
 
 inline const std::string bus_folder = DFDYN_TEST_DATA_DIR "/can/";
 
-/// A model of position, and differences for velocity and acceleration, that has not learned yet.
+/// A model without any learning, from position with velocity and acceleration by differences.
 inline tools::TrainedModel unlearned_model(std::mt19937_64& engine, int joints, double sample_period_s,
                                            const std::vector<std::string>& outputs, int features) {
     std::normal_distribution<double> normal;
@@ -42,14 +42,14 @@ inline tools::TrainedModel unlearned_model(std::mt19937_64& engine, int joints, 
     return model;
 }
 
-/// The description of the iCub's arm, sampled at another rate.
+/// The description of the iCub's arm with another sample rate.
 inline std::string icub_arm_at(int rate_hz) {
     std::string text = file_content(bus_folder + "icub_arm_strain.json");
     const std::string rate = "\"sample_rate_hz\": 1000";
     return text.replace(text.find(rate), rate.size(), "\"sample_rate_hz\": " + std::to_string(rate_hz));
 }
 
-/// A log of the iCub's arm under a wrench, 0.5 s at 1 kHz unless told otherwise.
+/// A log of the iCub's arm under a wrench, by default 0.5 s at 1 kHz.
 struct IcubLog {
     TemporaryDirectory directory;
     std::filesystem::path path = directory.path() / "run.log";
@@ -79,7 +79,7 @@ struct IcubLog {
         write_bus_log(recording, bus, {}, path);
     }
 
-    /// The log without the lines that have `word`.
+    /// The log without the lines that contain `word`.
     std::filesystem::path without(const std::string& word) const {
         std::istringstream lines(file_content(path));
         std::string text;

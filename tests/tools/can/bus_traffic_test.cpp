@@ -62,13 +62,13 @@ std::vector<BusSample> samples_of(const std::vector<Frame>& frames, const BusDes
     return samples;
 }
 
-constexpr std::size_t qualification = 10; ///< readings before a source is believed
+constexpr std::size_t qualification = 10; ///< readings until a source qualifies
 
 Frame frame_of(std::uint32_t id, int length) { return dfdyn::hal::make_frame(id, length); }
 
 } // namespace
 
-TEST_CASE("frames have the worst case's bits: 55 + 10 per byte, 25 more with a long identifier") {
+TEST_CASE("frames have their worst-case bits: 55 + 10 per byte and 25 more with a 29-bit identifier") {
     CHECK(frame_bits(frame_of(1, 0)) == 55);
     CHECK(frame_bits(frame_of(1, 8)) == 135);
     Frame frame = frame_of(1, 8);
@@ -76,7 +76,7 @@ TEST_CASE("frames have the worst case's bits: 55 + 10 per byte, 25 more with a l
     CHECK(frame_bits(frame) == 160);
 }
 
-TEST_CASE("a wire carries one frame at a time, the lowest identifier of those that wait first") {
+TEST_CASE("a wire carries one frame at a time and first the waiting frame with the lowest identifier") {
     std::vector<std::pair<std::uint32_t, std::int64_t>> sent;
     BusWire wire(1e6, [&](const Frame& frame) { sent.emplace_back(frame.id, frame.stamp_ns); });
     wire.offer(frame_of(0x300, 0), 0);
@@ -93,7 +93,7 @@ TEST_CASE("a wire carries one frame at a time, the lowest identifier of those th
     CHECK(wire.bits() == 5 * 55);
 }
 
-TEST_CASE("rows that become frames and then samples are the rows, to half a count: drives with SYNC") {
+TEST_CASE("rows converted to frames and back are equal to half a count: drives with SYNC") {
     DFDYN_SEEDED_ENGINE(engine);
     const BusDescription description = read_bus_description(bus_folder + "ur5_cia402.json");
     const std::vector<Row> rows = random_rows(engine, 200, 8'000'000, 6, std::vector<double>(6, 30));
@@ -116,13 +116,14 @@ TEST_CASE("rows that become frames and then samples are the rows, to half a coun
     }
 }
 
-TEST_CASE("rows that become frames and then samples are the rows, to half a count: boards and a sensor") {
+TEST_CASE("rows converted to frames and back are equal to half a count: boards and a sensor") {
     DFDYN_SEEDED_ENGINE(engine);
     const BusDescription description = read_bus_description(bus_folder + "icub_arm_strain.json");
     const std::vector<double> full_scale{1500, 1500, 2000, 35, 35, 25};
     const std::vector<Row> rows = random_rows(engine, 300, 1'000'000, 4, full_scale);
     const std::vector<BusSample> samples = samples_of(frames_of(rows, description, {}), description);
-    // A sample is of the wrench's first half; positions come before it, so that they are those of the row.
+    // A sample has the time of the wrench's first half. Positions come before it, so they are those of the
+    // same row.
     std::size_t row = 0;
     std::size_t valid = 0;
     for (const BusSample& sample : samples) {
@@ -145,7 +146,7 @@ TEST_CASE("rows that become frames and then samples are the rows, to half a coun
     CHECK(valid == rows.size() - qualification + 1);
 }
 
-TEST_CASE("the same seed gives the same frames, another one others") {
+TEST_CASE("equal seeds give equal frames and different seeds different ones") {
     DFDYN_SEEDED_ENGINE(engine);
     const BusDescription description = read_bus_description(bus_folder + "icub_arm_strain.json");
     const std::vector<Row> rows = random_rows(engine, 50, 1'000'000, 4, std::vector<double>(6, 10));
@@ -160,12 +161,12 @@ TEST_CASE("the same seed gives the same frames, another one others") {
     CHECK(stamps(5) != stamps(6));
 }
 
-TEST_CASE("a bus that cannot carry the frames, and rows that are too slow for it, are refused") {
+TEST_CASE("a bus that cannot carry the frames and rows that are too slow for it are rejected") {
     DFDYN_SEEDED_ENGINE(engine);
     BusDescription description = read_bus_description(bus_folder + "icub_arm_strain.json");
     description.source = "bus.json";
     const std::vector<Row> rows = random_rows(engine, 1000, 1'000'000, 4, std::vector<double>(6, 10));
-    // 2 frames of 8 bytes and 2 of 6 a millisecond are 500 bits
+    // 2 frames of 8 bytes and 2 of 6 bytes have 500 bits per millisecond
     description.bit_rate = 510'000;
     CHECK_NOTHROW(frames_of(rows, description, {}));
     description.bit_rate = 490'000;

@@ -36,7 +36,7 @@ const std::string two_interfaces = "(1.000000) can0 001#\n"
 
 } // namespace
 
-TEST_CASE("a candump log becomes a bus, with what was lost, its error frames and its clock") {
+TEST_CASE("a candump log is replayed with lost frames and error frames and its clock") {
     const TemporaryDirectory directory;
     CandumpLog log(directory.write("run.log",
                                    "# a comment\n"
@@ -66,7 +66,7 @@ TEST_CASE("a candump log becomes a bus, with what was lost, its error frames and
     CHECK_NOTHROW(log.check());
 }
 
-TEST_CASE("of a log of several interfaces one has to be chosen") {
+TEST_CASE("one interface of a log with several must be chosen") {
     const TemporaryDirectory directory;
     const auto path = directory.write("run.log", two_interfaces);
     CandumpLog first(path, "can0");
@@ -89,7 +89,7 @@ TEST_CASE("of a log of several interfaces one has to be chosen") {
                                                  "chosen, found \"can1\" after \"can0\""));
 }
 
-TEST_CASE("a malformed line ends the log for good, and says where and what") {
+TEST_CASE("a malformed line ends the log permanently with its position and the expected text") {
     const std::pair<std::string, std::string> cases[] = {
         {"(1.000100) can0 12#",
          ":2:17: expected an identifier of 3 or 8 hexadecimal digits and #, found \"12#\""},
@@ -109,7 +109,7 @@ TEST_CASE("a malformed line ends the log for good, and says where and what") {
     }
 }
 
-TEST_CASE("a last line that was torn costs that line, wherever it was torn") {
+TEST_CASE("an incomplete last line loses only that line wherever it was cut off") {
     const std::string last = "(1.000200) can0 003#0102030405060708";
     for (std::size_t length = 1; length <= last.size(); ++length) {
         CAPTURE(length);
@@ -125,11 +125,11 @@ TEST_CASE("a last line that was torn costs that line, wherever it was torn") {
                                             Catch::Matchers::EndsWith("is torn and left out"));
         }
         CHECK(log.torn_line().empty() == (ids.size() == 3));
-        CHECK((length < last.size() || ids.size() == 3)); // only the line's end is missing
+        CHECK((length < last.size() || ids.size() == 3)); // only the line end is missing
     }
 }
 
-TEST_CASE("a log that cannot be opened or read is refused") {
+TEST_CASE("a log that cannot be opened or read is rejected") {
     const TemporaryDirectory directory;
     const std::string path = directory.path().string();
     CHECK_THROWS_AS(CandumpLog(path + "/none"), InputError);

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""check_dbc_log.py DFDYN RECORDING.csv BUS.json: converts the recording with DFDYN and reads the frames back without it:
-the log with python-can, the DBC file, the bits and the mapping with what is here. Every value of the recording has to be
-there, to half a step of its signal."""
+"""check_dbc_log.py DFDYN RECORDING.csv BUS.json: converts the recording with DFDYN and decodes the frames without it:
+the log with python-can, the DBC file, the bits and the mapping with this script. Every value of the recording must be in
+the log, to half a step of its signal."""
 import csv
 import json
 import math
@@ -36,7 +36,7 @@ def read_dbc(path):
 
 
 def extract(data, signal, kind):
-    """The physical value, from a text of bits."""
+    """Returns the physical value of a string of bits."""
     _, start, length, intel, sign, factor, offset = signal
     start, length = int(start), int(length)
     if intel == "1":
@@ -58,7 +58,7 @@ def extract(data, signal, kind):
 
 
 def step_of(signal, kind, value):
-    """Half of what separates neighbours."""
+    """Returns half of the smallest difference of two values."""
     return abs(value) * 2.0**-23 + 1e-12 if kind else 0.5001 * abs(float(signal[5]))
 
 

@@ -27,7 +27,7 @@ using dfdyn::tests::TemporaryDirectory;
 
 BusDescription ur5() { return read_bus_description(bus_folder + "ur5_dbc.json"); }
 
-/// What all joints make of a frame, joint by joint; those that it says nothing about as they were.
+/// Decodes a frame for all joints; joints that are not in the frame keep their values.
 struct Joints {
     std::vector<AnyBoard> boards;
     std::vector<dfdyn::hal::JointValue> value;
@@ -65,7 +65,7 @@ struct Joints {
     }
 };
 
-/// A sensor in the variants of one message, of six bytes each; `mx` may be given another signal.
+/// A sensor whose values are in the variants of one message of six bytes; `mx` replaces the signal of its Mx.
 BusDescription multiplexed_sensor(const std::string& mx = R"({"message": "Ft", "signal": "Mx"})") {
     const TemporaryDirectory directory;
     directory.write("ft.dbc", R"(BO_ 500 Ft: 8 A
@@ -107,7 +107,7 @@ std::string refusal_of(const std::string& from, const std::string& to) {
 
 } // namespace
 
-TEST_CASE("joints of every kind of signal share frames, and come back to half a step") {
+TEST_CASE("joints with signals of every kind share frames and are decoded to within half a step") {
     DFDYN_SEEDED_ENGINE(engine);
     const BusDescription description = ur5();
     const DeviceFrames device(description);
@@ -135,7 +135,7 @@ TEST_CASE("joints of every kind of signal share frames, and come back to half a 
     CHECK(joints.rejected == 0);
 }
 
-TEST_CASE("what a mapped signal cannot be is not believed") {
+TEST_CASE("impossible values of a mapped signal are rejected") {
     const BusDescription description = ur5();
     const std::vector<Frame> good =
         DeviceFrames(description).joints(std::vector<double>(6, 0.5), std::vector<double>(6, 1));
@@ -149,7 +149,7 @@ TEST_CASE("what a mapped signal cannot be is not believed") {
     const auto frame_of = [&](std::uint32_t id) {
         return static_cast<std::size_t>(std::ranges::find(good, id, &Frame::id) - good.begin());
     };
-    // 401 degrees where the DBC file says at most 400; the other joint of the frame is well
+    // 401 degrees, where the limit in the DBC file is 400; the other joint of the frame has no fault
     const Joints far = after(frame_of(0x120), [](Frame& frame) {
         dfdyn::hal::store_little<std::int32_t>(frame.data.data(), 4'010'000);
     });
@@ -170,7 +170,7 @@ TEST_CASE("what a mapped signal cannot be is not believed") {
     CHECK(standard.value[0].effort_reason == Reason::no_output);
 }
 
-TEST_CASE("a strain board that is read by its DBC file gives the samples of its own decoder") {
+TEST_CASE("a strain board that is decoded by its DBC file gives the samples of its own decoder") {
     const IcubLog log;
     std::string text = file_content(bus_folder + "icub_arm_strain.json");
     text = text.substr(0, text.rfind("\"output\"")) +
@@ -202,7 +202,7 @@ TEST_CASE("a strain board that is read by its DBC file gives the samples of its 
     }
 }
 
-TEST_CASE("a sensor in two variants of one message is paired, limited and seen to saturate") {
+TEST_CASE("a sensor in two variants of one message is paired and limited and its saturation is detected") {
     const BusDescription description = multiplexed_sensor();
     AnySensor sensor = *description.sensor;
     const dfdyn::hal::Wrench wrench{100, -200, 300, 1, -2, 3};
@@ -234,10 +234,10 @@ TEST_CASE("a sensor in two variants of one message is paired, limited and seen t
     const auto raw = sensor.wrench(frames[0], frames[1]).raw;
     std::vector<Frame> moved = frames;
     moved[1].data[2] ^= 1;
-    CHECK(sensor.wrench(moved[0], moved[1]).raw != raw); // it is seen to move
+    CHECK(sensor.wrench(moved[0], moved[1]).raw != raw); // the raw values differ, so the sensor is not frozen
 }
 
-TEST_CASE("a joint in a page of a page of a message is read there, and nowhere else") {
+TEST_CASE("a joint in nested multiplexed pages of a message is decoded only there") {
     const std::string dbc = "BO_ 288 Drive: 8 A\n"
                             " SG_ Page M : 0|8@1+ (1,0) [0|0] \"\" B\n"
                             " SG_ Axis m2M : 8|8@1+ (1,0) [0|0] \"\" B\n"
@@ -271,7 +271,7 @@ TEST_CASE("a joint in a page of a page of a message is read there, and nowhere e
     }
     CHECK(position(2, 2).position_reason == Reason::waiting_for_position);
     CHECK(position(2, 7).position_reason == Reason::waiting_for_position);
-    directory.write("arm.dbc", dbc); // which of the two multiplexors is Q's?
+    directory.write("arm.dbc", dbc); // Q's multiplexor is ambiguous
     CHECK_THROWS_WITH(read_bus_description(path),
                       EndsWith("position.signal: expected a signal whose multiplexor is known: the only one "
                                "of its message, or the one that SG_MUL_VAL_ names, found \"Q\" of Drive"));
@@ -279,8 +279,8 @@ TEST_CASE("a joint in a page of a page of a message is read there, and nowhere e
     CHECK_THROWS_AS(read_bus_description(path), InputError);
 }
 
-TEST_CASE("bits are where cantools has them") {
-    // The example of the cantools manual: 250.1 K, 3.2 m, enabled is C0 01 40; with 250.55 K C0 06 E0.
+TEST_CASE("signals have the same bits as in cantools") {
+    // Example of the cantools manual: 250.1 K, 3.2 m, enabled is C0 01 40; with 250.55 K it is C0 06 E0.
     const Dbc dbc = parse_dbc(R"(BO_ 496 ExampleMessage: 8 PCM1
  SG_ Temperature : 0|12@0- (0.01,250) [229.52|270.47] "degK" PCM1,FOO
  SG_ AverageRadius : 6|6@0+ (0.1,0) [0|5] "m" Vector__XXX
@@ -300,7 +300,7 @@ TEST_CASE("bits are where cantools has them") {
     CHECK(message.find("Temperature")->signal.extract(encoded(250.55)) == Approx(250.55));
 }
 
-TEST_CASE("a mapping that cannot be is refused by field, expectation and finding") {
+TEST_CASE("an impossible mapping is rejected with field and expected value and found value") {
     CHECK_THAT(refusal_of("\"Wrist3\", \"signal\"", "\"Wrist4\", \"signal\""),
                EndsWith(R"(position.message: expected a message of the DBC file, found "Wrist4")"));
     CHECK_THAT(refusal_of("\"signal\": \"Elbow\"", "\"signal\": \"Hand\""),

@@ -48,10 +48,10 @@ SIG_VALTYPE_ 2566844926 b : 1;
 
 } // namespace
 
-TEST_CASE("a DBC file's messages are read with byte order, sign, scale, unit, multiplexing and floats") {
+TEST_CASE("a DBC file is parsed with byte order and sign and scale and unit and multiplexing and floats") {
     const Dbc dbc = parse_dbc(example, "x.dbc");
     REQUIRE(dbc.messages.size() == 2);
-    // by hand: bits 4 ... 15 of 0xAB 0xCD are 0xCDA = 3290; 0xFF38 is -200
+    // calculated by hand: bits 4 ... 15 of 0xAB 0xCD are 0xCDA = 3290; 0xFF38 is -200
     CHECK(value_of(dbc, "First", "intel", {0xAB, 0xCD, 0, 0, 0xFF, 0x38, 0, 0}) == 3290 * 0.5 - 10);
     CHECK(value_of(dbc, "First", "motorola", {0xAB, 0xCD, 0, 0, 0xFF, 0x38, 0, 0}) == Approx(-2));
     CHECK(dbc.find("First")->find("motorola")->unit == "N m");
@@ -65,7 +65,7 @@ TEST_CASE("a DBC file's messages are read with byte order, sign, scale, unit, mu
     CHECK(value_of(dbc, "Long", "b", {1, 0, 0, 0x80, 0x3F, 0, 0, 0}) == 1);
 }
 
-TEST_CASE("the repository's own DBC files are read whole") {
+TEST_CASE("the repository's own DBC files are parsed completely") {
     const std::string folder = DFDYN_TEST_DATA_DIR "/../../hal/dbc";
     int signals = 0;
     for (const auto& file : std::filesystem::directory_iterator(folder)) {
@@ -81,7 +81,7 @@ TEST_CASE("the repository's own DBC files are read whole") {
     CHECK(odrive.messages.front().signals.front().signal.encoding == dfdyn::hal::Encoding::float32);
 }
 
-TEST_CASE("a quote in a comment of a DBC file changes nothing about what follows") {
+TEST_CASE("a quote in a comment of a DBC file does not affect the following statements") {
     const std::string before = "BO_ 1 A: 8 B\n SG_ a : 0|32@1- (1,0) [0|0] \"\" B\n";
     const std::string after = "\nSIG_VALTYPE_ 1 a : 1;\n";
     for (const std::string comment : {
@@ -98,7 +98,7 @@ TEST_CASE("a quote in a comment of a DBC file changes nothing about what follows
     }
 }
 
-TEST_CASE("extended multiplexing of a DBC file is read") {
+TEST_CASE("extended multiplexing of a DBC file is parsed") {
     const Dbc dbc = parse_dbc("NS_ :\n\tSG_MUL_VAL_\n"
                               "BO_ 1 A: 8 B\n"
                               " SG_ page M : 0|8@1+ (1,0) [0|0] \"\" B\n"
@@ -114,10 +114,10 @@ TEST_CASE("extended multiplexing of a DBC file is read") {
     REQUIRE(message.find("q")->multiplex_ranges.size() == 2);
     CHECK(message.find("q")->multiplex_ranges[1].first == 4);
     CHECK(message.find("q")->multiplex_ranges[1].last == 6);
-    CHECK(message.multiplexor_of(*message.find("t")) == nullptr); // page or axis
+    CHECK(message.multiplexor_of(*message.find("t")) == nullptr); // ambiguous: page or axis
 }
 
-TEST_CASE("what is wrong in a DBC file is told with line and column") {
+TEST_CASE("errors in a DBC file are reported with line and column") {
     struct Wrong {
         const char* text;
         const char* message;

@@ -17,7 +17,7 @@ namespace family_catalogue_test {
 using namespace dfdyn::tools;
 using namespace dfdyn::tests;
 
-/// `` `node`, `zero_rad` (0) ``.
+/// Formats fields as in the documentation: `` `node`, `zero_rad` (0) ``.
 std::string documented(const std::vector<FamilyField>& fields) {
     std::string text;
     for (const FamilyField& field : fields) {
@@ -28,14 +28,14 @@ std::string documented(const std::vector<FamilyField>& fields) {
     return text;
 }
 
-/// The rows of the table whose header begins with `header`.
+/// Rows of the table whose header begins with `header`.
 std::string documented_rows(const std::string& header) {
     const std::string text = read_file(project / "docs/reference/can.md");
     const std::size_t begin = text.find('\n', text.find("| --- |", text.find(header))) + 1;
     return text.substr(begin, text.find("\n\n", begin) + 1 - begin);
 }
 
-/// All arms of an example: the joints of one family with the sensor of one, or their own efforts.
+/// All example arms: joints of one family with a sensor of another, or with their own efforts.
 std::vector<BusDescription> examples() {
     std::vector<BusDescription> arms;
     const auto add = [&](const JointFamily& joints, std::string_view output) {
@@ -61,7 +61,7 @@ std::vector<BusDescription> examples() {
     return arms;
 }
 
-TEST_CASE("no name of a family of devices is a literal outside its file") {
+TEST_CASE("no name of a device family is a literal outside its file") {
     std::set<std::string> names;
     for (const JointFamily& family : joint_families()) {
         names.emplace(family.name);
@@ -80,7 +80,7 @@ TEST_CASE("no name of a family of devices is a literal outside its file") {
     CHECK(seen == names);
 }
 
-TEST_CASE("the documentation's tables of families are the catalogue") {
+TEST_CASE("the documentation's tables of families equal the catalogue") {
     std::string joints;
     for (const JointFamily& family : joint_families()) {
         joints.append("| `").append(family.name).append("` | ");
@@ -89,7 +89,7 @@ TEST_CASE("the documentation's tables of families are the catalogue") {
     }
     CHECK(documented_rows("| `joints.family` |") == joints);
     const std::string rows = documented_rows("| `output.family` |");
-    std::string sensors = rows.substr(0, rows.find('\n') + 1); // of the joints' own efforts
+    std::string sensors = rows.substr(0, rows.find('\n') + 1); // sensor `efforts`: the joints' own efforts
     CHECK(sensors.starts_with("| `efforts` |"));
     for (const SensorFamily& family : sensor_families()) {
         sensors.append("| `").append(family.name).append("` | ");
@@ -114,7 +114,7 @@ TEST_CASE("every DBC file belongs to a family") {
     CHECK(found == expected);
 }
 
-TEST_CASE("arms of every family: what convert writes is a sound bus to buscheck") {
+TEST_CASE("arms of every family: buscheck finds no fault in the log that convert writes") {
     const std::vector<BusDescription> arms = examples();
     CHECK(arms.size() >= 14);
     for (const BusDescription& arm : arms) {
@@ -123,7 +123,7 @@ TEST_CASE("arms of every family: what convert writes is a sound bus to buscheck"
     }
 }
 
-TEST_CASE("arms of every family: a command of torques arrives as it was sent") {
+TEST_CASE("arms of every family: a torque command is received as it was sent") {
     for (const BusDescription& arm : examples()) {
         CAPTURE(arm.joint_family->name);
         TorqueFrames commands(arm);

@@ -35,7 +35,7 @@ double position_at(double time_s, std::size_t joint) {
     return 1.2 * std::sin((0.4 + 0.13 * static_cast<double>(joint)) * time_s + 0.1);
 }
 
-/// The frames of an arm in motion, made as they are asked for: an hour of them would fill the memory.
+/// Frames of an arm in motion, generated on demand, because an hour of them would exceed the memory.
 class ArmInMotion {
   public:
     ArmInMotion(const BusDescription& description, std::int64_t rows)
@@ -88,21 +88,21 @@ std::int64_t resident_pages() {
     return resident;
 }
 
-/// What came of so many rows on the bus.
+/// Statistics of the samples from the bus.
 struct Outcome {
     std::int64_t samples = 0;
-    std::int64_t valid = 0;        ///< with an output
-    std::int64_t lost = 0;         ///< samples without positions, after the first valid one
-    std::int64_t not_new = 0;      ///< samples with positions and without an output, likewise
-    std::int64_t out_of_order = 0; ///< closer than the two frames of a wrench, or further apart than can be
+    std::int64_t valid = 0;   ///< samples with an output
+    std::int64_t lost = 0;    ///< samples without positions, after the first valid one
+    std::int64_t not_new = 0; ///< samples with positions but without an output, after the first valid one
+    std::int64_t out_of_order = 0; ///< intervals shorter than the two frames of a wrench, or impossibly long
     std::int64_t untrue = 0;
     std::int64_t learned = 0;
-    std::int64_t unlearned = 0; ///< outputs with a full lag window that were not
+    std::int64_t unlearned = 0; ///< outputs with a full lag window that were not learned
     std::int64_t pages_grown = 0;
     double took_s = 0;
 };
 
-/// Counts what a bus gives, sample by sample.
+/// Counts the samples from a bus.
 class Listener {
   public:
     explicit Listener(const TrainedModel& model)
@@ -141,7 +141,8 @@ class Listener {
         last_ns_ = time_ns;
     }
 
-    /// What the arm did at that time, but for the 0.8 ms that a frame may wait, and the sensors' steps.
+    /// Compares a sample with the true motion at its time. Tolerance: 0.8 ms of waiting and the sensors'
+    /// steps.
     static bool is_true(const BusSample& sample) {
         const double t = 1e-9 * static_cast<double>(sample.time_ns - BusTraffic::lead_ns);
         bool good = true;
@@ -187,35 +188,36 @@ Outcome listen_to(std::int64_t rows, const std::string& trigger) {
 }
 
 void check(const Outcome& outcome, std::int64_t rows) {
-    CHECK(outcome.valid <= rows - 9); // a source must show ten readings
+    CHECK(outcome.valid <= rows - 9); // a source qualifies after ten readings
     CHECK(outcome.valid >= rows - 12);
     CHECK(outcome.lost == 0);
     CHECK(outcome.not_new == 0);
     CHECK(outcome.out_of_order == 0);
     CHECK(outcome.untrue == 0);
     CHECK(outcome.unlearned == 0);
-    if (!dfdyn::tests::slow_build) {      // which keeps a book of its own on every block
+    if (!dfdyn::tests::slow_build) {      // slow builds record every allocated block
         CHECK(outcome.pages_grown < 256); // 1 MiB
     }
 }
 
 } // namespace
 
-TEST_CASE("eight joints and a wrench at 1 kHz on a bus at 80 % load: every sample once, true, learned") {
+TEST_CASE(
+    "eight joints and a wrench at 1 kHz on a bus at 80 % load: every sample once and true and learned") {
     check(listen_to(20'000, set), 20'000);
 }
 
-TEST_CASE("on a loaded bus a timer's samples are steady, and most wrenches are learned") {
+TEST_CASE("on a loaded bus a timer's samples are regular and most wrenches are learned") {
     const Outcome outcome = listen_to(20'000, R"({"on": "timer"})");
     CHECK(outcome.lost == 0);
     CHECK(outcome.untrue == 0);
     CHECK(outcome.unlearned == 0);
-    CHECK(outcome.learned > 16'000); // two of them between two ticks are one
+    CHECK(outcome.learned > 16'000); // two wrenches between two ticks count as one
     CHECK(outcome.valid + outcome.not_new >= 19'980);
 }
 
-TEST_CASE("an hour of eight joints and a wrench at 1 kHz on a bus at 80 % load: every sample once, true, "
-          "learned, in flat memory",
+TEST_CASE("an hour of eight joints and a wrench at 1 kHz on a bus at 80 % load: every sample once and true "
+          "and learned in constant memory",
           "[.long]") {
     constexpr std::int64_t rows = 3'600'000;
     const Outcome outcome = listen_to(rows, set);

@@ -23,7 +23,7 @@ using dfdyn::tools::CandumpLog;
 constexpr int cycle_frames = 6;
 constexpr std::int64_t cycle_ns = 1'000'000;
 
-/// Writes a log of `cycles` control cycles, as large a file as nobody wants to keep, into a pipe.
+/// Writes a log of `cycles` control cycles to a pipe, because a file would be too large.
 void write_log(const std::filesystem::path& pipe, std::int64_t cycles) {
     std::ofstream out(pipe);
     Frame frame;
@@ -41,9 +41,9 @@ void write_log(const std::filesystem::path& pipe, std::int64_t cycles) {
 
 } // namespace
 
-TEST_CASE(
-    "an hour at 1 kHz with 6 frames each is replayed whole, in order, in the memory of its first second",
-    "[.long]") {
+TEST_CASE("an hour at 1 kHz with 6 frames each is replayed completely and in order in the memory of its "
+          "first second",
+          "[.long]") {
     constexpr std::int64_t cycles = 3'600'000;
     const dfdyn::tests::TemporaryDirectory directory;
     const auto pipe = directory.path() / "log";

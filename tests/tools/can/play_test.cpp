@@ -11,7 +11,7 @@ using dfdyn::tools::play;
 using dfdyn::tools::PlayOptions;
 using dfdyn::tools::PlayTimes;
 
-TEST_CASE("frames are due as far apart as in the log, or at another rate") {
+TEST_CASE("intervals between due times are those of the log or scaled by the rate") {
     PlayTimes times(5'000, 1.0);
     CHECK(times.due_ns(1'700'000'000'000'000'000) == 5'000);
     CHECK(times.due_ns(1'700'000'000'000'000'000) == 5'000);
@@ -22,7 +22,8 @@ TEST_CASE("frames are due as far apart as in the log, or at another rate") {
     CHECK(fast.backward_stamps() == 0);
 }
 
-TEST_CASE("frames whose stamp runs backward are due with the frame before, and the log goes on from there") {
+TEST_CASE(
+    "a frame whose time stamp runs backward is due with its predecessor and the log continues from there") {
     PlayTimes times(0, 1.0);
     CHECK(times.due_ns(9'000) == 0);
     CHECK(times.due_ns(9'500) == 500);
@@ -31,13 +32,13 @@ TEST_CASE("frames whose stamp runs backward are due with the frame before, and t
     CHECK(times.backward_stamps() == 1);
 }
 
-TEST_CASE("a frame of the year 2262 is due in a far future, not in the past") {
+TEST_CASE("a frame of the year 2262 is due in the far future and not in the past") {
     PlayTimes times(1'000'000'000'000'000, 0.001);
     times.due_ns(0);
     CHECK(times.due_ns(9'223'372'035'000'000'000) > 9'000'000'000'000'000'000);
 }
 
-TEST_CASE("lateness has a median and a worst") {
+TEST_CASE("lateness has a median and a maximum") {
     Lateness none;
     CHECK(none.median_us() == 0);
     Lateness lateness;
@@ -51,7 +52,7 @@ TEST_CASE("lateness has a median and a worst") {
     CHECK(hopeless.median_us() == 10'000);
 }
 
-TEST_CASE("nothing is played of a log that is faulty to its end, has no frames, or is not there") {
+TEST_CASE("a log that has an error anywhere or no frames or does not exist is not played") {
     const dfdyn::tests::TemporaryDirectory directory;
     const std::atomic<bool> stop = false;
     const auto options = [&](const std::string& text) {

@@ -36,7 +36,7 @@ TrainedModel ur5_model() {
 
 double to_step(double value, double step) { return std::round(value / step) * step; }
 
-/// What converters with these steps show of a recording, from row `first` on.
+/// A recording quantised with these steps, from row `first` on.
 Recording quantised(Recording recording, std::size_t first, double position_step, double output_step) {
     for (double& q : recording.position.values) {
         q = to_step(q, position_step);
@@ -67,7 +67,7 @@ ReplayedBus replay_can(const TrainedModel& model, const BusDescription& bus,
     return replay_log(*estimator, {&model, 1}, bus, log, "", 0);
 }
 
-/// The first tick with a sample, and how many in a row from there.
+/// The first tick with a sample, and the number of consecutive samples from there.
 std::pair<std::size_t, std::size_t> good_ticks(const ReplayedRecording& replayed) {
     const auto good = [](dfdyn::hal::Reason reason) { return reason == dfdyn::hal::Reason::ok; };
     const auto first = std::ranges::find_if(replayed.bus_reason, good);
@@ -98,8 +98,7 @@ BusDescription without_full_scale() {
 } // namespace
 
 TEST_CASE(
-    "a UR5's recording as six drives on a bus gives the predictions of the quantised recording, bit for "
-    "bit") {
+    "a UR5's recording as six drives on a bus gives bit for bit the predictions of the quantised recording") {
     const Recording recording = read_no7(1500);
     const BusDescription bus = read_bus_description(bus_folder + "ur5_cia402.json");
     const TemporaryDirectory directory;
@@ -107,7 +106,7 @@ TEST_CASE(
     const TrainedModel model = ur5_model();
     const ReplayedRecording can = replay_can(model, bus, directory.path() / "run.log").replayed;
     const auto [first, count] = good_ticks(can);
-    CHECK(first == 9); // a source must show ten readings
+    CHECK(first == 9); // a source qualifies after ten readings
     REQUIRE(first + count == 1499);
     const ReplayedRecording csv =
         replay_csv(model, quantised(recording, first, 2 * std::numbers::pi / 1048576, 1e-3));
@@ -120,7 +119,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a log of a bus that lost its end in the middle of a line loses that line") {
+TEST_CASE("a log that was cut off in the middle of a line loses only that line") {
     const IcubLog log;
     std::string text = file_content(log.path);
     text.resize(text.size() - 8);
@@ -134,7 +133,8 @@ TEST_CASE("a log of a bus that lost its end in the middle of a line loses that l
                           Catch::Matchers::ContainsSubstring("expected"));
 }
 
-TEST_CASE("without full scales a wrench is predicted, never learned; with them on the bus it is") {
+TEST_CASE(
+    "without full scales a wrench is predicted and never learned but with them on the bus it is learned") {
     const IcubLog log;
     const BusDescription bus = without_full_scale();
     const ReplayedRecording told = replay_can(log.model, bus, log.path).replayed;
@@ -147,7 +147,7 @@ TEST_CASE("without full scales a wrench is predicted, never learned; with them o
     CHECK_THAT(out.str(), Catch::Matchers::EndsWith(",nan,0,waiting_for_full_scale\n"));
 }
 
-TEST_CASE("joints on other identifiers give no sample, and are named") {
+TEST_CASE("joints on other identifiers give no sample and are named") {
     const IcubLog log;
     std::string text = file_content(bus_folder + "icub_arm_strain.json");
     text.replace(text.find("\"address\": 2"), 12, "\"address\": 7");
@@ -159,7 +159,7 @@ TEST_CASE("joints on other identifiers give no sample, and are named") {
     CHECK(replayed.bus.unknown.first().id == 0x121);
 }
 
-TEST_CASE("a sensor that falls silent ends the learning, not the prediction") {
+TEST_CASE("a silent sensor ends the learning but not the prediction") {
     const IcubLog log;
     std::istringstream lines(file_content(log.path));
     std::string text;
@@ -179,7 +179,7 @@ TEST_CASE("a sensor that falls silent ends the learning, not the prediction") {
     CHECK(std::isnan(replayed.measured.back()));
 }
 
-TEST_CASE("a description that does not fit the model is refused") {
+TEST_CASE("a description that does not fit the model is rejected") {
     const IcubLog log;
     BusDescription bus = read_bus_description(bus_folder + "icub_arm_strain.json");
     bus.source = "bus.json";
@@ -190,7 +190,7 @@ TEST_CASE("a description that does not fit the model is refused") {
                       "bus.json: joints: expected 6, as of the model, found 4");
 }
 
-TEST_CASE("a log whose clock was set back is learned on, but for the frames that settle it") {
+TEST_CASE("a log whose clock was set back is learned except for the frames until the new clock is adopted") {
     IcubLog log;
     std::istringstream lines(file_content(log.path));
     std::string text;
@@ -205,5 +205,6 @@ TEST_CASE("a log whose clock was set back is learned on, but for the frames that
         learned(replay_can(log.model, log.bus, log.directory.write("set_back.log", text)).replayed);
     CHECK(steady > 480);
     CHECK(set_back < steady);
-    CHECK(set_back > steady - 30); // 20 frames; ten readings that show the joints anew; the lag window
+    // 20 frames until the clock is adopted, ten readings to qualify again, and the lag window
+    CHECK(set_back > steady - 30);
 }

@@ -18,7 +18,7 @@ BusDescription description(const std::string& name) {
 
 } // namespace
 
-TEST_CASE("torques go to CiA 402 drives as their target torque") {
+TEST_CASE("torques are sent to CiA 402 drives as their target torque") {
     TorqueFrames frames(description("ur5_loop.json"));
     const std::vector<double> torque{1, -2, 150, -150, 0.01, 400};
     const auto sent = frames.encode(torque);
@@ -29,11 +29,11 @@ TEST_CASE("torques go to CiA 402 drives as their target torque") {
     CHECK(sent[0].data[1] == 0);
     CHECK(sent[1].data[0] == 0x38); // -200
     CHECK(sent[1].data[1] == 0xFF);
-    CHECK(sent[5].data[0] == 0xFF); // as far as 16 bits go
+    CHECK(sent[5].data[0] == 0xFF); // saturated to 16 bits
     CHECK(sent[5].data[1] == 0x7F);
 }
 
-TEST_CASE("torques go to other boards in frames of our own") {
+TEST_CASE("torques are sent to other boards in frames of our own") {
     TorqueFrames frames(description("icub_loop.json"));
     const auto sent = frames.encode(std::vector<double>{1, -2, 0.5, 0});
     REQUIRE(sent.size() == 2);
@@ -43,7 +43,7 @@ TEST_CASE("torques go to other boards in frames of our own") {
     CHECK(std::vector<std::uint8_t>(sent[0].data.begin(), sent[0].data.begin() + 8) == expected);
 }
 
-TEST_CASE("what one side sends the other takes; other frames change nothing") {
+TEST_CASE("torque commands are decoded as they were encoded and foreign frames are ignored") {
     DFDYN_SEEDED_ENGINE(engine);
     std::uniform_real_distribution<double> uniform(-100, 100);
     for (const char* const name : {"ur5_loop.json", "icub_loop.json"}) {
@@ -68,7 +68,7 @@ TEST_CASE("what one side sends the other takes; other frames change nothing") {
     }
 }
 
-TEST_CASE("a torque that is no number is not taken") {
+TEST_CASE("a torque that is not a number is not accepted") {
     TorqueFrames frames(description("icub_loop.json"));
     std::vector<double> taken(4, 3);
     dfdyn::hal::Frame frame = frames.encode(std::vector<double>{1, 2, 3, 4})[0];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two devices that send on the identifier of one joint: what `replay` makes of it, whatever its trigger.
+// Two devices that send on the identifier of one joint: the effect on `replay` with every trigger.
 #include "tests/tools/can/bus_check_support.hpp"
 #include "tools/can/arm/bus_sampler.hpp"
 
@@ -12,7 +12,8 @@ using dfdyn::tools::BusSample;
 using dfdyn::tools::BusTraffic;
 using dfdyn::tools::BusTrigger;
 
-/// The frames of an arm, and those of another one on the identifier of joint 1, a part of a period later.
+/// The frames of an arm, and those of another arm on the identifier of joint 1, later by a fraction of a
+/// period.
 Frames with_two_senders(const BusDescription& description, double later, double from_s) {
     const std::uint32_t id = description.boards.front().board.encode({}).frame[0].id;
     const auto delay_ns = std::llround(later * 1e9 / description.joints.rate_hz);
@@ -28,7 +29,7 @@ Frames with_two_senders(const BusDescription& description, double later, double 
 
 } // namespace
 
-TEST_CASE("of two senders of a joint's identifier no position is accepted, with every family and trigger") {
+TEST_CASE("from two senders of a joint's identifier no position is accepted with any family and trigger") {
     for (const char* const name : {"icub_arm_strain", "ur5_cia402", "ur5_icub_2foc", "ur5_dbc", "odrive"}) {
         for (const BusTrigger trigger : {BusTrigger::timer, BusTrigger::set, BusTrigger::sync}) {
             BusDescription description =
@@ -56,9 +57,9 @@ TEST_CASE("of two senders of a joint's identifier no position is accepted, with 
                 }
                 CAPTURE(name, static_cast<int>(trigger), later, from_s, reasons);
                 CHECK(wrong == 0);
-                // Two answers to one SYNC have one stamp: they are refused as such.
+                // Two answers to one SYNC have the same time stamp and are rejected for that reason.
                 CHECK((description.synchronous || reasons["id_collision"] > 0));
-                CHECK((from_s == 0 || reasons["ok"] > 0)); // while there was one
+                CHECK((from_s == 0 || reasons["ok"] > 0)); // while there was only one sender
             }
         }
     }
