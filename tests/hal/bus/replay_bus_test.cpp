@@ -180,8 +180,7 @@ TEST_CASE("frames sent to a replay can be read in order and a full queue refuses
     CHECK(bus.counters().sent == 65);
 }
 
-TEST_CASE("a replay returns random recordings completely whatever the steps of its clock and without heap "
-          "allocations") {
+TEST_CASE("a replay returns random recordings completely and without the heap for any steps of its clock") {
     DFDYN_SEEDED_ENGINE(engine);
     for (int round = 0; round < 50; ++round) {
         std::vector<ReplayEntry> recording(200);

@@ -20,7 +20,7 @@ UNITS = {"rad": 1.0, "deg": math.pi / 180, "turn": 2 * math.pi}
 
 
 def read_dbc(path):
-    """Messages by name: (id, extended, signals by name)."""
+    """Returns the messages by name: (id, extended, signals by name), and the float signals."""
     messages = {}
     floats = {}
     for line in path.read_text().splitlines():
@@ -58,7 +58,7 @@ def extract(data, signal, kind):
 
 
 def step_of(signal, kind, value):
-    """Returns half of the smallest difference of two values."""
+    """Returns half a step of the signal at this value, with a small tolerance."""
     return abs(value) * 2.0**-23 + 1e-12 if kind else 0.5001 * abs(float(signal[5]))
 
 
