@@ -10,16 +10,24 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 /// A controller to copy and adapt, with the interface of ros2_control: `activate`, then `update` in each
 /// period. It contains feedback, the learned feed-forward and an observer for the remaining disturbance.
-/// Efforts are in the unit of the model's outputs, here A. No operating system, no heap, bounded time per
-/// tick.
+/// Efforts are in the unit of the model's outputs, here A. The period is fixed at compile time. No operating
+/// system, no heap, bounded time per tick.
+///
+/// A joint without a new measurement (NaN, or a sample whose time does not advance) keeps its correction,
+/// which is the sum of feedback and observer, for `hold_ticks`. Then the correction goes to zero, and when
+/// measurements return to its new value, by at most `step_share` of the limit per tick. The controller does
+/// not stop the arm: if `ticks_without_sample` exceeds what your arm tolerates, stop it.
 class JointController {
   public:
     static constexpr int joints = 6;
     static constexpr std::int64_t period_ns = 1'000'000;
     static constexpr int ticks_per_sample = 8; // the model was trained on samples 8 ms apart
+    static constexpr int hold_ticks = 5;
+    static constexpr float step_share = 0.02F; // of the limit, per tick: 20 limits per second
 
     using Learned = dfdyn::LearnedTorque<ur5_model::Model>;
     using Forward = dfdyn::FeedForward<Learned>;
@@ -56,37 +64,37 @@ class JointController {
     void activate(const State& state) {
         forward_.begin(state.time_ns, state.position.data());
         observer_.restart();
-        effort_ = excess_ = all(0);
+        effort_ = excess_ = correction_ = all(0);
+        time_ns_ = state.time_ns - 1;
+        missed_ = {};
+        recovering_ = {};
+        limited_ = false;
     }
 
     /// Returns the efforts until the next period. `nominal`: effort of your own model for the reference;
     /// zeros without one.
     const Efforts& update(const State& state, const Reference& reference, const Efforts& nominal) {
         const Efforts before = effort_; // in effect until the present position was reached
-        Efforts error_rate, feedback;
-        for (int k = 0; k < joints; ++k) {
-            error_rate[k] = reference.velocity[k] - state.velocity[k];
-            feedback[k] = gains_.position * (reference.position[k] - state.position[k]) +
-                          gains_.velocity * error_rate[k];
-        }
-        const Efforts inertia = all(gains_.inertia);
+        const bool before_limited = limited_;
         const Efforts& forward = forward_.update(reference, nominal.data());
-        const Efforts& disturbance =
-            observer_.update(feedback.data(), inertia.data(), error_rate.data(), excess_.data());
+        const bool exact = correct(state, reference);
+        limited_ = !exact;
         for (int k = 0; k < joints; ++k) {
-            const float wanted = forward[k] + feedback[k] + disturbance[k];
-            // A NaN position must not reach the motors; the feed-forward is always finite.
-            effort_[k] = std::isfinite(wanted) ? std::clamp(wanted, -gains_.limit, gains_.limit) : forward[k];
-            excess_[k] = std::isfinite(wanted) ? wanted - effort_[k] : 0;
+            const float wanted = forward[k] + correction_[k];
+            effort_[k] = std::clamp(wanted, -gains_.limit, gains_.limit);
+            excess_[k] = wanted - effort_[k];
+            limited_ = limited_ || excess_[k] != 0;
         }
-        const bool limited =
-            std::any_of(excess_.begin(), excess_.end(), [](float excess) { return excess != 0; });
-        if (!limited) { // a limited effort is not the one that the motion needs
+        if (!limited_) { // a limited effort is not the one that the motion needs
             forward_.commanded(effort_.data());
         }
-        forward_.measured(state.time_ns, state.position.data(), before.data());
+        forward_.measured(state.time_ns, exact ? state.position.data() : nullptr,
+                          before_limited ? nullptr : before.data());
         return effort_;
     }
+
+    /// Returns the number of ticks since the last new measurement of this joint.
+    [[nodiscard]] int ticks_without_sample(int joint) const { return missed_[joint]; }
 
     /// Switches the learned part on and off, without a step.
     void enable_learned(bool on) { forward_.enable(on); }
@@ -96,9 +104,57 @@ class JointController {
   private:
     static Efforts all(float value) { return {{value, value, value, value, value, value}}; }
 
+    /// Computes the corrections. Returns whether all joints have a new measurement and none is limited in
+    /// its rate.
+    bool correct(const State& state, const Reference& reference) {
+        const bool advanced = state.time_ns > time_ns_;
+        time_ns_ = std::max(time_ns_, state.time_ns);
+        Efforts error_rate, feedback;
+        for (int k = 0; k < joints; ++k) {
+            error_rate[k] = reference.velocity[k] - state.velocity[k];
+            feedback[k] = gains_.position * (reference.position[k] - state.position[k]) +
+                          gains_.velocity * error_rate[k];
+            if (!advanced || !std::isfinite(feedback[k])) { // the observer ignores NaN
+                feedback[k] = std::numeric_limits<float>::quiet_NaN();
+            }
+            missed_[k] = std::isfinite(feedback[k]) ? 0 : std::min(missed_[k] + 1, most_missed);
+        }
+        const Efforts inertia = all(gains_.inertia);
+        const Efforts& disturbance =
+            observer_.update(feedback.data(), inertia.data(), error_rate.data(), excess_.data());
+        bool exact = true;
+        for (int k = 0; k < joints; ++k) {
+            if (missed_[k] == 0) {
+                approach(k, feedback[k] + disturbance[k]);
+            } else if (missed_[k] > hold_ticks) {
+                recovering_[k] = true;
+                approach(k, 0);
+            } else {
+                recovering_[k] = true;
+            }
+            exact = exact && missed_[k] == 0 && !recovering_[k];
+        }
+        return exact;
+    }
+
+    /// Moves a correction to `wanted`, after missing measurements in small steps until it is there.
+    void approach(int k, float wanted) {
+        const float step = step_share * gains_.limit;
+        const float before = correction_[k];
+        correction_[k] = recovering_[k] ? std::clamp(wanted, before - step, before + step) : wanted;
+        recovering_[k] = recovering_[k] && (missed_[k] > 0 || correction_[k] != wanted);
+    }
+
     Gains gains_;
     Learned learned_;
     Forward forward_;
     Observer observer_;
+    static constexpr int most_missed = 1'000'000; // the count ends there
+
     Efforts effort_{}, excess_{};
+    Efforts correction_{}; // of feedback and observer
+    std::int64_t time_ns_ = 0;
+    dfdyn::Storage<int, joints> missed_{};      // ticks since the last measurement
+    dfdyn::Storage<bool, joints> recovering_{}; // the correction is limited in its rate
+    bool limited_ = false; // whether the last effort is not the one that the motion needs
 };

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// The controller that users copy, without some of its measurements.
+#include "firmware_lib/examples/simulated_joints.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace joint_controller_test {
+
+constexpr JointController::Gains gains{
+    .position = 80, .velocity = 8, .inertia = 0.2F, .limit = 15, .bandwidth = 30};
+constexpr float largest_step = JointController::step_share * gains.limit;
+constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
+constexpr int joint = 2;
+
+/// The controller with its simulated arm; `pass` may change the measurement on its way.
+class Rig {
+  public:
+    Rig() { controller.activate(joints_.state()); }
+
+    template <class Pass>
+    void go(int ticks, Pass pass) {
+        largest_change = 0;
+        for (int i = 0; i < ticks; ++i) {
+            const JointController::Reference reference = SimulatedJoints::reference(tick_++);
+            JointController::State state = joints_.state();
+            pass(state);
+            const JointController::Efforts nominal = SimulatedJoints::nominal(reference);
+            const JointController::Efforts& effort = controller.update(state, reference, nominal);
+            for (int k = 0; k < JointController::joints; ++k) {
+                const float now = effort[k] - nominal[k] - controller.forward().learned_part()[k];
+                largest_change = std::max(largest_change, std::abs(now - correction[k]));
+                correction[k] = now;
+            }
+            joints_.advance(effort);
+        }
+    }
+    void go(int ticks) {
+        go(ticks, [](JointController::State& /*state*/) {});
+    }
+
+    JointController controller{gains};
+    JointController::Efforts correction{}; ///< of feedback and observer in the last tick, A
+    float largest_change = 0;              ///< of a correction in a tick of the last call of `go`, A
+
+  private:
+    SimulatedJoints joints_;
+    long tick_ = 0;
+};
+
+TEST_CASE("a joint without position keeps its correction, and gets it back without a step") {
+    Rig rig;
+    rig.go(700);
+    const float before = rig.correction[joint];
+    REQUIRE(std::abs(before) > 3 * largest_step); // to drop it would be a step
+    const auto lose = [](JointController::State& state) { state.position[joint] = nothing; };
+    rig.go(JointController::hold_ticks, lose);
+    CHECK(rig.correction[joint] == Approx(before).margin(1e-4));
+    CHECK(rig.controller.ticks_without_sample(joint) == JointController::hold_ticks);
+    CHECK(rig.controller.ticks_without_sample(0) == 0);
+    CHECK(rig.largest_change < largest_step);
+    rig.go(500);
+    CHECK(rig.largest_change <= 1.01F * largest_step);
+    CHECK(rig.controller.ticks_without_sample(joint) == 0);
+}
+
+TEST_CASE("without positions for long the correction goes to zero without a step") {
+    Rig rig;
+    rig.go(700);
+    REQUIRE(std::abs(rig.correction[joint]) > 3 * largest_step);
+    rig.go(200, [](JointController::State& state) { state.position[joint] = nothing; });
+    CHECK(rig.correction[joint] == Approx(0).margin(1e-4));
+    CHECK(rig.largest_change <= 1.01F * largest_step);
+    CHECK(rig.controller.ticks_without_sample(joint) == 200);
+}
+
+TEST_CASE("a sample that is repeated is not a new measurement") {
+    Rig rig;
+    rig.go(700);
+    const JointController::Efforts before = rig.correction;
+    JointController::State old{};
+    rig.go(1, [&old](JointController::State& state) { old = state; });
+    const JointController::Efforts last = rig.correction;
+    REQUIRE(std::abs(last[joint] - before[joint]) > 1e-4F); // a new measurement changes the correction
+    rig.go(JointController::hold_ticks, [&old](JointController::State& state) { state = old; });
+    CHECK(rig.correction[joint] == Approx(last[joint]).margin(1e-4));
+    CHECK(rig.controller.ticks_without_sample(0) == JointController::hold_ticks);
+}
+
+} // namespace joint_controller_test
