@@ -46,7 +46,7 @@ struct DbcArm {
     static void cycle(const Scene& scene, int k, Traffic& traffic) {
         for (unsigned i = 0; i < 2; ++i) {
             const std::int64_t measured = scene.cycle_ns(k) + joint_phase(static_cast<int>(i));
-            const double t = seconds_of(measured);
+            const double t = dfdyn::tests::seconds_of(measured);
             const long long q = std::llround(1e6 * scene.truth.position(i, t));
             const long long e = std::llround(1e3 * scene.truth.effort(i, t) + scene.noise(2));
             send(traffic,
