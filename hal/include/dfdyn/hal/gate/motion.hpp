@@ -186,7 +186,9 @@ class MotionGate {
         return std::popcount(off_) < 2 ? Verdict{Reason::ok, reading.position_rad}
                                        : refuse(reading, Reason::position_jump);
     }
-    constexpr void note(bool off) noexcept { off_ = static_cast<std::uint8_t>(off_ << 1U | (off ? 1U : 0U)); }
+    constexpr void note(bool off) noexcept {
+        off_ = static_cast<std::uint8_t>(static_cast<unsigned>(off_) << 1U | (off ? 1U : 0U));
+    }
 
     constexpr void believe(const MotionRun& run) noexcept {
         trusted_ = run;
