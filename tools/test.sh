@@ -60,6 +60,7 @@ test_clang() {
 # With the flags of the clang build.
 analyse() {
     cmake --preset clang
+    cmake --build --preset clang --target dfdyn_make_ur5_tables
     run-clang-tidy -quiet -p build/clang -j "$jobs" "$PWD/($1)/.*"
 }
 # tools/model/run_time has all of the firmware's headers.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -168,7 +169,7 @@ hal::FrameList DbcJoint::encode(const std::array<hal::JointValue, 1>& values) co
     return frames;
 }
 
-DbcSensor::DbcSensor(const std::array<DbcField, 6>& fields) noexcept : fields_(fields) {
+DbcSensor::DbcSensor(std::array<DbcField, 6> fields) noexcept : fields_(std::move(fields)) {
     const auto other = std::ranges::find_if(
         fields_, [&](const DbcField& field) { return !field.shares_frames_with(fields_[0]); });
     second_ = other == fields_.end() ? fields_[0] : *other;

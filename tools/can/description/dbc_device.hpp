@@ -92,7 +92,7 @@ static_assert(hal::JointSource<DbcJoint>);
 class DbcSensor {
   public:
     /// Order: fx fy fz mx my mz.
-    explicit DbcSensor(const std::array<DbcField, 6>& fields) noexcept;
+    explicit DbcSensor(std::array<DbcField, 6> fields) noexcept;
 
     /// Returns true if the fields are in exactly two frames.
     [[nodiscard]] static bool can_be(const std::array<DbcField, 6>& fields) noexcept;

@@ -24,9 +24,9 @@ struct JointFamily {
     std::string_view name;                 ///< value of `joints.family`
     std::vector<FamilyField> board_fields; ///< fields of each entry of `boards`
     std::vector<FamilyField> fields;       ///< fields of `joints`, besides those of every family
-    std::string_view dbc = "";             ///< file in hal/dbc for other programs; "": none
+    std::string_view dbc = {};             ///< file in hal/dbc for other programs; "": none
     /// `joints` of an arm with two joints, for the tests; "": none, because it needs another file.
-    std::string_view example = "";
+    std::string_view example = {};
 
     /// Adds the boards of `joints` to `description`, which has its trigger and rates. Files named in `joints`
     /// are relative to `folder`. Errors like those of JsonReader; the names of the fields are already
@@ -50,8 +50,8 @@ struct DescribedWrenchSensor {
 struct SensorFamily {
     std::string_view name; ///< value of `output.family`
     std::vector<FamilyField> fields;
-    std::string_view dbc = "";
-    std::string_view example = ""; ///< `output` of an arm, for the tests
+    std::string_view dbc = {};
+    std::string_view example = {}; ///< `output` of an arm, for the tests
 
     DescribedWrenchSensor (*read)(const JsonReader& output, const std::filesystem::path& folder);
 };

@@ -55,6 +55,7 @@ class SampleAssembly {
         std::array<MotionLimits, static_cast<std::size_t>(n)> limits{};
     };
 
+    // A small stack has no room for a copy: NOLINTNEXTLINE(modernize-pass-by-value)
     constexpr SampleAssembly(const Config& config, const Output& output) noexcept
         : board_(config.board), position_(config.position, config.position_range, config.limits),
           output_(output),

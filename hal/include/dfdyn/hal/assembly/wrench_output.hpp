@@ -25,6 +25,7 @@ class WrenchOutput {
         int frozen_limit;                    ///< identical readings, see FrozenGate
     };
 
+    // A small stack has no room for a copy: NOLINTNEXTLINE(modernize-pass-by-value)
     constexpr WrenchOutput(const Source& source, const Config& config) noexcept
         : source_(source), pairing_(config.pairing), frozen_(config.frozen_limit),
           jump_(config.track.max_age_ns), track_(config.track, config.range, output_reasons) {}
