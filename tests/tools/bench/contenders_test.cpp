@@ -37,7 +37,8 @@ TEST_CASE("all learners of the benchmark give the predictions of the batch solut
     CHECK(ours.size() == 2);
     check_all(ours, task);
     const Contenders others = peers(task);
-    CHECK(others.size() == 4U + (has_blas() ? 1 : 0) + (has_qrupdate() ? 2 : 0) + (has_dlib() ? 1 : 0));
+    CHECK(others.size() ==
+          4U + (gurls_peer.make ? 1 : 0) + (qrupdate_peer.make ? 2 : 0) + (dlib_peer.make ? 1 : 0));
     check_all(others, task);
 }
 

@@ -40,21 +40,27 @@ Contenders our_contenders(const RegressionTask& task);
 /// Returns the alternative learners that were available when this program was built.
 Contenders peers(const RegressionTask& task);
 
-/// Returns one line about each peer that is missing, and the reason.
+/// Returns one line about each learner that is not measured, and the reason.
 std::vector<std::string> missing_peers();
 
 /// Returns the sizes of `our_contenders`.
 const std::vector<int>& contender_columns();
 
-// The learners that make up `peers`.
-Contenders eigen_peers(const RegressionTask& task);
-Contenders gurls_peers(const RegressionTask& task);
-Contenders qrupdate_peers(const RegressionTask& task);
-Contenders dlib_peers(const RegressionTask& task);
-bool has_blas();
-std::string blas_name();      ///< as far as it can be determined
+/// A library whose learners are compared with ours. To add one: a file with this object, and a line in
+/// peers.cpp.
+struct Peer {
+    /// Returns its learners for the task; null if the library was not available when this program was built.
+    Contenders (*make)(const RegressionTask& task);
+    /// What is not measured, and the reason; null if nothing is missing.
+    const char* missing = nullptr;
+};
+
+extern const Peer eigen_peer;
+extern const Peer gurls_peer;
+extern const Peer qrupdate_peer;
+extern const Peer dlib_peer;
+
+std::string blas_name();      ///< as far as it can be determined; "none" without BLAS
 void keep_blas_on_one_core(); ///< like all learners under test, if the BLAS supports it
-bool has_qrupdate();
-bool has_dlib();
 
 } // namespace dfdyn::tools

@@ -38,15 +38,13 @@ class DlibRls final : public TypedContender<double> {
 
 } // namespace
 
-bool has_dlib() { return true; }
-
-Contenders dlib_peers(const RegressionTask& task) {
+const Peer dlib_peer{[](const RegressionTask& task) {
     Contenders one;
     if (task.columns() <= 500) { // larger sizes take many milliseconds per tick
         one.push_back(std::make_unique<DlibRls>(task));
     }
     return one;
-}
+}};
 
 } // namespace dfdyn::tools
 
@@ -54,9 +52,7 @@ Contenders dlib_peers(const RegressionTask& task) {
 
 namespace dfdyn::tools {
 
-bool has_dlib() { return false; }
-
-Contenders dlib_peers(const RegressionTask& /*task*/) { return {}; }
+const Peer dlib_peer{nullptr, "dlib: not installed when this program was built (libdlib-dev)."};
 
 } // namespace dfdyn::tools
 

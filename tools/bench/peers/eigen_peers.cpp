@@ -61,13 +61,13 @@ class EigenCholesky final : public EigenContender<Scalar> {
 
 } // namespace
 
-Contenders eigen_peers(const RegressionTask& task) {
+const Peer eigen_peer{[](const RegressionTask& task) {
     Contenders all;
     all.push_back(std::make_unique<EigenCovariance<float>>(task));
     all.push_back(std::make_unique<EigenCovariance<double>>(task));
     all.push_back(std::make_unique<EigenCholesky<float>>(task));
     all.push_back(std::make_unique<EigenCholesky<double>>(task));
     return all;
-}
+}};
 
 } // namespace dfdyn::tools

@@ -57,14 +57,12 @@ class Qrupdate final : public EigenContender<Scalar> {
 
 } // namespace
 
-bool has_qrupdate() { return true; }
-
-Contenders qrupdate_peers(const RegressionTask& task) {
+const Peer qrupdate_peer{[](const RegressionTask& task) {
     Contenders both;
     both.push_back(std::make_unique<Qrupdate<float>>(task));
     both.push_back(std::make_unique<Qrupdate<double>>(task));
     return both;
-}
+}};
 
 } // namespace dfdyn::tools
 
@@ -72,9 +70,7 @@ Contenders qrupdate_peers(const RegressionTask& task) {
 
 namespace dfdyn::tools {
 
-bool has_qrupdate() { return false; }
-
-Contenders qrupdate_peers(const RegressionTask& /*task*/) { return {}; }
+const Peer qrupdate_peer{nullptr, "qrupdate: not installed when this program was built (libqrupdate-dev)."};
 
 } // namespace dfdyn::tools
 
