@@ -6,6 +6,7 @@
 #include "tools/control/closed_loop.hpp"
 #include "tools/control/report/tracking.hpp"
 #include "tools/control/report/tracking_report.hpp"
+#include "tools/model/structure.hpp"
 #include "tools/replay/contradiction.hpp"
 #include "tools/training/model_training.hpp"
 
@@ -69,7 +70,7 @@ Recording commissioning(const Setting& setting) {
 LoopModel trained(const Setting& setting) {
     ModelTraining training;
     TrainingOptions& options = training.options;
-    options.model = ModelClass::SPK;
+    options.model = &structures::SPK;
     options.feature_count = 30;
     options.likelihood_rows = 200;
     options.starts = 2;

@@ -3,6 +3,8 @@
 
 #include "tests/support/temporary_directory.hpp"
 #include "tools/model/file/model_file.hpp"
+#include "tools/model/inputs/input_description.hpp"
+#include "tools/model/structure.hpp"
 #include "tools/robot/urdf/read_robot.hpp"
 #include "tools/simulation/simulation_csv.hpp"
 #include "tools/training/model_training.hpp"
@@ -49,7 +51,7 @@ class SimulatedRecording {
 };
 
 struct Combination {
-    tools::ModelClass model;
+    const tools::Structure* model;
     tools::InputKind input;
     tools::DerivativeSource derivatives;
     tools::HyperMethod hyper;
@@ -58,20 +60,19 @@ struct Combination {
 inline std::string name(const Combination& one) {
     const bool measured =
         one.input == tools::InputKind::STD && one.derivatives == tools::DerivativeSource::measured;
-    return tools::to_string(one.model) + " " + tools::to_string(one.input) + (measured ? " (measured)" : "") +
-           (one.hyper == tools::HyperMethod::ML ? " ML" : " CV");
+    return std::string(one.model->name) + " " + tools::input_description(one.input).name +
+           (measured ? " (measured)" : "") + (one.hyper == tools::HyperMethod::ML ? " ML" : " CV");
 }
 
 /// All combinations. CV exists for NP, P and SP2 with STD, DF and DFSR; STD has measured or estimated
 /// derivatives.
 inline std::vector<Combination> table() {
     std::vector<Combination> rows;
-    for (const tools::ModelClass model : {tools::ModelClass::NP, tools::ModelClass::P, tools::ModelClass::SP,
-                                          tools::ModelClass::SP2, tools::ModelClass::SPK}) {
+    for (const tools::Structure* const model : tools::all_structures()) {
         for (const tools::InputKind input :
              {tools::InputKind::STD, tools::InputKind::DF, tools::InputKind::DFW, tools::InputKind::DFR,
               tools::InputKind::DFSR}) {
-            const bool cv = model != tools::ModelClass::SP && model != tools::ModelClass::SPK &&
+            const bool cv = model != &tools::structures::SP && model != &tools::structures::SPK &&
                             input != tools::InputKind::DFW && input != tools::InputKind::DFR;
             for (const tools::HyperMethod hyper : {tools::HyperMethod::ML, tools::HyperMethod::CV}) {
                 if (hyper == tools::HyperMethod::CV && !cv) {

@@ -3,6 +3,7 @@
 
 #include "tests/diagnosis/panel_random.hpp"
 #include "tools/base/text/number.hpp"
+#include "tools/model/structure.hpp"
 #include "tools/replay/contradiction.hpp"
 #include "tools/simulation/simulation.hpp"
 #include "tools/training/model_training.hpp"
@@ -271,7 +272,7 @@ ChangeModel train_change_model(const ChangeCase& one) {
     const Robot robot = read_panel_robot(kind);
     ModelTraining training;
     TrainingOptions& options = training.options;
-    options.model = ModelClass::P;
+    options.model = &structures::P;
     options.input = InputKind::DFSR;
     options.lags = 12;
     options.likelihood_rows = 400;

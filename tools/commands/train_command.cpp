@@ -14,6 +14,8 @@
 #include "tools/model/effects.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/model/header/model_header.hpp"
+#include "tools/model/inputs/input_description.hpp"
+#include "tools/model/structure.hpp"
 #include "tools/replay/contradiction.hpp"
 #include "tools/replay/opponents/rigid_body.hpp"
 #include "tools/training/model_training.hpp"
@@ -34,8 +36,8 @@ struct TrainOptions {
     RecordingOptions recordings;
     RobotOptions robot;
     std::string outputs;
-    std::string structure = "NP";
-    std::string input = "DFR";
+    std::string structure = structures::NP.name;
+    std::string input = dfr_input().name;
     std::string hyper = "ML";
     std::filesystem::path model;
     std::filesystem::path header;
@@ -149,10 +151,10 @@ ProgressCallback progress_line(HyperMethod hyper) {
 ModelTraining model_training(const TrainOptions& options, OutputKind outputs) {
     ModelTraining training{options.training, std::nullopt, sources.at(options.derivatives)};
     training.options.input = parse_input_kind(options.input);
-    training.options.model = parse_model_class(options.structure);
+    training.options.model = &structure(options.structure);
     training.options.hyper = parse_hyper_method(options.hyper);
     training.options.physics.prior = parse_prior_form(options.prior);
-    if (has_physics(options.structure)) {
+    if (training.options.model->has_physics()) {
         if (options.robot.urdf.empty()) {
             throw InputError("--model " + options.structure + ": expected --robot and --tip, found none");
         }
@@ -165,8 +167,9 @@ ModelTraining model_training(const TrainOptions& options, OutputKind outputs) {
 /// Reports given options that have no influence here.
 void note_ignored(const TrainOptions& options, OutputKind outputs) {
     const std::string model = "model " + options.structure;
-    const bool physics = has_physics(options.structure);
-    const bool learned = options.structure == "P" || options.structure == "SPK";
+    const Structure& structure = tools::structure(options.structure);
+    const bool physics = structure.has_physics();
+    const bool derivatives = input_description(parse_input_kind(options.input)).uses_derivatives();
     const bool cross_validation = options.hyper == "CV";
     const auto note = [&](bool ignored, std::initializer_list<const char*> names, const std::string& by) {
         for (const char* const name : names) {
@@ -177,15 +180,15 @@ void note_ignored(const TrainOptions& options, OutputKind outputs) {
     };
     note(!physics, {"--effects", "--sign-velocity", "--own-motion"}, model);
     note(!physics && options.setup.unchecked, {"--robot"}, model);
-    note(!learned, {"--prior"}, model);
+    note(!structure.learns_parameters(), {"--prior"}, model);
     note(!physics, {"--torque-constants"}, model);
     note(physics && outputs != OutputKind::motor_current, {"--torque-constants"},
          "--outputs " + options.outputs);
     note(cross_validation, {"--starts", "--refinement"}, "--hyper CV");
-    note(options.input != "STD", {"--relevance"}, "input " + options.input);
-    note(options.input == "STD" && options.structure == "P", {"--relevance"}, model);
-    note(options.input == "STD" && cross_validation, {"--relevance"}, "--hyper CV");
-    note(options.structure != "NP", {"--centred"}, model);
+    note(!derivatives, {"--relevance"}, "input " + options.input);
+    note(derivatives && !structure.features, {"--relevance"}, model);
+    note(derivatives && cross_validation, {"--relevance"}, "--hyper CV");
+    note(physics, {"--centred"}, model);
 }
 
 /// Checks the set-up of the recordings. For a model without physics, the robot is read for this check only.
@@ -276,10 +279,10 @@ void add_train_command(CLI::App& app, Command& chosen) {
     command
         ->add_option("--model", options->structure,
                      "Structure of the model: features (NP), the robot (P), or both")
-        ->check(CLI::IsMember({"NP", "P", "SP", "SP2", "SPK"}))
+        ->check(CLI::IsMember(structure_names()))
         ->capture_default_str();
     command->add_option("--input", options->input, "What the features see of the positions")
-        ->type_name("STD|DF|DFW|DFR|DFSR")
+        ->type_name(input_names("|"))
         ->capture_default_str();
     command
         ->add_option("--hyper", options->hyper,

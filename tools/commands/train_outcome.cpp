@@ -2,6 +2,8 @@
 #include "tools/commands/train_outcome.hpp"
 
 #include "tools/model/file/model_file.hpp"
+#include "tools/model/inputs/input_description.hpp"
+#include "tools/model/structure.hpp"
 #include "tools/training/search/hold_out.hpp"
 
 #include <iostream>
@@ -49,7 +51,7 @@ void print_hold_out(const std::vector<HoldOutPoint>& points) {
 }
 
 void print_kernel(const TrainedModel& model) {
-    std::cout << "features: input " << to_string(model.input.kind) << ", length scale "
+    std::cout << "features: input " << input_description(model.input.kind).name << ", length scale "
               << model.features.length_scale << ", rho^2/sigma^2 " << model.outputs.prior_variance << '\n';
 }
 
@@ -74,7 +76,7 @@ void print_outcome(const ModelTrainingResult& result, const std::string& trained
     if (!result.torque_gains.empty()) {
         print_torque_constants(result.torque_gains);
     }
-    if (has_features(model.structure)) {
+    if (structure_of(model).features) {
         print_kernel(model);
     }
     std::cout << "noise:";

@@ -4,6 +4,7 @@
 #include "tools/base/numerics/quantile.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/text.hpp"
+#include "tools/model/inputs/input_description.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +46,7 @@ MeasuredSample sample_at(const Recording& recording, std::size_t row) {
 
 bool needs_derivatives(const TrainedModel& model) {
     const auto measured = [](const InputModel& input) {
-        return input.kind == InputKind::STD && input.derivatives == Derivatives::measured;
+        return input_description(input.kind).uses_derivatives() && input.derivatives == Derivatives::measured;
     };
     return (model.features.count > 0 && measured(model.input)) ||
            (model.physics && measured(model.physics->motion));

@@ -5,6 +5,7 @@
 #include "tools/base/text/number.hpp"
 #include "tools/build_flags.hpp"
 #include "tools/model/file/model_file.hpp"
+#include "tools/model/inputs/input_description.hpp"
 #include "tools/replay/opponents/rigid_body.hpp"
 
 #include <algorithm>
@@ -50,9 +51,9 @@ RecordingFigures figures_of(const ReplayedRecording& replayed, const TrainedMode
 
 std::string describe_model(const TrainedModel& model) {
     const InputModel& input = model.input;
-    return model.structure + ", input " + to_string(input.kind) + " (" + std::to_string(input.lags) +
-           " lags, " + std::to_string(input.rows_per_joint) + " features per joint), " +
-           std::to_string(2 * model.features.count) + " random " +
+    return model.structure + ", input " + input_description(input.kind).name + " (" +
+           std::to_string(input.lags) + " lags, " + std::to_string(input.rows_per_joint) +
+           " features per joint), " + std::to_string(2 * model.features.count) + " random " +
            (model.features.orthogonal ? "orthogonal " : "") + "Fourier columns";
 }
 

@@ -6,7 +6,9 @@
 #include "tools/base/numerics/dynamic_storage.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/model/file/model_file.hpp"
+#include "tools/model/inputs/input_description.hpp"
 #include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/structure.hpp"
 
 #include <cstdio>
 
@@ -42,8 +44,9 @@ std::int64_t count(const PhysicsModel& physics) {
 }
 
 std::int64_t window_bytes(const InputModel& input, int joints) {
-    const bool window = input.kind != InputKind::STD || input.derivatives == Derivatives::estimated;
-    const std::int64_t times = input.kind == InputKind::STD ? 2 : 0; // of each sample, 64 bits
+    const bool derivatives = input_description(input.kind).uses_derivatives();
+    const bool window = !derivatives || input.derivatives == Derivatives::estimated;
+    const std::int64_t times = derivatives ? 2 : 0; // of each sample, 64 bits
     return window ? LagWindow<float, dynamic, dynamic>::state_bytes(joints, input.lags) +
                         times * number_bytes * (input.lags + 1)
                   : 0;
@@ -84,14 +87,14 @@ ModelNeeds needs_of(const TrainedModel& model) {
     needs.flash_bytes = number_bytes * numbers + code_bytes + (model.physics ? physics_code_bytes : 0);
     needs.ram_bytes =
         learned_bytes(model) + number_bytes * work_numbers(model) + other_state_bytes + stack_bytes;
-    needs.ram_bytes += has_features(model.structure) ? window_bytes(model.input, model.joints) : 0;
+    needs.ram_bytes += structure_of(model).features ? window_bytes(model.input, model.joints) : 0;
     needs.ram_bytes += model.physics ? window_bytes(model.physics->motion, model.joints) : 0;
     needs.tick_operations = cost.predict + cost.learn + (model.forgetting_factor < 1 ? cost.forget : 0);
     return needs;
 }
 
 TrainedModel with_feature_count(TrainedModel model, int feature_count) {
-    if (!has_features(model.structure)) {
+    if (!structure_of(model).features) {
         return model;
     }
     const auto columns = static_cast<std::size_t>(2 * feature_count);

@@ -5,6 +5,7 @@
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/model/file/model_file.hpp"
+#include "tools/model/inputs/input_description.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/training/data/lag_spacing.hpp"
 #include "tools/training/training_options.hpp"
@@ -116,14 +117,14 @@ class SizeSearch {
         if (free.window) {
             choose_window(free.features);
         }
-        if (free.rows && options.input == InputKind::DFR) {
+        if (free.rows && input_description(options.input).chooses_rows) {
             choose_rows(free.features);
         }
         if (free.memory) {
             choose_memory();
         }
         SizeChoice choice{*best_, {}, {}, 0};
-        if (free.features && has_features(to_string(options.model))) {
+        if (free.features && options.model->features) {
             choose_features(choice);
         }
         choice.tried = tried_;
@@ -193,7 +194,8 @@ class SizeSearch {
 
     void choose_window(bool fewer_features) {
         const TrainingOptions base = best_->options;
-        const bool contiguous = base.input == InputKind::STD || base.hyper == HyperMethod::CV;
+        const bool contiguous =
+            input_description(base.input).uses_derivatives() || base.hyper == HyperMethod::CV;
         for (const double window_s : windows_s) {
             TrainingOptions options = base;
             const LagSpacing spacing =

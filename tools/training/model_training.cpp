@@ -5,7 +5,9 @@
 #include "tools/base/text/error.hpp"
 #include "tools/model/chain_model.hpp"
 #include "tools/model/file/model_file.hpp"
+#include "tools/model/inputs/input_description.hpp"
 #include "tools/model/run_time/host_model.hpp"
+#include "tools/model/structure.hpp"
 #include "tools/training/data/lag_spacing.hpp"
 #include "tools/training/data/recorded_data.hpp"
 #include "tools/training/data/stored_motion.hpp"
@@ -136,7 +138,8 @@ PhysicsModel physics_model(const TrainedModel& model, const TrainedPhysics& trai
 
 /// With measured derivatives, input STD has no window.
 void set_derivatives(TrainedModel& model, const PreparedTraining& prepared) {
-    if (model.input.kind != InputKind::STD || prepared.derivatives == Derivatives::estimated) {
+    if (!input_description(model.input.kind).uses_derivatives() ||
+        prepared.derivatives == Derivatives::estimated) {
         return;
     }
     model.input.derivatives = Derivatives::measured;
@@ -157,11 +160,9 @@ JointStart joint_start_of(const TrainedModel& model, const PhysicsProblem& probl
     const PhysicsModel& physics = *model.physics;
     const ParameterPrior prior =
         ParameterPrior::independent(static_cast<Index>(physics.selected.size()), physics.prior_variance);
-    if (model.structure == "P") {
-        return parametric_start(problem, prior);
-    }
-    if (model.structure == "SPK") {
-        return joint_start(problem, prior);
+    const Structure& structure = structure_of(model);
+    if (structure.learns_parameters()) {
+        return physics_start(structure, problem, prior);
     }
     return residual_start(problem,
                           Eigen::Map<const VectorXd>(physics.start.weights.data(),
@@ -169,14 +170,14 @@ JointStart joint_start_of(const TrainedModel& model, const PhysicsProblem& probl
 }
 
 int lags_of(const TrainedModel& model) {
-    return std::max(has_features(model.structure) ? model.input.lags : 0,
+    return std::max(structure_of(model).features ? model.input.lags : 0,
                     model.physics ? model.physics->motion.lags : 0);
 }
 
 } // namespace
 
 bool sees_derivatives(const ModelTraining& training) {
-    return training.options.input == InputKind::STD ||
+    return input_description(training.options.input).uses_derivatives() ||
            (training.physics && training.physics->torque_constants.empty());
 }
 
@@ -206,13 +207,13 @@ ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind out
                                 const ModelTraining& training, const ProgressCallback& progress) {
     TrainingOptions options = training.options;
     options.position_noise_bound = prepared.position_noise_bound;
-    if (options.model == ModelClass::NP) {
+    if (!options.model->has_physics()) {
         TrainingResult result = train(prepared.data, options, progress);
         set_derivatives(result.model, prepared);
         return {std::move(result.model), std::move(result.hold_out), {}};
     }
     if (!training.physics) {
-        throw InputError("model " + to_string(options.model) +
+        throw InputError(std::string("model ") + options.model->name +
                          ": expected a robot (--robot, --tip), found none");
     }
     const RobotPhysics& robot = *training.physics;
@@ -235,7 +236,7 @@ ModelTrainingResult train_model(const PreparedTraining& prepared, OutputKind out
     if (outputs == OutputKind::joint_torque) {
         bound_by_efforts(model.limits, joint_efforts(robot.robot));
     }
-    if (!has_features(model.structure)) {
+    if (!structure_of(model).features) {
         model.input = {};
     }
     return {std::move(model), std::move(result.hold_out), std::move(gains)};

@@ -34,7 +34,7 @@ TrainedModel model_of(const TrainingSetup& setup, const Fit& fit) {
     const TrainingOptions& options = setup.options;
     const TrainingData& data = setup.data;
     TrainedModel model;
-    model.structure = to_string(options.model);
+    model.structure = options.model->name;
     model.joints = static_cast<int>(data.positions.cols());
     model.sample_period_s = data.sample_period_s;
     model.forgetting_factor = options.forgetting_factor;
@@ -46,7 +46,7 @@ TrainedModel model_of(const TrainingSetup& setup, const Fit& fit) {
     model.outputs.offset = to_vector(fit.offset);
     model.limits = limits_of(data);
     model.training = fit.record;
-    if (options.model == ModelClass::P) {
+    if (!options.model->features) {
         model.outputs.noise_std = to_vector(VectorXd(fit.output_variance.cwiseSqrt()));
         return model;
     }
@@ -124,14 +124,9 @@ std::optional<ParameterPrior> knowledge_of(const TrainingSetup& setup, const Col
     return robot_prior(setup, choice, motion);
 }
 
-/// SP: by generalised least squares with the kernel of the features; SP2: without features.
-VectorXd fixed_parameters(const PhysicsProblem& problem, ModelClass model, const ParameterPrior& prior) {
-    return (model == ModelClass::SP ? joint_start(problem, prior) : parametric_start(problem, prior))
-        .physics.parameters;
-}
-
 /// Sets the initial state of the model, and returns its physics.
 TrainedPhysics start_physics(const TrainingSetup& setup, const PhysicsPart& part, TrainedModel& model) {
+    const Structure& structure = *setup.options.model;
     TrainedPhysics physics = units_of(setup, part, model.outputs);
     physics.motion_rows = full_motion_rows(setup, part.motion);
     const ColumnChoice choice{physics.columns, physics.column_scale};
@@ -142,27 +137,23 @@ TrainedPhysics start_physics(const TrainingSetup& setup, const PhysicsPart& part
     const JointStart start = [&] {
         const auto p = static_cast<Index>(choice.columns.size());
         const ParameterPrior prior = robot ? *robot : ParameterPrior::independent(p, physics.prior_variance);
-        switch (setup.options.model) {
-        case ModelClass::P:
-            return parametric_start(problem, prior);
-        case ModelClass::SPK:
-            return joint_start(problem, prior);
-        default:
-            return residual_start(problem, robot ? fixed_parameters(problem, setup.options.model, prior)
-                                                 : part.fit.parameters.cwiseProduct(
-                                                       part.choice.scale.cwiseQuotient(choice.scale)));
+        if (structure.learns_parameters()) {
+            return physics_start(structure, problem, prior);
         }
+        return residual_start(
+            problem, robot ? physics_start(structure, problem, prior).physics.parameters
+                           : part.fit.parameters.cwiseProduct(part.choice.scale.cwiseQuotient(choice.scale)));
     }();
     model.start = start.kernel;
     physics.start = start.physics;
     if (!setup.options.shrinkage) {
         return physics;
     }
-    if (setup.options.model != ModelClass::P) {
+    if (structure.features) {
         model.extrapolation =
             measure_extrapolation(model, setup.data, setup.rows.usable,
                                   feature_targets(setup, model.outputs, columns, start.physics.parameters));
-        if (robot && setup.options.model == ModelClass::SPK) {
+        if (robot && structure.coupled()) {
             model.extrapolation->parameter_variance_factor = parameter_variance_factor(setup);
             model.extrapolation->output_variance = output_variances(model, setup.data, setup.rows.usable);
         }

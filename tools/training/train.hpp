@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/model/model.hpp"
+#include "tools/model/structure.hpp"
 #include "tools/training/data/training_data.hpp"
 #include "tools/training/physics/physics_start.hpp"
 #include "tools/training/physics/regressor.hpp"
@@ -15,9 +15,6 @@
 #include <vector>
 
 namespace dfdyn::tools {
-
-/// The model classes of the paper (Section III).
-enum class ModelClass { NP, P, SP, SP2, SPK };
 
 /// Estimation methods of the hyperparameters (paper, Section IV-C).
 enum class HyperMethod {
@@ -55,7 +52,7 @@ struct PhysicsOptions {
 
 /// Options of the training, with their defaults.
 struct TrainingOptions {
-    ModelClass model = ModelClass::NP;
+    const Structure* model = &structures::NP; ///< not null
     HyperMethod hyper = HyperMethod::ML;
     PhysicsOptions physics; ///< used unless the model is NP
     InputKind input = InputKind::DFR;

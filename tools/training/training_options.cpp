@@ -5,6 +5,8 @@
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/model/file/model_file.hpp"
+#include "tools/model/inputs/input_description.hpp"
+#include "tools/model/structure.hpp"
 #include "tools/training/data/lag_spacing.hpp"
 
 #include <algorithm>
@@ -18,11 +20,6 @@ namespace {
 template <class Value>
 using Name = std::pair<std::string_view, Value>;
 
-constexpr std::array<Name<ModelClass>, 5> model_names{{{"NP", ModelClass::NP},
-                                                       {"P", ModelClass::P},
-                                                       {"SP", ModelClass::SP},
-                                                       {"SP2", ModelClass::SP2},
-                                                       {"SPK", ModelClass::SPK}}};
 constexpr std::array<Name<PriorForm>, 3> prior_names{
     {{"scaled", PriorForm::scaled}, {"unit", PriorForm::unit}, {"diagonal", PriorForm::diagonal}}};
 constexpr std::array<Name<HyperMethod>, 2> method_names{{{"ML", HyperMethod::ML}, {"CV", HyperMethod::CV}}};
@@ -52,17 +49,19 @@ void expect(bool condition, const std::string& what, double found) {
 }
 
 void check_lags(const TrainingOptions& options) {
+    const InputDescription& input = input_description(options.input);
     const bool physics =
-        options.model != ModelClass::NP && (options.input != InputKind::STD || options.physics.own_motion);
-    const int least = options.input == InputKind::DFSR || physics ? 2 : 1;
+        options.model->has_physics() && (!input.uses_derivatives() || options.physics.own_motion);
+    const int least = physics ? std::max(2, input.least_lags) : input.least_lags;
     expect(options.lags >= least, "at least " + std::to_string(least) + " lags", options.lags);
-    if (options.input == InputKind::DFR) {
+    if (input.chooses_rows) {
         expect(options.rows_per_joint >= 1 && options.rows_per_joint <= options.lags + 1,
                "1 to lags + 1 rows per joint", options.rows_per_joint);
     }
     expect(options.every >= 1, "lags at least 1 sample apart", options.every);
     if (options.every > 1) {
-        expect(options.input != InputKind::STD, "lags one sample apart for input STD", options.every);
+        expect(!input.uses_derivatives(), std::string("lags one sample apart for input ") + input.name,
+               options.every);
         expect(options.hyper != HyperMethod::CV, "lags one sample apart for cross validation", options.every);
     }
     const int samples = dense_lags({options.lags, options.every});
@@ -86,31 +85,54 @@ void check_search(const TrainingOptions& options) {
            options.forgetting_factor);
 }
 
+/// Returns `A, B or C`: the names of the entries of a catalogue that `fits` accepts.
+template <class Catalogue, class Condition>
+std::string names_where(const Catalogue& catalogue, Condition fits) {
+    std::vector<std::string> names;
+    for (const auto* const entry : catalogue) {
+        if (fits(*entry)) {
+            names.emplace_back(entry->name);
+        }
+    }
+    const std::string last = names.back();
+    names.pop_back();
+    return names.empty() ? last : listed(names) + " or " + last;
+}
+
 void check_hold_out(const TrainingOptions& options) {
-    const bool model =
-        options.model == ModelClass::NP || options.model == ModelClass::P || options.model == ModelClass::SP2;
-    expect(model, "model NP, P or SP2 for cross validation", to_string(options.model));
-    const bool input =
-        options.input == InputKind::STD || options.input == InputKind::DF || options.input == InputKind::DFSR;
-    expect(input, "input STD, DF or DFSR for cross validation", std::string(to_string(options.input)));
+    expect(!options.model->fits_jointly(),
+           "model " +
+               names_where(all_structures(), [](const Structure& one) { return !one.fits_jointly(); }) +
+               " for cross validation",
+           std::string(options.model->name));
+    const InputDescription& input = input_description(options.input);
+    expect(
+        input.cross_validation,
+        "input " +
+            names_where(input_catalogue(), [](const InputDescription& one) { return one.cross_validation; }) +
+            " for cross validation",
+        std::string(input.name));
     expect(options.training_share > 0 && options.training_share < 1, "a training share between 0 and 1",
            options.training_share);
 }
 
 void check_physics(const TrainingOptions& options, const TrainingData& data) {
     const PhysicsOptions& physics = options.physics;
-    expect(physics.regressor != nullptr, "a robot's physics for model " + to_string(options.model), "none");
+    expect(physics.regressor != nullptr, std::string("a robot's physics for model ") + options.model->name,
+           "none");
     const auto outputs = static_cast<double>(physics.regressor->outputs());
     expect(physics.regressor->outputs() == data.outputs.cols(),
            "physics of " + std::to_string(data.outputs.cols()) + " outputs", outputs);
     expect(physics.column_threshold > 0 && physics.column_threshold < 1,
            "a threshold of the columns between 0 and 1", physics.column_threshold);
-    if (options.input == InputKind::DFR && !physics.own_motion) {
+    if (input_description(options.input).chooses_rows && !physics.own_motion) {
         expect(options.rows_per_joint >= 3, "at least 3 rows per joint for the physics to share",
                options.rows_per_joint);
     }
     if (physics.given) {
-        expect(options.model == ModelClass::SP2, "model SP2 for given parameters", to_string(options.model));
+        expect(options.model->physics == PhysicsRole::fixed_first,
+               std::string("model ") + structures::SP2.name + " for given parameters",
+               std::string(options.model->name));
         expect(physics.given->size() == physics.regressor->columns() && physics.given->allFinite(),
                std::to_string(physics.regressor->columns()) + " finite physical parameters",
                static_cast<double>(physics.given->size()));
@@ -118,13 +140,6 @@ void check_physics(const TrainingOptions& options, const TrainingData& data) {
 }
 
 } // namespace
-
-std::string to_string(ModelClass model) {
-    return std::ranges::find(model_names, model, &std::pair<std::string_view, ModelClass>::second)
-        ->first.data();
-}
-
-ModelClass parse_model_class(const std::string& name) { return named(model_names, "model", name); }
 
 PriorForm parse_prior_form(const std::string& name) { return named(prior_names, "prior", name); }
 
@@ -136,7 +151,7 @@ void check_options(const TrainingOptions& options, const TrainingData& data) {
     if (options.hyper == HyperMethod::CV) {
         check_hold_out(options);
     }
-    if (options.model != ModelClass::NP) {
+    if (options.model->has_physics()) {
         check_physics(options, data);
     }
 }

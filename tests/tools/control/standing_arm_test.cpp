@@ -5,6 +5,7 @@
 #include "tests/tools/can/bus_support.hpp"
 #include "tools/commands/options/robot_options.hpp"
 #include "tools/control/closed_loop.hpp"
+#include "tools/model/structure.hpp"
 #include "tools/training/model_training.hpp"
 #include "tools/training/training_options.hpp"
 
@@ -119,7 +120,7 @@ Recording commissioning(LoopArm arm) {
 }
 
 /// A model trained like the one of tools/loop_demo.sh.
-LoopModel commissioned(const LoopArm& arm, ModelClass kind) {
+LoopModel commissioned(const LoopArm& arm, const Structure* kind) {
     ModelTraining training;
     training.options.model = kind;
     training.options.feature_count = 60;
@@ -140,13 +141,13 @@ void check_ten_hours(const LoopArm& arm, std::mt19937_64& engine) {
     constexpr std::array standstills_s{5., 20., 60., 300.};
     constexpr double run_s = 4500;
     std::size_t alarms = 0;
-    for (const ModelClass kind : {ModelClass::P, ModelClass::SPK}) {
+    for (const Structure* const kind : {&structures::P, &structures::SPK}) {
         const LoopModel model = commissioned(arm, kind);
         for (const double standstill_s : standstills_s) {
             const std::vector<std::string> lines = reports(arm, model, standstill_s, run_s, engine);
             alarms += lines.size();
             std::ostringstream text;
-            text << to_string(kind) << ", standstills of " << standstill_s << " s: " << lines.size()
+            text << kind->name << ", standstills of " << standstill_s << " s: " << lines.size()
                  << " false alarms in " << run_s / 3600 << " h";
             for (const std::string& line : lines) {
                 text << '\n' << line;

@@ -156,7 +156,7 @@ TEST_CASE("an error in a plan is reported with its field") {
              j["cases"][0]["input"] = {"DF", "DFX"};
          },
          "cases[0].input: expected one of STD"},
-        {[](json& j) { j["cases"][0]["model"] = "XP"; }, "cases[0].model: expected one of P, NP, SP"},
+        {[](json& j) { j["cases"][0]["model"] = "XP"; }, "cases[0].model: expected one of NP, P, SP"},
         {[](json& j) { j["cases"][0]["hyper"] = "XP"; }, "cases[0].hyper: expected one of ML, CV"},
         {[](json& j) { j["cases"][0]["suffix"] = "/../"; }, "cases[0].suffix: expected letters"},
         {[](json& j) {

@@ -5,6 +5,7 @@
 #include "tests/support/seed.hpp"
 #include "tests/tools/support/small_model.hpp"
 #include "tools/model/file/model_file.hpp"
+#include "tools/model/inputs/input_description.hpp"
 
 #include <algorithm>
 #include <array>
@@ -42,7 +43,7 @@ TEST_CASE("an estimator continues from its snapshot as it did when the snapshot 
     const std::string structure = GENERATE("NP", "P", "SP", "SPK");
     const TrainedModel model =
         structure == "NP" ? small_model(engine, kind) : small_physics_model(engine, structure, kind, true);
-    CAPTURE(structure, to_string(kind));
+    CAPTURE(structure, input_description(kind).name);
     const auto estimator = make_estimator(model, false);
     run(*estimator, 0, 100);
     const std::vector<std::byte> snapshot = estimator->snapshot();

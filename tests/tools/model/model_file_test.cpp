@@ -5,6 +5,7 @@
 #include "tests/tools/support/small_model.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/model/file/model_file.hpp"
+#include "tools/model/inputs/input_description.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -46,7 +47,7 @@ TEST_CASE("a model with physics of any structure reads back") {
     for (const char* structure : {"P", "SP", "SP2", "SPK"}) {
         for (const bool wrench : {false, true}) {
             for (const InputKind kind : all_inputs) {
-                CAPTURE(structure, wrench, to_string(kind));
+                CAPTURE(structure, wrench, input_description(kind).name);
                 const std::string text = model_to_json(small_physics_model(engine, structure, kind, wrench));
                 CHECK(model_to_json(model_from_json(text, "m.json")) == text);
             }
@@ -104,13 +105,13 @@ TEST_CASE("an impossible model with physics is rejected") {
     CHECK_THAT(refusal_of("/physics/coupling", {1, 2}), StartsWith("m.json: physics.coupling"));
     CHECK_THAT(refusal_of("/physics/prior_variance", -1), StartsWith("m.json: physics.prior_variance"));
     CHECK_THAT(refusal_of("/forgetting_factor", 0.8), StartsWith("m.json: forgetting_factor"));
-    CHECK_THAT(refusal_of("/structure", "SPQ"), StartsWith("m.json: structure: expected NP, P, SP"));
+    CHECK_THAT(refusal_of("/structure", "SPQ"), StartsWith("m.json: structure: expected one of NP, P, SP"));
 }
 
 TEST_CASE("a model reads back bit for bit in single precision") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const InputKind kind : all_inputs) {
-        CAPTURE(to_string(kind));
+        CAPTURE(input_description(kind).name);
         const TrainedModel written = small_model(engine, kind);
         const std::string text = model_to_json(written);
         const TrainedModel read = model_from_json(text, "m.json");
@@ -202,7 +203,7 @@ TEST_CASE("every truncation of a model file is rejected with one line") {
 TEST_CASE("an error in a model is reported with the field and the expected and the found value") {
     const std::pair<std::pair<std::string, nlohmann::json>, std::string> cases[] = {
         {{"/schema", "dfdyn.model/2"}, "m.json: schema: expected \"dfdyn.model/1\", found \"dfdyn.model/2\""},
-        {{"/structure", "XP"}, "m.json: structure: expected NP, P, SP, SP2 or SPK, found \"XP\""},
+        {{"/structure", "XP"}, "m.json: structure: expected one of NP, P, SP, SP2, SPK, found \"XP\""},
         {{"/joints", 0}, "m.json: joints: expected a whole number from 1 to 64, found \"0\""},
         {{"/joints", 3}, "m.json: input.scale: expected 9 numbers, found 6"},
         {{"/joints", 2.5}, "m.json: joints: expected a whole number from 1 to 64, found \"2.5\""},
@@ -217,7 +218,7 @@ TEST_CASE("an error in a model is reported with the field and the expected and t
         {{"/forgetting_factor", 1.01},
          "m.json: forgetting_factor: expected a number from 0.8333333333333334 to 1, found 1.01"},
         {{"/input", 1}, "m.json: input: expected an object, found \"1\""},
-        {{"/input/kind", "DFX"}, "input: expected STD, DF, DFW, DFR or DFSR, found \"DFX\""},
+        {{"/input/kind", "DFX"}, "input: expected one of STD, DF, DFW, DFR, DFSR, found \"DFX\""},
         {{"/input/lags", 1000000},
          "m.json: input.lags: expected a whole number from 0 to 1000, found \"1000000\""},
         {{"/input/rows", {1, 2}}, "m.json: input.rows: expected 15 numbers, found 2"},

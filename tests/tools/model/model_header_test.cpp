@@ -5,6 +5,7 @@
 #include "tests/tools/support/small_model.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/model/header/model_header.hpp"
+#include "tools/model/inputs/input_description.hpp"
 #include "tools/model/run_time/host_estimator.hpp"
 
 #include <array>
@@ -115,7 +116,7 @@ TEST_CASE("the header compiles without exceptions and predicts as the model file
     DFDYN_SEEDED_ENGINE(engine);
     for (const InputKind kind :
          {InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR}) {
-        CAPTURE(to_string(kind));
+        CAPTURE(input_description(kind).name);
         check_header(small_model(engine, kind));
     }
 }

@@ -7,6 +7,7 @@
 #include "tools/training/model_training.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tools/model/structure.hpp"
 
 #include <algorithm>
 
@@ -31,7 +32,7 @@ Recording recording(const std::string& name) {
 /// Rigid body and friction, as `dfdyn train` computes them with the options in docs/guide/monitor.md.
 TrainedModel trained(const Recording& data, const Robot& robot) {
     ModelTraining training;
-    training.options.model = ModelClass::P;
+    training.options.model = &structures::P;
     training.options.input = InputKind::DFSR;
     training.options.lags = 12;
     training.options.likelihood_rows = 600;

@@ -3,6 +3,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/tools/support/row_family.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tests/tools/training/numerics.hpp"
 
@@ -21,8 +22,9 @@ struct Problem {
     tools::NormalSource random{dfdyn::tests::seed()};
     tools::RowList rows = dfdyn::tests::rows_between(lags, 45);
     tools::TrainingData data = dfdyn::tests::arm_data(45, 2, 3, random);
-    std::unique_ptr<tools::InputMap> input = tools::lag_input(
-        data.positions, rows, tools::LagSpread(data.positions, rows, lags), tools::structured_rows(lags));
+    std::unique_ptr<tools::InputMap> input =
+        tools::lag_input(data.positions, rows, tools::LagSpread(data.positions, rows, lags),
+                         dfdyn::tests::row_family(tools::InputKind::DFSR, lags));
     MatrixXd outputs = data.outputs(rows, Eigen::all).rowwise() - data.outputs.colwise().mean();
     tools::ProfiledVarianceLikelihood output_likelihood{outputs};
     MatrixXd omega = random.matrix(features, 6);

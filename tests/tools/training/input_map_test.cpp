@@ -3,6 +3,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/tools/support/row_family.hpp"
 #include "tests/tools/training/arm_data.hpp"
 
 #include <array>
@@ -36,8 +37,10 @@ struct Arm {
             return tools::derivative_input(data, rows, rows, spread(), kind == 4);
         }
         std::array<std::unique_ptr<tools::RowFamily>, 4> families{
-            tools::identity_rows(lags), tools::diagonal_rows(lags), tools::structured_rows(lags),
-            tools::free_rows(lags, 4, spread().pooled_factor())};
+            dfdyn::tests::row_family(tools::InputKind::DF, lags),
+            dfdyn::tests::row_family(tools::InputKind::DFW, lags),
+            dfdyn::tests::row_family(tools::InputKind::DFSR, lags),
+            dfdyn::tests::row_family(tools::InputKind::DFR, lags, 4, spread().pooled_factor())};
         return tools::lag_input(data.positions, rows, spread(),
                                 std::move(families[static_cast<std::size_t>(kind)]));
     }

@@ -3,6 +3,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/tools/support/row_family.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tests/tools/training/numerics.hpp"
 #include "tools/training/data/input_map.hpp"
@@ -41,15 +42,16 @@ struct Problem {
 
     static std::unique_ptr<tools::RowFamily> family(const std::string& kind, const tools::LagSpread& spread) {
         if (kind == "DF") {
-            return tools::identity_rows(lags);
+            return dfdyn::tests::row_family(tools::InputKind::DF, lags);
         }
         if (kind == "DFW") {
-            return tools::diagonal_rows(lags);
+            return dfdyn::tests::row_family(tools::InputKind::DFW, lags);
         }
         if (kind == "DFSR") {
-            return tools::structured_rows(lags);
+            return dfdyn::tests::row_family(tools::InputKind::DFSR, lags);
         }
-        return tools::free_rows(lags, kind.back() - '0', spread.pooled_factor());
+        return dfdyn::tests::row_family(tools::InputKind::DFR, lags, kind.back() - '0',
+                                        spread.pooled_factor());
     }
 };
 

@@ -3,9 +3,10 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/tools/support/row_family.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tests/tools/training/numerics.hpp"
-#include "tools/training/data/derivative_rows.hpp"
+#include "tools/model/inputs/derivative_rows.hpp"
 
 #include <cmath>
 
@@ -55,10 +56,11 @@ TEST_CASE("the rows of DFR start in physical units") {
     tools::TrainingData data = dfdyn::tests::arm_data(400, 2, 1, random);
     const tools::RowList all = dfdyn::tests::rows_between(lags, 400);
     const MatrixXd pooled = tools::LagSpread(data.positions, all, lags).pooled_factor();
-    const auto family = tools::free_rows(lags, 3, pooled);
+    const auto family = dfdyn::tests::row_family(tools::InputKind::DFR, lags, 3, pooled);
     const auto motion = tools::lag_motion(
         data.positions, all, lags,
-        tools::scaled_motion(tools::free_rows(lags, 3, pooled), lags, data.sample_period_s, pooled));
+        tools::scaled_motion(dfdyn::tests::row_family(tools::InputKind::DFR, lags, 3, pooled), lags,
+                             data.sample_period_s, pooled));
     const VectorXd input = family->start(0, random);
     VectorXd parameters(input.size() + 2);
     parameters << input, motion->start(input);
@@ -88,7 +90,8 @@ TEST_CASE("the pull back of every motion equals finite differences") {
     } else if (kind == 2) {
         motion_rows = tools::difference_motion(lags, period, 3, true);
     } else {
-        motion_rows = tools::scaled_motion(tools::free_rows(lags, 4, pooled), lags, period, pooled);
+        motion_rows = tools::scaled_motion(dfdyn::tests::row_family(tools::InputKind::DFR, lags, 4, pooled),
+                                           lags, period, pooled);
         inputs = 3 * (lags + 1);
     }
     const auto motion = tools::lag_motion(data.positions, rows, lags, std::move(motion_rows));

@@ -6,6 +6,7 @@
 #include "tools/training/search/minimise.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/tools/support/row_family.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tests/tools/training/numerics.hpp"
 #include "tools/training/likelihood/gaussian_kernel.hpp"
@@ -32,7 +33,8 @@ struct Draw {
         : random(seed), data(dfdyn::tests::arm_data(700, 2, 1, random)) {
         data.positions += 3e-3 * random.matrix(700, 2);
         const tools::LagSpread spread(data.positions, rows, lags);
-        input = structured ? tools::lag_input(data.positions, rows, spread, tools::structured_rows(lags))
+        input = structured ? tools::lag_input(data.positions, rows, spread,
+                                              dfdyn::tests::row_family(tools::InputKind::DFSR, lags))
                            : tools::derivative_input(data, rows, rows, spread, true);
     }
 

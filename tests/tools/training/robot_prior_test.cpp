@@ -6,6 +6,7 @@
 #include "tests/support/seed.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tests/tools/training/synthetic_physics.hpp"
+#include "tools/model/structure.hpp"
 
 namespace robot_prior_test {
 
@@ -51,7 +52,7 @@ struct Arm {
     tools::TrainingOptions options;
 
     Arm() {
-        options.model = tools::ModelClass::P;
+        options.model = &tools::structures::P;
         options.input = tools::InputKind::STD;
         options.lags = 5;
         options.likelihood_rows = 100;

@@ -4,6 +4,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/tools/support/row_family.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tools/training/data/input_map.hpp"
 #include "tools/training/start/random_features.hpp"
@@ -30,7 +31,8 @@ struct Problem {
 
     explicit Problem(double forgetting_factor) {
         const tools::LagSpread spread(data.positions, rows, lags);
-        const auto input = tools::lag_input(data.positions, rows, spread, tools::structured_rows(lags));
+        const auto input = tools::lag_input(data.positions, rows, spread,
+                                            dfdyn::tests::row_family(tools::InputKind::DFSR, lags));
         model.input = input->model(input->start(0, random));
         model.input.lags = lags;
         model.features = tools::draw_features(features, 6, true, 2, 1);

@@ -6,6 +6,7 @@
 #include "tests/tools/training/arm_data.hpp"
 #include "tests/tools/training/synthetic_physics.hpp"
 #include "tools/base/text/error.hpp"
+#include "tools/model/structure.hpp"
 #include "tools/training/data/input_map.hpp"
 #include "tools/training/data/lag_window.hpp"
 #include "tools/training/physics/physics_columns.hpp"
@@ -26,7 +27,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using tools::HyperMethod;
 using tools::InputKind;
-using tools::ModelClass;
+using tools::Structure;
+namespace structures = tools::structures;
 
 constexpr int lags = 5;
 
@@ -162,11 +164,11 @@ bool same(const tools::TrainingResult& a, const tools::TrainingResult& b) {
 }
 
 TEST_CASE("every model with every input predicts its training data from its stored numbers alone") {
-    const auto model = GENERATE(ModelClass::P, ModelClass::SP, ModelClass::SP2, ModelClass::SPK);
+    const auto model = GENERATE(&structures::P, &structures::SP, &structures::SP2, &structures::SPK);
     const auto input =
         GENERATE(InputKind::STD, InputKind::DF, InputKind::DFW, InputKind::DFR, InputKind::DFSR);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
-    CAPTURE(static_cast<int>(model), static_cast<int>(input));
+    CAPTURE(model->name, static_cast<int>(input));
     Arm arm;
     arm.options.model = model;
     arm.options.input = input;
@@ -177,17 +179,17 @@ TEST_CASE("every model with every input predicts its training data from its stor
     CHECK(p == 6);
     CHECK(physics.column_scale.minCoeff() > 0);
     CHECK(physics.motion_rows.rows() == (input == InputKind::STD ? 0 : 3));
-    const bool learned = model == ModelClass::P || model == ModelClass::SPK;
+    const bool learned = model == &structures::P || model == &structures::SPK;
     CHECK(physics.start.diagonal.size() == (learned ? p : 0));
-    CHECK(physics.start.coupling.size() == (model == ModelClass::SPK ? 2 : 0));
+    CHECK(physics.start.coupling.size() == (model == &structures::SPK ? 2 : 0));
     CHECK((physics.prior_variance > 0) == learned);
-    CHECK(result.model.start.weights.size() == (model == ModelClass::P ? 0 : 2 * 120));
+    CHECK(result.model.start.weights.size() == (model == &structures::P ? 0 : 2 * 120));
     CHECK(result.model.outputs.offset == std::vector<double>{0, 0});
     const tools::RowList rows = dfdyn::tests::rows_between(lags, 500);
     const double error =
         relative_error(predictions(arm, result, arm.data, rows), arm.data.outputs(rows, Eigen::all));
-    CHECK(error < (model == ModelClass::P ? 0.5 : 0.1));
-    if (model == ModelClass::P) {
+    CHECK(error < (model == &structures::P ? 0.5 : 0.1));
+    if (model == &structures::P) {
         CHECK(error > 0.02); // the model has no friction
     }
 }
@@ -204,8 +206,9 @@ TEST_CASE("physics lets the models predict motions beyond their training data") 
     const double nonparametric =
         relative_error(predictions(arm, tools::train(arm.data, arm.options), beyond, rows), truth);
     CHECK(nonparametric > 0.3); // the training data contain nothing similar
-    for (const auto model : {ModelClass::P, ModelClass::SP, ModelClass::SP2, ModelClass::SPK}) {
-        CAPTURE(static_cast<int>(model));
+    for (const Structure* const model :
+         {&structures::P, &structures::SP, &structures::SP2, &structures::SPK}) {
+        CAPTURE(model->name);
         arm.options.model = model;
         const auto result = tools::train(arm.data, arm.options);
         CHECK(relative_error(predictions(arm, result, beyond, rows), truth) < 0.5 * nonparametric);
@@ -213,10 +216,10 @@ TEST_CASE("physics lets the models predict motions beyond their training data") 
 }
 
 TEST_CASE("physical parameters are correct if the physics is") {
-    const auto model = GENERATE(ModelClass::SP, ModelClass::SPK);
+    const auto model = GENERATE(&structures::SP, &structures::SPK);
     const auto prior = GENERATE(tools::PriorForm::scaled, tools::PriorForm::unit, tools::PriorForm::diagonal);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
-    CAPTURE(static_cast<int>(model), static_cast<int>(prior));
+    CAPTURE(model->name, static_cast<int>(prior));
     Arm arm;
     arm.options.model = model;
     arm.options.input = InputKind::STD;
@@ -227,16 +230,16 @@ TEST_CASE("physical parameters are correct if the physics is") {
     if (prior == tools::PriorForm::unit) {
         CHECK(result.physics->column_scale == VectorXd::Ones(6));
     }
-    if (prior == tools::PriorForm::diagonal && model == ModelClass::SPK) {
+    if (prior == tools::PriorForm::diagonal && model == &structures::SPK) {
         CHECK(result.physics->prior_variance == 1);
     }
 }
 
 TEST_CASE("a column of rounding errors never becomes a parameter") {
-    const auto model = GENERATE(ModelClass::P, ModelClass::SP, ModelClass::SP2, ModelClass::SPK);
+    const auto model = GENERATE(&structures::P, &structures::SP, &structures::SP2, &structures::SPK);
     const auto prior = GENERATE(tools::PriorForm::scaled, tools::PriorForm::unit, tools::PriorForm::diagonal);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
-    CAPTURE(static_cast<int>(model), static_cast<int>(prior));
+    CAPTURE(model->name, static_cast<int>(prior));
     Arm arm;
     const WithRoundingColumn regressor(arm.regressor);
     arm.options.physics.regressor = &regressor;
@@ -250,10 +253,10 @@ TEST_CASE("a column of rounding errors never becomes a parameter") {
 }
 
 TEST_CASE("the prior deviation of a parameter is at most the size that a machine can have") {
-    const auto model = GENERATE(ModelClass::P, ModelClass::SPK);
+    const auto model = GENERATE(&structures::P, &structures::SPK);
     const auto prior = GENERATE(tools::PriorForm::scaled, tools::PriorForm::unit, tools::PriorForm::diagonal);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
-    CAPTURE(static_cast<int>(model), static_cast<int>(prior));
+    CAPTURE(model->name, static_cast<int>(prior));
     Arm arm;
     arm.options.model = model;
     arm.options.input = InputKind::STD;
@@ -275,7 +278,7 @@ TEST_CASE("the prior deviation of a parameter is at most the size that a machine
 
 TEST_CASE("the columns of the physics are of order one in units of the noise") {
     Arm arm;
-    arm.options.model = ModelClass::SPK;
+    arm.options.model = &structures::SPK;
     arm.options.input = InputKind::STD;
     const tools::TrainingResult result = tools::train(arm.data, arm.options);
     const MatrixXd columns =
@@ -290,7 +293,7 @@ TEST_CASE("the columns of the physics are of order one in units of the noise") {
 }
 
 TEST_CASE("the physics of DFR can have its own filters") {
-    const auto model = GENERATE(ModelClass::SP2, ModelClass::SPK);
+    const auto model = GENERATE(&structures::SP2, &structures::SPK);
     Arm arm;
     arm.options.model = model;
     arm.options.physics.own_motion = true;
@@ -307,7 +310,7 @@ TEST_CASE("the physics of DFR can have its own filters") {
 
 TEST_CASE("SP2 uses given parameters") {
     Arm arm;
-    arm.options.model = ModelClass::SP2;
+    arm.options.model = &structures::SP2;
     arm.options.hyper = GENERATE(HyperMethod::ML, HyperMethod::CV);
     arm.options.input = InputKind::STD;
     arm.options.physics.given = arm.truth;
@@ -319,10 +322,10 @@ TEST_CASE("SP2 uses given parameters") {
 
 TEST_CASE("the likelihood of DFR is at least that of DFSR") {
     // Without filters of its own, the prior of SPK has different units for the two inputs.
-    const auto [model, own_motion] = GENERATE(
-        table<ModelClass, bool>({{ModelClass::NP, true}, {ModelClass::SPK, true}, {ModelClass::SP, false}}));
+    const auto [model, own_motion] = GENERATE(table<const Structure*, bool>(
+        {{&structures::NP, true}, {&structures::SPK, true}, {&structures::SP, false}}));
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
-    CAPTURE(static_cast<int>(model), own_motion);
+    CAPTURE(model->name, own_motion);
     Arm arm;
     arm.options.model = model;
     arm.options.physics.own_motion = own_motion;
@@ -336,10 +339,10 @@ TEST_CASE("the likelihood of DFR is at least that of DFSR") {
 }
 
 TEST_CASE("cross validation fills the model and reports its grid") {
-    const auto model = GENERATE(ModelClass::NP, ModelClass::P, ModelClass::SP2);
+    const Structure* const model = GENERATE(&structures::NP, &structures::P, &structures::SP2);
     const auto input = GENERATE(InputKind::STD, InputKind::DF, InputKind::DFSR);
     INFO("DFDYN_TEST_SEED=" << dfdyn::tests::seed());
-    CAPTURE(static_cast<int>(model), static_cast<int>(input));
+    CAPTURE(model->name, static_cast<int>(input));
     Arm arm;
     arm.options.model = model;
     arm.options.hyper = HyperMethod::CV;
@@ -349,13 +352,13 @@ TEST_CASE("cross validation fills the model and reports its grid") {
     const auto best = std::min_element(result.hold_out.begin(), result.hold_out.end(),
                                        [](const auto& a, const auto& b) { return a.error < b.error; });
     REQUIRE(best != result.hold_out.end());
-    if (model == ModelClass::P) {
+    if (model == &structures::P) {
         CHECK(result.physics->prior_variance > 0);
     } else {
         CHECK(result.model.features.length_scale == Approx(best->length_scale));
         CHECK(result.model.outputs.prior_variance == Approx(1 / best->noise_ratio));
     }
-    if (model != ModelClass::NP) {
+    if (model != &structures::NP) {
         const tools::RowList rows = dfdyn::tests::rows_between(lags, 500);
         CHECK(relative_error(predictions(arm, result, arm.data, rows), arm.data.outputs(rows, Eigen::all)) <
               0.5);
@@ -398,8 +401,8 @@ TEST_CASE("cross validation selects the point with the smallest hold-out error")
 }
 
 TEST_CASE("training with physics is deterministic for any number of threads") {
-    const auto model = GENERATE(ModelClass::P, ModelClass::SP, ModelClass::SP2, ModelClass::SPK);
-    CAPTURE(static_cast<int>(model));
+    const auto model = GENERATE(&structures::P, &structures::SP, &structures::SP2, &structures::SPK);
+    CAPTURE(model->name);
     Arm arm;
     arm.options.model = model;
     const tools::TrainingResult first = tools::train(arm.data, arm.options);
@@ -409,7 +412,7 @@ TEST_CASE("training with physics is deterministic for any number of threads") {
 
 TEST_CASE("inconsistent options are rejected") {
     Arm arm;
-    arm.options.model = ModelClass::SPK;
+    arm.options.model = &structures::SPK;
     SECTION("no robot") {
         arm.options.physics.regressor = nullptr;
         CHECK(arm.message() == "training options: expected a robot's physics for model SPK, found none");
@@ -428,14 +431,14 @@ TEST_CASE("inconsistent options are rejected") {
         arm.options.hyper = HyperMethod::CV;
         CHECK(arm.message() ==
               "training options: expected model NP, P or SP2 for cross validation, found SPK");
-        arm.options.model = ModelClass::P;
+        arm.options.model = &structures::P;
         CHECK(arm.message() ==
               "training options: expected input STD, DF or DFSR for cross validation, found DFR");
     }
     SECTION("given parameters") {
         arm.options.physics.given = VectorXd::Zero(6);
         CHECK(arm.message() == "training options: expected model SP2 for given parameters, found SPK");
-        arm.options.model = ModelClass::SP2;
+        arm.options.model = &structures::SP2;
         arm.options.physics.given = VectorXd::Zero(5);
         CHECK(arm.message() == "training options: expected 6 finite physical parameters, found 5");
     }
@@ -453,7 +456,7 @@ TEST_CASE("inconsistent options are rejected") {
 
 TEST_CASE("outputs whose squares overflow leave no start with a finite likelihood") {
     Arm arm;
-    arm.options.model = GENERATE(ModelClass::P, ModelClass::SP, ModelClass::SPK);
+    arm.options.model = GENERATE(&structures::P, &structures::SP, &structures::SPK);
     arm.data.outputs *= 1e200;
     CHECK(arm.message() ==
           "training: expected a finite likelihood from at least one of 2 starts, found none");

@@ -3,6 +3,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/training/arm_data.hpp"
 #include "tests/tools/training/synthetic_physics.hpp"
+#include "tools/model/structure.hpp"
 #include "tools/training/train.hpp"
 
 #include <chrono>
@@ -10,7 +11,7 @@
 namespace tools = dfdyn::tools;
 
 TEST_CASE("a thousand samples of six outputs train in two minutes on two threads", "[.long]") {
-    const auto model = GENERATE(tools::ModelClass::NP, tools::ModelClass::SPK);
+    const auto model = GENERATE(&tools::structures::NP, &tools::structures::SPK);
     tools::NormalSource random(1);
     const tools::TrainingData data = dfdyn::tests::arm_data(3000, 6, 6, random);
     const dfdyn::tests::SyntheticRegressor regressor(6, 6, 40, random);

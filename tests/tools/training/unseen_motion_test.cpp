@@ -6,6 +6,7 @@
 #include "tests/tools/robot/arms.hpp"
 #include "tools/base/recording/recording.hpp"
 #include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/structure.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -81,7 +82,7 @@ TEST_CASE("P predicts a motion of a real arm outside its training data within it
     const Recording learned = recording("Movement_No5_Acc_slow_no_disturbance.csv");
     const Recording unseen = recording("Movement_No9_Singularity_Free_NoDist.csv");
     ModelTraining training;
-    training.options.model = ModelClass::P;
+    training.options.model = &structures::P;
     training.options.likelihood_rows = 500;
     training.options.starts = 2;
     training.physics = physics();
@@ -104,13 +105,13 @@ TEST_CASE("a frozen combination is at most 5 % worse than its best member later 
     const Recording learned = recording(name, {0, 2200});
     const Recording later = recording(name, {2200});
     std::vector<TrainedModel> models;
-    for (const ModelClass structure : {ModelClass::NP, ModelClass::P, ModelClass::SPK}) {
+    for (const Structure* const structure : {&structures::NP, &structures::P, &structures::SPK}) {
         ModelTraining training;
         training.options.model = structure;
         training.options.likelihood_rows = 300;
         training.options.starts = 2;
         training.options.refinement_evaluations = 20;
-        if (structure != ModelClass::NP) {
+        if (structure != &structures::NP) {
             training.physics = physics();
         }
         models.push_back(trained(learned, training));

@@ -3,6 +3,7 @@
 
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
+#include "tools/model/inputs/input_description.hpp"
 #include "tools/training/data/lag_spacing.hpp"
 
 #include <algorithm>
@@ -68,7 +69,8 @@ void ClockOptions::add_to(CLI::App& command) {
 }
 
 void ClockOptions::apply(TrainingOptions& training, double period_s) const {
-    const bool contiguous = training.input == InputKind::STD || training.hyper == HyperMethod::CV;
+    const bool contiguous =
+        input_description(training.input).uses_derivatives() || training.hyper == HyperMethod::CV;
     const LagSpacing chosen = spacing(*this, contiguous, period_s);
     training.lags = chosen.lags;
     training.every = chosen.every;

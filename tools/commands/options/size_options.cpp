@@ -4,6 +4,7 @@
 #include "tools/base/system/progress.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/model/file/model_file.hpp"
+#include "tools/model/structure.hpp"
 
 #include <algorithm>
 #include <iostream>
@@ -81,7 +82,7 @@ ModelTrainingResult train_within(const SizeOptions& sizes, const FreeSizes& free
         }
         // With all rows, the physics may have more parameters than with the first 70 %.
         const int fewer = free.features ? next_smaller_features(training.options.feature_count) : 0;
-        if (fewer == 0 || !has_features(result.model.structure)) {
+        if (fewer == 0 || !structure_of(result.model).features) {
             throw InputError("the budget (--flash, --ram, --tick-operations): expected room for " +
                              to_text(needs) + ", found " + to_text(budget));
         }

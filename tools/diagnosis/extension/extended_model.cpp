@@ -4,11 +4,12 @@
 #include "tools/base/numerics/to_vector.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/model/chain_model.hpp"
+#include "tools/model/inputs/derivative_rows.hpp"
+#include "tools/model/structure.hpp"
 #include "tools/replay/contradiction.hpp"
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/robot/identification/base_parameters.hpp"
 #include "tools/robot/regressor.hpp"
-#include "tools/training/data/derivative_rows.hpp"
 #include "tools/training/data/recorded_data.hpp"
 #include "tools/training/data/stored_motion.hpp"
 #include "tools/training/physics/robot_regressor.hpp"
@@ -208,7 +209,7 @@ TrainedModel extended_model(const Extension& extension, std::span<const Recordin
     const RowList rows = usable_rows(data.gap_before, physics.motion.lags);
     const VectorXd noise = mean_square(prediction.error(physics.motion, rows)).cwiseSqrt();
     TrainedModel model;
-    model.structure = "P";
+    model.structure = structures::P.name;
     model.joints = static_cast<int>(data.positions.cols());
     model.sample_period_s = data.sample_period_s;
     model.physics = std::move(physics);

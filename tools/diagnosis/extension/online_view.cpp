@@ -7,6 +7,7 @@
 #include "tools/diagnosis/extension/extended_model.hpp"
 #include "tools/diagnosis/extension/joined_recording.hpp"
 #include "tools/model/effects.hpp"
+#include "tools/model/structure.hpp"
 #include "tools/replay/contradiction.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/training/model_training.hpp"
@@ -40,9 +41,9 @@ OnlineError error_of(std::string learner, const TrainedModel& model, const Recor
 }
 
 /// Fits hyperparameters with few evaluations, because the table only compares learners.
-ModelTraining quick_training(ModelClass structure) {
+ModelTraining quick_training(const Structure& structure) {
     ModelTraining training;
-    training.options.model = structure;
+    training.options.model = &structure;
     training.options.input = InputKind::DFR;
     training.options.physics.own_motion = true;
     training.options.feature_count = 100;
@@ -86,8 +87,8 @@ void add_feature_learners(OnlineView& view, const DiagnosisWork& work, const Ext
     const auto add = [&](std::string learner, const ModelTraining& training) {
         view.learners.push_back(trained_error(std::move(learner), training, outputs, recordings, joined));
     };
-    add("NP: random features alone", quick_training(ModelClass::NP));
-    ModelTraining kernel = quick_training(ModelClass::SPK);
+    add("NP: random features alone", quick_training(structures::NP));
+    ModelTraining kernel = quick_training(structures::SPK);
     kernel.physics = physics_of(work, {});
     add("SPK: the rigid body and random features", kernel);
     std::vector<std::string> names = trainable_names(extension);

@@ -3,6 +3,7 @@
 
 #include "tools/base/recording/recording.hpp"
 #include "tools/model/model.hpp"
+#include "tools/model/structure.hpp"
 
 #include <array>
 #include <cstdint>
@@ -19,7 +20,7 @@ struct Case {
     std::string name;                 ///< unique in its plan, e.g. NP-ML-DFR
     std::vector<std::string> members; ///< cases to combine; the other fields are then unused
     std::string suffix;               ///< suffix of the name, from the plan; empty: a case of the paper
-    std::string model = "NP";         ///< P, NP, SP, SP2, SPK
+    std::string model = structures::NP.name;
     InputKind input = InputKind::DFR;
     std::string hyper = "ML";           ///< ML, CV
     std::string physics_input = "same"; ///< input of the physics: that of the features, or separate filters

@@ -4,7 +4,8 @@
 #include "tools/base/text/text.hpp"
 #include "tools/experiment/plan/plan_names.hpp"
 #include "tools/model/effects.hpp"
-#include "tools/model/file/model_file.hpp"
+#include "tools/model/inputs/input_description.hpp"
+#include "tools/model/structure.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +14,6 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr std::array<std::string_view, 5> model_names{"P", "NP", "SP", "SP2", "SPK"};
 constexpr std::array<std::string_view, 2> hypers{"ML", "CV"};
 constexpr std::array<std::string_view, 2> physics_inputs{"same", "own"};
 constexpr std::array<std::string_view, 3> priors{"scaled", "unit", "diagonal"};
@@ -36,6 +36,13 @@ std::string one_of(const JsonReader& entry, const std::string& name, const std::
     return text;
 }
 
+std::string model_of(const JsonReader& entry, const std::string& text) {
+    if (find_structure(text) == nullptr) {
+        throw entry.error("model", "one of " + listed(structure_names()), in_quotes(text));
+    }
+    return text;
+}
+
 std::vector<std::string> names_or(const JsonReader& entry, const std::string& name,
                                   const std::string& fallback) {
     return entry.has(name) ? names_in(entry, name) : std::vector{fallback};
@@ -53,7 +60,7 @@ InputKind input_of(const JsonReader& entry, const std::string& text) {
     try {
         return parse_input_kind(text);
     } catch (const InputError&) {
-        throw entry.error("input", "one of STD, DF, DFW, DFR, DFSR", in_quotes(text));
+        throw entry.error("input", "one of " + input_names(", "), in_quotes(text));
     }
 }
 
@@ -104,7 +111,7 @@ Case combination_of(const JsonReader& entry) {
 }
 
 std::string case_name(const JsonReader& entry, const Case& one) {
-    std::string name = one.model + "-" + one.hyper + "-" + to_string(one.input);
+    std::string name = one.model + "-" + one.hyper + "-" + input_description(one.input).name;
     if (entry.has("rows_per_joint") && entry.is_array("rows_per_joint")) {
         name += "-k" + std::to_string(one.rows_per_joint);
     }
@@ -133,10 +140,11 @@ std::vector<Case> expand_cases(const JsonReader& entry, const Case& defaults) {
     one.suffix = entry.has("suffix") ? plain_name(entry, "suffix") : "";
     std::vector<Case> cases;
     for (const std::string& model : names_or(entry, "model", defaults.model)) {
-        one.model = one_of(entry, "model", model, model_names);
+        one.model = model_of(entry, model);
         for (const std::string& hyper : names_or(entry, "hyper", defaults.hyper)) {
             one.hyper = one_of(entry, "hyper", hyper, hypers);
-            for (const std::string& input : names_or(entry, "input", to_string(defaults.input))) {
+            for (const std::string& input :
+                 names_or(entry, "input", std::string(input_description(defaults.input).name))) {
                 one.input = input_of(entry, input);
                 for (const int rows : rows_per_joint(entry, defaults.rows_per_joint)) {
                     one.rows_per_joint = rows;

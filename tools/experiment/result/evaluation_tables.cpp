@@ -109,7 +109,7 @@ std::string error_note(const Plan& plan, std::span<const UnitResult> units, std:
         return share > 0 ? one.name + " " + formatted("%.3g", 100 * share) + " %" : std::string();
     });
     const std::string same = list_of_cases(plan, units, [](const Case& one, const Draws&) {
-        return one.model == "P" ? one.name : std::string();
+        return !structure(one.model).features ? one.name : std::string();
     });
     std::string note =
         "Times of all draws and subsets together; its draws: the middle half of the draws, each "

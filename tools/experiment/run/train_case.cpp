@@ -2,6 +2,7 @@
 #include "tools/experiment/run/train_case.hpp"
 
 #include "tools/model/file/model_file.hpp"
+#include "tools/model/structure.hpp"
 #include "tools/robot/urdf/read_robot.hpp"
 #include "tools/training/model_training.hpp"
 #include "tools/training/start/random_features.hpp"
@@ -20,7 +21,7 @@ constexpr std::uint64_t search_seed = 1;
 ModelTraining training_of(const Case& one, const RobotChoice& robot, int threads) {
     ModelTraining training;
     TrainingOptions& options = training.options;
-    options.model = parse_model_class(one.model);
+    options.model = &structure(one.model);
     options.hyper = parse_hyper_method(one.hyper);
     options.input = one.input;
     options.lags = one.lags;
@@ -38,7 +39,7 @@ ModelTraining training_of(const Case& one, const RobotChoice& robot, int threads
     options.threads = threads;
     options.physics.own_motion = one.physics_input == "own";
     options.physics.prior = parse_prior_form(one.prior);
-    if (has_physics(one.model) && !robot.urdf.empty()) {
+    if (options.model->has_physics() && !robot.urdf.empty()) {
         training.physics.emplace();
         training.physics->robot = robot_of(robot);
         training.physics->effects = one.effects;
@@ -83,7 +84,7 @@ TrainedModel train_case(const Case& one, const CaseContext& context, std::uint64
         }
         model = *memory.tuned;
     }
-    if (has_features(model.structure)) {
+    if (structure_of(model).features) {
         model.features = draw_features(model.features.count, model.joints * model.input.rows_per_joint,
                                        model.features.orthogonal, model.features.length_scale, seed);
         restart_model(model, prepared);

@@ -5,6 +5,7 @@
 #include "tools/build_flags.hpp"
 #include "tools/experiment/plan/file_checksum.hpp"
 #include "tools/model/file/model_file.hpp"
+#include "tools/model/inputs/input_description.hpp"
 
 #include <fstream>
 
@@ -19,7 +20,7 @@ constexpr const char* unit_schema = "dfdyn.evaluated-unit/2";
 ordered_json case_json(const Case& one) {
     return {{"name", one.name},
             {"model", one.model},
-            {"input", to_string(one.input)},
+            {"input", input_description(one.input).name},
             {"hyper", one.hyper},
             {"physics_input", one.physics_input},
             {"effects", one.effects},

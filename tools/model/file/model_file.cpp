@@ -8,6 +8,7 @@
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/model/file/model_json.hpp"
+#include "tools/model/structure.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -30,8 +31,6 @@ constexpr int largest_feature_count = 5000;
 constexpr int largest_output_count = 64;
 constexpr double largest_parameter_variance_factor = 1e9;
 
-constexpr std::array<std::string_view, 5> structures{"NP", "P", "SP", "SP2", "SPK"};
-
 ordered_json features_to_json(const FeatureModel& features) {
     return {{"orthogonal", features.orthogonal},
             {"count", features.count},
@@ -40,9 +39,9 @@ ordered_json features_to_json(const FeatureModel& features) {
             {"omega", singles(features.omega)}};
 }
 
-ordered_json extrapolation_to_json(const ExtrapolationModel& extrapolation, const std::string& structure) {
+ordered_json extrapolation_to_json(const ExtrapolationModel& extrapolation, const Structure& structure) {
     ordered_json json{{"extra_noise", singles(extrapolation.extra_noise)}};
-    if (has_features(structure)) {
+    if (structure.features) {
         json["inverse_far_variance"] = single(extrapolation.inverse_far_variance);
         json["prior_variance"] = singles(extrapolation.prior_variance);
     }
@@ -69,7 +68,7 @@ ordered_json model_json(const TrainedModel& model) {
                       {"joints", model.joints},
                       {"sample_period_s", model.sample_period_s},
                       {"forgetting_factor", single(model.forgetting_factor)}};
-    if (has_features(model.structure)) {
+    if (structure_of(model).features) {
         json["input"] = input_to_json(model.input);
         json["features"] = features_to_json(model.features);
     }
@@ -88,9 +87,9 @@ ordered_json model_json(const TrainedModel& model) {
         json["limits"]["prediction"] = singles(model.limits.prediction);
     }
     if (model.extrapolation) {
-        json["extrapolation"] = extrapolation_to_json(*model.extrapolation, model.structure);
+        json["extrapolation"] = extrapolation_to_json(*model.extrapolation, structure_of(model));
     }
-    if (has_features(model.structure)) {
+    if (structure_of(model).features) {
         json["start"] = start_to_json(model.start);
     }
     json["training"] = training_to_json(model.training);
@@ -117,9 +116,9 @@ OutputModel read_outputs(const JsonReader& reader) {
     return outputs;
 }
 
-ExtrapolationModel read_extrapolation(const JsonReader& reader, int outputs, const std::string& structure) {
+ExtrapolationModel read_extrapolation(const JsonReader& reader, int outputs, const Structure& structure) {
     ExtrapolationModel extrapolation;
-    if (has_features(structure)) {
+    if (structure.features) {
         extrapolation.inverse_far_variance = reader.positive_number("inverse_far_variance");
     }
     extrapolation.extra_noise = reader.numbers("extra_noise", outputs);
@@ -129,10 +128,10 @@ ExtrapolationModel read_extrapolation(const JsonReader& reader, int outputs, con
         }
     }
     extrapolation.prior_variance.assign(static_cast<std::size_t>(outputs), 0);
-    if (has_features(structure)) {
+    if (structure.features) {
         extrapolation.prior_variance = reader.positive_numbers("prior_variance", outputs);
     }
-    if (learns_parameters(structure) && reader.has("parameter_variance_factor")) {
+    if (structure.learns_parameters() && reader.has("parameter_variance_factor")) {
         extrapolation.parameter_variance_factor =
             reader.number_within("parameter_variance_factor", 1, largest_parameter_variance_factor);
         extrapolation.output_variance = reader.positive_numbers("output_variance", outputs);
@@ -171,12 +170,12 @@ TrainedModel read_fields(const JsonReader& reader) {
     }
     TrainedModel model;
     model.structure = reader.text("structure");
-    if (!std::ranges::count(structures, model.structure)) {
-        throw reader.error("structure", "NP, P, SP, SP2 or SPK", in_quotes(model.structure));
+    if (find_structure(model.structure) == nullptr) {
+        throw reader.error("structure", "one of " + listed(structure_names()), in_quotes(model.structure));
     }
     model.joints = reader.whole_number("joints", 1, largest_joint_count);
     model.sample_period_s = reader.number_within("sample_period_s", 1e-6, 10);
-    if (has_features(model.structure)) {
+    if (structure_of(model).features) {
         model.input = read_input(reader.object("input"), model.joints);
         model.features = read_features(reader.object("features"), model.joints * model.input.rows_per_joint);
     }
@@ -184,14 +183,15 @@ TrainedModel read_fields(const JsonReader& reader) {
     const int outputs = static_cast<int>(model.outputs.names.size());
     model.limits = read_limits(reader.object("limits"), model.joints, outputs);
     double least = 0;
-    if (has_features(model.structure)) {
+    if (structure_of(model).features) {
         model.start = read_start(reader.object("start"), 2 * model.features.count, outputs);
         least = least_forgetting_factor(model.features.count);
     }
     if (reader.has("extrapolation")) {
-        model.extrapolation = read_extrapolation(reader.object("extrapolation"), outputs, model.structure);
+        model.extrapolation =
+            read_extrapolation(reader.object("extrapolation"), outputs, structure_of(model));
     }
-    if (has_physics(model.structure)) {
+    if (structure_of(model).has_physics()) {
         model.physics = read_physics(reader.object("physics"), model);
         least = std::max(least, 1 - 1 / static_cast<double>(model.physics->selected.size()));
     }
@@ -203,10 +203,6 @@ TrainedModel read_fields(const JsonReader& reader) {
 } // namespace
 
 double least_forgetting_factor(int feature_count) { return 1 - 1 / (2.0 * feature_count); }
-
-bool has_features(const std::string& structure) { return structure != "P"; }
-bool has_physics(const std::string& structure) { return structure != "NP"; }
-bool learns_parameters(const std::string& structure) { return structure == "P" || structure == "SPK"; }
 
 std::string model_to_json(const TrainedModel& model) { return model_json(model).dump() + "\n"; }
 

@@ -9,21 +9,9 @@
 
 namespace dfdyn::tools {
 
-/// Returns the name of an input as on the command line and in model.json.
-std::string to_string(InputKind kind);
-
-/// Returns the input with this name. Throws InputError with a list of the names for any other.
-InputKind parse_input_kind(const std::string& name);
-
 /// Returns the smallest forgetting factor of a model with d random features: a memory of one sample per
 /// column. With a shorter memory the weights would be undetermined.
 double least_forgetting_factor(int feature_count);
-
-/// Return whether a structure (NP, P, SP, SP2, SPK) has random features, and whether it has physics.
-bool has_features(const std::string& structure);
-bool has_physics(const std::string& structure);
-/// Returns whether the physics' parameters are learned: P, SPK.
-bool learns_parameters(const std::string& structure);
 
 /// Returns the text of a model.json (schema dfdyn.model/1). Numbers have single precision, as in the
 /// firmware; reading the text restores them bit for bit.

@@ -3,6 +3,7 @@
 #include "tools/model/effects.hpp"
 #include "tools/model/file/model_json.hpp"
 #include "tools/model/run_time/host_model.hpp"
+#include "tools/model/structure.hpp"
 
 #include <Eigen/LU>
 
@@ -213,13 +214,13 @@ PhysicsModel read_physics(const JsonReader& reader, const TrainedModel& model) {
     physics.parameter_names = reader.texts("parameter_names", columns);
     physics.column_scale = reader.positive_numbers("column_scale", columns);
     physics.output_gain = reader.positive_numbers("output_gain", outputs);
-    if (model.structure == "P" || model.structure == "SPK") {
+    if (structure_of(model).learns_parameters()) {
         physics.prior_variance = reader.positive_number("prior_variance");
         physics.start = read_start(reader.object("start"), columns, 1);
     } else {
         physics.start.weights = reader.numbers("parameters", columns);
     }
-    if (model.structure == "SPK") {
+    if (structure_of(model).coupled()) {
         physics.coupling = reader.numbers("coupling", outputs * columns * 2 * model.features.count);
     }
     if (reader.has("rigid_body")) {

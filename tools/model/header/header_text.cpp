@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/model/header/header_text.hpp"
 
+#include "tools/model/inputs/input_description.hpp"
 #include "tools/model/run_time/host_model.hpp"
 
 #include <array>
 #include <charconv>
-#include <stdexcept>
 
 namespace dfdyn::tools {
 
@@ -61,29 +61,16 @@ std::string type(const std::string& name, const std::vector<std::string>& argume
 }
 
 std::string input_type(const InputModel& input) {
-    const std::string lags = std::to_string(input.lags);
-    switch (input.kind) {
-    case InputKind::STD:
-        return input.derivatives == Derivatives::measured ? "dfdyn::StandardMeasured"
-                                                          : type("Standard", {lags});
-    case InputKind::DF:
-        return type("DerivativeFree", {lags});
-    case InputKind::DFW:
-        return type("DerivativeFreeWeighted", {lags});
-    case InputKind::DFR:
-        return type("DerivativeFreeReduced", {lags, std::to_string(input.rows_per_joint)});
-    case InputKind::DFSR:
-        return type("DerivativeFreeStructured", {lags});
-    }
-    throw std::logic_error("an input kind without a type");
+    return "dfdyn::" + input_description(input.kind).firmware_type(input);
 }
 
 std::string input_constants(const InputModel& input) {
+    const InputForm form = input_description(input.kind).form;
     std::string fields;
-    if (input.kind == InputKind::STD && input.derivatives == Derivatives::estimated) {
+    if (form == InputForm::derivatives && input.derivatives == Derivatives::estimated) {
         fields += ".position_noise_bound = " + literal(input.position_noise_bound) + ",\n        ";
     }
-    if (input.kind == InputKind::DFR || input.kind == InputKind::DFSR) {
+    if (form == InputForm::rows) {
         fields += ".rows = " + braced(firmware_rows(input)) + ",\n        ";
     }
     return "{" + fields + ".scale = " + braced(firmware_scale(input)) + "}";

@@ -5,6 +5,7 @@
 #include "tools/model/header/header_text.hpp"
 #include "tools/model/header/physics_header.hpp"
 #include "tools/model/run_time/host_model.hpp"
+#include "tools/model/structure.hpp"
 
 #include <array>
 #include <cctype>
@@ -38,17 +39,18 @@ std::string arm_type(const TrainedModel& model) {
                              : "dfdyn::JointTorques"});
 }
 
+std::string learned_type(const Structure& structure) { return type(structure.firmware_type, {"Physics"}); }
+
 std::string model_type(const TrainedModel& model) {
     const std::string arm = arm_type(model);
-    if (model.structure == "P") {
-        return type("Model",
-                    {"float", arm, "dfdyn::NoInput", "dfdyn::NoFeatures", "dfdyn::Parametric<Physics>"});
+    const Structure& structure = structure_of(model);
+    if (!structure.features) {
+        return type("Model", {"float", arm, "dfdyn::NoInput", "dfdyn::NoFeatures", learned_type(structure)});
     }
     std::vector<std::string> parts{"float", arm, input_type(model.input),
                                    type("RandomFourier", {std::to_string(model.features.count)})};
     if (model.physics) {
-        parts.emplace_back(model.structure == "SPK" ? "dfdyn::SemiparametricKernel<Physics>"
-                                                    : "dfdyn::SemiparametricMean<Physics>");
+        parts.push_back(learned_type(structure));
     }
     return type("Model", parts);
 }
@@ -72,11 +74,11 @@ std::string start_constant(const char* name, const StartModel& start, const std:
 
 std::string starts(const TrainedModel& model) {
     std::string result;
-    if (has_features(model.structure)) {
+    if (structure_of(model).features) {
         const std::vector<double> weights = firmware_weights(model);
         result += start_constant("start", model.start, weights, weights.size() / model.start.diagonal.size());
     }
-    if (model.structure == "P" || model.structure == "SPK") {
+    if (structure_of(model).learns_parameters()) {
         const StartModel& start = model.physics->start;
         result += start_constant("parameter_start", start, start.weights, 1);
     }
@@ -101,8 +103,8 @@ std::string learner_constants(const TrainedModel& model) {
     }
     const std::string parameters =
         learner(model.physics->prior_variance, model.forgetting_factor, "parameter_start");
-    return model.structure == "P" ? parameters
-                                  : "{.features = " + features() + ", .common = " + parameters + "}";
+    return !structure_of(model).features ? parameters
+                                         : "{.features = " + features() + ", .common = " + parameters + "}";
 }
 
 /// Returns the initializer of the prediction limits; empty if the model has none.
@@ -138,7 +140,7 @@ std::string to_identifier(const std::string& stem) {
 }
 
 std::string model_to_header(const TrainedModel& model, const std::string& name_space) {
-    const bool features = has_features(model.structure);
+    const bool features = structure_of(model).features;
     std::ostringstream header;
     header << "// Written by `dfdyn train`; do not edit. Outputs: "
            << comment(joined(model.outputs.names, " ")) << ".\n"

@@ -3,6 +3,7 @@
 
 #include "tools/model/run_time/combined_estimator.hpp"
 #include "tools/model/run_time/host_model.hpp"
+#include "tools/model/structure.hpp"
 
 #include <algorithm>
 
@@ -128,10 +129,10 @@ class EstimatorOf final : public HostEstimator {
 
 template <class Arm>
 std::unique_ptr<HostEstimator> make_with_physics(const TrainedModel& model, bool from_prior) {
-    if (model.structure == "P") {
+    if (!structure_of(model).features) {
         return std::make_unique<EstimatorOf<HostParametric<Arm>>>(model, from_prior);
     }
-    if (model.structure == "SPK") {
+    if (structure_of(model).coupled()) {
         return std::make_unique<EstimatorOf<HostKernel<Arm>>>(model, from_prior);
     }
     return std::make_unique<EstimatorOf<HostMean<Arm>>>(model, from_prior);

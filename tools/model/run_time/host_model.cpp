@@ -3,6 +3,8 @@
 
 #include "tools/model/effects.hpp"
 #include "tools/model/file/model_file.hpp"
+#include "tools/model/inputs/input_description.hpp"
+#include "tools/model/structure.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -36,15 +38,14 @@ Placement<Scalar> placement(const ChainModel::Frame& frame) {
 template <class Scalar, int k>
 typename AnyInput<k>::template Constants<Scalar, dynamic> host_input(const InputModel& input) {
     auto scale = converted<Scalar>(firmware_scale(input));
-    switch (input.kind) {
-    case InputKind::STD:
+    switch (input_description(input.kind).form) {
+    case InputForm::derivatives:
         if (input.derivatives == Derivatives::measured) {
             return typename StandardMeasured::template Constants<Scalar, dynamic>{std::move(scale)};
         }
         return typename Standard<dynamic>::template Constants<Scalar, dynamic>{
             static_cast<Scalar>(input.position_noise_bound), std::move(scale)};
-    case InputKind::DF:
-    case InputKind::DFW:
+    case InputForm::window:
         return typename DerivativeFree<dynamic>::template Constants<Scalar, dynamic>{std::move(scale)};
     default:
         return typename DerivativeFreeReduced<dynamic, k>::template Constants<Scalar, dynamic>{
@@ -217,7 +218,7 @@ std::vector<double> prediction_limits(const TrainedModel& model) {
 
 std::vector<double> firmware_scale(const InputModel& input) {
     std::vector<double> scale = input.scale;
-    if (input.kind == InputKind::DFW) {
+    if (input_description(input.kind).weighted) {
         const auto lags = static_cast<std::size_t>(input.lags) + 1;
         for (std::size_t element = 0; element < scale.size(); ++element) {
             const std::size_t lag = element % lags;
@@ -248,7 +249,7 @@ std::vector<double> firmware_frequencies(const FeatureModel& features, int input
 }
 
 std::vector<double> firmware_weights(const TrainedModel& model) {
-    if (model.structure != "SPK") {
+    if (!structure_of(model).coupled()) {
         return model.start.weights;
     }
     const auto columns = 2 * static_cast<std::ptrdiff_t>(model.features.count);
@@ -269,13 +270,12 @@ int body_count(const ChainModel& chain) {
 }
 
 std::int64_t cost_of_input(const InputModel& input, int joints) {
-    switch (input.kind) {
-    case InputKind::STD:
+    switch (input_description(input.kind).form) {
+    case InputForm::derivatives:
         return input.derivatives == Derivatives::measured
                    ? StandardMeasured::Map<float, dynamic>::cost(joints, 0, 3)
                    : Standard<dynamic>::Map<float, dynamic>::cost(joints, input.lags, 3);
-    case InputKind::DF:
-    case InputKind::DFW:
+    case InputForm::window:
         return DerivativeFree<dynamic>::Map<float, dynamic>::cost(joints, input.lags, input.rows_per_joint);
     default:
         return DerivativeFreeReduced<dynamic, dynamic>::Map<float, dynamic>::cost(joints, input.lags,

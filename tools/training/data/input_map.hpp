@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/model/inputs/row_family.hpp"
 #include "tools/model/model.hpp"
-#include "tools/training/data/input_rows.hpp"
 #include "tools/training/data/lag_window.hpp"
 #include "tools/training/data/training_data.hpp"
 

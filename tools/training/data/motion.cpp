@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/training/data/motion.hpp"
 
-#include "tools/training/data/derivative_rows.hpp"
+#include "tools/model/inputs/derivative_rows.hpp"
 
 #include <cmath>
 #include <utility>

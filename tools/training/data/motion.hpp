@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/training/data/input_rows.hpp"
+#include "tools/model/inputs/row_family.hpp"
 #include "tools/training/data/lag_window.hpp"
 #include "tools/training/data/training_data.hpp"
 #include "tools/training/physics/regressor.hpp"

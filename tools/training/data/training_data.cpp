@@ -3,6 +3,7 @@
 
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
+#include "tools/model/inputs/input_description.hpp"
 
 #include <cmath>
 
@@ -54,7 +55,7 @@ void check_training_data(const TrainingData& data, InputKind kind) {
     check_count(data.output_names.size(), data.outputs.cols(), "output names");
     check_finite(data.positions, "position of joint");
     check_finite(data.outputs, "output");
-    if (kind != InputKind::STD) {
+    if (!input_description(kind).uses_derivatives()) {
         return;
     }
     check_shape(data.velocities, rows, joints, "velocities");

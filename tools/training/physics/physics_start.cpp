@@ -112,4 +112,9 @@ JointStart joint_start(const PhysicsProblem& problem, const ParameterPrior& prio
     return start;
 }
 
+JointStart physics_start(const Structure& structure, const PhysicsProblem& problem,
+                         const ParameterPrior& prior) {
+    return structure.fits_jointly() ? joint_start(problem, prior) : parametric_start(problem, prior);
+}
+
 } // namespace dfdyn::tools

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tools/model/model.hpp"
+#include "tools/model/structure.hpp"
 #include "tools/training/data/row_selection.hpp"
 #include "tools/training/data/training_data.hpp"
 #include "tools/training/physics/physics_columns.hpp"
@@ -56,5 +56,10 @@ JointStart residual_start(const PhysicsProblem& problem, const Eigen::VectorXd& 
 /// Returns the initial state of SPK in block-arrow form: the factor of Lambda_phi, common to all outputs, and
 /// the Schur complement of pi. Equal to the joint solution for all unknowns. O(N (2d)^2 + N m 2d p + (2d)^3).
 JointStart joint_start(const PhysicsProblem& problem, const ParameterPrior& prior);
+
+/// Returns joint_start() for a structure whose physics and features are fitted jointly, otherwise
+/// parametric_start().
+JointStart physics_start(const Structure& structure, const PhysicsProblem& problem,
+                         const ParameterPrior& prior);
 
 } // namespace dfdyn::tools

@@ -64,9 +64,8 @@ MatrixXd expressed_by(const TrainingSetup& setup, const ColumnChoice& choice, co
 double parameter_variance_factor(const TrainingSetup& setup) {
     // over all phases of the lags
     const double rows_per_s = setup.options.every / setup.data.sample_period_s;
-    const ModelClass model = setup.options.model;
-    const bool features = model == ModelClass::SPK || model == ModelClass::SP;
-    const double correlation_s = features ? residual_correlation_with_features_s : residual_correlation_s;
+    const double correlation_s =
+        setup.options.model->fits_jointly() ? residual_correlation_with_features_s : residual_correlation_s;
     return std::max(1.0, correlation_s * rows_per_s);
 }
 

@@ -2,6 +2,7 @@
 #include "tools/training/search/fit.hpp"
 
 #include "tools/base/text/error.hpp"
+#include "tools/model/inputs/input_description.hpp"
 #include "tools/training/likelihood/stacked.hpp"
 #include "tools/training/search/fit_problem.hpp"
 #include "tools/training/search/minimise.hpp"
@@ -33,11 +34,11 @@ const Minimum& best_of(const std::vector<Minimum>& minima) {
 
 /// Returns whether DFR starts from the result of DFSR.
 bool begins_structured(const TrainingOptions& options) {
-    return options.input == InputKind::DFR && options.lags >= 2 && options.rows_per_joint >= 2;
+    return input_description(options.input).starts_from && options.lags >= 2 && options.rows_per_joint >= 2;
 }
 
 PhysicsPrior prior_of(const TrainingOptions& options) {
-    if (options.model != ModelClass::P && options.model != ModelClass::SPK) {
+    if (!options.model->learns_parameters()) {
         return PhysicsPrior::none;
     }
     return options.physics.prior == PriorForm::diagonal ? PhysicsPrior::diagonal : PhysicsPrior::shared;
@@ -86,7 +87,8 @@ class Search {
 
   private:
     VectorXd structured_start() {
-        const FitProblem structured(setup_, InputKind::DFSR, setup_.rows.likelihood, model_);
+        const FitProblem structured(setup_, *input_description(setup_.options.input).starts_from,
+                                    setup_.rows.likelihood, model_);
         const auto minima = starts_.run(structured.exact(), structured.bounds(),
                                         {structured.start(0), structured.start(1)}, false);
         const Minimum& best = minima[1].value < minima[0].value ? minima[1] : minima[0];
@@ -125,24 +127,21 @@ FitModel model_to_fit(const TrainingSetup& setup, MultiStart& starts) {
     const TrainingOptions& options = setup.options;
     FitModel model;
     model.offset = output_offset(setup);
-    switch (options.model) {
-    case ModelClass::NP:
-        return model;
-    case ModelClass::SP2:
-        model.mean = options.physics.given ? given_physics(setup) : least_squares_physics(setup, starts);
-        return model;
-    case ModelClass::P:
+    if (!options.model->features) {
         return physics_alone(setup, prior_of(options));
-    default:
+    }
+    if (options.model->physics == PhysicsRole::fixed_first) {
+        model.mean = options.physics.given ? given_physics(setup) : least_squares_physics(setup, starts);
+    } else if (options.model->has_physics()) {
         model.columns = choose_columns(setup);
         model.prior = prior_of(options);
-        return model;
     }
+    return model;
 }
 
 int searches(const TrainingOptions& options) {
     const int once = options.starts + (begins_structured(options) ? structured_starts : 0);
-    return options.model == ModelClass::SP2 && !options.physics.given ? 2 * once : once;
+    return options.model->physics == PhysicsRole::fixed_first && !options.physics.given ? 2 * once : once;
 }
 
 TrainingRecord record_of(const std::vector<Minimum>& minima, const TrainingSetup& setup) {

@@ -76,7 +76,7 @@ TrainingRecord record_of(const TrainingSetup& setup, double minus_two_log_likeli
 FitModel kernel_model(const TrainingSetup& setup, const RowList& at) {
     FitModel model;
     model.offset = output_offset(setup);
-    if (setup.options.model == ModelClass::SP2) {
+    if (setup.options.model->physics == PhysicsRole::fixed_first) {
         model.mean = physics_over(setup, at);
     }
     return model;
@@ -137,8 +137,7 @@ Fit fit_parametric(const TrainingSetup& setup, const ProgressCallback& progress)
 } // namespace
 
 Fit fit_by_hold_out(const TrainingSetup& setup, const ProgressCallback& progress) {
-    return setup.options.model == ModelClass::P ? fit_parametric(setup, progress)
-                                                : fit_kernel(setup, progress);
+    return setup.options.model->features ? fit_kernel(setup, progress) : fit_parametric(setup, progress);
 }
 
 } // namespace dfdyn::tools

@@ -51,7 +51,7 @@ MatrixXd remaining_outputs(const TrainingSetup& setup, const FitModel& model, co
 }
 
 FitProblem::FitProblem(const TrainingSetup& setup, InputKind kind, const RowList& at, const FitModel& model)
-    : setup_(setup), kernel_(model.kernel), input_(setup.input(kind, at)),
+    : setup_(setup), kind_(kind), kernel_(model.kernel), input_(setup.input(kind, at)),
       physics_(model.columns ? setup.physics(kind, at, *model.columns) : nullptr),
       outputs_(output_likelihood(remaining_outputs(setup, model, at), physics_.get(), model.prior)) {
     if (kernel_) {
@@ -96,22 +96,22 @@ VectorXd FitProblem::start_from(const FitProblem& structured, const VectorXd& th
     const VectorXd from = structured.split(theta).input;
     VectorXd result = start(0);
     const Index inputs = input_->bounds().lower.size();
-    const VectorXd input =
-        free_parameters(structured_rows(setup_.options.lags)->evaluate(from), setup_.spread.pooled_factor(),
-                        result.segment(first_input(), inputs));
-    result << theta.head(first_input()), input, physics_from(structured.split(theta), input);
+    const VectorXd input = setup_.row_family(kind_)->parameters_of(
+        setup_.row_family(structured.kind_)->evaluate(from), result.segment(first_input(), inputs));
+    result << theta.head(first_input()), input, physics_from(structured, theta, input);
     return result;
 }
 
-VectorXd FitProblem::physics_from(const Hyperparameters& structured, const VectorXd& input) const {
+VectorXd FitProblem::physics_from(const FitProblem& structured, const VectorXd& theta,
+                                  const VectorXd& input) const {
+    const Hyperparameters from = structured.split(theta);
     if (physics_ == nullptr || setup_.options.physics.own_motion) {
-        return structured.physics;
+        return from.physics;
     }
-    const TrainingOptions& options = setup_.options;
-    const MatrixXd pooled = setup_.spread.pooled_factor();
-    const InputRows rows = free_rows(options.lags, options.rows_per_joint, pooled)->evaluate(input);
-    const MatrixXd wanted = setup_.motion_rows(InputKind::DFSR)->evaluate(structured.input);
-    return stacked(log_factors(rows.rows.middleRows(1, 2), wanted, pooled), structured.physics);
+    const InputRows rows = setup_.row_family(kind_)->evaluate(input);
+    const MatrixXd wanted = setup_.motion_rows(structured.kind_)->evaluate(from.input);
+    return stacked(log_factors(rows.rows.middleRows(1, 2), wanted, setup_.spread.pooled_factor()),
+                   from.physics);
 }
 
 Hyperparameters FitProblem::split(const VectorXd& theta) const {

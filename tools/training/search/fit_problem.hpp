@@ -41,21 +41,25 @@ class FitProblem {
     /// kernel.
     std::unique_ptr<Likelihood> running() const;
 
-    /// Returns the start of this DFR problem that is equivalent to `structured`, a DFSR problem, at `theta`.
-    /// If the physics uses rows of the input, the equivalence holds up to beta^M: the input's filters are the
-    /// paper's, and the physics' own ones are exact for ramps and parabolas (see difference_motion()).
+    /// Returns the start of this problem that is equivalent to `structured`, a problem of the input from
+    /// which this one's starts, at `theta`. If the physics uses rows of the input, the equivalence holds up
+    /// to beta^M: the input's filters are the paper's, and the physics' own ones are exact for ramps and
+    /// parabolas (see difference_motion()).
     Eigen::VectorXd start_from(const FitProblem& structured, const Eigen::VectorXd& theta) const;
 
     /// P: r = l = 0.
     Hyperparameters split(const Eigen::VectorXd& theta) const;
 
   private:
-    /// Returns the physics' parameters that are equivalent to DFSR's, for the input's parameters `input`.
-    Eigen::VectorXd physics_from(const Hyperparameters& structured, const Eigen::VectorXd& input) const;
+    /// Returns the physics' parameters that are equivalent to those of `structured` at `theta`, for the
+    /// input's parameters `input`.
+    Eigen::VectorXd physics_from(const FitProblem& structured, const Eigen::VectorXd& theta,
+                                 const Eigen::VectorXd& input) const;
 
     Eigen::Index first_input() const { return kernel_ ? kernel_parameters : 0; }
 
     const TrainingSetup& setup_;
+    InputKind kind_;
     bool kernel_;
     std::unique_ptr<InputMap> input_;
     std::unique_ptr<PhysicsColumns> physics_;

@@ -3,6 +3,7 @@
 
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
+#include "tools/model/inputs/input_description.hpp"
 #include "tools/training/likelihood/stacked.hpp"
 
 #include <cmath>
@@ -39,22 +40,15 @@ TrainingSetup::TrainingSetup(const TrainingData& training_data, const TrainingOp
     : data(training_data), options(training_options), rows(choose_rows(data, options)),
       spread(data.positions, rows.moving, options.lags) {}
 
+std::unique_ptr<RowFamily> TrainingSetup::row_family(InputKind kind) const {
+    return input_description(kind).rows({options.lags, options.rows_per_joint, spread.pooled_factor()});
+}
+
 std::unique_ptr<InputMap> TrainingSetup::input(InputKind kind, const RowList& at) const {
-    const auto lagged = [&](std::unique_ptr<RowFamily> family) {
-        return lag_input(data.positions, at, spread, std::move(family));
-    };
-    switch (kind) {
-    case InputKind::STD:
+    if (input_description(kind).uses_derivatives()) {
         return derivative_input(data, at, rows.moving, spread, options.relevance);
-    case InputKind::DF:
-        return lagged(identity_rows(options.lags));
-    case InputKind::DFW:
-        return lagged(diagonal_rows(options.lags));
-    case InputKind::DFSR:
-        return lagged(structured_rows(options.lags));
-    default:
-        return lagged(free_rows(options.lags, options.rows_per_joint, spread.pooled_factor()));
     }
+    return lag_input(data.positions, at, spread, row_family(kind));
 }
 
 std::unique_ptr<MotionRows> TrainingSetup::motion_rows(InputKind kind) const {
@@ -63,16 +57,13 @@ std::unique_ptr<MotionRows> TrainingSetup::motion_rows(InputKind kind) const {
         const Index inputs = input(kind, {rows.moving.front()})->bounds().lower.size();
         return difference_motion(options.lags, period, inputs, true);
     }
-    switch (kind) {
-    case InputKind::STD:
+    switch (input_description(kind).motion) {
+    case MotionSource::derivatives:
         return nullptr;
-    case InputKind::DFSR:
+    case MotionSource::own_filters:
         return difference_motion(options.lags, period, structured_betas, false);
-    case InputKind::DFR: {
-        const MatrixXd pooled = spread.pooled_factor();
-        return scaled_motion(free_rows(options.lags, options.rows_per_joint, pooled), options.lags, period,
-                             pooled);
-    }
+    case MotionSource::own_rows:
+        return scaled_motion(row_family(kind), options.lags, period, spread.pooled_factor());
     default:
         return polynomial_motion(options.lags, period);
     }
@@ -103,7 +94,7 @@ VectorXd output_deviations(const TrainingSetup& setup) {
 }
 
 VectorXd output_offset(const TrainingSetup& setup) {
-    if (setup.options.model != ModelClass::NP || !setup.options.centred) {
+    if (setup.options.model->has_physics() || !setup.options.centred) {
         return VectorXd::Zero(setup.data.outputs.cols());
     }
     return setup.outputs(setup.rows.moving).colwise().mean().transpose();

@@ -34,6 +34,9 @@ struct TrainingSetup {
     /// Returns the input over the rows `at`, scaled over the rows in motion.
     std::unique_ptr<InputMap> input(InputKind kind, const RowList& at) const;
 
+    /// Returns the rows of an input and their parameters. Not for inputs of derivatives.
+    std::unique_ptr<RowFamily> row_family(InputKind kind) const;
+
     /// Returns the motion input of the regressor over the rows `at`, for an input of this kind.
     std::unique_ptr<LearnedMotion> motion(InputKind kind, const RowList& at) const;
 

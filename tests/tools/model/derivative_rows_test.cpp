@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/data/derivative_rows.hpp"
+#include "tools/model/inputs/derivative_rows.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/training/data/input_rows.hpp"
+#include "tools/model/inputs/row_family.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/tools/support/row_family.hpp"
 #include "tests/tools/training/numerics.hpp"
-#include "tools/training/data/derivative_rows.hpp"
+#include "tools/model/inputs/derivative_rows.hpp"
 
 #include <cmath>
 
-namespace input_rows_test {
+namespace row_family_test {
 
 namespace tools = dfdyn::tools;
 using Eigen::MatrixXd;
@@ -25,7 +26,7 @@ MatrixXd pooled_factor(tools::NormalSource& random) {
 
 TEST_CASE("DF rows are the identity without parameters") {
     tools::NormalSource random(1);
-    const auto family = tools::identity_rows(lags);
+    const auto family = dfdyn::tests::row_family(tools::InputKind::DF, lags);
     CHECK(family->bounds().lower.size() == 0);
     const tools::InputRows rows = family->evaluate(family->start(0, random));
     CHECK(rows.rows == MatrixXd::Identity(lags + 1, lags + 1));
@@ -33,7 +34,7 @@ TEST_CASE("DF rows are the identity without parameters") {
 }
 
 TEST_CASE("DFW rows are a diagonal whose first gain is one") {
-    const auto family = tools::diagonal_rows(lags);
+    const auto family = dfdyn::tests::row_family(tools::InputKind::DFW, lags);
     const VectorXd parameters = VectorXd::LinSpaced(lags, -1, 1);
     const tools::InputRows rows = family->evaluate(parameters);
     CHECK(rows.rows == MatrixXd::Identity(lags + 1, lags + 1));
@@ -44,7 +45,7 @@ TEST_CASE("DFW rows are a diagonal whose first gain is one") {
 }
 
 TEST_CASE("DFSR rows are those of the paper with poles and gains in their ranges") {
-    const auto family = tools::structured_rows(lags);
+    const auto family = dfdyn::tests::row_family(tools::InputKind::DFSR, lags);
     const VectorXd parameters{{0.3, -0.7, 0, std::log(3)}};
     const tools::InputRows rows = family->evaluate(parameters);
     CHECK(rows.rows.row(0) == VectorXd::Unit(lags + 1, 0).transpose());
@@ -64,7 +65,7 @@ TEST_CASE("DFR rows have length one and the first is the position") {
     tools::NormalSource random(dfdyn::tests::seed());
     const int count = GENERATE(1, 2, 3, 5);
     const MatrixXd factor = pooled_factor(random);
-    const auto family = tools::free_rows(lags, count, factor);
+    const auto family = dfdyn::tests::row_family(tools::InputKind::DFR, lags, count, factor);
     const VectorXd parameters = random.matrix((count - 1) * (lags + 1), 1);
     const tools::InputRows rows = family->evaluate(parameters);
     CHECK(rows.rows.rows() == count);
@@ -82,7 +83,7 @@ TEST_CASE("DFR rows have length one and the first is the position") {
 TEST_CASE("DFR starts from differentiators of increasing order and then from perturbed ones") {
     tools::NormalSource random(7);
     const MatrixXd factor = pooled_factor(random);
-    const auto family = tools::free_rows(lags, 3, factor);
+    const auto family = dfdyn::tests::row_family(tools::InputKind::DFR, lags, 3, factor);
     VectorXd velocity(lags + 1); // windows of q = t and q = t^2 / 2, newest first
     VectorXd acceleration(lags + 1);
     for (int lag = 0; lag <= lags; ++lag) {
@@ -107,8 +108,10 @@ TEST_CASE("DFR starts from differentiators of increasing order and then from per
 TEST_CASE("all starts are within the bounds") {
     tools::NormalSource random(7);
     const MatrixXd factor = pooled_factor(random);
-    for (const auto& family : {tools::identity_rows(lags), tools::diagonal_rows(lags),
-                               tools::structured_rows(lags), tools::free_rows(lags, 6, factor)}) {
+    for (const auto& family : {dfdyn::tests::row_family(tools::InputKind::DF, lags),
+                               dfdyn::tests::row_family(tools::InputKind::DFW, lags),
+                               dfdyn::tests::row_family(tools::InputKind::DFSR, lags),
+                               dfdyn::tests::row_family(tools::InputKind::DFR, lags, 6, factor)}) {
         for (int index = 0; index < 8; ++index) {
             const VectorXd parameters = family->start(index, random);
             REQUIRE(parameters.size() == family->bounds().lower.size());
@@ -118,4 +121,4 @@ TEST_CASE("all starts are within the bounds") {
     }
 }
 
-} // namespace input_rows_test
+} // namespace row_family_test

@@ -60,32 +60,14 @@ class RowFamily {
     /// gain / (factor s).
     virtual Eigen::VectorXd stored_gain(const InputRows& rows) const = 0;
 
-    /// Sets the fields of this family only (DFSR: alpha and beta).
+    /// Returns the parameters that result in `rows` and their gains, up to the lengths of the rows; those of
+    /// further rows are taken from `others`. Families without free rows return `others`.
+    virtual Eigen::VectorXd parameters_of(const InputRows& /*rows*/, Eigen::VectorXd others) const {
+        return others;
+    }
+
+    /// Sets the fields of this family only, such as the poles of filters.
     virtual void describe(const Eigen::VectorXd& /*parameters*/, InputModel& /*model*/) const {}
 };
-
-/// DF: R = I, nothing to learn.
-std::unique_ptr<RowFamily> identity_rows(int lags);
-
-/// DFW: R = diag(1, r_1 … r_M), r_j > 0 (a sign would not change the kernel), learned as log r_j. The stored
-/// R is this diagonal.
-std::unique_ptr<RowFamily> diagonal_rows(int lags);
-
-/// DFR: R_0 = newest position; the other k-1 rows are free, with length 1. They are learned in the
-/// coordinates theta_j = T r_j of `pooled_factor` (see LagSpread); the length of theta_j is the gain. 1 <= k
-/// <= lags + 1.
-std::unique_ptr<RowFamily> free_rows(int lags, int count, const Eigen::MatrixXd& pooled_factor);
-
-/// Returns the parameters of free_rows() with the same `pooled_factor` that result in `rows` and their gains
-/// (up to the rows' lengths). Rows beyond those of `rows` have the parameters `others`.
-Eigen::VectorXd free_parameters(const InputRows& rows, const Eigen::MatrixXd& pooled_factor,
-                                Eigen::VectorXd others);
-
-/// DFSR: the position, velocity and acceleration rows of Section V-C of the paper, truncated after lag M.
-/// Learned: log alpha_1, log alpha_2, logit beta_1, logit beta_2. The stored R is that of the paper with
-/// these alphas. Its scale is 1 / standard deviation of the row with alpha = 1. Therefore alpha is the
-/// relevance of the input with unit standard deviation, instead of 1/T_s and 1/T_s^2, and the sample period
-/// is not needed. 2 <= lags.
-std::unique_ptr<RowFamily> structured_rows(int lags);
 
 } // namespace dfdyn::tools
