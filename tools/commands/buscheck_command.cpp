@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dfdyn/hal/replay_bus.hpp"
 #include "dfdyn/hal/socketcan_bus.hpp"
+#include "tools/base/system/atomic_file.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/can/check/bus_check.hpp"
+#include "tools/can/families/device_page.hpp"
 #include "tools/can/log/candump_log.hpp"
+#include "tools/can/recognition/recognised_bus.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/stop_signal.hpp"
 
@@ -20,19 +23,21 @@ namespace dfdyn::tools {
 namespace {
 
 struct BusCheckOptions {
-    std::filesystem::path bus, log;
+    std::filesystem::path bus, log, draft;
     std::string interface, log_interface;
     double duration_s = 10;
+    bool devices = false;
 };
 
 /// Checks all frames of a log, with the log's time stamps.
-void check_log(const BusCheckOptions& options, BusCheck& check) {
+void check_log(const BusCheckOptions& options, BusCheck& check, TrafficRecorder& recorder) {
     CandumpLog log(options.log, options.log_interface);
     hal::ReplayBus bus(log);
+    RecordedBus recorded(bus, recorder);
     std::array<hal::Frame, 1> room{};
     while (!bus.ended()) {
         bus.advance_to(bus.next_stamp_ns());
-        check.take(bus, room);
+        check.take(recorded, room);
     }
     log.check();
     warn_of_torn_line(log);
@@ -41,33 +46,62 @@ void check_log(const BusCheckOptions& options, BusCheck& check) {
     }
 }
 
-void check_interface(const BusCheckOptions& options, BusCheck& check) try {
+void check_interface(const BusCheckOptions& options, BusCheck& check, TrafficRecorder& recorder) try {
     hal::SocketCanBus bus({.interface = options.interface});
+    RecordedBus recorded(bus, recorder);
     const std::atomic<bool>& stop = stop_on_signals();
     std::array<hal::Frame, 64> room{};
     const std::int64_t end_ns = bus.now_ns() + std::llround(options.duration_s * 1e9);
     while (!stop && bus.now_ns() < end_ns) {
-        if (!check.take(bus, room)) {
+        if (!check.take(recorded, room)) {
             bus.wait(std::min<std::int64_t>(100'000'000, end_ns - bus.now_ns()));
         }
     }
     constexpr int drains_at_end = 16; // processes frames that wait for later ones
-    for (int drain = 0; drain < drains_at_end && check.take(bus, room); ++drain) {
+    for (int drain = 0; drain < drains_at_end && check.take(recorded, room); ++drain) {
     }
 } catch (const hal::BusError& error) {
     throw InputError(error.what());
 }
 
+void write_draft(const std::filesystem::path& path, const RecognisedBus& recognised) {
+    if (path.empty()) {
+        return;
+    }
+    if (!recognised.draft) {
+        throw InputError("buscheck: no draft for -o: " + recognised.draft_error);
+    }
+    write_file(path, recognised.draft->dump(2) + "\n");
+    std::cout << "  draft written to " << shown(path) << '\n';
+}
+
 int run(const BusCheckOptions& options) {
+    if (options.devices) {
+        std::cout << device_page();
+        return 0;
+    }
     if (options.log.empty() == options.interface.empty()) {
         throw InputError("buscheck: expected one of --can and --log, found " +
                          std::string(options.log.empty() ? "none" : "both"));
     }
+    if (!options.bus.empty() && !options.draft.empty()) {
+        throw InputError("buscheck: expected --bus or -o, which writes a draft of it, found both");
+    }
     BusCheck check(options.bus.empty() ? std::nullopt : std::optional(read_bus_description(options.bus)));
-    options.log.empty() ? check_interface(options, check) : check_log(options, check);
+    TrafficRecorder recorder;
+    options.log.empty() ? check_interface(options, check, recorder) : check_log(options, check, recorder);
     check.finish();
-    const std::vector<BusFinding> findings = bus_findings(check);
+    std::vector<BusFinding> findings = bus_findings(check);
+    std::optional<RecognisedBus> recognised;
+    if (options.bus.empty()) {
+        recognised = recognise_bus(recorder.frames());
+        std::ranges::copy(recognised->findings, std::back_inserter(findings));
+    }
     print_bus_check(std::cout, check, findings);
+    if (recognised) {
+        print_recognised_bus(std::cout, *recognised);
+        write_draft(options.draft, *recognised);
+    }
     return findings.empty() ? 0 : 1;
 }
 
@@ -78,9 +112,11 @@ void add_buscheck_command(CLI::App& app, Command& chosen) {
     CLI::App* command = app.add_subcommand(
         "buscheck", "Looks at a CAN bus, or a log of one: who sends, how steadily, what is wrong");
     command
-        ->add_option("--bus", options->bus,
-                     "What should be there: docs/reference/can.md. Without: counts, timing, losses and error "
-                     "frames only")
+        ->add_option(
+            "--bus", options->bus,
+            "What should be there: docs/reference/can.md. Without: recognises families, motors and rates")
+        ->type_name("B.json");
+    command->add_option("-o,--output", options->draft, "Without --bus: writes a draft of it")
         ->type_name("B.json");
     command->add_option("--can", options->interface, "Look there; nothing is sent")->type_name("IFACE");
     command->add_option("--log", options->log, "Or into a log of candump -L")->type_name("L.log");
@@ -90,8 +126,10 @@ void add_buscheck_command(CLI::App& app, Command& chosen) {
         ->check(CLI::Range(0.1, 1e6))
         ->capture_default_str()
         ->type_name("S");
+    command->add_flag("--devices", options->devices,
+                      "Prints what devices there are: docs/reference/devices.md");
     command->footer("Example:\n  dfdyn buscheck --can can0 --bus bus.json --duration 5\n"
-                    "  dfdyn buscheck --log run.log\n"
+                    "  dfdyn buscheck --log run.log -o bus.json\n"
                     "Exit status: 0 nothing is wrong, 1 there are findings, 2 bad usage or input.");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }

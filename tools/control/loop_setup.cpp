@@ -73,7 +73,7 @@ double bus_load(const BusDescription& bus) {
     }
     double bits = 0;
     for (const hal::Frame& frame : frames) {
-        bits += frame_bits(frame) * bus.joints.rate_hz;
+        bits += frame_bits(frame, bus.data_rate_ratio()) * bus.joints.rate_hz;
     }
     hal::Frame longest;
     longest.length = 8;

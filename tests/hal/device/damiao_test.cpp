@@ -77,7 +77,7 @@ TEST_CASE("a Damiao motor's feedback is big-endian with velocity and torque in n
     CHECK_FALSE(value.raw_zero);
     CHECK(value.effort_reason == Reason::ok);
     CHECK(value.effort == Approx(0xBCD / 4095.0 * 20 - 10).epsilon(1e-14));
-    CHECK(motor.velocity(frame) == Approx(0xA12 / 4095.0 * 60 - 30).epsilon(1e-14));
+    CHECK(motor.decode(frame).joint[0].velocity == Approx(0xA12 / 4095.0 * 60 - 30).epsilon(1e-14));
 }
 
 TEST_CASE("TMAX scales the torque of a feedback and PMAX its position") {
@@ -219,7 +219,7 @@ TEST_CASE("a simulated Damiao motor's codes equal those of the manufacturers' ex
         REQUIRE(std::abs(value_of(sent).effort - value_of(expected).effort) < 20.001 / 4095);
         REQUIRE(std::abs(value_of(sent).position_rad - values[0].position_rad) < 12.501 / 65535);
         REQUIRE(std::abs(value_of(sent).effort - values[0].effort) < 10.001 / 4095);
-        REQUIRE(std::abs(elbow().velocity(sent)) < 30.001 / 4095);
+        REQUIRE(std::abs(value_of(sent).velocity) < 30.001 / 4095);
     }
 }
 

@@ -128,7 +128,8 @@ TEST_CASE("an impossible bus description is rejected with field and expected val
         {"icub_arm_strain.json", "\"address\": 13", "\"address\": 13, \"calibration_set\": 16",
          "output.calibration_set: expected a whole number from 0 to 15, found \"16\""},
         {"icub_arm_strain.json", "\"bit_rate\"", "\"bitrate\"",
-         "field \"bitrate\": expected one of schema, bit_rate, sample_rate_hz, trigger, joints, output, "
+         "field \"bitrate\": expected one of schema, bit_rate, data_bit_rate, sample_rate_hz, trigger, "
+         "joints, output, "
          "found "
          "another"},
     }));
@@ -164,8 +165,13 @@ TEST_CASE("a Damiao motor's scale has no default if libraries disagree about it"
                EndsWith("joints.boards[1].feedback_id: expected this field, found none"));
     CHECK_THAT(
         refusal_of_damiao_arm(R"(, "motor": "DM4310")",
-                              R"(, {"motor_id": 2, "feedback_id": "0x11", "joint": 2, "motor": "DM4310"})"),
-        EndsWith("expected devices that do not share identifiers, found two that send 0x11"));
+                              R"(, {"motor_id": 1, "feedback_id": "0x11", "joint": 2, "motor": "DM4310"})"),
+        EndsWith(
+            "expected motors that differ in motor_id or feedback_id, found two with motor_id 1 on 0x11"));
+    CHECK_THAT(
+        refusal_of_damiao_arm(R"(, "motor": "DM4310")",
+                              R"(, {"motor_id": 2, "feedback_id": "0x1", "joint": 2, "motor": "DM4310"})"),
+        EndsWith("found answers on 0x1, which is motor_id 1"));
 }
 
 TEST_CASE("buscheck finds that a Damiao motor's velocities have another scale than its positions") {

@@ -8,14 +8,33 @@
 
 namespace dfdyn::tools {
 
-int frame_bits(const hal::Frame& frame) {
+namespace {
+
+/// ISO 11898-1: the part with the bit rate of arbitration, then that of the data, whose check sum has stuff
+/// bits at fixed places.
+double flexible_frame_bits(const hal::Frame& frame, double data_rate_ratio) {
+    const int arbitration = frame.extended ? 36 : 17;
+    const int end = 13;
+    const int check_sum = frame.length <= 16 ? 17 : 21;
+    const int payload = 5 + 8 * frame.length;
+    const int data = payload + payload / 4 + 4 + check_sum + (4 + check_sum) / 4 + 1;
+    const double ratio = frame.bit_rate_switch ? data_rate_ratio : 1;
+    return arbitration + arbitration / 4 + end + data / ratio;
+}
+
+} // namespace
+
+double frame_bits(const hal::Frame& frame, double data_rate_ratio) {
+    if (frame.fd) {
+        return flexible_frame_bits(frame, data_rate_ratio);
+    }
     const int stuffed_fields = (frame.extended ? 54 : 34) + 8 * frame.length;
     const int other_fields = 13;
     return stuffed_fields + other_fields + (stuffed_fields - 1) / 4;
 }
 
-BusWire::BusWire(double bit_rate, OnFrame on_frame)
-    : bit_rate_(bit_rate), on_frame_(std::move(on_frame)),
+BusWire::BusWire(double bit_rate, OnFrame on_frame, double data_rate_ratio)
+    : bit_rate_(bit_rate), data_rate_ratio_(data_rate_ratio), on_frame_(std::move(on_frame)),
       free_ns_(std::numeric_limits<std::int64_t>::min()) {}
 
 void BusWire::offer(const hal::Frame& frame, std::int64_t ready_ns) { waiting_.push_back({frame, ready_ns}); }
@@ -47,8 +66,8 @@ std::int64_t BusWire::send_all() {
 void BusWire::send(std::size_t index, std::int64_t begin_ns) {
     hal::Frame frame = waiting_[index].frame;
     waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(index));
-    const int bits = frame_bits(frame);
-    bits_ += static_cast<std::uint64_t>(bits);
+    const double bits = frame_bits(frame, data_rate_ratio_);
+    bits_ += bits;
     free_ns_ = begin_ns + std::llround(1e9 * bits / bit_rate_);
     frame.stamp_ns = free_ns_;
     on_frame_(frame);

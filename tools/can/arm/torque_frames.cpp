@@ -20,8 +20,11 @@ float joint_torque(const hal::Frame& frame, std::size_t second) {
 TorqueFrames::TorqueFrames(const BusDescription& description)
     : joints_(static_cast<std::size_t>(description.joint_count)) {
     for (const BusBoard& board : description.boards) {
-        if (board.board->torque_command(0)) {
-            drives_.push_back({board.board, static_cast<std::size_t>(board.joint[0])});
+        for (int half = 0; half < static_cast<int>(board.joint.size()); ++half) {
+            const int joint = board.joint[static_cast<std::size_t>(half)];
+            if (joint != hal::unused_joint && board.board->torque_command(half, 0)) {
+                drives_.push_back({board.board, half, static_cast<std::size_t>(joint)});
+            }
         }
     }
     own_frames_ = drives_.size() < joints_;
@@ -30,7 +33,7 @@ TorqueFrames::TorqueFrames(const BusDescription& description)
 std::span<const hal::Frame> TorqueFrames::encode(std::span<const double> torque) {
     frames_.clear();
     for (const Drive& drive : drives_) {
-        frames_.push_back(*drive.board->torque_command(torque[drive.joint]));
+        frames_.push_back(*drive.board->torque_command(drive.half, torque[drive.joint]));
     }
     for (std::size_t joint = 0; own_frames_ && joint < joints_; joint += 2) {
         hal::Frame frame;
@@ -47,7 +50,7 @@ std::span<const hal::Frame> TorqueFrames::encode(std::span<const double> torque)
 
 bool TorqueFrames::take(const hal::Frame& frame, std::span<double> torque) const {
     for (const Drive& drive : drives_) {
-        if (const std::optional<double> value = drive.board->commanded_torque(frame)) {
+        if (const std::optional<double> value = drive.board->commanded_torque(drive.half, frame)) {
             torque[drive.joint] = *value;
             return true;
         }

@@ -28,7 +28,8 @@ class TorqueFrames {
   private:
     struct Drive {
         AnyBoard board;
-        std::size_t joint;
+        int half;          ///< the board's joint, 0 or 1
+        std::size_t joint; ///< the arm's
     };
 
     std::size_t joints_;

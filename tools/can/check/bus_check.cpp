@@ -73,20 +73,23 @@ void BusCheck::expect(std::span<const hal::Frame> frames, double rate_hz) {
         stream.known = true;
         stream.length = frame.length;
         stream.expected_hz += rate_hz;
-        stream.expected_bits += rate_hz * frame_bits(frame);
+        stream.expected_bits += rate_hz * frame_bits(frame, description_->data_rate_ratio());
     }
 }
 
 bool BusCheck::claimed(const hal::Frame& frame) const {
-    const auto claims = [&](const BusBoard& board) { return board.board.claims(frame.id); };
-    return description_ && !frame.extended &&
-           (std::ranges::any_of(boards_, claims) ||
-            (description_->sensor && description_->sensor->claims(frame.id)));
+    const auto concerns = [&](const BusBoard& board) { return board.board.concerns(frame); };
+    return description_ && (std::ranges::any_of(boards_, concerns) ||
+                            (description_->sensor && description_->sensor->concerns(frame)));
 }
 
-/// Returns true if the host sent the frame on the identifier on which the sensor answers.
+/// Returns true if the frame is on the identifier of values of a device, but is a request of the host or an
+/// answer without values.
 bool BusCheck::is_request(const hal::Frame& frame) const {
-    return description_ && description_->sensor && (*description_->sensor)->is_request(frame);
+    return description_ && ((description_->sensor && (*description_->sensor)->is_request(frame)) ||
+                            std::ranges::any_of(boards_, [&](const BusBoard& board) {
+                                return board.board->is_aside(frame);
+                            }));
 }
 
 void BusCheck::update(hal::BusState state, const hal::BusCounters& counters) {
@@ -122,7 +125,8 @@ void BusCheck::finish() {
 
 void BusCheck::take(const StreamClock::Timed& timed) {
     const hal::Frame& frame = timed.frame;
-    bits_ += frame_bits(frame);
+    const double bits = frame_bits(frame, description_ ? description_->data_rate_ratio() : 1);
+    bits_ += bits;
     from_host_ += frame.origin == hal::Origin::this_host ? 1 : 0;
     BusStream* const stream = is_request(frame) ? nullptr : stream_of(frame);
     if (timed.stray) {
@@ -130,7 +134,7 @@ void BusCheck::take(const StreamClock::Timed& timed) {
     }
     pass(frame.stamp_ns);
     if (stream != nullptr) {
-        stream->take(frame, frame_bits(frame));
+        stream->take(frame, bits);
     }
     if (!arm_) {
         return;

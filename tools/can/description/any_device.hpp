@@ -9,6 +9,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,7 @@ class Board {
     /// Like hal::JointSource. A board with one joint uses only the first value.
     virtual hal::Decoded decode(const hal::Frame& frame) noexcept = 0;
     virtual bool claims(std::uint32_t id) const noexcept = 0;
+    virtual bool concerns(const hal::Frame& frame) const noexcept = 0; ///< see hal::concerns
     virtual hal::FrameList encode(const std::array<hal::JointValue, 2>& values) const noexcept = 0;
 
     /// True if its frames carry efforts.
@@ -36,12 +38,20 @@ class Board {
     virtual std::optional<hal::Frame> heartbeat() const { return std::nullopt; }
     /// Findings from all decoded frames that no single value shows.
     virtual std::vector<BusFinding> findings() const { return {}; }
+    /// True for a frame on an identifier of its values that has none and does not come at their rate.
+    virtual bool is_aside(const hal::Frame& /*frame*/) const { return false; }
+    /// What other programs commanded its motor, as `12 control, 3 poll`; empty: nothing.
+    virtual std::string host_summary() const { return {}; }
 
-    /// Encodes a joint torque command (N·m); none if the family has no public command or its scale is
-    /// unknown.
-    virtual std::optional<hal::Frame> torque_command(double /*torque_Nm*/) const { return std::nullopt; }
-    /// Decodes the torque (N·m) that `frame` commands to this board; none for any other frame.
-    virtual std::optional<double> commanded_torque(const hal::Frame& /*frame*/) const { return std::nullopt; }
+    /// Encodes a torque command (N·m) for the board's joint number `joint` (0 or 1); none if the family has
+    /// no public command or its scale is unknown.
+    virtual std::optional<hal::Frame> torque_command(int /*joint*/, double /*torque_Nm*/) const {
+        return std::nullopt;
+    }
+    /// Decodes the torque (N·m) that `frame` commands to this joint of the board; none for any other frame.
+    virtual std::optional<double> commanded_torque(int /*joint*/, const hal::Frame& /*frame*/) const {
+        return std::nullopt;
+    }
 
   protected:
     Board() = default;
@@ -60,6 +70,7 @@ class Sensor {
     virtual hal::Decoded decode(const hal::Frame& frame) noexcept = 0;
     virtual hal::WrenchReading wrench(const hal::Frame& first, const hal::Frame& second) const noexcept = 0;
     virtual bool claims(std::uint32_t id) const noexcept = 0;
+    virtual bool concerns(const hal::Frame& frame) const noexcept = 0; ///< see hal::concerns
     virtual hal::FrameList encode(const hal::Wrench& value) const noexcept = 0;
 
     /// Returns ok if the calibration is known and plausible. Without it the sensor sends nothing.
@@ -91,6 +102,7 @@ class BoardOf : public Board {
     }
     hal::Decoded decode(const hal::Frame& frame) noexcept override { return codec_.decode(frame); }
     bool claims(std::uint32_t id) const noexcept final { return codec_.claims(id); }
+    bool concerns(const hal::Frame& frame) const noexcept final { return hal::concerns(codec_, frame); }
     hal::FrameList encode(const std::array<hal::JointValue, 2>& values) const noexcept final {
         std::array<hal::JointValue, static_cast<std::size_t>(Codec::joints)> own;
         std::copy_n(values.begin(), own.size(), own.begin());
@@ -117,6 +129,7 @@ class SensorOf : public Sensor {
         return codec_.wrench(first, second);
     }
     bool claims(std::uint32_t id) const noexcept final { return codec_.claims(id); }
+    bool concerns(const hal::Frame& frame) const noexcept final { return hal::concerns(codec_, frame); }
     hal::FrameList encode(const hal::Wrench& value) const noexcept final { return codec_.encode(value); }
 
     const Codec& codec() const noexcept { return codec_; }
@@ -144,6 +157,9 @@ class AnyDevice {
         return device_ ? device_->decode(frame) : hal::Decoded{};
     }
     [[nodiscard]] bool claims(std::uint32_t id) const noexcept { return device_ && device_->claims(id); }
+    [[nodiscard]] bool concerns(const hal::Frame& frame) const noexcept {
+        return device_ && device_->concerns(frame);
+    }
 
     /// Requires that it is not empty.
     const Device* operator->() const noexcept { return device_.get(); }

@@ -139,12 +139,12 @@ void read_efforts(const JsonReader& reader, bool measured, BusDescription& descr
     description.frozen_after = reader.whole_or("frozen_after", 100, 2, 1'000'000);
 }
 
-double seconds_on_wire(std::span<const hal::Frame> frames, double bit_rate) {
-    int bits = 0;
+double seconds_on_wire(std::span<const hal::Frame> frames, const BusDescription& description) {
+    double bits = 0;
     for (const hal::Frame& frame : frames) {
-        bits += frame_bits(frame);
+        bits += frame_bits(frame, description.data_rate_ratio());
     }
-    return bits / bit_rate;
+    return bits / description.bit_rate;
 }
 
 /// Time (s) that the frames of all joints take on the bus.
@@ -152,7 +152,7 @@ double joints_on_wire_s(const BusDescription& description) {
     BusDescription joints = description;
     joints.sensor.reset(); // the sensor may be unable to send
     const std::vector<double> zeros(static_cast<std::size_t>(description.joint_count));
-    return seconds_on_wire(DeviceFrames(joints).joints(zeros, {}), description.bit_rate);
+    return seconds_on_wire(DeviceFrames(joints).joints(zeros, {}), description);
 }
 
 /// Time (s) that the frames of a wrench take on the bus; 0 without a sensor.
@@ -162,7 +162,7 @@ double wrench_on_wire_s(const BusDescription& description) {
     }
     const hal::FrameList wrench = description.sensor->encode(hal::Wrench{});
     return seconds_on_wire(std::span(wrench.frame).first(static_cast<std::size_t>(wrench.count)),
-                           description.bit_rate);
+                           description);
 }
 
 /// Worst-case time (s) of a wrench on the bus, including the frames of the joints that are sent meanwhile.
@@ -237,14 +237,16 @@ void check_identifiers(const JsonReader& reader, const BusDescription& descripti
 
 BusDescription parse(const JsonReader& reader, const std::filesystem::path& path) {
     const std::filesystem::path folder = path.parent_path();
-    reader.allow_only(std::array<std::string_view, 6>{"schema", "bit_rate", "sample_rate_hz", "trigger",
-                                                      "joints", "output"});
+    reader.allow_only(std::array<std::string_view, 7>{"schema", "bit_rate", "data_bit_rate", "sample_rate_hz",
+                                                      "trigger", "joints", "output"});
     if (reader.text("schema") != schema) {
         throw reader.error("schema", in_quotes(schema), in_quotes(reader.text("schema")));
     }
     BusDescription description;
     description.source = shown(path);
     description.bit_rate = reader.number_within("bit_rate", 1e4, 1e7);
+    description.data_bit_rate =
+        reader.number_or("data_bit_rate", description.bit_rate, description.bit_rate, 1e8);
     description.sample_rate_hz = reader.number_within("sample_rate_hz", 0.1, 100'000);
     const JsonReader trigger = reader.object("trigger");
     trigger.allow_only(std::array<std::string_view, 2>{"on", "delay_s"});
@@ -269,6 +271,10 @@ BusDescription read_bus_description(const std::filesystem::path& path) {
     const nlohmann::json json =
         parse_json(read_file(path, "cannot be read as a bus description"), shown(path));
     return parse(JsonReader(json, shown(path)), path);
+}
+
+BusDescription parse_bus_description(const nlohmann::json& json, const std::string& source) {
+    return parse(JsonReader(json, source), source);
 }
 
 } // namespace dfdyn::tools

@@ -7,6 +7,8 @@
 #include "tools/base/recording/recording.hpp"
 #include "tools/can/description/any_device.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -48,7 +50,8 @@ struct BusDescription {
     std::string source; ///< the file name as given by the user
     int joint_count = 0;
     OutputKind outputs = OutputKind::wrench;
-    double bit_rate = 0; ///< bit/s
+    double bit_rate = 0;      ///< bit/s
+    double data_bit_rate = 0; ///< bit/s, of the data of CAN FD frames that switch it
     double sample_rate_hz = 0;
     BusTrigger trigger = BusTrigger::timer;
     std::int64_t delay_ns = 0; ///< delay of a timer's samples: from the sample time to the assembly
@@ -66,6 +69,7 @@ struct BusDescription {
     hal::PairGate::Config pairing{};      ///< pairing of the two frames of a wrench
     int frozen_after = 0;                 ///< number of identical wrenches, see hal::FrozenGate
 
+    [[nodiscard]] double data_rate_ratio() const { return data_bit_rate / bit_rate; }
     [[nodiscard]] std::int64_t sample_period_ns() const { return std::llround(1e9 / sample_rate_hz); }
 };
 
@@ -73,5 +77,8 @@ struct BusDescription {
 /// malformed, if a device is impossible, if a joint is missing or duplicated, or if two devices share an
 /// identifier.
 BusDescription read_bus_description(const std::filesystem::path& path);
+
+/// The same for a description that is not in a file. `source` is its name in errors.
+BusDescription parse_bus_description(const nlohmann::json& json, const std::string& source);
 
 } // namespace dfdyn::tools

@@ -44,6 +44,7 @@ SensorFamily ati_netcan() {
             .example = R"({"family": "ati_netcan", "base": 32, "counts_per_newton": 100,
                 "counts_per_newton_metre": 5000, "limit": [200, 200, 200, 6, 6, 6],
                 "matrix": [1,0,0,0,0,0, 0,1,0,0,0,0, 0,0,1,0,0,0, 0,0,0,1,0,0, 0,0,0,0,1,0, 0,0,0,0,0,1]})",
+            .devices = "ATI force/torque sensors with NETCANOEM",
             .read = read_ati};
 }
 

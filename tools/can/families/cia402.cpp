@@ -18,10 +18,10 @@ class Cia402Drive final : public BoardOf<Cia402Drive, hal::Cia402Drive> {
     std::optional<hal::Frame> heartbeat() const override {
         return codec().encode_heartbeat(hal::Cia402Drive::State::operational);
     }
-    std::optional<hal::Frame> torque_command(double torque_Nm) const override {
+    std::optional<hal::Frame> torque_command(int /*joint*/, double torque_Nm) const override {
         return codec().has_effort() ? std::optional(codec().encode_target_torque(torque_Nm)) : std::nullopt;
     }
-    std::optional<double> commanded_torque(const hal::Frame& frame) const override {
+    std::optional<double> commanded_torque(int /*joint*/, const hal::Frame& frame) const override {
         return codec().has_effort() ? codec().decode_target_torque(frame) : std::nullopt;
     }
 };
@@ -111,6 +111,7 @@ JointFamily cia402() {
                 {"node": 1, "joint": 1, "counts_per_turn": 1048576, "effort_per_count": 0.01},
                 {"node": 2, "joint": 2, "counts_per_turn": -1048576, "effort_per_count": 0.01}]})",
         .read = read_drives,
+        .devices = "Drives with CANopen and the profile CiA 402",
         .sync = hal::Cia402Drive::encode_sync};
 }
 

@@ -60,6 +60,7 @@ JointFamily dbc_joints() {
                               "the DBC file says · scale + offset) in that unit"}},
             .fields = {{"file", "(the DBC file, beside the description)"}},
             .read = read_joints,
+            .devices = "Joints whose messages a DBC file describes",
             .encode_together = encode_together};
 }
 
@@ -70,6 +71,7 @@ SensorFamily dbc_sensor() {
                         "(fx fy fz mx my mz, each `message`, `signal`, `scale`, `offset` as of a joint; "
                         "in two frames, which are two messages or two variants (`m0`, `m1`) of a "
                         "multiplexed one)"}},
+            .devices = "Force/torque sensors whose messages a DBC file describes",
             .read = read_sensor};
 }
 

@@ -3,6 +3,8 @@
 
 #include "tools/base/text/json_reader.hpp"
 #include "tools/can/description/bus_description.hpp"
+#include "tools/can/families/motor_type.hpp"
+#include "tools/can/families/recognition.hpp"
 
 #include <array>
 #include <filesystem>
@@ -33,6 +35,14 @@ struct JointFamily {
     /// checked.
     void (*read)(const JsonReader& joints, const std::filesystem::path& folder, BusDescription& description);
 
+    std::string_view devices = {};               ///< what its devices are, for docs/reference/devices.md
+    std::vector<std::string_view> sources = {};  ///< of its frames and numbers
+    std::vector<std::string_view> pitfalls = {}; ///< what is often decoded wrongly, one sentence each
+    std::vector<MotorType> types = {};           ///< motor types that bus.json can name
+
+    /// Recognises its devices in the frames of a bus that nobody described; null: it cannot. Sends nothing.
+    Recognition (*recognise)(FrameSpan frames) = nullptr;
+
     /// The frame at which its devices measure if they are synchronous; null: they cannot be.
     hal::Frame (*sync)() = nullptr;
     /// Encodes the frames of all boards of an arm, with the `values` of each, if boards share frames; null:
@@ -52,6 +62,7 @@ struct SensorFamily {
     std::vector<FamilyField> fields;
     std::string_view dbc = {};
     std::string_view example = {}; ///< `output` of an arm, for the tests
+    std::string_view devices = {}; ///< see JointFamily
 
     DescribedWrenchSensor (*read)(const JsonReader& output, const std::filesystem::path& folder);
 };

@@ -27,7 +27,12 @@ SensorFamily dbc_sensor();
 const std::vector<JointFamily>& joint_families() {
     using namespace families;
     static const std::vector<JointFamily> catalogue{
-        icub_two_joint_board(), icub_2foc(), cia402(), odrive(), damiao(), dbc_joints(),
+        icub_two_joint_board(),
+        icub_2foc(),
+        cia402(),
+        odrive(),
+        damiao(),
+        dbc_joints(),
     };
     return catalogue;
 }

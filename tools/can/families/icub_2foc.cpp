@@ -49,7 +49,8 @@ JointFamily icub_2foc() {
             .dbc = "icub_2foc.dbc",
             .example = R"({"family": "icub_2foc",
                 "boards": [{"address": 1, "joint": 1}, {"address": 2, "joint": 2, "motor_per_joint": -2}]})",
-            .read = read_foc_boards};
+            .read = read_foc_boards,
+            .devices = "iCub motor boards (2FOC, AMC), one joint each"};
 }
 
 } // namespace dfdyn::tools::families

@@ -98,6 +98,7 @@ SensorFamily icub_strain() {
         .dbc = "icub_strain.dbc",
         .example =
             R"({"family": "icub_strain", "address": 13, "full_scale": [1500, 1500, 2000, 35, 35, 25]})",
+        .devices = "iCub force/torque sensors (strain, strain2)",
         .read = read_strain_board};
 }
 

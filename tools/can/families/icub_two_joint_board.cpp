@@ -52,7 +52,8 @@ JointFamily icub_two_joint_board() {
             .dbc = "icub_two_joint_boards.dbc",
             .example = R"({"family": "icub_two_joint_board", "boards": [
                 {"address": 1, "joints": [1, 2], "ticks_per_degree": [182.04, -182.04]}]})",
-            .read = read_two_joint_boards};
+            .read = read_two_joint_boards,
+            .devices = "iCub motor boards with two joints (MC4, BLL, DSP)"};
 }
 
 } // namespace dfdyn::tools::families

@@ -69,7 +69,8 @@ JointFamily odrive() {
             .dbc = "odrive.dbc",
             .example = R"({"family": "odrive", "boards": [{"node": 1, "joint": 1, "motor_per_joint": 9},
                                                           {"node": 2, "joint": 2, "motor_per_joint": -9}]})",
-            .read = read_odrive_axes};
+            .read = read_odrive_axes,
+            .devices = "ODrive axes with CANSimple, firmware 0.5 and 0.6"};
 }
 
 } // namespace dfdyn::tools::families

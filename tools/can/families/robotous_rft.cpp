@@ -37,6 +37,7 @@ SensorFamily robotous_rft() {
                        {"counts_per_newton_metre", "(2000)"}},
             .dbc = "robotous_rft.dbc",
             .example = R"({"family": "robotous_rft"})",
+            .devices = "Robotous RFT force/torque sensors",
             .read = read_robotous};
 }
 

@@ -25,8 +25,9 @@ BusTraffic::BusTraffic(const BusDescription& description, const TrafficOptions& 
                        BusWire::OnFrame on_frame)
     : source_(description.source), bit_rate_(description.bit_rate),
       joint_period_ns_(period_ns(description.joints)), output_period_ns_(period_ns(description.output)),
-      efforts_(!description.sensor), frames_(description), wire_(description.bit_rate, std::move(on_frame)),
-      engine_(options.seed), largest_jitter_ns_(1e3 * options.jitter_us), row_period_s_(options.row_period_s),
+      efforts_(!description.sensor), frames_(description),
+      wire_(description.bit_rate, std::move(on_frame), description.data_rate_ratio()), engine_(options.seed),
+      largest_jitter_ns_(1e3 * options.jitter_us), row_period_s_(options.row_period_s),
       next_joints_ns_(long_ago_ns), next_output_ns_(long_ago_ns), next_heartbeat_ns_(long_ago_ns) {}
 
 void BusTraffic::add(std::int64_t time_ns, std::span<const double> position, std::span<const double> output) {
@@ -66,7 +67,7 @@ void BusTraffic::finish() {
         throw InputError(source_ + ": rate_hz: expected up to " + number_text(rows_hz) +
                          ", the mean rate of the rows, found " + number_text(fastest_hz));
     }
-    load_ = static_cast<double>(wire_.bits()) / (bit_rate_ * mean_period_s() * static_cast<double>(rows_));
+    load_ = wire_.bits() / (bit_rate_ * mean_period_s() * static_cast<double>(rows_));
     if (load_ > 1) {
         throw InputError(source_ + ": bit_rate: expected a bus that carries all frames, found a load of " +
                          percent(load_));

@@ -186,7 +186,7 @@ class SampleAssembly {
         if (bus == 0) {
             for (Board& board : board_) {
                 const Decoded decoded = board.decode(frame);
-                known = known || decoded.kind != Decoded::Kind::nothing || claims(board, frame);
+                known = known || decoded.kind != Decoded::Kind::nothing || concerns(board, frame);
                 moment = take_decoded(decoded, frame, bus, moment);
             }
         }
@@ -195,7 +195,7 @@ class SampleAssembly {
             if (decoded.kind == Decoded::Kind::part && decoded.part == 0) {
                 position_.sensor_measured(frame.stamp_ns, output_.period_ns());
             }
-            known = known || decoded.kind != Decoded::Kind::nothing || claims(output_, frame);
+            known = known || decoded.kind != Decoded::Kind::nothing || concerns(output_, frame);
             moment = take_decoded(decoded, frame, bus, moment);
         }
         if (!known) {
@@ -203,11 +203,6 @@ class SampleAssembly {
         }
         return moment.kind == Moment::Kind::none && output_.heard() ? moments_.completed(output_.newest_ns())
                                                                     : moment;
-    }
-
-    template <class Device>
-    [[nodiscard]] static constexpr bool claims(const Device& device, const Frame& frame) noexcept {
-        return !frame.extended && device.claims(frame.id);
     }
 
     constexpr Moment take_decoded(const Decoded& decoded, const Frame& frame, int bus,

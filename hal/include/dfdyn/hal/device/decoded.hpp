@@ -20,10 +20,12 @@ struct JointValue {
     bool raw_zero =
         false; ///< the device sent position 0, before any zero or scale; it may have no position yet
     Reason effort_reason = Reason::no_output;
-    double effort = 0;        ///< torque (N·m) or motor current (A), depending on the device
-    double step_rad = 0;      ///< size of one count of the position
-    double wrap_rad = 0;      ///< range of the position's integer before it wraps; 0: it does not wrap
-    double from_zero_rad = 0; ///< position relative to the device's own zero
+    double effort = 0;         ///< torque (N·m) or motor current (A), depending on the device
+    double step_rad = 0;       ///< size of one count of the position
+    double wrap_rad = 0;       ///< range of the position's integer before it wraps; 0: it does not wrap
+    double from_zero_rad = 0;  ///< position relative to the device's own zero
+    bool has_velocity = false; ///< the frame carries a velocity
+    double velocity = 0;       ///< rad/s of the joint, as the device reports it
 };
 
 /// Marks a joint of a device that is not a joint of the arm.
@@ -58,9 +60,9 @@ struct WrenchReading {
     Wrench value{};
 };
 
-/// Up to two frames that a device sends for one set of values.
+/// Up to three frames that a device sends for one set of values.
 struct FrameList {
-    std::array<Frame, 2> frame{};
+    std::array<Frame, 3> frame{};
     int count = 0;
 };
 
@@ -124,6 +126,17 @@ concept WrenchSource = requires(S source, const S constant, const Frame& frame, 
     decoded.kind = Decoded::Kind::status;
     decoded.reason = reason;
     return decoded;
+}
+
+/// Returns true if the frame belongs to the device: one that it sends, or one that is sent to it alone.
+/// Devices with 29-bit identifiers, or with commands, have a `concerns` of their own.
+template <class Device>
+[[nodiscard]] constexpr bool concerns(const Device& device, const Frame& frame) noexcept {
+    if constexpr (requires { device.concerns(frame); }) {
+        return device.concerns(frame);
+    } else {
+        return !frame.extended && device.claims(frame.id);
+    }
 }
 
 /// Result for frame number `part` of a wrench.

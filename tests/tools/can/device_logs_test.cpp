@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// The logs in tests/data/can/devices, which device_logs.py wrote from the protocols' documents alone.
+#include "dfdyn/hal/replay_bus.hpp"
+#include "tests/tools/can/bus_check_support.hpp"
+#include "tools/can/arm/bus_sampler.hpp"
+#include "tools/can/log/candump_log.hpp"
+#include "tools/can/recognition/recognised_bus.hpp"
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <sstream>
+
+namespace device_logs_test {
+
+using namespace dfdyn::tools;
+using namespace dfdyn::tests;
+namespace hal = dfdyn::hal;
+using Catch::Matchers::ContainsSubstring;
+
+const std::string folder = bus_folder + "devices/";
+constexpr double pi = std::numbers::pi;
+constexpr double start_s = 1'700'000'000;
+
+/// What joint `k` (from 1) does, as device_logs.py has it.
+double angle(int k, double t) { return 0.3 * k - 0.5 + 0.4 * std::sin(pi * t + k); }
+double speed(int k, double t) { return 0.4 * pi * std::cos(pi * t + k); }
+double effort(int k, double t) { return (0.5 + 0.1 * k) * std::cos(0.5 * pi * t + k); }
+
+/// A log, and how far its values are from the truth at most: a count of the coarsest device.
+struct DeviceLog {
+    const char* name;
+    const char* family;
+    int joints;
+    double angle_step, speed_step, effort_step;
+};
+constexpr std::array<DeviceLog, 1> logs{{
+    {"damiao", "damiao", 3, 25.0 / 65535, 90.0 / 4095, 108.0 / 4095},
+}};
+
+Frames frames_of(const std::string& name) {
+    CandumpLog log(folder + name + ".log");
+    Frames frames;
+    hal::ReplayEntry entry;
+    while (log.next(entry)) {
+        frames.push_back(entry.frame);
+    }
+    log.check();
+    return frames;
+}
+
+BusDescription description_of(const DeviceLog& log) {
+    return read_bus_description(folder + log.name + ".json");
+}
+
+const DeviceLog& log_named(std::string_view name) { return *std::ranges::find(logs, name, &DeviceLog::name); }
+
+double time_of(const hal::Frame& frame) { return 1e-9 * static_cast<double>(frame.stamp_ns) - start_s; }
+
+/// Number of values compared, and of those that are not the truth.
+struct Compared {
+    int positions = 0, velocities = 0, efforts = 0, wrong = 0, refused = 0;
+};
+
+Compared compare(std::vector<BusBoard> boards, const Frames& frames, const DeviceLog& log) {
+    Compared compared;
+    constexpr double tolerance = 1.01; // counts; makers cut codes off instead of rounding
+    for (const hal::Frame& frame : frames) {
+        for (BusBoard& board : boards) {
+            const hal::Decoded decoded = board.board.decode(frame);
+            compared.wrong += decoded.kind == hal::Decoded::Kind::rejected ? 1 : 0;
+            for (int i = 0; i < decoded.joints; ++i) {
+                const hal::JointValue& value = decoded.joint.at(static_cast<std::size_t>(i));
+                const int k = value.joint + 1;
+                const double t = time_of(frame);
+                const auto judge = [&](double found, double expected, double step, int& count) {
+                    ++count;
+                    compared.wrong += std::abs(found - expected) > tolerance * step ? 1 : 0;
+                };
+                if (value.position_reason == hal::Reason::ok) {
+                    judge(value.position_rad, angle(k, t), log.angle_step, compared.positions);
+                }
+                if (value.has_velocity) {
+                    judge(value.velocity, speed(k, t), log.speed_step, compared.velocities);
+                }
+                if (value.effort_reason == hal::Reason::ok) {
+                    judge(value.effort, effort(k, t), log.effort_step, compared.efforts);
+                }
+                compared.refused += hal::is_fault(value.position_reason) ? 1 : 0;
+                compared.refused += hal::is_fault(value.effort_reason) ? 1 : 0;
+            }
+        }
+    }
+    return compared;
+}
+
+TEST_CASE("motors that an independent encoder describes are decoded to a count") {
+    for (const DeviceLog& log : logs) {
+        CAPTURE(log.name);
+        const Compared compared = compare(description_of(log).boards, frames_of(log.name), log);
+        CHECK(compared.positions == 300 * log.joints);
+        CHECK(compared.velocities == 300 * log.joints);
+        CHECK(compared.efforts == 300 * log.joints);
+        CHECK(compared.wrong == 0);
+        CHECK(compared.refused == 0);
+    }
+}
+
+TEST_CASE("a replay of these logs has a sample per period with the positions of its instant") {
+    for (const DeviceLog& log : logs) {
+        CAPTURE(log.name);
+        int valid = 0;
+        int outputs = 0; // slow efforts repeat their coarse codes, which is taken for frozen in places
+        double largest_error = 0;
+        BusSampler sampler(description_of(log), [&](const BusSample& sample) {
+            valid += sample.valid() ? 1 : 0;
+            outputs += sample.output_valid() ? 1 : 0;
+            for (int k = 1; sample.valid() && k <= log.joints; ++k) {
+                const double t = 1e-9 * static_cast<double>(sample.time_ns) - start_s;
+                largest_error = std::max(
+                    largest_error, std::abs(sample.position[static_cast<std::size_t>(k - 1)] - angle(k, t)));
+            }
+        });
+        for (const hal::Frame& frame : frames_of(log.name)) {
+            sampler.take(frame, hal::BusState::active, {});
+        }
+        sampler.finish();
+        CHECK(valid > 280);
+        CHECK(outputs > 250);
+        CHECK(largest_error < log.angle_step + 2e-4); // interpolated over 5 ms
+    }
+}
+
+TEST_CASE("a bus that nobody described is recognised and its draft decodes it") {
+    for (const DeviceLog& log : logs) {
+        CAPTURE(log.name);
+        const Frames frames = frames_of(log.name);
+        const RecognisedBus bus = recognise_bus(frames);
+        REQUIRE(bus.families.size() == 1);
+        CHECK(bus.families[0].name == log.family);
+        CAPTURE(bus.draft_error);
+        REQUIRE(bus.draft);
+        const BusDescription draft = parse_bus_description(*bus.draft, "the draft");
+        CHECK(draft.joint_count == log.joints);
+        CHECK(draft.joints.rate_hz == Approx(200));
+        DeviceLog coarse = log;
+        coarse.effort_step = 1e9;             // torque maxima may be unsure
+        coarse.speed_step += 0.04 * 0.4 * pi; // velocity maxima and gears are measured
+        const Compared compared = compare(draft.boards, frames, coarse);
+        CHECK(compared.positions == 300 * log.joints);
+        CHECK(compared.wrong == 0);
+        std::ostringstream out;
+        print_recognised_bus(out, bus);
+        CHECK_THAT(out.str(), ContainsSubstring(log.family));
+    }
+}
+
+TEST_CASE("buscheck finds nothing wrong on these buses as they are described") {
+    for (const DeviceLog& log : logs) {
+        CAPTURE(log.name);
+        const Names found = rules(description_of(log), frames_of(log.name));
+        const bool two_hosts = std::string(log.name) == "moteus"; // a second host gets replies, too
+        CHECK(found == (two_hosts ? Names{"two_hosts"} : Names{}));
+    }
+}
+
+/// The rules of the findings on a bus that nobody described.
+Names rules_without_description(const Frames& frames) {
+    Names names;
+    for (const BusFinding& finding : recognise_bus(frames).findings) {
+        names.insert(finding.rule);
+    }
+    return names;
+}
+
+/// The Damiao log with a change of the feedback of motor 2.
+Frames damiao_with(const std::function<void(Frame&)>& change) {
+    return changed(frames_of("damiao"), [&](Frame& frame) {
+        if (frame.id == 0x12 && frame.data[0] == 0x12) {
+            change(frame);
+        }
+    });
+}
+
+unsigned velocity_code(const Frame& frame) { return frame.data[3] * 16U + frame.data[4] / 16U; }
+
+void set_velocity_code(Frame& frame, unsigned code) {
+    frame.data[3] = static_cast<std::uint8_t>(code >> 4U);
+    frame.data[4] = static_cast<std::uint8_t>((code & 15U) << 4U | (frame.data[4] & 15U));
+}
+
+TEST_CASE("faults of motors are found on a bus that nobody described") {
+    CHECK(rules_without_description(frames_of("damiao")) == Names{});
+    CHECK(rules_without_description(damiao_with([](Frame& frame) {
+              set_velocity_code(frame, 4095 - velocity_code(frame)); // the other direction
+          })) == Names{"velocity_sign"});
+    CHECK(rules_without_description(damiao_with([](Frame& frame) {
+              frame.data[1] = 0x90;
+              frame.data[2] = 0x12;
+          })).contains("encoder_frozen"));
+    CHECK(rules_without_description(damiao_with([](Frame& frame) { frame.data[0] = 0xC2; })) ==
+          Names{"device_fault"}); // coil too hot
+    CHECK(rules_without_description(without(frames_of("damiao"), [](const Frame& frame) {
+              return frame.id == 0x12;
+          })) == Names{"silent_motor"});
+}
+
+TEST_CASE(
+    "a Damiao motor's velocity maximum is measured where libraries disagree and registers are not read") {
+    const Frames unread = without(frames_of("damiao"), [](const Frame& frame) {
+        return frame.id == 0x7FF || (frame.id > 0x10 && frame.data[0] < 0x10);
+    });
+    for (const double maximum : {10.0, 8.0}) {
+        // the same velocities in the codes of another maximum
+        const Frames frames = changed(unread, [&](Frame& frame) {
+            if (frame.id == 0x12) {
+                const double velocity = velocity_code(frame) / 4095.0 * 20 - 10;
+                set_velocity_code(frame, static_cast<unsigned>((velocity + maximum) / (2 * maximum) * 4095));
+            }
+        });
+        const RecognisedBus bus = recognise_bus(frames);
+        REQUIRE(bus.draft);
+        const auto& board = bus.draft->at("joints").at("boards").at(1);
+        CHECK(board.at("velocity_max").get<double>() == maximum);
+        CHECK(board.at("torque_max").get<double>() == 28);
+    }
+}
+
+} // namespace device_logs_test

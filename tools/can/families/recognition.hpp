@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/frame.hpp"
+#include "tools/can/check/bus_stream.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// A board that a family has recognised.
+struct RecognisedBoard {
+    std::string name = {};     ///< such as `motor 4`
+    nlohmann::json entry = {}; ///< of `boards`, without its joints
+    int joints = 1;
+    double rate_hz = 0;        ///< of its positions
+    std::string measured = {}; ///< what its frames show beside that; "" nothing
+};
+
+/// What a family has recognised in the frames of a bus that nobody described.
+struct Recognition {
+    std::vector<RecognisedBoard>
+        boards; ///< in the order of the joints, base to tip, as far as it can be guessed
+    nlohmann::json fields = nlohmann::json::object(); ///< of `joints`
+    std::string quantity;                             ///< of its efforts: `tau`, `i`; "" it sends none
+    std::vector<std::string> unsure;                  ///< what the frames alone cannot tell
+    std::vector<unsigned> silent;       ///< motors that are commanded or polled and never answer
+    std::set<BusStreamKey> identifiers; ///< that it explains
+    double score = 0; ///< number of frames, weighted by how well they fit; compared between families
+};
+
+/// Frames in the order of time.
+using FrameSpan = std::span<const hal::Frame>;
+
+} // namespace dfdyn::tools

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/can/motors/mit_recognition.hpp"
+
+#include "tools/base/text/number.hpp"
+#include "tools/base/text/text.hpp"
+
+#include <cmath>
+#include <set>
+
+namespace dfdyn::tools {
+
+namespace {
+
+/// Relative distance of a measured velocity maximum from the closest one of the types.
+double closest(std::span<const MotorType> types, double measured) {
+    double distance = 1;
+    for (const MotorType& type : types) {
+        distance = std::min(
+            {distance, std::abs(measured / type.maxima[1] - 1), std::abs(measured / type.others[1] - 1)});
+    }
+    return distance;
+}
+
+std::string numbers_text(const std::set<double>& numbers) {
+    std::vector<std::string> texts;
+    for (const double number : numbers) {
+        texts.push_back(number_text(number));
+    }
+    return listed(texts);
+}
+
+} // namespace
+
+MeasuredMaxima measure_maxima(const VelocityCheck& velocity, double assumed, std::span<const MotorType> types,
+                              const Maxima& known, const std::string& ask) {
+    MeasuredMaxima result;
+    const bool sure = velocity.is_sure();
+    const double measured = sure ? std::abs(velocity.ratio()) * assumed : 0;
+    const double error = velocity.ratio_error() * assumed;
+    constexpr double largest_distance = 0.09; ///< of filters in the motor; maxima of types differ by 10 %
+    constexpr double as_close = 0.01;
+    const double listed_velocity = known[1] > 0 ? known[1] : measured;
+    const double distance = closest(types, listed_velocity);
+    std::set<double> velocities;
+    std::set<double> torques;
+    std::vector<std::string> names;
+    for (const MotorType& type : types) {
+        for (const Maxima& maxima : {type.maxima, type.others}) {
+            const bool fits = listed_velocity > 0 && distance < largest_distance &&
+                              std::abs(listed_velocity / maxima[1] - 1) < distance + as_close;
+            if (fits || (listed_velocity == 0 && &type == &types.front())) {
+                velocities.insert(maxima[1]);
+                torques.insert(maxima[2]);
+                if (names.empty() || names.back() != type.name) {
+                    names.emplace_back(type.name);
+                }
+                result.maxima = result.maxima[1] == 0 ? maxima : result.maxima;
+            }
+        }
+    }
+    if (result.maxima[1] == 0) { // no type has it
+        result.maxima = types.front().maxima;
+        result.maxima[1] = std::stod(rounded_text(measured > 0 ? measured : known[1]));
+    }
+    if (sure) {
+        result.measured = "velocity_max " + rounded_text(measured) + " ± " + rounded_text(3 * error) +
+                          " rad/s, from its positions";
+    }
+    if (known[1] == 0 && !sure) {
+        result.unsure = "it hardly moved, so that its type is a guess; " + ask;
+    } else if (velocities.empty()) {
+        result.unsure = "no known type has a velocity_max of " + rounded_text(measured) + " rad/s; " + ask;
+    } else if ((known[2] == 0 && torques.size() > 1) || (known[1] == 0 && velocities.size() > 1)) {
+        result.unsure = "it may be a " + listed(names) + ": velocity_max " + numbers_text(velocities) +
+                        " rad/s, torque_max " + numbers_text(torques) + " N·m; " + ask;
+    }
+    for (std::size_t i = 0; i < known.size(); ++i) {
+        result.maxima[i] = known[i] > 0 ? known[i] : result.maxima[i];
+    }
+    result.type = names.size() == 1 ? types[0].name : std::string_view();
+    for (const MotorType& type : types) {
+        result.type = names.size() == 1 && type.name == names.front() ? type.name : result.type;
+    }
+    return result;
+}
+
+} // namespace dfdyn::tools

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/bus.hpp"
+#include "tools/can/description/bus_finding.hpp"
+#include "tools/can/families/family.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <ostream>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// Keeps the frames from the beginning of a bus that nobody described, at most `longest_s` of them.
+class TrafficRecorder {
+  public:
+    static constexpr double longest_s = 5;
+    static constexpr std::size_t most_frames = 200'000;
+
+    TrafficRecorder() { frames_.reserve(most_frames); }
+    void take(const hal::Frame& frame) noexcept;
+    std::span<const hal::Frame> frames() const noexcept { return frames_; }
+
+  private:
+    std::vector<hal::Frame> frames_;
+};
+
+/// A bus whose frames also go to a recorder, and that sends nothing.
+template <class B>
+class RecordedBus {
+  public:
+    RecordedBus(B& bus, TrafficRecorder& recorder) : bus_(bus), recorder_(recorder) {}
+
+    std::span<const hal::Frame> drain(std::span<hal::Frame> into) noexcept {
+        const std::span<const hal::Frame> frames = bus_.drain(into);
+        for (const hal::Frame& frame : frames) {
+            recorder_.take(frame);
+        }
+        return frames;
+    }
+    hal::SendResult send(const hal::Frame& /*frame*/) noexcept { return hal::SendResult::refused; }
+    hal::BusState state() const noexcept { return bus_.state(); }
+    const hal::BusCounters& counters() const noexcept { return bus_.counters(); }
+    std::int64_t now_ns() const noexcept { return bus_.now_ns(); }
+
+  private:
+    B& bus_;
+    TrafficRecorder& recorder_;
+};
+
+/// A family that is on the bus.
+struct RecognisedFamily {
+    std::string_view name;
+    Recognition recognition;
+};
+
+/// What is on a bus that nobody described.
+struct RecognisedBus {
+    double duration_s = 0;                  ///< of the frames that it was recognised by
+    std::vector<RecognisedFamily> families; ///< with joints; the first is that of the draft
+    std::optional<nlohmann::json> draft; ///< a description that can be read; none without joints and efforts
+    std::string draft_error;             ///< why there is no draft
+    std::vector<BusFinding> findings;    ///< of the draft's devices, in these frames
+    std::vector<std::string> commands;   ///< what other programs command
+};
+
+/// Recognises the devices that sent these frames, which must be in the order of time.
+RecognisedBus recognise_bus(std::span<const hal::Frame> frames);
+
+/// Prints the families with their boards, rates and what is unsure.
+void print_recognised_bus(std::ostream& out, const RecognisedBus& bus);
+
+} // namespace dfdyn::tools
