@@ -198,7 +198,7 @@ def piper():
     return log
 
 
-LOGS = (damiao,)
+LOGS = (damiao, robstride, robstride_mit)
 
 
 def main():

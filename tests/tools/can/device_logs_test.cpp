@@ -34,8 +34,10 @@ struct DeviceLog {
     int joints;
     double angle_step, speed_step, effort_step;
 };
-constexpr std::array<DeviceLog, 1> logs{{
+constexpr std::array<DeviceLog, 3> logs{{
     {"damiao", "damiao", 3, 25.0 / 65535, 90.0 / 4095, 108.0 / 4095},
+    {"robstride", "robstride", 3, 8 * pi / 65535, 100.0 / 65535, 34.0 / 65535},
+    {"robstride_mit", "robstride", 3, 8 * pi / 65535, 100.0 / 4095, 34.0 / 4095},
 }};
 
 Frames frames_of(const std::string& name) {
@@ -224,6 +226,22 @@ TEST_CASE(
         CHECK(board.at("velocity_max").get<double>() == maximum);
         CHECK(board.at("torque_max").get<double>() == 28);
     }
+}
+
+TEST_CASE("a program that reads a motor by clearing its faults is found") {
+    Frames frames = frames_of("robstride_mit");
+    const std::size_t sent = frames.size();
+    for (std::size_t i = 0; i < sent; i += 30) {
+        Frame clear = hal::make_frame(2, 8);
+        clear.data.fill(0);
+        std::fill_n(clear.data.begin(), 7, std::uint8_t{0xFF});
+        clear.data[7] = 0xFB;
+        clear.stamp_ns = frames[i].stamp_ns + 20'000;
+        frames.push_back(clear);
+    }
+    std::ranges::stable_sort(frames, {}, &Frame::stamp_ns);
+    CHECK(rules_without_description(frames) == Names{"faults_cleared"});
+    CHECK(rules(description_of(log_named("robstride_mit")), frames) == Names{"faults_cleared"});
 }
 
 } // namespace device_logs_test

@@ -15,6 +15,7 @@ JointFamily icub_2foc();
 JointFamily cia402();
 JointFamily odrive();
 JointFamily damiao();
+JointFamily robstride();
 JointFamily dbc_joints();
 
 SensorFamily icub_strain();
@@ -32,6 +33,7 @@ const std::vector<JointFamily>& joint_families() {
         cia402(),
         odrive(),
         damiao(),
+        robstride(),
         dbc_joints(),
     };
     return catalogue;
