@@ -198,7 +198,7 @@ def piper():
     return log
 
 
-LOGS = (damiao, robstride, robstride_mit)
+LOGS = (damiao, robstride, robstride_mit, piper)
 
 
 def main():

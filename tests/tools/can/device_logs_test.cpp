@@ -34,10 +34,11 @@ struct DeviceLog {
     int joints;
     double angle_step, speed_step, effort_step;
 };
-constexpr std::array<DeviceLog, 3> logs{{
+constexpr std::array<DeviceLog, 4> logs{{
     {"damiao", "damiao", 3, 25.0 / 65535, 90.0 / 4095, 108.0 / 4095},
     {"robstride", "robstride", 3, 8 * pi / 65535, 100.0 / 65535, 34.0 / 65535},
     {"robstride_mit", "robstride", 3, 8 * pi / 65535, 100.0 / 4095, 34.0 / 4095},
+    {"piper", "piper", 6, 0.001 * pi / 180, 0.001, 0.001},
 }};
 
 Frames frames_of(const std::string& name) {
@@ -242,6 +243,31 @@ TEST_CASE("a program that reads a motor by clearing its faults is found") {
     std::ranges::stable_sort(frames, {}, &Frame::stamp_ns);
     CHECK(rules_without_description(frames) == Names{"faults_cleared"});
     CHECK(rules(description_of(log_named("robstride_mit")), frames) == Names{"faults_cleared"});
+}
+
+TEST_CASE("old firmware and the second arm on a bus of Pipers are recognised") {
+    const Frames rpm = changed(frames_of("piper"), [](Frame& frame) {
+        if (frame.id > 0x250 && frame.id <= 0x256) {
+            const double rad_s = 0.001 * hal::load_big<std::int16_t>(frame.data.data());
+            hal::store_big(frame.data.data(), static_cast<std::int16_t>(std::lround(rad_s * 30 / pi)));
+        }
+    });
+    const RecognisedBus old = recognise_bus(rpm);
+    REQUIRE(old.draft);
+    CHECK(old.draft->at("joints").at("firmware") == "rpm");
+    CHECK(rules(description_of(log_named("piper")), rpm) == Names{"velocity_scale"});
+    Frames two = frames_of("piper");
+    for (Frame frame : frames_of("piper")) {
+        if (frame.id >= 0x2A1 && frame.id <= 0x2A8) {
+            frame.id += 0x10;
+            frame.stamp_ns += 50'000;
+            two.push_back(frame);
+        }
+    }
+    std::ranges::stable_sort(two, {}, &Frame::stamp_ns);
+    std::ostringstream out;
+    print_recognised_bus(out, recognise_bus(two));
+    CHECK_THAT(out.str(), ContainsSubstring("2 arms are on this bus"));
 }
 
 } // namespace device_logs_test

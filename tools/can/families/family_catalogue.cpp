@@ -16,6 +16,7 @@ JointFamily cia402();
 JointFamily odrive();
 JointFamily damiao();
 JointFamily robstride();
+JointFamily piper();
 JointFamily dbc_joints();
 
 SensorFamily icub_strain();
@@ -34,6 +35,7 @@ const std::vector<JointFamily>& joint_families() {
         odrive(),
         damiao(),
         robstride(),
+        piper(),
         dbc_joints(),
     };
     return catalogue;
