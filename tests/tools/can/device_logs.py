@@ -198,7 +198,7 @@ def piper():
     return log
 
 
-LOGS = (damiao, robstride, robstride_mit, piper)
+LOGS = (damiao, robstride, robstride_mit, cubemars_mit, cubemars_servo, piper)
 
 
 def main():

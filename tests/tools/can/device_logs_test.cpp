@@ -34,10 +34,12 @@ struct DeviceLog {
     int joints;
     double angle_step, speed_step, effort_step;
 };
-constexpr std::array<DeviceLog, 4> logs{{
+constexpr std::array<DeviceLog, 6> logs{{
     {"damiao", "damiao", 3, 25.0 / 65535, 90.0 / 4095, 108.0 / 4095},
     {"robstride", "robstride", 3, 8 * pi / 65535, 100.0 / 65535, 34.0 / 65535},
     {"robstride_mit", "robstride", 3, 8 * pi / 65535, 100.0 / 4095, 34.0 / 4095},
+    {"cubemars_mit", "cubemars", 2, 25.0 / 65535, 100.0 / 4095, 36.0 / 4095},
+    {"cubemars_servo", "cubemars", 2, 0.1 * pi / 180, 0.006, 0.01},
     {"piper", "piper", 6, 0.001 * pi / 180, 0.001, 0.001},
 }};
 

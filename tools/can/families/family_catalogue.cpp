@@ -17,6 +17,7 @@ JointFamily odrive();
 JointFamily damiao();
 JointFamily robstride();
 JointFamily piper();
+JointFamily cubemars();
 JointFamily dbc_joints();
 
 SensorFamily icub_strain();
@@ -36,6 +37,7 @@ const std::vector<JointFamily>& joint_families() {
         damiao(),
         robstride(),
         piper(),
+        cubemars(),
         dbc_joints(),
     };
     return catalogue;
