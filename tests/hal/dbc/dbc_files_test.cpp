@@ -54,11 +54,11 @@ class DbcFile {
     void read(const std::string& line) {
         static const std::regex message(R"(BO_ (\d+) \w+: (\d+) \w+)");
         static const std::regex signal(
-            R"( SG_ (\w+) : (\d+)\|(\d+)@([01])([+-]) \(([^,]+),([^)]+)\) \[[^\]]*\] "[^"]*" \w+)");
+            R"( SG_ (\w+) (?:M |m\d+ )?: (\d+)\|(\d+)@([01])([+-]) \(([^,]+),([^)]+)\) \[[^\]]*\] "[^"]*" \w+)");
         static const std::regex is_float(R"(SIG_VALTYPE_ (\d+) (\w+) : 1;)");
         std::smatch part;
         if (std::regex_match(line, part, message)) {
-            id_ = static_cast<std::uint32_t>(std::stoul(part[1]));
+            id_ = static_cast<std::uint32_t>(std::stoul(part[1])) & 0x7FFFFFFFU; // bit 31: 29-bit identifier
             length_ = std::stoi(part[2]);
         } else if (std::regex_match(line, part, signal)) {
             signals_[part[1]] = {id_,
@@ -166,6 +166,44 @@ TEST_CASE("the DBC files of single joints agree with their decoders") {
     const OdriveAxis axis({.node = 1, .joint = 0});
     check_joint("odrive.dbc", axis, false, "");
     CHECK(DbcFile("odrive.dbc").value("encoder_error1", {axis.encode_heartbeat(true)}) == 1);
+}
+
+TEST_CASE("the DBC files of the motors agree with their decoders") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const DbcFile servo("cubemars.dbc");
+    const DbcFile rmd("rmd.dbc");
+    const DbcFile piper("piper.dbc");
+    CubemarsServo servo_motor({.motor_id = 1, .packet = 0x29});
+    RmdMotor rmd_motor({.motor_id = 1});
+    PiperPair pair(PiperPair::Config{});
+    std::uniform_real_distribution<double> uniform(-3, 3);
+    for (int i = 0; i < 100; ++i) {
+        std::array<JointValue, 2> sent{};
+        for (JointValue& value : sent) {
+            value.position_rad = uniform(engine);
+            value.effort = uniform(engine);
+            value.has_velocity = true;
+            value.velocity = uniform(engine);
+        }
+        const Frame feedback = servo_motor.encode({sent[0]}).frame[0];
+        const JointValue one = servo_motor.decode(feedback).joint[0];
+        CHECK(servo.value("q1", {feedback}) == Approx(one.position_rad).epsilon(1e-12));
+        CHECK(servo.value("qd1", {feedback}) == Approx(one.velocity).epsilon(1e-12));
+        CHECK(servo.value("i1", {feedback}) == Approx(one.effort).epsilon(1e-12));
+        const FrameList answers = rmd_motor.encode({sent[0]});
+        CHECK(rmd.value("q1", {answers.frame[0]}) ==
+              Approx(rmd_motor.decode(answers.frame[0]).joint[0].position_rad).epsilon(1e-12));
+        CHECK(rmd.value("command1", {answers.frame[0]}) == 146);
+        CHECK(rmd.value("i1", {answers.frame[1]}) ==
+              Approx(rmd_motor.decode(answers.frame[1]).joint[0].effort).epsilon(1e-12));
+        const FrameList arm = pair.encode(sent);
+        CHECK(piper.value("q2", {arm.frame[0]}) ==
+              Approx(pair.decode(arm.frame[0]).joint[1].position_rad).epsilon(1e-12));
+        CHECK(piper.value("qd2", {arm.frame[2]}) ==
+              Approx(pair.decode(arm.frame[2]).joint[0].velocity).epsilon(1e-12));
+        CHECK(piper.value("i1", {arm.frame[1]}) ==
+              Approx(pair.decode(arm.frame[1]).joint[0].effort).epsilon(1e-12));
+    }
 }
 
 TEST_CASE("the DBC file of the strain board agrees with the decoder") {

@@ -34,12 +34,14 @@ struct DeviceLog {
     int joints;
     double angle_step, speed_step, effort_step;
 };
-constexpr std::array<DeviceLog, 6> logs{{
+constexpr std::array<DeviceLog, 8> logs{{
     {"damiao", "damiao", 3, 25.0 / 65535, 90.0 / 4095, 108.0 / 4095},
     {"robstride", "robstride", 3, 8 * pi / 65535, 100.0 / 65535, 34.0 / 65535},
     {"robstride_mit", "robstride", 3, 8 * pi / 65535, 100.0 / 4095, 34.0 / 4095},
     {"cubemars_mit", "cubemars", 2, 25.0 / 65535, 100.0 / 4095, 36.0 / 4095},
     {"cubemars_servo", "cubemars", 2, 0.1 * pi / 180, 0.006, 0.01},
+    {"rmd", "rmd", 3, 0.01 * pi / 180, pi / 180, 0.01},
+    {"rmd_v2", "rmd", 2, 0.01 * pi / 180, pi / 180, 33.0 / 2048},
     {"piper", "piper", 6, 0.001 * pi / 180, 0.001, 0.001},
 }};
 
@@ -207,6 +209,9 @@ TEST_CASE("faults of motors are found on a bus that nobody described") {
           Names{"device_fault"}); // coil too hot
     CHECK(rules_without_description(without(frames_of("damiao"), [](const Frame& frame) {
               return frame.id == 0x12;
+          })) == Names{"silent_motor"});
+    CHECK(rules_without_description(without(frames_of("rmd"), [](const Frame& frame) {
+              return frame.id == 0x243;
           })) == Names{"silent_motor"});
 }
 

@@ -18,6 +18,7 @@ JointFamily damiao();
 JointFamily robstride();
 JointFamily piper();
 JointFamily cubemars();
+JointFamily rmd();
 JointFamily dbc_joints();
 
 SensorFamily icub_strain();
@@ -38,6 +39,7 @@ const std::vector<JointFamily>& joint_families() {
         robstride(),
         piper(),
         cubemars(),
+        rmd(),
         dbc_joints(),
     };
     return catalogue;

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/hal/device/rmd.hpp"
+
+#include "tools/can/motors/codec_fit.hpp"
+#include "tools/can/motors/motor_board.hpp"
+#include "tools/can/motors/motor_fields.hpp"
+
+namespace dfdyn::tools::families {
+
+namespace {
+
+/// Accepts torque commands, as currents, where the torque of a current is described.
+class RmdMotor final : public MotorBoard<RmdMotor, hal::RmdMotor> {
+  public:
+    using MotorBoard::MotorBoard;
+    bool takes_torque() const { return codec().config().newton_metre_per_ampere != 0; }
+    static ScaleAdvice advice() {
+        return {
+            "turn the joint by a known angle: some drivers report angles of the motor, others of its output",
+            "driver, counts_per_turn or motor_per_joint in the description"};
+    }
+};
+
+const std::vector<FamilyField> rmd_fields{
+    {"motor_id", "(1 to 32)"},
+    {"joint", ""},
+    {"counts_per_turn", "(65536; with `\"encoder\"`)"},
+    {"newton_metre_per_ampere",
+     "(makes efforts and commands torques of the motor's output; without: efforts are "
+     "currents)"},
+    transmission_field(),
+    zero_field(),
+};
+
+const std::vector<FamilyField> rmd_bus_fields{
+    {"driver", "(`\"V2\"` or `\"V3\"`, which is also for V4; `\"V3\"`)"},
+    {"position",
+     "(`\"multi_turn\"`: answers to 0x92; `\"encoder\"`: to 0x60; `\"status\"`: to 0x9C, 1 ° with V3; "
+     "`\"multi_turn\"`)"},
+};
+
+hal::RmdDriver read_rmd_driver(const JsonReader& joints) {
+    const std::string driver = joints.has("driver") ? joints.text("driver") : "V3";
+    if (driver != "V2" && driver != "V3") {
+        throw joints.error("driver", R"("V2" or "V3")", in_quotes(driver));
+    }
+    return driver == "V2" ? hal::RmdDriver::v2 : hal::RmdDriver::v3;
+}
+
+hal::RmdPosition read_rmd_position(const JsonReader& joints) {
+    const std::string position = joints.has("position") ? joints.text("position") : "multi_turn";
+    if (position == "multi_turn") {
+        return hal::RmdPosition::multi_turn;
+    }
+    if (position == "encoder") {
+        return hal::RmdPosition::encoder;
+    }
+    if (position == "status") {
+        return hal::RmdPosition::status;
+    }
+    throw joints.error("position", R"("multi_turn", "encoder" or "status")", in_quotes(position));
+}
+
+/// `config`: what all motors have in common.
+BusBoard read_rmd_motor(const JsonReader& board, hal::RmdMotor::Config config) {
+    board.allow_only(names_of(rmd_fields));
+    config.motor_id = board.whole_number("motor_id", 1, 32);
+    config.joint = read_joint(board);
+    config.counts_per_turn = board.number_or("counts_per_turn", config.counts_per_turn, 1, 1e9);
+    config.newton_metre_per_ampere = read_torque_constant(board);
+    config.motor_per_joint = ratio_or(board, "motor_per_joint", 1);
+    config.zero_rad = read_zero_rad(board);
+    return one_joint<RmdMotor>(hal::RmdMotor(config), config.joint);
+}
+
+void read_rmd_motors(const JsonReader& joints, const std::filesystem::path& /*folder*/,
+                     BusDescription& description) {
+    hal::RmdMotor::Config config;
+    config.driver = read_rmd_driver(joints);
+    config.position = read_rmd_position(joints);
+    read_each_board(
+        joints, [&](const JsonReader& board) { return read_rmd_motor(board, config); }, description);
+}
+
+/// What the motors of one driver version answer: number of frames by motor and command.
+using RmdAnswers = std::map<int, std::map<unsigned, std::uint64_t>>;
+
+bool is_rmd_answer(unsigned command) {
+    return command == 0x60 || command == 0x92 || command == 0x9A || command == 0x9C || command == 0x9D ||
+           (command >= 0xA1 && command <= 0xA9);
+}
+
+RmdAnswers rmd_answers(FrameSpan frames, hal::RmdDriver driver) {
+    RmdAnswers answers;
+    const std::uint32_t base = driver == hal::RmdDriver::v2 ? 0x140 : 0x240;
+    for (const hal::Frame& frame : frames) {
+        const bool form = !frame.extended && !frame.error && hal::check_form(frame, 8) == hal::Reason::ok;
+        if (!form || frame.id <= base || frame.id > base + 32 || !is_rmd_answer(frame.data[0])) {
+            continue;
+        }
+        const int motor = static_cast<int>(frame.id - base);
+        const hal::RmdMotor codec({.motor_id = motor, .driver = driver});
+        if (codec.command(frame) == hal::MotorCommand::none) { // V2: no request
+            ++answers[motor][frame.data[0]];
+        }
+    }
+    return answers;
+}
+
+/// The finest position that a motor answers with.
+hal::RmdPosition finest_rmd_position(const std::map<unsigned, std::uint64_t>& commands) {
+    const auto often = [&](unsigned command) {
+        const auto found = commands.find(command);
+        return found != commands.end() && found->second >= frames_to_recognise;
+    };
+    return often(0x92)   ? hal::RmdPosition::multi_turn
+           : often(0x60) ? hal::RmdPosition::encoder
+                         : hal::RmdPosition::status;
+}
+
+constexpr std::array<const char*, 3> rmd_position_names{"multi_turn", "encoder", "status"};
+
+Recognition recognise_rmd_driver(FrameSpan frames, hal::RmdDriver driver) {
+    Recognition recognition;
+    recognition.quantity = "i";
+    const bool old = driver == hal::RmdDriver::v2;
+    hal::RmdPosition position = hal::RmdPosition::multi_turn;
+    std::set<unsigned> answering;
+    for (const auto& [motor, commands] : rmd_answers(frames, driver)) {
+        position = finest_rmd_position(commands);
+        const CodecFit fit =
+            fit_codec(hal::RmdMotor({.motor_id = motor, .driver = driver, .position = position}), frames);
+        if (!fit.fits()) {
+            continue;
+        }
+        RecognisedBoard board{
+            .name = "motor " + std::to_string(motor), .entry = {}, .rate_hz = fit.joint[0].rate_hz()};
+        board.entry = {{"motor_id", motor}};
+        answering.insert(static_cast<unsigned>(motor));
+        recognition.boards.push_back(std::move(board));
+        recognition.identifiers.insert({false, (old ? 0x140U : 0x240U) + static_cast<std::uint32_t>(motor)});
+        for (const auto& [command, count] : commands) {
+            recognition.score += 3 * static_cast<double>(count);
+        }
+    }
+    if (!answering.empty()) {
+        recognition.silent = silent_motors(frames, 1, 32, answering, [&](unsigned motor) {
+            return hal::RmdMotor({.motor_id = static_cast<int>(motor), .driver = driver});
+        });
+    }
+    recognition.fields = {{"driver", old ? "V2" : "V3"},
+                          {"position", rmd_position_names.at(static_cast<std::size_t>(position))}};
+    if (!recognition.boards.empty()) {
+        recognition.unsure.emplace_back("torques: efforts are currents without newton_metre_per_ampere");
+    }
+    if (position == hal::RmdPosition::encoder) {
+        recognition.unsure.emplace_back("counts_per_turn: 65536 is assumed");
+    }
+    if (position == hal::RmdPosition::status && !old && !recognition.boards.empty()) {
+        recognition.unsure.emplace_back("positions of 1 ° are too coarse to learn from: poll 0x92");
+    }
+    return recognition;
+}
+
+Recognition recognise_rmd(FrameSpan frames) {
+    Recognition today = recognise_rmd_driver(frames, hal::RmdDriver::v3);
+    Recognition old = recognise_rmd_driver(frames, hal::RmdDriver::v2);
+    return today.score >= old.score ? today : old;
+}
+
+} // namespace
+
+JointFamily rmd() {
+    return {.name = "rmd",
+            .board_fields = rmd_fields,
+            .fields = rmd_bus_fields,
+            .dbc = "rmd.dbc",
+            .example = R"({"family": "rmd", "boards": [
+                {"motor_id": 1, "joint": 1, "newton_metre_per_ampere": 2.1},
+                {"motor_id": 2, "joint": 2, "newton_metre_per_ampere": 2.1, "motor_per_joint": -1}]})",
+            .read = read_rmd_motors,
+            .devices = "MyActuator RMD motors with V2, V3 and V4 drivers",
+            .sources = {"MyActuator, Motor Motion Protocol V4.2 (2024-05), and three independent drivers"},
+            .pitfalls = {"V2 drivers answer on the identifier of the requests, with 33/2048 A per count.",
+                         "The angle in the answer to 0x9C has steps of 1 °: too coarse to learn from.",
+                         "A request has the first byte of its answer; with V2 drivers its identifier, too."},
+            .recognise = recognise_rmd};
+}
+
+} // namespace dfdyn::tools::families
