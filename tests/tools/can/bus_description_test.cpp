@@ -96,7 +96,7 @@ TEST_CASE("an impossible bus description is rejected with field and expected val
         {"ur5_cia402.json", "dfdyn.bus/1", "dfdyn.bus/2",
          R"(schema: expected "dfdyn.bus/1", found "dfdyn.bus/2")"},
         {"ur5_cia402.json", "cia402", "cia403",
-         R"(joints.family: expected icub_two_joint_board, icub_2foc, cia402, odrive, damiao, robstride, piper, cubemars, rmd or dbc, found "cia403")"},
+         R"(joints.family: expected icub_two_joint_board, icub_2foc, cia402, odrive, damiao, robstride, piper, cubemars, rmd, moteus or dbc, found "cia403")"},
         {"ur5_cia402.json", "\"joint\": 6", "\"joint\": 5",
          "joints.boards: expected joints 1 to N, each once, found joint 6 after another one of that number"},
         {"ur5_cia402.json", "\"joint\": 2", "\"joint\": 7",

@@ -198,7 +198,7 @@ def piper():
     return log
 
 
-LOGS = (damiao, robstride, robstride_mit, cubemars_mit, cubemars_servo, rmd, rmd_v2, piper)
+LOGS = (damiao, robstride, robstride_mit, cubemars_mit, cubemars_servo, rmd, rmd_v2, moteus, piper)
 
 
 def main():

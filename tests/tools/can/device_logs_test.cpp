@@ -34,7 +34,7 @@ struct DeviceLog {
     int joints;
     double angle_step, speed_step, effort_step;
 };
-constexpr std::array<DeviceLog, 8> logs{{
+constexpr std::array<DeviceLog, 9> logs{{
     {"damiao", "damiao", 3, 25.0 / 65535, 90.0 / 4095, 108.0 / 4095},
     {"robstride", "robstride", 3, 8 * pi / 65535, 100.0 / 65535, 34.0 / 65535},
     {"robstride_mit", "robstride", 3, 8 * pi / 65535, 100.0 / 4095, 34.0 / 4095},
@@ -42,6 +42,7 @@ constexpr std::array<DeviceLog, 8> logs{{
     {"cubemars_servo", "cubemars", 2, 0.1 * pi / 180, 0.006, 0.01},
     {"rmd", "rmd", 3, 0.01 * pi / 180, pi / 180, 0.01},
     {"rmd_v2", "rmd", 2, 0.01 * pi / 180, pi / 180, 33.0 / 2048},
+    {"moteus", "moteus", 3, 2e-4 * pi, 5e-4 * pi, 0.01},
     {"piper", "piper", 6, 0.001 * pi / 180, 0.001, 0.001},
 }};
 

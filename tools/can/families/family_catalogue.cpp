@@ -19,6 +19,7 @@ JointFamily robstride();
 JointFamily piper();
 JointFamily cubemars();
 JointFamily rmd();
+JointFamily moteus();
 JointFamily dbc_joints();
 
 SensorFamily icub_strain();
@@ -40,6 +41,7 @@ const std::vector<JointFamily>& joint_families() {
         piper(),
         cubemars(),
         rmd(),
+        moteus(),
         dbc_joints(),
     };
     return catalogue;
