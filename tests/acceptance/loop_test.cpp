@@ -24,19 +24,25 @@ struct Setting {
     BusDescription bus;
 };
 
-/// Reads the robot `robot`, and the scenario and the bus description called `name`.
-Setting setting(const std::string& robot, const std::string& name) {
+/// Reads the robot `robot`, the scenario called `scenario_name` and the bus description called `bus`.
+Setting setting(const std::string& robot, const std::string& scenario_name, const std::string& bus) {
     const std::string data = DFDYN_TEST_DATA_DIR;
-    const std::string scenario = data + "/scenarios/" + name;
+    const std::string scenario = data + "/scenarios/" + scenario_name;
     Setting result{read_scenario_robot(data + "/robots/" + robot, scenario), {}, {}};
     result.scenario = read_scenario(scenario, result.robot);
-    result.bus = read_bus_description(data + "/can/" + name);
+    result.bus = read_bus_description(data + "/can/" + bus);
+    result.scenario.controller.rate_hz = result.bus.joints.rate_hz;
     check_bus(result.bus, result.robot, result.scenario);
     return result;
 }
 
-Setting ur5_loop() { return setting("ur5/ur5_robot.urdf", "ur5_loop.json"); }
-Setting icub_loop() { return setting("icub_right_arm/icub_right_arm.urdf", "icub_loop.json"); }
+Setting ur5_loop() { return setting("ur5/ur5_robot.urdf", "ur5_loop.json", "ur5_loop.json"); }
+Setting icub_loop() {
+    return setting("icub_right_arm/icub_right_arm.urdf", "icub_loop.json", "icub_loop.json");
+}
+Setting seven_joint_loop(const std::string& bus) {
+    return setting("seven_joint_arm/seven_joint_arm.urdf", "seven_joint_loop.json", bus);
+}
 
 /// Records half a minute of the arm without payload on another motion with the nominal rigid body, at one row
 /// per 8 ms. The hyperparameters are trained on it.
@@ -126,6 +132,20 @@ void check_tracking(const Setting& arm) {
     }
 }
 
+/// Checks that the arm with a payload tracks at least three times better than with the nominal body, from the
+/// start.
+void check_short_tracking(const Setting& arm) {
+    const LoopModel model = trained(arm);
+    const std::vector<TrackingWindow> nominal =
+        tracked(arm, "nominal", nullptr, without_observer(), 10.001).windows;
+    const std::vector<TrackingWindow> learned = tracked(arm, "learned", &model, {}, 10.001).windows;
+    REQUIRE(nominal.size() == 2);
+    for (std::size_t window = 0; window < nominal.size(); ++window) {
+        CAPTURE(nominal[window].start_s, nominal[window].all, learned.at(window).all);
+        CHECK(learned[window].all < nominal[window].all / 3);
+    }
+}
+
 /// The UR5's scenario with a fault at 40 s.
 Scenario with_fault(const Setting& ur5, const std::string& fault) {
     return read_scenario(std::string(DFDYN_TEST_DATA_DIR) + "/loop_faults/" + fault + ".json", ur5.robot);
@@ -152,6 +172,14 @@ TEST_CASE("the UR5 in a loop with an untrained model tracks twenty times better 
 
 TEST_CASE("the iCub's arm in a loop with an untrained model tracks twenty times better after a minute") {
     check_tracking(icub_loop());
+}
+
+TEST_CASE("seven Damiao motors at 1 kHz on CAN FD track three times better than with the nominal body") {
+    check_short_tracking(seven_joint_loop("damiao_loop.json"));
+}
+
+TEST_CASE("seven moteus controllers at 500 Hz track three times better than with the nominal body") {
+    check_short_tracking(seven_joint_loop("moteus_loop.json"));
 }
 
 TEST_CASE(

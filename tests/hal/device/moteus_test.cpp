@@ -206,13 +206,13 @@ TEST_CASE("a torque command to a moteus has no stiffness and damping and asks fo
     CHECK(command.extended);
     CHECK(command.fd);
     CHECK(is_well_formed(command));
-    const Bytes start(command.data.begin(), command.data.begin() + 5);
-    CHECK(start == Bytes{0x01, 0x00, 0x0A, 0x0F, 0x20});
-    CHECK(std::isnan(load_little<float>(command.data.data() + 5)));
-    CHECK(load_little<float>(command.data.data() + 13) == -2.0F);
+    const Bytes start(command.data.begin(), command.data.begin() + 9);
+    CHECK(start ==
+          Bytes{0x01, 0x00, 0x0A, 0x02, 0x20, 0x80, 0x80, 0x0D, 0x22}); // position and velocity: no value
+    CHECK(load_little<float>(command.data.data() + 9) == -2.0F);
     CHECK(device.decode_torque(command).value() == Approx(4));
     Frame stiff = command;
-    stiff.data[19] = 1; // of kp
+    stiff.data[15] = 1; // of kp
     CHECK_FALSE(device.decode_torque(stiff));
     CHECK(device.command(flexible(0x8003, bytes_of("010000"))) == MotorCommand::clear_faults); // mode stopped
     CHECK(device.command(flexible(0x8003, bytes_of("1404001100"))) == MotorCommand::poll);

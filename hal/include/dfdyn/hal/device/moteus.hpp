@@ -217,9 +217,7 @@ class MoteusController {
     /// like `encode`.
     [[nodiscard]] Frame encode_torque(double torque_Nm) const noexcept {
         Writer writer(command_id());
-        writer.bytes({0x01, 0x00, position_mode, 0x0F, 0x20});
-        writer.real(std::numeric_limits<double>::quiet_NaN()); // the present position
-        writer.real(0);
+        writer.bytes({0x01, 0x00, position_mode, 0x02, 0x20, no_value, no_value, 0x0D, 0x22});
         writer.real(torque_Nm / config_.motor_per_joint);
         writer.bytes({0x02, 0x23, 0, 0, 0x11, 0x00, 0x1F, 0x01, 0x11, 0x0F});
         return writer.frame();
@@ -294,6 +292,7 @@ class MoteusController {
   private:
     using Kind = MoteusSubframes::Kind;
     static constexpr std::uint8_t position_mode = 10;
+    static constexpr std::uint8_t no_value = 0x80; ///< int8: the present position, velocity 0
     static constexpr int most_items = 256;
     static constexpr double radians_per_turn = 2 * std::numbers::pi;
     static constexpr std::array<double, 3> position_steps{1e-2, 1e-4, 1e-5};
