@@ -57,6 +57,22 @@ TEST_CASE("the motor number of a CubeMars motor in MIT mode is the whole of byte
           Kind::nothing);
 }
 
+TEST_CASE("a CubeMars motor may answer on the identifier of its commands and byte 0 tells them apart") {
+    CubemarsMitMotor::Config config = mit_motor().config();
+    config.feedback_id = 2;
+    config.shared_feedback_id = false;
+    CubemarsMitMotor motor(config);
+    const Frame answer = frame_of(0x002, {2, 0x9C, 0x40, 0xA1, 0x2B, 0xCD, 31, 0});
+    CHECK(motor.decode(answer).kind == Kind::values);
+    CHECK(motor.command(answer) == MotorCommand::none);
+    const Frame command = motor.encode_torque(1);
+    CHECK(motor.decode(command).kind == Kind::nothing);
+    CHECK(motor.command(command) == MotorCommand::control);
+    const Frame enable = frame_of(0x002, {255, 255, 255, 255, 255, 255, 255, 0xFC});
+    CHECK(motor.decode(enable).kind == Kind::nothing);
+    CHECK(motor.command(enable) == MotorCommand::enable);
+}
+
 /// An AK80-9 in servo mode as motor 0x68.
 CubemarsServo::Config servo_config() { return {.motor_id = 0x68, .packet = 0x29, .joint = 3}; }
 CubemarsServo servo() { return CubemarsServo(servo_config()); }

@@ -37,6 +37,7 @@ constexpr std::array<MotorType, 1> cubemars_types{{{"AK80-9", {12.5, 50, 18}}}};
 
 const std::vector<FamilyField> cubemars_fields{
     {"motor_id", "(1 to 255)"},
+    {"feedback_id", "(of its answers with `\"mit\"`; that of `joints`)"},
     {"joint", ""},
     {"motor", "(with `\"mit\"`: `\"AK80-9\"`; without: none)"},
     {"position_max", "(rad; with `\"mit\"`)"},
@@ -62,7 +63,7 @@ hal::CubemarsMitMotor::Config read_cubemars_mit_motor(const JsonReader& board, s
     board.allow_only(names_of(cubemars_fields));
     hal::CubemarsMitMotor::Config config;
     config.motor_id = board.whole_number("motor_id", 1, 255);
-    config.feedback_id = feedback_id;
+    config.feedback_id = identifier_or(board, "feedback_id", feedback_id);
     config.joint = read_joint(board);
     const std::string expected = "the range in the motor's manual";
     const Maxima maxima = read_maxima(board, cubemars_types, {expected, expected, expected});
@@ -98,7 +99,8 @@ void read_cubemars_motors(const JsonReader& joints, const std::filesystem::path&
     if (protocol == "mit") {
         const std::uint32_t feedback_id = identifier_or(joints, "feedback_id", 0);
         add_mit_motors<CubemarsMitMotor, hal::CubemarsMitMotor>(
-            joints, [&](const JsonReader& board) { return read_cubemars_mit_motor(board, feedback_id); },
+            joints, true,
+            [&](const JsonReader& board) { return read_cubemars_mit_motor(board, feedback_id); },
             description);
     } else if (protocol == "servo") {
         const int packet = joints.has("packet") ? static_cast<int>(identifier_or(joints, "packet", 0)) : -1;
@@ -121,39 +123,10 @@ double cubemars_plausibility(const hal::Frame& frame) {
 }
 
 Recognition recognise_mit_cubemars(FrameSpan frames) {
-    Recognition recognition;
-    recognition.quantity = "tau";
-    std::map<std::uint32_t, double> ids;
-    const std::vector<MitCandidate> candidates =
-        mit_candidates<hal::CubemarsMitProtocol>(frames, MitCandidate::assumed[0], cubemars_plausibility);
-    for (const MitCandidate& candidate : candidates) {
-        ids[candidate.feedback_id] += static_cast<double>(candidate.frames) * candidate.plausibility;
-    }
-    const auto id = std::ranges::max_element(ids, {}, [](const auto& entry) { return entry.second; });
-    for (const MitCandidate& candidate : candidates) {
-        if (candidate.feedback_id != id->first) {
-            continue;
-        }
-        const JointFit& fit = candidate.fit.joint[0];
-        const MeasuredMaxima measured = measure_maxima(fit.velocity, MitCandidate::assumed[1], cubemars_types,
-                                                       {}, "look up the type on its label");
-        RecognisedBoard board{
-            .name = "motor " + std::to_string(candidate.motor), .entry = {}, .rate_hz = fit.rate_hz()};
-        board.entry = {{"motor_id", candidate.motor},
-                       {"position_max", measured.maxima[0]},
-                       {"velocity_max", measured.maxima[1]},
-                       {"torque_max", measured.maxima[2]}};
-        board.measured = measured.measured;
-        if (!measured.unsure.empty()) {
-            recognition.unsure.push_back(board.name + ": " + measured.unsure);
-        }
-        recognition.boards.push_back(std::move(board));
-    }
-    if (id != ids.end()) {
-        recognition.score = id->second;
-        recognition.identifiers.insert({false, id->first});
-        recognition.fields = {{"protocol", "mit"}, {"feedback_id", identifier_text(id->first)}};
-    }
+    Recognition recognition = recognise_mit_motors<hal::CubemarsMitProtocol>(
+        frames, {cubemars_types, "look up the type on its label", 255, true}, cubemars_plausibility,
+        [](const MitCandidate&) { return Maxima{}; });
+    recognition.fields = {{"protocol", "mit"}};
     return recognition;
 }
 

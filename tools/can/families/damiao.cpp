@@ -73,7 +73,7 @@ void read_damiao_motors(const JsonReader& joints, const std::filesystem::path& /
                         BusDescription& description) {
     const bool fd = joints.has("fd") && joints.flag("fd");
     add_mit_motors<DamiaoMotor, hal::DamiaoMotor>(
-        joints, [&](const JsonReader& board) { return read_damiao_motor(board, fd); }, description);
+        joints, false, [&](const JsonReader& board) { return read_damiao_motor(board, fd); }, description);
 }
 
 /// 0: no feedback of such a motor; above 1: what speaks for it.
@@ -102,47 +102,10 @@ Maxima reported_damiao_maxima(const MitCandidate& candidate, FrameSpan frames) {
     return known;
 }
 
-RecognisedBoard recognised_damiao_motor(const MitCandidate& candidate, FrameSpan frames,
-                                        Recognition& recognition) {
-    const JointFit& fit = candidate.fit.joint[0];
-    const Maxima known = reported_damiao_maxima(candidate, frames);
-    const MeasuredMaxima measured = measure_maxima(fit.velocity, MitCandidate::assumed[1], damiao_types,
-                                                   known, "read its registers 21, 22 and 23");
-    RecognisedBoard board{
-        .name = "motor " + std::to_string(candidate.motor), .entry = {}, .rate_hz = fit.rate_hz()};
-    board.entry = {{"motor_id", candidate.motor},
-                   {"feedback_id", identifier_text(candidate.feedback_id)},
-                   {"position_max", measured.maxima[0]},
-                   {"velocity_max", measured.maxima[1]},
-                   {"torque_max", measured.maxima[2]}};
-    board.measured = measured.measured;
-    if (!measured.unsure.empty()) {
-        recognition.unsure.push_back(board.name + ": " + measured.unsure);
-    }
-    return board;
-}
-
 Recognition recognise_damiao_motors(FrameSpan frames) {
-    Recognition recognition;
-    recognition.quantity = "tau";
-    std::vector<MitCandidate> candidates =
-        mit_candidates<hal::DamiaoProtocol>(frames, MitCandidate::assumed[0], damiao_plausibility);
-    std::ranges::sort(candidates, {}, &MitCandidate::motor);
-    std::set<unsigned> answering;
-    for (const MitCandidate& candidate : candidates) {
-        if (candidate.motor <= 15) {
-            recognition.boards.push_back(recognised_damiao_motor(candidate, frames, recognition));
-            recognition.identifiers.insert({false, candidate.feedback_id});
-            recognition.score += static_cast<double>(candidate.frames) * candidate.plausibility;
-            answering.insert(candidate.motor);
-        }
-    }
-    if (!answering.empty()) {
-        recognition.silent = silent_motors(frames, 1, 15, answering, [](unsigned motor) {
-            return hal::DamiaoMotor({.motor_id = static_cast<int>(motor)});
-        });
-    }
-    return recognition;
+    return recognise_mit_motors<hal::DamiaoProtocol>(
+        frames, {damiao_types, "read its registers 21, 22 and 23", 15}, damiao_plausibility,
+        [&](const MitCandidate& candidate) { return reported_damiao_maxima(candidate, frames); });
 }
 
 } // namespace

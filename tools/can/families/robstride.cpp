@@ -50,6 +50,7 @@ constexpr std::array<MotorType, 9> robstride_types{
 
 const std::vector<FamilyField> robstride_fields{
     {"motor_id", "(1 to 254)"},
+    {"feedback_id", "(of its answers with `\"mit\"`; `host_id`)"},
     {"joint", ""},
     {"motor",
      "(`\"RS00\"` to `\"RS06\"`, `\"EL05\"`, `\"CyberGear\"`: the ranges of that type, where documents "
@@ -111,10 +112,10 @@ void read_robstride_motors(const JsonReader& joints, const std::filesystem::path
         throw joints.error("host_id", R"("0x0" to "0xFF")", in_quotes(identifier_text(host)));
     } else if (protocol == "mit") {
         add_mit_motors<RobstrideMitMotor, hal::RobstrideMitMotor>(
-            joints,
+            joints, true,
             [&](const JsonReader& board) {
                 auto config = read_robstride_motor<hal::RobstrideMitMotor::Config>(board);
-                config.feedback_id = host;
+                config.feedback_id = identifier_or(board, "feedback_id", host);
                 return config;
             },
             description);
@@ -123,21 +124,7 @@ void read_robstride_motors(const JsonReader& joints, const std::filesystem::path
     }
 }
 
-/// Adds a motor whose feedback was decoded with `assumed` as velocity maximum.
-void add_robstride_motor(unsigned motor, const JointFit& fit, double assumed, Recognition& recognition) {
-    const MeasuredMaxima measured =
-        measure_maxima(fit.velocity, assumed, robstride_types, {}, "look up the type on its label");
-    RecognisedBoard board{.name = "motor " + std::to_string(motor), .entry = {}, .rate_hz = fit.rate_hz()};
-    board.entry = {{"motor_id", motor},
-                   {"position_max", measured.maxima[0]},
-                   {"velocity_max", measured.maxima[1]},
-                   {"torque_max", measured.maxima[2]}};
-    board.measured = measured.measured;
-    if (!measured.unsure.empty()) {
-        recognition.unsure.push_back(board.name + ": " + measured.unsure);
-    }
-    recognition.boards.push_back(std::move(board));
-}
+const MotorSearch robstride_search{robstride_types, "look up the type on its label", 254, true};
 
 /// Number of feedback frames by host and motor.
 using RobstrideAnswers = std::map<unsigned, std::map<unsigned, std::uint64_t>>;
@@ -177,7 +164,8 @@ Recognition recognise_private_robstride(FrameSpan frames) {
                                                             .torque_max = 1}),
                                        frames);
         if (fit.fits()) {
-            add_robstride_motor(motor, fit.joint[0], assumed, recognition);
+            add_motor(motor, fit.joint[0], assumed, robstride_search, {}, nlohmann::json::object(),
+                      recognition);
             answering.insert(motor);
             recognition.score += 3 * static_cast<double>(count);
         }
@@ -207,26 +195,9 @@ double robstride_plausibility(const hal::Frame& frame) {
 }
 
 Recognition recognise_mit_robstride(FrameSpan frames) {
-    Recognition recognition;
-    recognition.quantity = "tau";
-    std::map<std::uint32_t, double> hosts;
-    const std::vector<MitCandidate> candidates =
-        mit_candidates<hal::RobstrideMitProtocol>(frames, robstride_position_max, robstride_plausibility);
-    for (const MitCandidate& candidate : candidates) {
-        hosts[candidate.feedback_id] += static_cast<double>(candidate.frames) * candidate.plausibility;
-    }
-    const auto host = std::ranges::max_element(hosts, {}, [](const auto& entry) { return entry.second; });
-    for (const MitCandidate& candidate : candidates) {
-        if (candidate.feedback_id == host->first && candidate.motor < 255) {
-            add_robstride_motor(candidate.motor, candidate.fit.joint[0], MitCandidate::assumed[1],
-                                recognition);
-        }
-    }
-    if (host != hosts.end()) {
-        recognition.score = host->second;
-        recognition.identifiers.insert({false, host->first});
-        recognition.fields = {{"protocol", "mit"}, {"host_id", identifier_text(host->first)}};
-    }
+    Recognition recognition = recognise_mit_motors<hal::RobstrideMitProtocol>(
+        frames, robstride_search, robstride_plausibility, [](const MitCandidate&) { return Maxima{}; });
+    recognition.fields = {{"protocol", "mit"}};
     return recognition;
 }
 

@@ -3,6 +3,7 @@
 
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
+#include "tools/can/motors/motor_fields.hpp"
 
 #include <cmath>
 #include <set>
@@ -31,8 +32,10 @@ std::string numbers_text(const std::set<double>& numbers) {
 
 } // namespace
 
-MeasuredMaxima measure_maxima(const VelocityCheck& velocity, double assumed, std::span<const MotorType> types,
-                              const Maxima& known, const std::string& ask) {
+MeasuredMaxima measure_maxima(const VelocityCheck& velocity, double assumed, const MotorSearch& search,
+                              const Maxima& known) {
+    const std::span<const MotorType> types = search.types;
+    const std::string ask(search.ask);
     MeasuredMaxima result;
     const bool sure = velocity.is_sure();
     const double measured = sure ? std::abs(velocity.ratio()) * assumed : 0;
@@ -77,11 +80,23 @@ MeasuredMaxima measure_maxima(const VelocityCheck& velocity, double assumed, std
     for (std::size_t i = 0; i < known.size(); ++i) {
         result.maxima[i] = known[i] > 0 ? known[i] : result.maxima[i];
     }
-    result.type = names.size() == 1 ? types[0].name : std::string_view();
-    for (const MotorType& type : types) {
-        result.type = names.size() == 1 && type.name == names.front() ? type.name : result.type;
-    }
     return result;
+}
+
+void add_motor(unsigned motor, const JointFit& fit, double assumed, const MotorSearch& search,
+               const Maxima& known, nlohmann::json entry, Recognition& recognition) {
+    const MeasuredMaxima measured = measure_maxima(fit.velocity, assumed, search, known);
+    RecognisedBoard board{
+        .name = "motor " + std::to_string(motor), .entry = std::move(entry), .rate_hz = fit.rate_hz()};
+    board.entry["motor_id"] = motor;
+    for (std::size_t i = 0; i < measured.maxima.size(); ++i) {
+        board.entry[maximum_names[i]] = measured.maxima[i];
+    }
+    board.measured = measured.measured;
+    if (!measured.unsure.empty()) {
+        recognition.unsure.push_back(board.name + ": " + measured.unsure);
+    }
+    recognition.boards.push_back(std::move(board));
 }
 
 } // namespace dfdyn::tools

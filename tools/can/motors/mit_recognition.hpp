@@ -2,11 +2,13 @@
 #pragma once
 
 #include "dfdyn/hal/device/mit_motor.hpp"
+#include "tools/can/description/bus_fields.hpp"
 #include "tools/can/families/motor_type.hpp"
 #include "tools/can/motors/codec_fit.hpp"
 
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,7 +31,8 @@ struct MitCandidate {
 /// Groups frames by identifier and motor. `Protocol`: a MitProtocol. `plausible(frame)`: 0 (not such a frame)
 /// to 1.
 template <hal::MitProtocol Protocol, class Plausible>
-std::vector<MitCandidate> mit_candidates(FrameSpan frames, double position_max, Plausible plausible) {
+std::vector<MitCandidate> mit_candidates(FrameSpan frames, double position_max, bool own_id,
+                                         Plausible plausible) {
     std::map<std::pair<std::uint32_t, unsigned>, MitCandidate> found;
     std::map<std::uint32_t, std::uint64_t> all;
     for (const hal::Frame& frame : frames) {
@@ -48,7 +51,7 @@ std::vector<MitCandidate> mit_candidates(FrameSpan frames, double position_max, 
     for (auto& [key, candidate] : found) {
         candidate.of_id = all[candidate.feedback_id];
         candidate.plausibility /= static_cast<double>(candidate.frames);
-        const bool command = candidate.feedback_id == candidate.motor; // answers never come on it
+        const bool command = !own_id && candidate.feedback_id == candidate.motor;
         const bool rare = 20 * candidate.frames < candidate.of_id;
         if (candidate.motor == 0 || command || rare || candidate.frames < frames_to_recognise ||
             candidate.plausibility < MitCandidate::least_plausibility) {
@@ -74,16 +77,59 @@ std::vector<MitCandidate> mit_candidates(FrameSpan frames, double position_max, 
 
 /// What the frames tell about the maxima of a motor's codes.
 struct MeasuredMaxima {
-    Maxima maxima{};            ///< the most likely
-    std::string measured;       ///< for the report
-    std::string unsure;         ///< "": nothing is
-    std::string_view type = {}; ///< the only type that fits; "" none or several
+    Maxima maxima{};      ///< the most likely
+    std::string measured; ///< for the report
+    std::string unsure;   ///< "": nothing is
+};
+
+/// How to find the motors of one family.
+struct MotorSearch {
+    std::span<const MotorType> types;
+    std::string_view ask; ///< how to learn the maxima, for what is unsure
+    unsigned last_motor = 255;
+    bool own_id = false; ///< motors may answer on the identifier of their commands
 };
 
 /// Finds the types whose velocity maximum is the one that relates the codes of velocity to the changes of
 /// position. `assumed`: the velocity maximum that `velocity` was decoded with. `known`: maxima that the motor
-/// itself reported, 0 if it did not. `ask`: how to learn the maxima.
-MeasuredMaxima measure_maxima(const VelocityCheck& velocity, double assumed, std::span<const MotorType> types,
-                              const Maxima& known, const std::string& ask);
+/// itself reported, 0 if it did not.
+MeasuredMaxima measure_maxima(const VelocityCheck& velocity, double assumed, const MotorSearch& search,
+                              const Maxima& known);
+
+/// Adds a motor whose feedback was decoded with `assumed` as velocity maximum. `entry`: its fields of
+/// `boards` besides the maxima.
+void add_motor(unsigned motor, const JointFit& fit, double assumed, const MotorSearch& search,
+               const Maxima& known, nlohmann::json entry, Recognition& recognition);
+
+/// Recognises motors with MIT mode. `known(candidate)`: the maxima that a motor itself reported.
+template <hal::MitProtocol Protocol, class Plausible, class Known>
+Recognition recognise_mit_motors(FrameSpan frames, const MotorSearch& search, Plausible plausible,
+                                 Known known) {
+    Recognition recognition;
+    recognition.quantity = "tau";
+    std::vector<MitCandidate> candidates =
+        mit_candidates<Protocol>(frames, search.types.front().maxima[0], search.own_id, plausible);
+    std::ranges::sort(candidates, {}, &MitCandidate::motor);
+    std::set<unsigned> answering;
+    for (const MitCandidate& candidate : candidates) {
+        if (candidate.motor > search.last_motor || answering.contains(candidate.motor)) {
+            continue;
+        }
+        add_motor(candidate.motor, candidate.fit.joint[0], MitCandidate::assumed[1], search, known(candidate),
+                  {{"feedback_id", identifier_text(candidate.feedback_id)}}, recognition);
+        recognition.identifiers.insert({false, candidate.feedback_id});
+        recognition.score += static_cast<double>(candidate.frames) * candidate.plausibility;
+        answering.insert(candidate.motor);
+    }
+    for (const MitCandidate& candidate : candidates) {
+        answering.insert(candidate.feedback_id); // its frames command no motor of that number
+    }
+    if (!recognition.boards.empty()) {
+        recognition.silent = silent_motors(frames, 1, search.last_motor, answering, [](unsigned motor) {
+            return hal::MitMotor<Protocol>({.motor_id = static_cast<int>(motor), .feedback_id = 0x7FE});
+        });
+    }
+    return recognition;
+}
 
 } // namespace dfdyn::tools

@@ -24,7 +24,7 @@ Maxima read_maxima(const JsonReader& board, std::span<const MotorType> types,
 /// Marks the motors that answer on one identifier, where their numbers tell them apart. Throws InputError for
 /// two motors of one number on one identifier, and for answers on an identifier of commands.
 template <class Config>
-void share_feedback_ids(const JsonReader& joints, std::vector<Config>& configs) {
+void share_feedback_ids(const JsonReader& joints, bool own_id, std::vector<Config>& configs) {
     for (std::size_t i = 0; i < configs.size(); ++i) {
         for (std::size_t k = 0; k < configs.size(); ++k) {
             const bool same_id = i != k && configs[i].feedback_id == configs[k].feedback_id;
@@ -34,7 +34,8 @@ void share_feedback_ids(const JsonReader& joints, std::vector<Config>& configs) 
                                        identifier_text(configs[i].feedback_id));
             }
             configs[i].shared_feedback_id = configs[i].shared_feedback_id || same_id;
-            if (configs[i].feedback_id == static_cast<std::uint32_t>(configs[k].motor_id)) {
+            const bool own = i == k && own_id;
+            if (!own && configs[i].feedback_id == static_cast<std::uint32_t>(configs[k].motor_id)) {
                 throw joints.error("boards", "answers on identifiers that no motor is commanded on",
                                    "answers on " + identifier_text(configs[i].feedback_id) +
                                        ", which is motor_id " + std::to_string(configs[k].motor_id));
@@ -43,14 +44,15 @@ void share_feedback_ids(const JsonReader& joints, std::vector<Config>& configs) 
     }
 }
 
-/// Adds the motors with MIT mode that `read(board)` gives the configuration of.
+/// Adds the motors with MIT mode that `read(board)` gives the configuration of. `own_id`: see
+/// share_feedback_ids.
 template <class MitBoard, class Codec, class Read>
-void add_mit_motors(const JsonReader& joints, Read read, BusDescription& description) {
+void add_mit_motors(const JsonReader& joints, bool own_id, Read read, BusDescription& description) {
     std::vector<typename Codec::Config> configs;
     for (const JsonReader& board : joints.objects("boards", 1, largest_bus_joint_count)) {
         configs.push_back(read(board));
     }
-    share_feedback_ids(joints, configs);
+    share_feedback_ids(joints, own_id, configs);
     for (const typename Codec::Config& config : configs) {
         description.boards.push_back(one_joint<MitBoard>(Codec(config), config.joint));
     }

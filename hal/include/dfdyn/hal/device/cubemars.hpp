@@ -15,21 +15,10 @@ namespace dfdyn::hal {
 /// torque is the current times a constant, without friction: TMotorCANControl has measured 0.115 N·m/A for
 /// the AK80-9, 26 % more than the maker's 0.091. Values carry `device_fault` with an error, also one that no
 /// document lists.
-struct CubemarsMitProtocol {
-    [[nodiscard]] static constexpr unsigned motor_of(const Frame& frame) noexcept { return frame.data[0]; }
+struct CubemarsMitProtocol : PlainMitProtocol {
     [[nodiscard]] static constexpr bool has_length(int length) noexcept { return length == 6 || length == 8; }
     [[nodiscard]] static constexpr Reason condition(const Frame& feedback) noexcept {
         return feedback.length < 8 || feedback.data[7] == 0 ? Reason::ok : Reason::device_fault;
-    }
-    [[nodiscard]] static constexpr bool is_feedback(const Frame& /*frame*/, unsigned /*motor*/) noexcept {
-        return true;
-    }
-    [[nodiscard]] static constexpr std::optional<ReportedMaximum> reported(const Frame& /*answer*/) noexcept {
-        return std::nullopt;
-    }
-    [[nodiscard]] static constexpr MotorCommand other_command(const Frame& /*frame*/,
-                                                              unsigned /*motor*/) noexcept {
-        return MotorCommand::none;
     }
     /// 25 °C
     static constexpr void mark_sound(Frame& feedback, unsigned motor) noexcept {

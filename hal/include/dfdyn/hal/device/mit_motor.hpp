@@ -16,6 +16,24 @@ struct ReportedMaximum {
     double value = 0;
 };
 
+/// Base of protocols without answers other than feedback, without a state, and with the MIT mode's commands
+/// alone.
+struct PlainMitProtocol {
+    [[nodiscard]] static constexpr unsigned motor_of(const Frame& frame) noexcept { return frame.data[0]; }
+    [[nodiscard]] static constexpr bool has_length(int length) noexcept { return length == 8; }
+    [[nodiscard]] static constexpr Reason condition(const Frame& /*feedback*/) noexcept { return Reason::ok; }
+    [[nodiscard]] static constexpr bool is_feedback(const Frame& /*frame*/, unsigned /*motor*/) noexcept {
+        return true;
+    }
+    [[nodiscard]] static constexpr std::optional<ReportedMaximum> reported(const Frame& /*answer*/) noexcept {
+        return std::nullopt;
+    }
+    [[nodiscard]] static constexpr MotorCommand other_command(const Frame& /*frame*/,
+                                                              unsigned /*motor*/) noexcept {
+        return MotorCommand::none;
+    }
+};
+
 /// What differs between the motors with MIT mode, all static:
 /// - `motor_of(frame)`: the motor number in byte 0 of an answer.
 /// - `has_length(length)`: lengths of a feedback.
@@ -50,6 +68,9 @@ concept MitProtocol = requires(const Frame& frame, Frame& sent, unsigned motor, 
 /// - `motor_id`, to the motor: position u16, velocity u12, kp u12, kd u12, torque u12; or seven bytes FF and
 /// FC
 ///   (enable), FD (disable), FE (set zero), FB (clear faults).
+///
+/// Some firmware answers on `motor_id`. A command with a position near -position_max then looks like an
+/// answer.
 ///
 /// The maxima of the codes are not in the frames. If a motor reports another maximum than `Config`, the
 /// values that depend on it carry `full_scale_contradicted` until it reports the same.
@@ -90,7 +111,8 @@ class MitMotor {
             return rejected(fault);
         }
         if (Protocol::motor_of(frame) != motor_id()) { // another motor with the same feedback_id
-            return config_.shared_feedback_id ? Decoded{} : rejected(Reason::id_collision);
+            return config_.shared_feedback_id || answers_on_own_id() ? Decoded{}
+                                                                     : rejected(Reason::id_collision);
         }
         return Protocol::is_feedback(frame, motor_id()) ? decode_feedback(frame) : decode_report(frame);
     }
@@ -102,12 +124,7 @@ class MitMotor {
         Frame& frame = frames.frame[0];
         frame = new_frame(config_.feedback_id);
         Protocol::mark_sound(frame, motor_id());
-        const JointValue& value = values[0];
-        const double motor_rad = (value.position_rad - config_.zero_rad) * config_.motor_per_joint;
-        position_code.insert(motor_rad, config_.position_max, frame);
-        velocity_code.insert(value.has_velocity ? value.velocity * config_.motor_per_joint : 0,
-                             config_.velocity_max, frame);
-        torque_code.insert(value.effort / config_.motor_per_joint, config_.torque_max, frame);
+        feedback.encode(values[0], scale(), frame);
         return frames;
     }
 
@@ -134,6 +151,9 @@ class MitMotor {
     [[nodiscard]] constexpr MotorCommand command(const Frame& frame) const noexcept {
         if (!has_id(frame, motor_id()) || frame.remote || frame.length != 8) {
             return Protocol::other_command(frame, motor_id());
+        }
+        if (answers_on_own_id() && Protocol::motor_of(frame) == motor_id()) {
+            return MotorCommand::none; // its answer
         }
         for (std::size_t i = 0; i < 7; ++i) {
             if (frame.data[i] != 0xFF) {
@@ -166,9 +186,8 @@ class MitMotor {
     }
 
   private:
-    static constexpr LinearCode position_code = big_endian_code(8, 16);
-    static constexpr LinearCode velocity_code = big_endian_code(24, 12);
-    static constexpr LinearCode torque_code = big_endian_code(36, 12);
+    static constexpr LinearFeedback feedback{big_endian_code(8, 16), big_endian_code(24, 12),
+                                             big_endian_code(36, 12)};
     static constexpr LinearCode commanded_position = big_endian_code(0, 16);
     static constexpr LinearCode commanded_velocity = big_endian_code(16, 12);
     static constexpr Signal commanded_gains = big_endian_code(28, 24).signal; ///< kp, kd
@@ -176,6 +195,10 @@ class MitMotor {
 
     [[nodiscard]] constexpr unsigned motor_id() const noexcept {
         return static_cast<unsigned>(config_.motor_id);
+    }
+
+    [[nodiscard]] constexpr bool answers_on_own_id() const noexcept {
+        return config_.feedback_id == motor_id();
     }
 
     [[nodiscard]] constexpr Frame new_frame(std::uint32_t id) const noexcept {
@@ -205,31 +228,21 @@ class MitMotor {
         return status(agrees ? Reason::ok : Reason::full_scale_contradicted);
     }
 
+    [[nodiscard]] constexpr LinearScale scale() const noexcept {
+        return {config_.joint,      config_.position_max,    config_.velocity_max,
+                config_.torque_max, config_.motor_per_joint, config_.zero_rad};
+    }
+
     [[nodiscard]] constexpr Decoded decode_feedback(const Frame& frame) const noexcept {
-        const Reason condition = Protocol::condition(frame);
-        Decoded decoded;
-        decoded.kind = Decoded::Kind::values;
-        decoded.joints = 1;
+        Decoded decoded = feedback.decode(frame, scale(), Protocol::condition(frame));
         JointValue& value = decoded.joint[0];
-        value.joint = config_.joint;
-        value.stamp_ns = frame.stamp_ns;
-        const double motor_rad = position_code.value(frame, config_.position_max);
-        value.from_zero_rad = motor_rad / config_.motor_per_joint;
-        value.position_rad = value.from_zero_rad + config_.zero_rad;
-        const double step_rad = position_code.step(config_.position_max);
-        value.step_rad = magnitude(step_rad / config_.motor_per_joint);
-        value.raw_zero = magnitude(motor_rad) < step_rad; // no code represents exactly 0
         value.has_velocity = !contradicted_[1];
-        value.velocity = velocity_code.value(frame, config_.velocity_max) / config_.motor_per_joint;
-        value.position_reason = condition != Reason::ok          ? condition
-                                : contradicted_[0]               ? Reason::full_scale_contradicted
-                                : position_code.is_at_end(frame) ? Reason::position_out_of_range
-                                                                 : Reason::ok;
-        value.effort = torque_code.value(frame, config_.torque_max) * config_.motor_per_joint;
-        value.effort_reason = condition != Reason::ok        ? condition
-                              : contradicted_[2]             ? Reason::full_scale_contradicted
-                              : torque_code.is_at_end(frame) ? Reason::output_saturated
-                                                             : Reason::ok;
+        if (value.position_reason == Reason::ok && contradicted_[0]) {
+            value.position_reason = Reason::full_scale_contradicted;
+        }
+        if (value.effort_reason == Reason::ok && contradicted_[2]) {
+            value.effort_reason = Reason::full_scale_contradicted;
+        }
         return decoded;
     }
 

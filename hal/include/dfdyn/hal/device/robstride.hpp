@@ -78,12 +78,7 @@ class RobstrideMotor {
         frames.count = 1;
         Frame& frame = frames.frame[0];
         frame = new_frame(feedback_type, run << 14U | motor_id(), host_id());
-        const JointValue& value = values[0];
-        const double motor_rad = (value.position_rad - config_.zero_rad) * config_.motor_per_joint;
-        position_code.insert(motor_rad, config_.position_max, frame);
-        velocity_code.insert(value.has_velocity ? value.velocity * config_.motor_per_joint : 0,
-                             config_.velocity_max, frame);
-        torque_code.insert(value.effort / config_.motor_per_joint, config_.torque_max, frame);
+        feedback.encode(values[0], scale(), frame);
         return frames;
     }
 
@@ -152,7 +147,7 @@ class RobstrideMotor {
 
     static constexpr LinearCode position_code = big_endian_code(0, 16);
     static constexpr LinearCode velocity_code = big_endian_code(16, 16);
-    static constexpr LinearCode torque_code = big_endian_code(32, 16);
+    static constexpr LinearFeedback feedback{position_code, velocity_code, big_endian_code(32, 16)};
 
     [[nodiscard]] static constexpr bool is_private(const Frame& frame) noexcept {
         return frame.extended && !frame.error;
@@ -188,9 +183,9 @@ class RobstrideMotor {
         return status(reported_fault_ ? Reason::device_fault : Reason::ok);
     }
 
-    constexpr Reason condition_of(const Frame& feedback) noexcept {
-        const unsigned mode = feedback.id >> 22U & 3U;
-        const unsigned faults = feedback.id >> 16U & 0x3FU;
+    constexpr Reason condition_of(const Frame& frame) noexcept {
+        const unsigned mode = frame.id >> 22U & 3U;
+        const unsigned faults = frame.id >> 16U & 0x3FU;
         const bool starts = mode == run && !running_;
         running_ = mode == run;
         reported_fault_ = reported_fault_ && !(starts && heard_);
@@ -204,30 +199,13 @@ class RobstrideMotor {
         return running_ ? Reason::ok : Reason::device_not_operational;
     }
 
+    [[nodiscard]] constexpr LinearScale scale() const noexcept {
+        return {config_.joint,      config_.position_max,    config_.velocity_max,
+                config_.torque_max, config_.motor_per_joint, config_.zero_rad};
+    }
+
     constexpr Decoded decode_feedback(const Frame& frame) noexcept {
-        const Reason condition = condition_of(frame);
-        Decoded decoded;
-        decoded.kind = Decoded::Kind::values;
-        decoded.joints = 1;
-        JointValue& value = decoded.joint[0];
-        value.joint = config_.joint;
-        value.stamp_ns = frame.stamp_ns;
-        const double motor_rad = position_code.value(frame, config_.position_max);
-        value.from_zero_rad = motor_rad / config_.motor_per_joint;
-        value.position_rad = value.from_zero_rad + config_.zero_rad;
-        const double step_rad = position_code.step(config_.position_max);
-        value.step_rad = magnitude(step_rad / config_.motor_per_joint);
-        value.raw_zero = magnitude(motor_rad) < step_rad; // no code represents exactly 0
-        value.has_velocity = true;
-        value.velocity = velocity_code.value(frame, config_.velocity_max) / config_.motor_per_joint;
-        value.position_reason = condition != Reason::ok          ? condition
-                                : position_code.is_at_end(frame) ? Reason::position_out_of_range
-                                                                 : Reason::ok;
-        value.effort = torque_code.value(frame, config_.torque_max) * config_.motor_per_joint;
-        value.effort_reason = condition != Reason::ok        ? condition
-                              : torque_code.is_at_end(frame) ? Reason::output_saturated
-                                                             : Reason::ok;
-        return decoded;
+        return feedback.decode(frame, scale(), condition_of(frame));
     }
 
     Config config_;
@@ -244,20 +222,7 @@ static_assert(JointSource<RobstrideMotor>);
 /// where Damiao has two of one byte. All motors answer on the identifier of the host, so that only byte 0
 /// tells them apart; LeRobot checks nothing else. The protocol has no state. FF … FB clears faults: LeRobot's
 /// `sync_read` sends it to read positions.
-struct RobstrideMitProtocol {
-    [[nodiscard]] static constexpr unsigned motor_of(const Frame& frame) noexcept { return frame.data[0]; }
-    [[nodiscard]] static constexpr bool has_length(int length) noexcept { return length == 8; }
-    [[nodiscard]] static constexpr Reason condition(const Frame& /*feedback*/) noexcept { return Reason::ok; }
-    [[nodiscard]] static constexpr bool is_feedback(const Frame& /*frame*/, unsigned /*motor*/) noexcept {
-        return true;
-    }
-    [[nodiscard]] static constexpr std::optional<ReportedMaximum> reported(const Frame& /*answer*/) noexcept {
-        return std::nullopt;
-    }
-    [[nodiscard]] static constexpr MotorCommand other_command(const Frame& /*frame*/,
-                                                              unsigned /*motor*/) noexcept {
-        return MotorCommand::none;
-    }
+struct RobstrideMitProtocol : PlainMitProtocol {
     /// 25 °C
     static constexpr void mark_sound(Frame& feedback, unsigned motor) noexcept {
         feedback.data[0] = static_cast<std::uint8_t>(motor);
