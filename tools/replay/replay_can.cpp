@@ -70,18 +70,14 @@ CanReplayer::CanReplayer(HostEstimator& estimator, std::span<const TrainedModel>
 }
 
 void CanReplayer::tick(const BusSample& sample) {
-    const double time_s = 1e-9 * static_cast<double>(sample.time_ns - sampler_.start_ns());
+    const std::int64_t time_ns = sample.sample.time_ns;
+    const double time_s = 1e-9 * static_cast<double>(time_ns - sampler_.start_ns());
     if (!sample.valid()) {
-        replayer_.skip(time_s, sample.position_reason);
+        replayer_.skip(time_s, sample.report.position);
         return;
     }
-    const MeasuredSample measured{sample.time_ns,
-                                  sample.position,
-                                  {},
-                                  {},
-                                  sample.output_valid() ? std::span<const double>(sample.output)
-                                                        : std::span<const double>()};
-    replayer_.tick(time_s, measured, sample.output_reason);
+    replayer_.tick(time_s, {time_ns, sample.positions(), {}, {}, sample.valid_outputs()},
+                   sample.report.output);
 }
 
 ReplayedBus CanReplayer::finish(const hal::BusCounters& counters) {

@@ -24,16 +24,16 @@ struct Accepted {
     void take(const BusDescription& description, const BusSample& sample) {
         ++samples;
         positions += sample.valid() ? 1 : 0;
-        outputs += sample.output_valid() ? 1 : 0;
-        ++refused[dfdyn::hal::name(sample.valid() ? sample.output_reason : sample.position_reason)];
-        const double t = 1e-9 * static_cast<double>(sample.time_ns - BusTraffic::lead_ns);
-        for (std::size_t i = 0; sample.valid() && i < sample.position.size(); ++i) {
+        outputs += sample.sample.output_valid ? 1 : 0;
+        ++refused[dfdyn::hal::name(sample.valid() ? sample.report.output : sample.report.position)];
+        const double t = 1e-9 * static_cast<double>(sample.sample.time_ns - BusTraffic::lead_ns);
+        for (std::size_t i = 0; sample.valid() && i < sample.positions().size(); ++i) {
             const double truth = 0.4 + 0.2 * std::sin(t + static_cast<double>(i));
-            wrong += std::abs(sample.position[i] - truth) > 5e-3 ? 1 : 0; // it moves 2 mrad in a period
+            wrong += std::abs(sample.positions()[i] - truth) > 5e-3 ? 1 : 0; // it moves 2 mrad in a period
         }
-        for (std::size_t k = 0; sample.output_valid() && k < sample.output.size(); ++k) {
+        for (std::size_t k = 0; k < sample.valid_outputs().size(); ++k) {
             const double truth = sound_output(description, t); // its noise is 0.1
-            wrong += std::abs(sample.output[k] - truth) > 0.6 ? 1 : 0;
+            wrong += std::abs(sample.valid_outputs()[k] - truth) > 0.6 ? 1 : 0;
         }
     }
 };

@@ -116,16 +116,16 @@ TEST_CASE("rows converted to frames and back are equal to half a count: drives w
         samples_of(frames_of(rows, description, {jitter_us, 3}), description);
     REQUIRE(samples.size() == rows.size() - 1); // the last row waits for the SYNC after it
     for (std::size_t k = 0; k < samples.size(); ++k) {
-        CAPTURE(k, samples[k].position_reason, samples[k].output_reason);
-        REQUIRE(samples[k].output_valid() == (k + 1 >= qualification));
-        if (!samples[k].output_valid()) {
+        CAPTURE(k, samples[k].report.position, samples[k].report.output);
+        REQUIRE(samples[k].sample.output_valid == (k + 1 >= qualification));
+        if (!samples[k].sample.output_valid) {
             continue;
         }
-        CHECK(samples[k].time_ns == rows[k].time_ns + BusTraffic::lead_ns + 55'000); // end of the SYNC
+        CHECK(samples[k].sample.time_ns == rows[k].time_ns + BusTraffic::lead_ns + 55'000); // end of the SYNC
         for (std::size_t i = 0; i < 6; ++i) {
-            CHECK(std::abs(samples[k].position[i] - rows[k].position[i]) <=
+            CHECK(std::abs(samples[k].positions()[i] - rows[k].position[i]) <=
                   std::numbers::pi / 1048576 + 1e-12);
-            CHECK(std::abs(samples[k].output[i] - rows[k].output[i]) <= 0.5e-3 + 1e-12);
+            CHECK(std::abs(samples[k].valid_outputs()[i] - rows[k].output[i]) <= 0.5e-3 + 1e-12);
         }
     }
 }
@@ -141,20 +141,21 @@ TEST_CASE("rows converted to frames and back are equal to half a count: boards a
     std::size_t row = 0;
     std::size_t valid = 0;
     for (const BusSample& sample : samples) {
-        if (!sample.output_valid()) {
+        if (!sample.sample.output_valid) {
             continue;
         }
-        while (rows[row].time_ns + BusTraffic::lead_ns + 1'000'000 <= sample.time_ns) {
+        while (rows[row].time_ns + BusTraffic::lead_ns + 1'000'000 <= sample.sample.time_ns) {
             ++row;
         }
         CAPTURE(row);
         ++valid;
         for (std::size_t i = 0; i < 4; ++i) {
             const double half_tick = 0.5 / 11.375 * std::numbers::pi / 180;
-            CHECK(std::abs(sample.position[i] - rows[row].position[i]) <= half_tick + 1e-12);
+            CHECK(std::abs(sample.positions()[i] - rows[row].position[i]) <= half_tick + 1e-12);
         }
         for (std::size_t k = 0; k < 6; ++k) {
-            CHECK(std::abs(sample.output[k] - rows[row].output[k]) <= 0.5 * full_scale[k] / 32768 + 1e-9);
+            CHECK(std::abs(sample.valid_outputs()[k] - rows[row].output[k]) <=
+                  0.5 * full_scale[k] / 32768 + 1e-9);
         }
     }
     CHECK(valid == rows.size() - qualification + 1);

@@ -122,11 +122,12 @@ TEST_CASE("a replay of these logs has a sample per period with the positions of 
         double largest_error = 0;
         BusSampler sampler(description_of(log), [&](const BusSample& sample) {
             valid += sample.valid() ? 1 : 0;
-            outputs += sample.output_valid() ? 1 : 0;
+            outputs += sample.sample.output_valid ? 1 : 0;
             for (int k = 1; sample.valid() && k <= log.joints; ++k) {
-                const double t = 1e-9 * static_cast<double>(sample.time_ns) - start_s;
-                largest_error = std::max(
-                    largest_error, std::abs(sample.position[static_cast<std::size_t>(k - 1)] - angle(k, t)));
+                const double t = 1e-9 * static_cast<double>(sample.sample.time_ns) - start_s;
+                largest_error =
+                    std::max(largest_error,
+                             std::abs(sample.positions()[static_cast<std::size_t>(k - 1)] - angle(k, t)));
             }
         });
         for (const hal::Frame& frame : frames_of(log.name)) {

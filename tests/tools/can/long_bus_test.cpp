@@ -114,15 +114,14 @@ class Listener {
             outcome.lost += outcome.valid > 0 ? 1 : 0;
             return;
         }
-        follow_time(sample.time_ns);
-        const bool output = sample.output_valid();
+        follow_time(sample.sample.time_ns);
+        const bool output = sample.sample.output_valid;
         outcome.valid += output ? 1 : 0;
         outcome.not_new += !output && outcome.valid > 0 ? 1 : 0;
         outcome.untrue += is_true(sample) ? 0 : 1;
-        const std::span<const double> measured =
-            output ? std::span<const double>(sample.output) : std::span<const double>();
         const bool learned =
-            estimator_->tick({sample.time_ns, sample.position, {}, {}, measured}).status.learned();
+            estimator_->tick({sample.sample.time_ns, sample.positions(), {}, {}, sample.valid_outputs()})
+                .status.learned();
         outcome.learned += learned ? 1 : 0;
         outcome.unlearned += output && window_ >= lags_ && !learned ? 1 : 0;
         pages_ = outcome.valid == 1'000 ? resident_pages() : pages_;
@@ -144,13 +143,13 @@ class Listener {
     /// Compares a sample with the true motion at its time. Tolerance: 0.8 ms of waiting and the sensors'
     /// steps.
     static bool is_true(const BusSample& sample) {
-        const double t = 1e-9 * static_cast<double>(sample.time_ns - BusTraffic::lead_ns);
+        const double t = 1e-9 * static_cast<double>(sample.sample.time_ns - BusTraffic::lead_ns);
         bool good = true;
-        for (std::size_t i = 0; i < sample.position.size(); ++i) {
-            good = good && std::abs(sample.position[i] - position_at(t, i)) < 1e-2;
+        for (std::size_t i = 0; i < sample.positions().size(); ++i) {
+            good = good && std::abs(sample.positions()[i] - position_at(t, i)) < 1e-2;
         }
-        for (std::size_t k = 0; sample.output_valid() && k < sample.output.size(); ++k) {
-            good = good && std::abs(sample.output[k] - 8 * position_at(t, k)) < 0.1 + 0.1;
+        for (std::size_t k = 0; k < sample.valid_outputs().size(); ++k) {
+            good = good && std::abs(sample.valid_outputs()[k] - 8 * position_at(t, k)) < 0.1 + 0.1;
         }
         return good;
     }

@@ -45,11 +45,11 @@ TEST_CASE("from two senders of a joint's identifier no position is accepted with
                 std::map<std::string, int> reasons;
                 int wrong = 0;
                 dfdyn::tools::BusSampler sampler(description, [&](const BusSample& sample) {
-                    const double t = 1e-9 * static_cast<double>(sample.time_ns - BusTraffic::lead_ns);
-                    ++reasons[dfdyn::hal::name(sample.position_reason)];
-                    for (std::size_t i = 0; sample.valid() && i < sample.position.size(); ++i) {
+                    const double t = 1e-9 * static_cast<double>(sample.sample.time_ns - BusTraffic::lead_ns);
+                    ++reasons[dfdyn::hal::name(sample.report.position)];
+                    for (std::size_t i = 0; sample.valid() && i < sample.positions().size(); ++i) {
                         const double truth = 0.4 + 0.2 * std::sin(t + static_cast<double>(i));
-                        wrong += std::abs(sample.position[i] - truth) > 5e-3 ? 1 : 0;
+                        wrong += std::abs(sample.positions()[i] - truth) > 5e-3 ? 1 : 0;
                     }
                 });
                 for (const Frame& frame : with_two_senders(description, later, from_s)) {

@@ -20,21 +20,21 @@ hal::SamplerConfig config_of(const BusDescription& description) {
 } // namespace
 
 BusSampler::BusSampler(const BusDescription& description, OnSample on_sample)
-    : arm_(make_bus_arm(description)), on_sample_(std::move(on_sample)), sampler_(config_of(description)) {}
+    : arm_(description), on_sample_(std::move(on_sample)), sampler_(config_of(description)) {}
 
 void BusSampler::take(const hal::Frame& frame, hal::BusState state, const hal::BusCounters& counters) {
     ++frames_;
-    sampler_.take(*arm_, frame, state, counters,
+    sampler_.take(arm_, frame, state, counters,
                   [this](const BusSample& sample, std::int64_t /*now_ns*/) { on_sample_(sample); });
 }
 
 void BusSampler::advance_to(std::int64_t stamp_ns) {
-    sampler_.advance_to(*arm_, stamp_ns,
+    sampler_.advance_to(arm_, stamp_ns,
                         [this](const BusSample& sample, std::int64_t /*now_ns*/) { on_sample_(sample); });
 }
 
 void BusSampler::finish() {
-    sampler_.finish(*arm_, [this](const BusSample& sample, std::int64_t /*now_ns*/) { on_sample_(sample); });
+    sampler_.finish(arm_, [this](const BusSample& sample, std::int64_t /*now_ns*/) { on_sample_(sample); });
 }
 
 } // namespace dfdyn::tools

@@ -6,7 +6,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 
 namespace dfdyn::tools {
 
@@ -35,10 +34,10 @@ class BusSampler {
     std::int64_t start_ns() const noexcept { return sampler_.start_ns(); }
     bool started() const noexcept { return sampler_.started(); }
     std::uint64_t frames() const noexcept { return frames_; }
-    const BusArm& arm() const noexcept { return *arm_; }
+    const BusArm& arm() const noexcept { return arm_; }
 
   private:
-    std::unique_ptr<BusArm> arm_;
+    BusArm arm_;
     OnSample on_sample_;
     hal::Sampler<BusArm> sampler_;
     std::uint64_t frames_ = 0;

@@ -25,7 +25,7 @@ BusCheck::BusCheck(std::optional<BusDescription> description) : description_(std
 
 /// Sets the expected streams and joints from the description.
 void BusCheck::describe() {
-    arm_ = make_bus_arm(*description_);
+    arm_.emplace(*description_);
     boards_ = description_->boards;
     BusDescription joints = *description_;
     joints.sensor.reset(); // the sensor may be unable to send
@@ -185,13 +185,13 @@ void BusCheck::assemble(std::int64_t now_ns) {
         return;
     }
     next_sample_ns_ = now_ns + description_->sample_period_ns();
-    const BusSample& sample = arm_->assemble(now_ns, now_ns);
+    const BusSample sample = arm_->assemble(now_ns, now_ns);
     ++samples_;
-    last_position_ = sample.position_reason;
-    last_output_ = sample.output_reason;
-    ++refused_.at(static_cast<std::size_t>(sample.position_reason));
-    if (sample.output_reason != sample.position_reason) {
-        ++refused_.at(static_cast<std::size_t>(sample.output_reason));
+    last_position_ = sample.report.position;
+    last_output_ = sample.report.output;
+    ++refused_.at(static_cast<std::size_t>(last_position_));
+    if (last_output_ != last_position_) {
+        ++refused_.at(static_cast<std::size_t>(last_output_));
     }
 }
 

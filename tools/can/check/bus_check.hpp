@@ -9,7 +9,6 @@
 
 #include <array>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <ostream>
 #include <span>
@@ -96,7 +95,7 @@ class BusCheck {
     void assemble(std::int64_t now_ns);
 
     std::optional<BusDescription> description_;
-    std::unique_ptr<BusArm> arm_; ///< null without a description
+    std::optional<BusArm> arm_; ///< none without a description
     std::vector<BusBoard> boards_;
     std::vector<ValueWatch> joints_;
     std::vector<std::uint64_t> restarts_;

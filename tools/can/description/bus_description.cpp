@@ -229,7 +229,7 @@ double default_delay_s(const BusDescription& description) {
 }
 
 void check_identifiers(const JsonReader& reader, const BusDescription& description) {
-    if (const auto id = make_bus_arm(description)->colliding_id()) {
+    if (const auto id = BusArm(description).colliding_id()) {
         throw reader.error("boards", "devices that do not share identifiers",
                            "two that send " + identifier_text(*id));
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/assembly/joint_count.hpp"
 #include "dfdyn/hal/gate/motion.hpp"
 #include "dfdyn/hal/gate/pairing.hpp"
 #include "dfdyn/hal/gate/range.hpp"
@@ -20,7 +21,7 @@
 namespace dfdyn::tools {
 
 /// Largest number of joints in a bus description.
-inline constexpr int largest_bus_joint_count = 12;
+inline constexpr int largest_bus_joint_count = hal::largest_joint_count;
 
 /// Time at which a sample is assembled; see hal::SampleAssembly.
 enum class BusTrigger {

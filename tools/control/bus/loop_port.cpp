@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace dfdyn::tools {
 
@@ -36,9 +37,9 @@ BusDescription for_loop(BusDescription description, double loop_period_s) {
 }
 
 /// Whether some joints cannot be believed at this instant, and others can.
-bool lacks_single_joints(const BusSample& sample) {
+bool lacks_single_joints(std::span<const hal::Reason> joints) {
     const auto good = [](hal::Reason reason) { return reason == hal::Reason::ok; };
-    return std::ranges::any_of(sample.joint_reason, good) && !std::ranges::all_of(sample.joint_reason, good);
+    return std::ranges::any_of(joints, good) && !std::ranges::all_of(joints, good);
 }
 
 /// Whether all that is missing is so for a while only, because devices or clocks qualify.
@@ -47,8 +48,8 @@ bool returns(const BusSample& sample) {
         return reason == hal::Reason::qualifying || reason == hal::Reason::clock_jumped ||
                reason == hal::Reason::time_not_increasing;
     };
-    return passing(sample.position_reason) &&
-           std::ranges::all_of(sample.joint_reason, [&](hal::Reason reason) {
+    return passing(sample.report.position) &&
+           std::ranges::all_of(sample.joint_reasons(), [&](hal::Reason reason) {
                return reason == hal::Reason::ok || passing(reason);
            });
 }
@@ -60,9 +61,8 @@ LoopPort::LoopPort(const BusDescription& description, double loop_period_s)
       measures_torque_(description.outputs == OutputKind::joint_torque),
       delay_ticks_(delay_of(description, loop_period_s)), period_ns_(std::llround(loop_period_s * 1e9)),
       latency_ns_(description.joints.latency_ns), clock_(period_ns_),
-      arm_(make_bus_arm(for_loop(description, loop_period_s))), commands_(description),
-      position_(description.joint_count), torque_(description.joint_count),
-      missing_(static_cast<std::size_t>(description.joint_count)),
+      arm_(for_loop(description, loop_period_s)), commands_(description), position_(description.joint_count),
+      torque_(description.joint_count), missing_(static_cast<std::size_t>(description.joint_count)),
       newest_ns_(missing_.size(), std::numeric_limits<std::int64_t>::min()),
       next_request_ns_(std::numeric_limits<std::int64_t>::min()) {}
 
@@ -106,7 +106,8 @@ void LoopPort::follow_ticks(std::int64_t tick_ns) noexcept {
 }
 
 void LoopPort::follow_clock(const BusSample& sample, std::int64_t now_ns) noexcept {
-    const std::int64_t age_ns = std::ranges::min(sample.position_age_ns);
+    const std::int64_t age_ns =
+        std::ranges::min(std::span(sample.report.position_age_ns).first(missing_.size()));
     if (age_ns < std::numeric_limits<std::int64_t>::max()) {
         const std::int64_t before_ns = clock_.correction_ns();
         clock_.drained(now_ns - age_ns, now_ns, latency_ns_);
@@ -118,9 +119,9 @@ void LoopPort::follow_clock(const BusSample& sample, std::int64_t now_ns) noexce
 bool LoopPort::find_missing(const BusSample& sample, std::int64_t now_ns) {
     bool any = false;
     for (std::size_t joint = 0; joint < missing_.size(); ++joint) {
-        const std::int64_t newest_ns = now_ns - sample.position_age_ns[joint];
-        missing_[joint] = sample.joint_reason[joint] != hal::Reason::ok ||
-                          (newest_ns == newest_ns_[joint] && newest_ns < sample.time_ns);
+        const std::int64_t newest_ns = now_ns - sample.report.position_age_ns[joint];
+        missing_[joint] = sample.report.joint_reason[joint] != hal::Reason::ok ||
+                          (newest_ns == newest_ns_[joint] && newest_ns < sample.sample.time_ns);
         newest_ns_[joint] = newest_ns;
         any = any || missing_[joint];
     }
@@ -139,19 +140,19 @@ LoopInput LoopPort::sense(std::int64_t tick_ns, std::int64_t now_ns) {
     if (!instant) {
         ++counters_.incomplete;
         clock_.drained(now_ns);
-        input.returning = arrived_ && arm_->bus().clock.doubtful();
+        input.returning = arrived_ && arm_.bus().clock.doubtful();
         return input;
     }
-    const BusSample& sample = arm_->assemble(*instant, now_ns);
+    const BusSample sample = arm_.assemble(*instant, now_ns);
     const std::int64_t correction_ns = clock_.correction_ns();
     follow_clock(sample, now_ns);
     // or the requested sample time was wrong
     const bool corrected = ticks_across_ > 0 || (timer_ && clock_.correction_ns() != correction_ns);
-    const bool usable = sample.valid() || lacks_single_joints(sample);
+    const bool usable = sample.valid() || lacks_single_joints(sample.joint_reasons());
     if (!usable) {
         ++counters_.invalid;
-        counters_.last_reason = sample.position_reason;
-        counters_.last_joint = sample.joint;
+        counters_.last_reason = sample.report.position;
+        counters_.last_joint = sample.report.joint;
     }
     input.returning = corrected || (!sample.valid() && returns(sample));
     if (!usable || corrected) {
@@ -159,14 +160,14 @@ LoopInput LoopPort::sense(std::int64_t tick_ns, std::int64_t now_ns) {
     }
     for (Eigen::Index joint = 0; joint < position_.size(); ++joint) {
         const auto index = static_cast<std::size_t>(joint);
-        position_[joint] =
-            sample.joint_reason[index] == hal::Reason::ok ? sample.position[index] : position_[joint];
+        position_[joint] = sample.report.joint_reason[index] == hal::Reason::ok ? sample.positions()[index]
+                                                                                : position_[joint];
     }
     input.time_ns = *instant + clock_.correction_ns() - set_ns_;
     input.position = &position_;
     input.missing = find_missing(sample, now_ns) ? &missing_ : nullptr;
-    if (measures_torque_ && sample.output_valid()) {
-        torque_ = Eigen::Map<const Eigen::VectorXd>(sample.output.data(), torque_.size());
+    if (measures_torque_ && sample.sample.output_valid) {
+        torque_ = Eigen::Map<const Eigen::VectorXd>(sample.sample.output.data(), torque_.size());
         input.torque = &torque_;
     } else if (!measures_torque_ && command_.size() > 0) {
         input.torque = &command_;

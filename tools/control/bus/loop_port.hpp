@@ -65,9 +65,9 @@ class LoopPort {
     void receive(B& bus) {
         moment_.reset();
         const std::span<const hal::Frame> frames = bus.drain(room_);
-        arm_->update(bus.state(), bus.counters());
+        arm_.update(bus.state(), bus.counters());
         for (const hal::Frame& frame : frames) {
-            if (const std::optional<std::int64_t> moment = arm_->take(frame, bus.now_ns())) {
+            if (const std::optional<std::int64_t> moment = arm_.take(frame, bus.now_ns())) {
                 moment_ = moment;
             }
         }
@@ -75,7 +75,7 @@ class LoopPort {
         bus_lost_ = bus.state() == hal::BusState::off || bus.state() == hal::BusState::interface_down;
         if (bus.now_ns() >= next_request_ns_) {
             next_request_ns_ = bus.now_ns() + request_period_ns;
-            offer(bus, arm_->requests());
+            offer(bus, arm_.requests());
         }
     }
 
@@ -121,7 +121,7 @@ class LoopPort {
     std::int64_t set_ns_ = 0; ///< sum of all steps of the ticks' clock
     int ticks_across_ = 0;    ///< remaining ticks whose sample time may precede the clock's step
     ArrivalClock clock_;
-    std::unique_ptr<BusArm> arm_;
+    BusArm arm_;
     TorqueFrames commands_;
     std::array<hal::Frame, frames_per_tick> room_{};
     std::optional<std::int64_t> moment_;

@@ -37,29 +37,33 @@ namespace dfdyn::hal {
 /// Positions that are bad: no sample; the report says which joints have one all the same. An output that is
 /// bad: a sample with output_valid = false.
 ///
-/// `Board` is the JointSource of each of `boards` boards; `Output` a WrenchOutput or EffortOutput. Positions
-/// are on bus 0. `take`: O(boards + n). `assemble`: O(capacity (n + outputs)).
+/// If `n` is `dynamic`, the configuration has the number of joints. `Board` is the JointSource of each of
+/// `boards` boards; `Output` a WrenchOutput or EffortOutput. Positions are on bus 0. `take`: O(boards + n).
+/// `assemble`: O(capacity (n + outputs)).
 template <class Scalar, int n, JointSource Board, int boards, class Output, int capacity = 16>
 class SampleAssembly {
   public:
-    using Sample = dfdyn::Sample<Scalar, n, Output::outputs>;
-    using Report = SampleReport<n>;
+    using Assembled = AssembledSample<Scalar, n, Output::outputs>;
+    using Sample = decltype(Assembled::sample);
+    using Report = decltype(Assembled::report);
     static constexpr int buses = 2;
 
     struct Config {
         std::array<Board, static_cast<std::size_t>(boards)> board; ///< joints they name must be < n
         TrackConfig position;
-        std::array<Range, static_cast<std::size_t>(n)> position_range; ///< rad
+        PerJoint<Range, n> position_range; ///< rad
         ClockGate::Config clock;
         int output_bus = 0; ///< 0, or 1 where the sensor has a bus for itself
-        std::array<MotionLimits, static_cast<std::size_t>(n)> limits{};
+        PerJoint<MotionLimits, n> limits{};
+        Extent<n> joints{}; ///< at most `largest_joint_count`
     };
 
     // A small stack has no room for a copy: NOLINTNEXTLINE(modernize-pass-by-value)
     constexpr SampleAssembly(const Config& config, const Output& output) noexcept
-        : board_(config.board), position_(config.position, config.position_range, config.limits),
-          output_(output),
-          output_bus_(config.output_bus), watch_{BusWatch(config.clock), BusWatch(config.clock)} {}
+        : joints_(config.joints), board_(config.board),
+          position_(config.joints, config.position, config.position_range, config.limits), output_(output),
+          output_bus_(config.output_bus), watch_{BusWatch(config.clock), BusWatch(config.clock)},
+          moments_(config.joints) {}
 
     using Moment = SampleMoment;
 
@@ -117,12 +121,6 @@ class SampleAssembly {
         }
     }
 
-    struct Assembled {
-        Sample sample;
-        Report report;
-        [[nodiscard]] constexpr bool valid() const noexcept { return report.position == Reason::ok; }
-    };
-
     /// Whether a value of this instant is missing that may yet be interpolated: `assemble` gives more after
     /// the next frames. Never for longer than the sources' `max_age` and a period after the last value.
     [[nodiscard]] constexpr bool pending(std::int64_t instant_ns, std::int64_t now_ns) const noexcept {
@@ -133,6 +131,8 @@ class SampleAssembly {
     /// joints without one are 0, and without output_valid the outputs.
     constexpr Assembled assemble(std::int64_t instant_ns, std::int64_t now_ns) noexcept {
         Assembled result{};
+        result.report.joints = joints_;
+        result.report.outputs = output_.size();
         result.sample.time_ns = instant_ns;
         fill_ages(result.report, now_ns);
         result.report.position = fill_positions(result.sample, result.report, now_ns);
@@ -176,8 +176,10 @@ class SampleAssembly {
 
   private:
     static constexpr int rounds = 8;
-    static constexpr auto joint_count = static_cast<std::size_t>(n);
+    static constexpr int output_places = places(Output::outputs);
     static constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::max();
+
+    [[nodiscard]] constexpr std::size_t used() const noexcept { return static_cast<std::size_t>(joints_); }
 
     /// To the boards and the sensor that are on this bus.
     constexpr Moment offer(const Frame& frame, int bus) noexcept {
@@ -231,7 +233,7 @@ class SampleAssembly {
     }
 
     constexpr void take_joint(const JointValue& value) noexcept {
-        if (value.joint < 0 || value.joint >= n) {
+        if (value.joint < 0 || value.joint >= joints_) {
             return;
         }
         const auto joint = static_cast<std::size_t>(value.joint);
@@ -249,7 +251,7 @@ class SampleAssembly {
     }
 
     constexpr void fill_ages(Report& report, std::int64_t now_ns) const noexcept {
-        for (std::size_t i = 0; i < joint_count; ++i) {
+        for (std::size_t i = 0; i < used(); ++i) {
             report.position_age_ns[i] = position_[i].heard() ? now_ns - position_[i].newest_ns() : never_ns;
         }
         report.output_age_ns = output_.heard() ? now_ns - output_.newest_ns() : never_ns;
@@ -261,7 +263,7 @@ class SampleAssembly {
             return down;
         }
         Reason first = Reason::ok;
-        for (std::size_t i = 0; i < joint_count; ++i) {
+        for (std::size_t i = 0; i < used(); ++i) {
             const Measurement<1> measured = position_[i].at(sample.time_ns, now_ns);
             report.joint_reason[i] = explain(measured.reason, 0);
             if (measured.reason == Reason::ok) {
@@ -279,20 +281,19 @@ class SampleAssembly {
     }
 
     constexpr Reason fill_output(Sample& sample, bool loss, std::int64_t now_ns) noexcept {
-        const Measurement<Output::outputs> measured = output_.at(sample.time_ns, now_ns);
+        const Measurement<output_places> measured = output_.at(sample.time_ns, now_ns);
         const Reason reason = output_condition(measured, loss);
         if (reason != Reason::ok) {
             return reason;
         }
         last_output_ns_ = measured.stamp_ns;
-        for (int k = 0; k < Output::outputs; ++k) {
+        for (int k = 0; k < output_places; ++k) {
             sample.output[k] = static_cast<Scalar>(measured.value[static_cast<std::size_t>(k)]);
         }
         return Reason::ok;
     }
 
-    constexpr Reason output_condition(const Measurement<Output::outputs>& measured,
-                                      bool loss) const noexcept {
+    constexpr Reason output_condition(const Measurement<output_places>& measured, bool loss) const noexcept {
         if (const Reason down = watch_[static_cast<std::size_t>(output_bus_)].health.reason();
             down != Reason::ok) {
             return down;
@@ -331,6 +332,7 @@ class SampleAssembly {
         }
     }
 
+    [[no_unique_address]] Extent<n> joints_;
     std::array<Board, static_cast<std::size_t>(boards)> board_;
     JointTracks<n, capacity> position_;
     Output output_;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/assembly/joint_count.hpp"
 #include "dfdyn/hal/assembly/position_track.hpp"
 #include "dfdyn/hal/device/decoded.hpp"
 #include "dfdyn/hal/gate/frozen_effort.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace dfdyn::hal {
@@ -18,12 +20,15 @@ class EffortOutput {
 
     struct Config {
         TrackConfig track;
-        std::array<Range, static_cast<std::size_t>(n)> range;
+        PerJoint<Range, n> range;
         int frozen_limit = 100; ///< equal values of a moving joint, see FrozenEffortGate
+        Extent<n> joints{};
     };
 
     explicit constexpr EffortOutput(const Config& config) noexcept
-        : EffortOutput(config, std::make_index_sequence<static_cast<std::size_t>(n)>{}) {}
+        : EffortOutput(config, std::make_index_sequence<static_cast<std::size_t>(places(n))>{}) {}
+
+    [[nodiscard]] constexpr Extent<n> size() const noexcept { return joints_; }
 
     /// No frame is for this output alone.
     constexpr Decoded take(const Frame& /*frame*/) noexcept { return {}; }
@@ -49,9 +54,9 @@ class EffortOutput {
     [[nodiscard]] constexpr bool claims(std::uint32_t /*id*/) const noexcept { return false; }
 
     /// All efforts at an instant; the first reason of a joint. See Track.
-    constexpr Measurement<n> at(std::int64_t instant_ns, std::int64_t now_ns) noexcept {
-        Measurement<n> all;
-        for (std::size_t i = 0; i < track_.size(); ++i) {
+    constexpr Measurement<places(n)> at(std::int64_t instant_ns, std::int64_t now_ns) noexcept {
+        Measurement<places(n)> all;
+        for (std::size_t i = 0; i < used(); ++i) {
             const Measurement<1> one = track_[i].at(instant_ns, now_ns);
             all.reason = all.reason == Reason::ok ? one.reason : all.reason;
             all.value[i] = one.value[0];
@@ -63,26 +68,27 @@ class EffortOutput {
     /// The least direct of the joints'.
     [[nodiscard]] constexpr ValueOrigin origin(std::int64_t instant_ns) const noexcept {
         ValueOrigin all = track_[0].origin(instant_ns);
-        for (const auto& track : track_) {
-            all = std::max(all, track.origin(instant_ns));
+        for (std::size_t i = 0; i < used(); ++i) {
+            all = std::max(all, track_[i].origin(instant_ns));
         }
         return all;
     }
 
     [[nodiscard]] constexpr bool pending(std::int64_t instant_ns, std::int64_t now_ns) const noexcept {
-        return std::ranges::any_of(track_,
-                                   [&](const auto& track) { return track.pending(instant_ns, now_ns); });
+        return std::any_of(track_.begin(), track_.begin() + joints_,
+                           [&](const auto& track) { return track.pending(instant_ns, now_ns); });
     }
 
     [[nodiscard]] constexpr bool heard() const noexcept {
-        return std::ranges::all_of(track_, [](const auto& track) { return track.heard(); });
+        return std::all_of(track_.begin(), track_.begin() + joints_,
+                           [](const auto& track) { return track.heard(); });
     }
 
     /// Of the joint that is behind the others. Requires `heard()`.
     [[nodiscard]] constexpr std::int64_t newest_ns() const noexcept {
         std::int64_t newest_ns = track_[0].newest_ns();
-        for (const auto& track : track_) {
-            newest_ns = std::min(newest_ns, track.newest_ns());
+        for (std::size_t i = 0; i < used(); ++i) {
+            newest_ns = std::min(newest_ns, track_[i].newest_ns());
         }
         return newest_ns;
     }
@@ -93,7 +99,7 @@ class EffortOutput {
     /// Nothing is pending.
     constexpr void lost() noexcept {}
 
-    /// How often a joint's effort froze.
+    /// Gate of a joint's effort, with the number of times it froze.
     [[nodiscard]] constexpr const FrozenEffortGate& frozen(int joint) const noexcept {
         return frozen_[static_cast<std::size_t>(joint)];
     }
@@ -104,16 +110,20 @@ class EffortOutput {
 
   private:
     template <std::size_t... i>
-    constexpr EffortOutput(const Config& config, std::index_sequence<i...> /*joints*/) noexcept
-        : track_{Track<1, capacity>(config.track, {config.range[i]}, output_reasons)...},
+    constexpr EffortOutput(const Config& config, std::index_sequence<i...> /*places*/) noexcept
+        : joints_(config.joints), track_{Track<1, capacity>(config.track, {config.range[i]},
+                                                            output_reasons)...},
           frozen_{(static_cast<void>(i), FrozenEffortGate(config.frozen_limit))...},
           rate_{(static_cast<void>(i), joint_rate(config.track))...}, rated_(config.track.period_ns > 0) {}
 
-    std::array<Track<1, capacity>, static_cast<std::size_t>(n)> track_;
-    std::array<FrozenEffortGate, static_cast<std::size_t>(n)> frozen_;
-    std::array<SendRateGate, static_cast<std::size_t>(n)> rate_;
+    [[nodiscard]] constexpr std::size_t used() const noexcept { return static_cast<std::size_t>(joints_); }
+
+    [[no_unique_address]] Extent<n> joints_;
+    PerJoint<Track<1, capacity>, n> track_;
+    PerJoint<FrozenEffortGate, n> frozen_;
+    PerJoint<SendRateGate, n> rate_;
     bool rated_;
-    std::array<CollisionHold, static_cast<std::size_t>(n)> collision_{};
+    PerJoint<CollisionHold, n> collision_{};
 };
 
 } // namespace dfdyn::hal

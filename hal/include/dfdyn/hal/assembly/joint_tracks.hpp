@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/assembly/joint_count.hpp"
 #include "dfdyn/hal/assembly/position_track.hpp"
 #include "dfdyn/hal/gate/clock_step.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -17,14 +17,12 @@ namespace dfdyn::hal {
 template <int n, int capacity>
 class JointTracks {
   public:
-    template <class T>
-    using PerJoint = std::array<T, static_cast<std::size_t>(n)>;
+    constexpr JointTracks(Extent<n> joints, const TrackConfig& config, const PerJoint<Range, n>& range,
+                          const PerJoint<MotionLimits, n>& limits) noexcept
+        : JointTracks(joints, config, range, limits,
+                      std::make_index_sequence<static_cast<std::size_t>(places(n))>{}) {}
 
-    constexpr JointTracks(const TrackConfig& config, const PerJoint<Range>& range,
-                          const PerJoint<MotionLimits>& limits) noexcept
-        : JointTracks(config, range, limits, std::make_index_sequence<static_cast<std::size_t>(n)>{}) {}
-
-    /// Takes what a device says about a joint, 0 … n - 1; what became of it.
+    /// Takes a device's value of a joint, 0 … n - 1. Returns ok if it is accepted, or the reason why not.
     constexpr Reason push(const JointValue& value) noexcept {
         PositionTrack<capacity>& track = track_[static_cast<std::size_t>(value.joint)];
         steps_.take(value.joint, value.stamp_ns, period_ns_, jitter_ns_);
@@ -35,13 +33,13 @@ class JointTracks {
 
     /// A measurement of the arm's sensor, which shows steps of the clock too.
     constexpr void sensor_measured(std::int64_t stamp_ns, std::int64_t period_ns) noexcept {
-        steps_.take(n, stamp_ns, period_ns, jitter_ns_);
+        steps_.take(places(n), stamp_ns, period_ns, jitter_ns_);
     }
 
     /// Whether a position of this instant is missing and may yet be interpolated.
     [[nodiscard]] constexpr bool pending(std::int64_t instant_ns, std::int64_t now_ns) const noexcept {
-        return std::ranges::any_of(track_,
-                                   [&](const auto& track) { return track.pending(instant_ns, now_ns); });
+        return std::any_of(track_.begin(), track_.begin() + joints_,
+                           [&](const auto& track) { return track.pending(instant_ns, now_ns); });
     }
 
     [[nodiscard]] constexpr PositionTrack<capacity>& operator[](std::size_t joint) noexcept {
@@ -53,10 +51,11 @@ class JointTracks {
 
   private:
     template <std::size_t... i>
-    constexpr JointTracks(const TrackConfig& config, const PerJoint<Range>& range,
-                          const PerJoint<MotionLimits>& limits, std::index_sequence<i...> /*joints*/) noexcept
-        : track_{PositionTrack<capacity>(config, range[i], limits[i])...}, period_ns_(config.period_ns),
-          jitter_ns_(config.jitter_ns) {}
+    constexpr JointTracks(Extent<n> joints, const TrackConfig& config, const PerJoint<Range, n>& range,
+                          const PerJoint<MotionLimits, n>& limits,
+                          std::index_sequence<i...> /*places*/) noexcept
+        : joints_(joints), track_{PositionTrack<capacity>(config, range[i], limits[i])...},
+          period_ns_(config.period_ns), jitter_ns_(config.jitter_ns) {}
 
     constexpr void follow_clock(PositionTrack<capacity>& track, std::int64_t stamp_ns) noexcept {
         const std::int64_t tolerance_ns = 2 * jitter_ns_;
@@ -69,8 +68,9 @@ class JointTracks {
         }
     }
 
-    PerJoint<PositionTrack<capacity>> track_;
-    ClockStepWatch<n + 1> steps_;
+    [[no_unique_address]] Extent<n> joints_;
+    PerJoint<PositionTrack<capacity>, n> track_;
+    ClockStepWatch<places(n) + 1> steps_;
     std::int64_t period_ns_;
     std::int64_t jitter_ns_;
 };

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/hal/assembly/joint_count.hpp"
+
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -24,6 +25,8 @@ struct SampleMoment {
 template <int n>
 class MomentWatch {
   public:
+    explicit constexpr MomentWatch(Extent<n> joints) noexcept : joints_(joints) {}
+
     /// A SYNC with this stamp; every drive reports the same one.
     constexpr SampleMoment synchronised(std::int64_t stamp_ns) noexcept {
         const bool again = synchronised_ && stamp_ns == sync_ns_;
@@ -42,7 +45,8 @@ class MomentWatch {
 
     /// A moment if all joints and the output, measured at `output_ns`, are new.
     constexpr SampleMoment completed(std::int64_t output_ns) noexcept {
-        const bool joints = std::ranges::all_of(seen_, [](bool seen) { return seen; });
+        const bool joints =
+            std::all_of(seen_.begin(), seen_.begin() + joints_, [](bool seen) { return seen; });
         if (!joints || output_ns <= set_ns_) {
             return {};
         }
@@ -52,7 +56,8 @@ class MomentWatch {
     }
 
   private:
-    std::array<bool, static_cast<std::size_t>(n)> seen_{};
+    [[no_unique_address]] Extent<n> joints_;
+    PerJoint<bool, n> seen_{};
     bool synchronised_ = false;
     std::int64_t sync_ns_ = 0;
     std::int64_t set_ns_ = std::numeric_limits<std::int64_t>::min(); ///< instant of the last set

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/extent.hpp"
 #include "dfdyn/hal/assembly/track.hpp"
 #include "dfdyn/hal/device/decoded.hpp"
 #include "dfdyn/hal/gate/frozen.hpp"
@@ -30,6 +31,8 @@ class WrenchOutput {
         : source_(source), pairing_(config.pairing), frozen_(config.frozen_limit),
           jump_(config.track.max_age_ns), track_(config.track, config.range, output_reasons) {}
 
+    [[nodiscard]] static constexpr Extent<outputs> size() noexcept { return {}; }
+
     /// Decodes a frame and takes it; a wrench may come with it.
     constexpr Decoded take(const Frame& frame) noexcept {
         const Decoded decoded = source_.decode(frame);
@@ -53,7 +56,7 @@ class WrenchOutput {
         return decoded;
     }
 
-    /// Joints say nothing about a wrench.
+    /// Joints do not measure a wrench.
     constexpr void take(const JointValue& /*value*/, double /*position_rad*/) noexcept {}
 
     [[nodiscard]] constexpr bool claims(std::uint32_t id) const noexcept { return source_.claims(id); }
@@ -77,7 +80,7 @@ class WrenchOutput {
     /// Frames were lost: a pending half is forgotten.
     constexpr void lost() noexcept { pairing_.reset(); }
 
-    /// The sensor's decoder: what to send to the sensor, and what it has told, such as its full scales.
+    /// The sensor's decoder, with its requests and the values that the sensor reported, such as full scales.
     [[nodiscard]] constexpr const Source& source() const noexcept { return source_; }
     [[nodiscard]] constexpr const Track<6, capacity>& track() const noexcept { return track_; }
     [[nodiscard]] constexpr const PairGate& pairing() const noexcept { return pairing_; }
