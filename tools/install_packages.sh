@@ -16,6 +16,10 @@ demo_packages=(
     "libnlopt-cxx-dev:dfdyn train cannot be built"
     "liburdfdom-dev:no robot can be read from its description"
     "libtinyxml2-dev:no robot can be read from its description"
+    "libzstd-dev:no ROS 2 bag (MCAP) with zstd chunks can be read"
+    "liblz4-dev:no ROS 2 bag (MCAP) with lz4 chunks can be read"
+    "libsqlite3-dev:no ROS 2 bag of SQLite can be read"
+    "zlib1g-dev:no compressed recording (.gz) can be read, and the program cannot be built"
 )
 test_packages=(
     "catch2:the unit tests cannot be built"

@@ -2,6 +2,7 @@
 #include "tools/base/text/error.hpp"
 #include "tools/build_flags.hpp"
 #include "tools/commands/command.hpp"
+#include "tools/commands/options/usage_error.hpp"
 
 #include <exception>
 #include <iostream>
@@ -35,7 +36,7 @@ int run(int argc, char** argv) {
     } catch (const CLI::Success& request) {
         return app.exit(request); // --help, --version
     } catch (const CLI::ParseError& failure) {
-        throw dfdyn::tools::InputError(std::string(failure.what()) + " (dfdyn --help tells the usage)");
+        throw dfdyn::tools::InputError(dfdyn::tools::usage_message(app, failure));
     }
     const int status = command();
     if (!std::cout.flush()) {

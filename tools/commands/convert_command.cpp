@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/base/text/error.hpp"
 #include "tools/can/log/bus_traffic.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/options.hpp"
@@ -12,20 +13,24 @@ namespace dfdyn::tools {
 namespace {
 
 struct ConvertOptions {
-    std::filesystem::path recording;
+    RecordingOptions recordings;
     std::filesystem::path bus;
     std::filesystem::path log;
     TrafficOptions traffic;
 };
 
 int run(const ConvertOptions& options) {
-    check_outputs({options.log}, {options.recording, options.bus});
+    const std::vector<std::filesystem::path>& logs = options.recordings.logs;
+    if (logs.size() != 1) {
+        throw InputError("--log: expected one recording, found " + std::to_string(logs.size()));
+    }
+    check_outputs({options.log}, {logs.front(), options.bus});
     const BusDescription description = read_bus_description(options.bus);
     ReadOptions columns;
     columns.joint_count = static_cast<std::size_t>(description.joint_count);
     columns.outputs = description.outputs;
-    const Recording recording = read_recording(options.recording, columns);
-    const double load = write_bus_log(recording, description, options.traffic, options.log);
+    const std::vector<Recording> recordings = options.recordings.read(columns);
+    const double load = write_bus_log(recordings.front(), description, options.traffic, options.log);
     std::cout << "bus load: " << std::round(1000 * load) / 10 << " %\n";
     return 0;
 }
@@ -36,7 +41,7 @@ void add_convert_command(CLI::App& app, Command& chosen) {
     const auto options = std::make_shared<ConvertOptions>();
     CLI::App* command = app.add_subcommand(
         "convert", "Writes a CSV recording as the frames that an arm's devices would have sent on a CAN bus");
-    command->add_option("--log", options->recording, "The recording")->required()->type_name("L.csv");
+    options->recordings.add_to(*command);
     command->add_option("--bus", options->bus, "The devices: docs/reference/can.md")
         ->required()
         ->type_name("B.json");

@@ -104,7 +104,7 @@ int run(const DiagnoseOptions& options) {
     const OutputKind outputs = parse_output_kind(options.outputs);
     const Robot robot = options.robot.read(outputs);
     check_torque_constants(options, outputs, robot.joints.size());
-    const std::vector<Recording> recordings = options.recordings.read(robot.joints.size(), outputs);
+    const std::vector<Recording> recordings = options.recordings.read(columns_for(robot, outputs));
     make_folder(options.folder);
     for (const std::filesystem::path& output : {options.json(), options.page(), options.model()}) {
         check_writable(output);

@@ -27,9 +27,7 @@ struct IdentifyOptions {
 };
 
 std::vector<Recording> read_all(const IdentifyOptions& options, const Robot& robot, OutputKind outputs) {
-    ReadOptions columns;
-    columns.joint_count = robot.joints.size();
-    columns.outputs = outputs;
+    ReadOptions columns = columns_for(robot, outputs);
     columns.velocity = true;
     columns.acceleration = true;
     return options.recordings.read(columns);

@@ -59,8 +59,8 @@ void check_usage(const ReplayOptions& options) {
     const bool bus = !options.bus.empty();
     refuse(options.recordings.logs.empty() == !options.live(), "expected --log or --can, one of them");
     refuse(options.live() && !bus, "--can: expected --bus with the devices on it, found none");
-    refuse(bus && (options.recordings.rows != ":" || options.recordings.skip_bad_rows),
-           "--rows, --skip-bad-rows: expected a CSV recording, found --bus");
+    refuse(bus && options.recordings.has_choice(),
+           "--rows, --skip-bad-rows, --columns, --units, --topic: expected a CSV recording, found --bus");
     refuse(!bus && !options.log_interface.empty(), "--from: expected --bus, found a CSV recording");
     refuse(!options.live() && (options.can.duration_s > 0 || !options.can.record.empty()),
            "--duration, --record: expected --can, found a recording");
@@ -120,8 +120,13 @@ std::vector<ReplayedRecording> replay_all(const ReplayOptions& options, std::spa
     const PhysicsModel* const physics = rigid_body_of(models);
     columns.velocity = columns.acceleration =
         physics != nullptr || std::ranges::any_of(models, needs_derivatives);
+    const TrainingRecord& trained = models.front().training;
+    columns.joint_names = trained.joint_names;
+    RecordingOptions recordings = options.recordings;
+    recordings.columns = recordings.columns.empty() ? trained.columns : recordings.columns;
+    recordings.units = recordings.units.empty() ? trained.units : recordings.units;
     std::vector<ReplayedRecording> replayed;
-    for (const Recording& recording : options.recordings.read(columns)) {
+    for (const Recording& recording : recordings.read(columns)) {
         Progress progress("replaying " + recording.source, recording.row_count());
         replayed.push_back(replay(*replaying.estimator, models, recording, options.chosen_horizon(),
                                   [&progress](std::size_t done) { progress.update(done); }));

@@ -126,6 +126,15 @@ std::string file_names(const std::vector<Recording>& recordings, TrainingRecord&
     return listed(record.recordings);
 }
 
+/// Records how the recordings were read, so that `replay` reads others in the same way.
+void describe_reading(const RecordingOptions& recordings, const std::optional<Robot>& robot,
+                      TrainingRecord& record) {
+    record.rows = recordings.rows;
+    record.columns = recordings.columns;
+    record.units = recordings.units;
+    record.joint_names = robot ? names_of_joints(*robot) : std::vector<std::string>{};
+}
+
 /// Shows the progress of the hyperparameter search, from any thread, then the computation of the initial
 /// state, until the callback is destroyed.
 ProgressCallback progress_line(HyperMethod hyper) {
@@ -179,7 +188,6 @@ void note_ignored(const TrainOptions& options, OutputKind outputs) {
         }
     };
     note(!physics, {"--effects", "--sign-velocity", "--own-motion"}, model);
-    note(!physics && options.setup.unchecked, {"--robot"}, model);
     note(!structure.learns_parameters(), {"--prior"}, model);
     note(!physics, {"--torque-constants"}, model);
     note(physics && outputs != OutputKind::motor_current, {"--torque-constants"},
@@ -191,16 +199,25 @@ void note_ignored(const TrainOptions& options, OutputKind outputs) {
     note(physics, {"--centred"}, model);
 }
 
-/// Checks the set-up of the recordings. For a model without physics, the robot is read for this check only.
-bool accept_setup(const TrainOptions& options, const std::vector<Recording>& recordings, OutputKind outputs,
-                  const ModelTraining& training) {
-    std::optional<Robot> robot;
+/// Returns the robot, if there is one. A model without physics uses it for the order of the joints and for
+/// the check of the set-up.
+std::optional<Robot> robot_of(const TrainOptions& options, OutputKind outputs,
+                              const ModelTraining& training) {
     if (training.physics) {
-        robot = training.physics->robot;
-    } else if (!options.robot.urdf.empty() && !options.setup.unchecked) {
-        robot = options.robot.read(outputs);
+        return training.physics->robot;
     }
-    return options.setup.accept(recordings, {outputs, robot ? &*robot : nullptr, options.torque_constants});
+    return options.robot.urdf.empty() ? std::nullopt : std::optional(options.robot.read(outputs));
+}
+
+std::vector<Recording> read_recordings(const TrainOptions& options, OutputKind outputs,
+                                       const ModelTraining& training, const std::optional<Robot>& robot) {
+    ReadOptions columns;
+    columns.outputs = outputs;
+    columns.joint_names = robot ? names_of_joints(*robot) : std::vector<std::string>{};
+    columns.velocity = columns.acceleration = // for the features, and for the rigid body with friction
+        training.physics ||
+        (sees_derivatives(training) && training.derivatives != DerivativeSource::estimated);
+    return options.recordings.read(columns);
 }
 
 /// Returns the sizes that no option sets.
@@ -228,13 +245,9 @@ int run(const TrainOptions& options) {
     const OutputKind outputs = parse_output_kind(options.outputs);
     ModelTraining training = model_training(options, outputs);
     note_ignored(options, outputs);
-    ReadOptions columns;
-    columns.outputs = outputs;
-    columns.velocity = columns.acceleration = // for the features, and for the rigid body with friction
-        training.physics ||
-        (sees_derivatives(training) && training.derivatives != DerivativeSource::estimated);
-    const std::vector<Recording> recordings = options.recordings.read(columns);
-    if (!accept_setup(options, recordings, outputs, training)) {
+    const std::optional<Robot> robot = robot_of(options, outputs, training);
+    const std::vector<Recording> recordings = read_recordings(options, outputs, training, robot);
+    if (!options.setup.accept(recordings, {outputs, robot ? &*robot : nullptr, options.torque_constants})) {
         return 1;
     }
     const double period_s = sample_period_s(recordings);
@@ -246,7 +259,7 @@ int run(const TrainOptions& options) {
             : train_model(prepare_training(recordings, training), outputs, training, progress);
     TrainedModel& model = result.model;
     const std::string trained_on = file_names(recordings, model.training);
-    model.training.rows = options.recordings.rows;
+    describe_reading(options.recordings, robot, model.training);
     {
         const Activity activity("calibrating the innovation limit");
         calibrate_innovation_limit(model, recordings);

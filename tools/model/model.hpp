@@ -144,6 +144,15 @@ struct PhysicsModel {
     std::vector<RigidBodyFit> rigid_body; ///< for the same chain; may be empty; not used by estimators
 };
 
+/// Needs and held-out error of the model with a number of features, as compared in training.
+struct SizeRecord {
+    int features = 0;
+    std::int64_t flash_bytes = 0;
+    std::int64_t ram_bytes = 0;
+    std::int64_t tick_operations = 0;
+    double error = 0; ///< mean nRMSE over the outputs, one step ahead, on rows that trained nothing
+};
+
 /// Origin of the constants.
 struct TrainingRecord {
     std::vector<std::string> recordings; ///< file names without folders
@@ -153,6 +162,12 @@ struct TrainingRecord {
     int likelihood_rows = 0;        ///< samples in the exact kernel
     double log_likelihood = 0;      ///< of the best start
     std::vector<double> all_starts; ///< log likelihood reached from each start
+    /// How the recordings were read, as given to `--columns` and `--units`; `replay` reads others in the same
+    /// way unless it is given its own.
+    std::string columns = {};
+    std::string units = {};
+    std::vector<std::string> joint_names = {}; ///< of the chain; empty: no robot was given
+    std::vector<SizeRecord> sizes = {};        ///< numbers of features that were compared; empty: none
 };
 
 /// All results of `dfdyn train`: the content of model.json.

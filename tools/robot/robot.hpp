@@ -49,6 +49,9 @@ struct Robot {
     std::vector<std::string> notes; ///< unusual but usable contents of the file; one line each
 };
 
+/// Returns the names of the joints, from base to tip.
+std::vector<std::string> names_of_joints(const Robot& robot);
+
 /// Returns, per joint, whether it is prismatic.
 std::vector<bool> prismatic_joints(const Robot& robot);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/base/text/line_reader.hpp"
+#include "tools/base/system/line_reader.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/recording/header.hpp"
 
+#include "tools/base/recording/csv_line.hpp"
+#include "tools/base/text/nearest_name.hpp"
 #include "tools/base/text/text.hpp"
 
 #include <algorithm>
@@ -36,39 +38,22 @@ void require_text(std::string_view line, const std::string& where) {
     }
 }
 
-/// Returns a name from the header, without the double quotes that some programs write around names.
-std::string plain_name(std::string_view field, const std::string& where) {
-    std::string_view name = trimmed(field);
-    if (name.size() >= 2 && name.starts_with('"') && name.ends_with('"')) {
-        name = trimmed(name.substr(1, name.size() - 2));
-    }
-    if (name.find('"') != std::string_view::npos) {
-        throw InputError(where + ": expected a column name, found " + in_quotes(field) +
-                         " (a quoted name may hold no comma and no quote)");
-    }
-    return std::string(name);
-}
-
-Names split(std::string_view line, const std::string& where) {
-    Names columns;
-    std::size_t begin = 0;
-    while (begin <= line.size()) {
-        const std::size_t end = std::min(line.find(',', begin), line.size());
-        columns.push_back(plain_name(line.substr(begin, end - begin), where));
-        begin = end + 1;
-    }
-    return columns;
-}
-
-void require_commas(const Names& columns, const std::string& where) {
-    if (columns.size() > 1) {
-        return;
-    }
-    for (const std::string_view separator : {";", "\t", " "}) {
-        if (columns.front().find(separator) != std::string::npos) {
-            throw InputError(where + ": expected column names separated by commas, found " +
-                             in_quotes(separator) + " between them");
+Names split(std::string_view line, char separator, const std::string& where) {
+    std::vector<std::string_view> fields;
+    split_fields(line, separator, fields);
+    for (const std::string_view field : fields) {
+        if (field.find('"') != std::string_view::npos) {
+            throw InputError(where + ": expected a column name, found " + in_quotes(field) +
+                             " (a quoted name ends with a quote and holds none)");
         }
+    }
+    return {fields.begin(), fields.end()};
+}
+
+void require_separators(const Names& columns, const std::string& where) {
+    if (columns.size() == 1 && columns.front().find(' ') != std::string::npos) {
+        throw InputError(where + ": expected column names separated by commas, semicolons or tabs, found " +
+                         in_quotes(" ") + " between them");
     }
 }
 
@@ -145,11 +130,29 @@ class Builder {
                      [this](const std::string& name) { return !index_.contains(name); });
         if (!missing.empty()) {
             throw InputError(where_ + ": expected columns " + listed(names) + ", found no " +
-                             listed(missing) + "; the header has " + listed(labels(header_.columns)));
+                             listed(missing) + nearest(missing, names) + "; the header has " +
+                             listed(labels(header_.columns)) + " (--columns assigns columns to quantities)");
         }
     }
 
   private:
+    /// Returns ` (did you mean "Q1" for q1?)` for the first missing name with a close one in the header.
+    std::string nearest(const Names& missing, const Names& names) const {
+        Names unused;
+        for (std::size_t column = 0; column < header_.columns.size(); ++column) {
+            const std::string& name = header_.columns[column];
+            if (!header_.slot[column] && std::ranges::find(names, name) == names.end()) {
+                unused.push_back(name);
+            }
+        }
+        for (const std::string& name : missing) {
+            if (const auto found = nearest_name(name, unused)) {
+                return " (did you mean " + in_quotes(*found) + " for " + name + "?)";
+            }
+        }
+        return "";
+    }
+
     Header& header_;
     std::string where_;
     std::unordered_map<std::string, std::size_t> index_;
@@ -173,6 +176,32 @@ void require_chain(std::size_t joint_count, const std::string& where, const Read
     }
 }
 
+/// Returns the quantity of outputs of this kind in `--units`.
+std::string quantity_of(OutputKind kind) {
+    switch (kind) {
+    case OutputKind::joint_torque:
+        return "tau";
+    case OutputKind::motor_current:
+        return "i";
+    case OutputKind::wrench:
+        return "wrench";
+    }
+    return "";
+}
+
+void set_factors(Header& header, const ReadOptions& options) {
+    header.factor = {1}; // the time has its unit from the first row, or from the options
+    const auto append = [&](const Names& names, const std::string& quantity) {
+        for (std::size_t k = 0; k < names.size(); ++k) {
+            header.factor.push_back(unit_factor(options.units, quantity, k, names.size()));
+        }
+    };
+    append(header.position, "q");
+    append(header.velocity, "qd");
+    append(header.acceleration, "qdd");
+    append(header.output, options.outputs ? quantity_of(*options.outputs) : "");
+}
+
 } // namespace
 
 std::vector<std::string> Header::ignored_columns() const {
@@ -185,14 +214,22 @@ std::vector<std::string> Header::ignored_columns() const {
     return ignored;
 }
 
+const std::string& Header::time_column() const {
+    return columns[static_cast<std::size_t>(std::ranges::find(slot, std::optional<std::size_t>(0)) -
+                                            slot.begin())];
+}
+
 Header parse_header(std::string_view line, const std::string& where, const ReadOptions& options) {
-    require_text(line, where);
     Header header;
-    header.columns = split(line, where);
+    header.separator = separator_of(line);
+    require_text(line, where);
+    header.columns = split(line, header.separator, where);
     header.slot.resize(header.columns.size());
-    require_commas(header.columns, where);
-    Builder builder(header, where, index_columns(header.columns, where));
-    const std::size_t found = count_joints(header.columns, where);
+    require_separators(header.columns, where);
+    index_columns(header.columns, where);
+    const Names roles = column_roles(header.columns, options.columns, options.joint_names, where);
+    Builder builder(header, where, index_columns(roles, where));
+    const std::size_t found = count_joints(roles, where);
     require_chain(found, where, options);
     const std::size_t joint_count = std::max({found, options.joint_count, std::size_t{1}});
     builder.require(needed_columns(joint_count, options));
@@ -207,6 +244,7 @@ Header parse_header(std::string_view line, const std::string& where, const ReadO
     if (options.outputs) {
         header.output = builder.place(output_names(*options.outputs, joint_count));
     }
+    set_factors(header, options);
     return header;
 }
 

@@ -13,9 +13,11 @@ namespace dfdyn::tools {
 
 /// Meaning of the fields of a row.
 struct Header {
+    char separator = ',';
     std::vector<std::string> columns; ///< every column of the file, in order
     std::vector<std::optional<std::size_t>>
-        slot; ///< per column: its place among the values read; empty if ignored
+        slot;                   ///< per column: its place among the values read; empty if ignored
+    std::vector<double> factor; ///< per value read: from the file's unit to that of the recording; time: 1
     /// Names of the values read, in the order of their places. The time is at place 0.
     std::vector<std::string> position, velocity, acceleration, output;
 
@@ -24,10 +26,13 @@ struct Header {
     }
     /// Returns the columns without a place, for a message.
     std::vector<std::string> ignored_columns() const;
+    /// Returns the name of the column of the time in the file.
+    const std::string& time_column() const;
 };
 
-/// Reads the first line of a recording. Throws InputError, starting with `where` (file and line), if the line
-/// is no header, a name occurs twice, or a column required by `options` is missing.
+/// Reads the line of a recording with the names of its columns. Throws InputError, starting with `where`
+/// (file and line), if the line is no header, a name occurs twice, a column required by `options` is missing,
+/// or its patterns and units do not fit.
 Header parse_header(std::string_view line, const std::string& where, const ReadOptions& options);
 
 } // namespace dfdyn::tools

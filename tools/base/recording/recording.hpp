@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/base/recording/column_patterns.hpp"
+#include "tools/base/recording/units.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -80,6 +83,7 @@ struct Recording {
     SkippedRows skipped;
     /// Columns in the file that were not read, for a message (with `listed`): `i1`, `column 7 (unnamed)`.
     std::vector<std::string> ignored_columns;
+    std::vector<std::string> notes; ///< what was assumed about the file; one line each
 
     std::size_t row_count() const noexcept { return time_ns.size(); }
     std::size_t joint_count() const noexcept { return position.names.size(); }
@@ -92,13 +96,22 @@ struct ReadOptions {
     bool acceleration = false;                        ///< read them if the recording has them
     RowRange rows = {};                               ///< other rows are ignored
     bool skip_bad_rows = false;                       ///< false: the first bad row is an error
+    ColumnPatterns columns = {};                      ///< of quantities with other names than t, q1, …
+    Units units = {};                                 ///< of quantities in other units than s, rad, N·m, A
+    std::vector<std::string> joint_names = {};        ///< of the chain; empty: unknown
+    /// Topics of a ROS 2 bag: joint states, and a wrench if it is the output; empty: the only ones in the
+    /// bag.
+    std::vector<std::string> topics = {};
 };
 
-/// Reads a CSV recording: a header, then one row per sample, separated by commas. Accepted: LF or CRLF, a
-/// byte order mark, no newline at the end, empty lines at the end, spaces around fields, names (not values)
-/// in double quotes, a leading plus, and further columns (with any content except commas). Independent of the
-/// locale. Throws InputError with file, line and column for other content. Cost: one pass, O(file); memory
-/// for the values kept, and 1 MiB.
+/// Reads a CSV recording, plain or compressed with gzip; `-` is standard input. It has a header, then one row
+/// per sample. Accepted: fields separated by commas, semicolons or tabs, in double quotes, and with spaces
+/// around them; comments (lines that begin with `#`; the last one before the first row is the header if that
+/// row has only numbers); a decimal comma where no comma separates fields; LF or CRLF, a byte order mark, no
+/// newline at the end, empty lines at the end, a leading plus, and further columns with any content. Times
+/// are seconds, or ms, µs or ns since 1970 (see likely_time_unit). Independent of the locale. Throws
+/// InputError with file, line and column for other content. Cost: one pass, O(file); memory for the values
+/// kept, and 1 MiB.
 Recording read_recording(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Reads several recordings in order; `options.rows` applies to each. Throws InputError as above, and if

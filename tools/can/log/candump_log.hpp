@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dfdyn/hal/replay_bus.hpp"
-#include "tools/base/text/line_reader.hpp"
+#include "tools/base/system/line_reader.hpp"
 
 #include <exception>
 #include <filesystem>

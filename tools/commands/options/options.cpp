@@ -10,7 +10,11 @@
 namespace dfdyn::tools {
 
 void RecordingOptions::add_to(CLI::App& command) {
-    command.add_option("--log", logs, "Recording(s), CSV, in order; the lag window restarts between them")
+    command
+        .add_option(
+            "--log", logs,
+            "Recording(s), CSV (plain or .gz) or ROS 2 bag (MCAP or SQLite), in order; - is standard input; the lag window restarts between "
+            "them")
         ->required()
         ->delimiter(',')
         ->type_name("L.csv[,L2.csv...]");
@@ -21,23 +25,41 @@ void RecordingOptions::add_to(CLI::App& command) {
         ->capture_default_str();
     command.add_flag("--skip-bad-rows", skip_bad_rows,
                      "Leave bad rows out, as gaps, instead of refusing the file");
-}
-
-std::vector<Recording> RecordingOptions::read(std::size_t joint_count, OutputKind outputs) const {
-    ReadOptions options;
-    options.joint_count = joint_count;
-    options.outputs = outputs;
-    return read(options);
+    command
+        .add_option(
+            "--columns", columns,
+            "Columns with other names than t, q1, qd1, tau1, i1, fx, ...: one pattern per quantity, with "
+            "* for the joint's number or its name in the URDF, or the names separated by |")
+        ->type_name("q=PATTERN,tau=PATTERN,...");
+    command
+        .add_option("--topic", topics,
+                    "Topic of a ROS 2 bag with sensor_msgs/JointState, and for --outputs wrench one with "
+                    "geometry_msgs/WrenchStamped; default: the only ones in the bag")
+        ->delimiter(',')
+        ->type_name("/T[,/W]");
+    command
+        .add_option(
+            "--units", units,
+            "Other units than s, rad, N m and A: of t (s, ms, us, ns), q and qd (rad, deg, turn, "
+            "ticks:N per turn, m, mm), tau (Nm, mNm), i (A, mA), wrench (N, mN); one per quantity, or "
+            "one per joint, separated by |")
+        ->type_name("q=deg,t=ns,...");
 }
 
 std::vector<Recording> RecordingOptions::read(ReadOptions options) const {
     options.rows = parse_row_range(rows);
     options.skip_bad_rows = skip_bad_rows;
+    options.columns = parse_column_patterns(columns);
+    options.units = parse_units(units);
+    options.topics = topics;
     std::vector<Recording> recordings = read_recordings(logs, options);
     for (const Recording& recording : recordings) {
         if (&recording == &recordings.front() && !recording.ignored_columns.empty()) {
             std::cerr << recording.source << ": columns not used: " << listed(recording.ignored_columns)
                       << '\n';
+        }
+        for (const std::string& note : recording.notes) {
+            std::cerr << recording.source << ": " << note << '\n';
         }
         if (recording.skipped.total() > 0) {
             std::cerr << recording.source << ": " << describe(recording.skipped) << '\n';

@@ -17,13 +17,19 @@ struct RecordingOptions {
     std::vector<std::filesystem::path> logs;
     std::string rows = ":";
     bool skip_bad_rows = false;
+    std::string columns, units; ///< as for parse_column_patterns() and parse_units()
+
+    std::vector<std::string> topics; ///< of ROS 2 bags
 
     void add_to(CLI::App& command);
 
-    /// Reads all recordings. Reports ignored columns and skipped rows once on stderr.
-    std::vector<Recording> read(std::size_t joint_count, OutputKind outputs) const;
+    /// Returns whether the user gave an option besides the files.
+    bool has_choice() const {
+        return rows != ":" || skip_bad_rows || !columns.empty() || !units.empty() || !topics.empty();
+    }
 
-    /// Reads all recordings with the columns of `options`. Reports as above.
+    /// Reads all recordings with the columns of `options`. Reports ignored columns, assumptions and skipped
+    /// rows once on stderr.
     std::vector<Recording> read(ReadOptions options) const;
 };
 

@@ -68,6 +68,14 @@ Robot RobotOptions::read(OutputKind outputs) const {
     return robot;
 }
 
+ReadOptions columns_for(const Robot& robot, OutputKind outputs) {
+    ReadOptions columns;
+    columns.joint_count = robot.joints.size();
+    columns.outputs = outputs;
+    columns.joint_names = names_of_joints(robot);
+    return columns;
+}
+
 Robot read_scenario_robot(const std::filesystem::path& urdf, const std::filesystem::path& scenario) {
     const ScenarioChain chain = read_scenario_chain(scenario);
     RobotOptions reading;

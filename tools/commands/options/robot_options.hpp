@@ -25,6 +25,9 @@ struct RobotOptions {
     Robot read(OutputKind outputs) const;
 };
 
+/// Returns the columns to read for this robot: positions of its joints, and the outputs.
+ReadOptions columns_for(const Robot& robot, OutputKind outputs);
+
 /// Reads the scenario's chain of the robot `urdf`, with its tip moved to the scenario's point.
 Robot read_scenario_robot(const std::filesystem::path& urdf, const std::filesystem::path& scenario);
 

@@ -53,13 +53,30 @@ ordered_json extrapolation_to_json(const ExtrapolationModel& extrapolation, cons
 }
 
 ordered_json training_to_json(const TrainingRecord& record) {
-    return {{"recordings", record.recordings},
-            {"rows", record.rows},
-            {"method", record.method},
-            {"seed", record.seed},
-            {"likelihood_rows", record.likelihood_rows},
-            {"log_likelihood", record.log_likelihood},
-            {"all_starts", record.all_starts}};
+    ordered_json json{{"recordings", record.recordings},
+                      {"rows", record.rows},
+                      {"method", record.method},
+                      {"seed", record.seed},
+                      {"likelihood_rows", record.likelihood_rows},
+                      {"log_likelihood", record.log_likelihood},
+                      {"all_starts", record.all_starts}};
+    if (!record.columns.empty()) {
+        json["columns"] = record.columns;
+    }
+    if (!record.units.empty()) {
+        json["units"] = record.units;
+    }
+    if (!record.joint_names.empty()) {
+        json["joint_names"] = record.joint_names;
+    }
+    for (const SizeRecord& size : record.sizes) {
+        json["sizes"].push_back({{"features", size.features},
+                                 {"flash_bytes", size.flash_bytes},
+                                 {"ram_bytes", size.ram_bytes},
+                                 {"tick_operations", size.tick_operations},
+                                 {"held_out_nrmse", size.error}});
+    }
+    return json;
 }
 
 ordered_json model_json(const TrainedModel& model) {
@@ -151,6 +168,8 @@ LimitModel read_limits(const JsonReader& reader, int joints, int outputs) {
     return limits;
 }
 
+constexpr int largest_int = std::numeric_limits<int>::max();
+
 TrainingRecord read_training(const JsonReader& reader) {
     TrainingRecord record;
     record.recordings = reader.texts("recordings", 10000);
@@ -160,6 +179,20 @@ TrainingRecord read_training(const JsonReader& reader) {
     record.likelihood_rows = reader.whole_number("likelihood_rows", 0, 1000000000);
     record.log_likelihood = reader.number("log_likelihood");
     record.all_starts = reader.numbers("all_starts");
+    record.columns = reader.has("columns") ? reader.text("columns") : "";
+    record.units = reader.has("units") ? reader.text("units") : "";
+    if (reader.has("joint_names")) {
+        record.joint_names = reader.texts("joint_names", 1000);
+    }
+    if (reader.has("sizes")) {
+        for (const JsonReader& size : reader.objects("sizes", 0, 1000)) {
+            record.sizes.push_back({size.whole_number("features", 0, 1'000'000),
+                                    size.whole_number("flash_bytes", 0, largest_int),
+                                    size.whole_number("ram_bytes", 0, largest_int),
+                                    size.whole_number("tick_operations", 0, largest_int),
+                                    size.number("held_out_nrmse")});
+        }
+    }
     return record;
 }
 

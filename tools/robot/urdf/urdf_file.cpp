@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/robot/urdf/urdf_file.hpp"
 
+#include "tools/base/system/line_reader.hpp"
 #include "tools/base/text/error.hpp"
-#include "tools/base/text/line_reader.hpp"
 #include "tools/base/text/text.hpp"
 
 #include <console_bridge/console.h>

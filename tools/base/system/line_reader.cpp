@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/base/text/line_reader.hpp"
+#include "tools/base/system/line_reader.hpp"
 
 #include "tools/base/text/text.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
-#include <fcntl.h>
 #include <string>
-#include <unistd.h>
 
 namespace dfdyn::tools {
 namespace {
@@ -19,14 +16,7 @@ constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 } // namespace
 
 LineReader::LineReader(const std::filesystem::path& path)
-    : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)),
-      buffer_(longest_line + 2 + chunk_size) {
-    if (descriptor_ < 0) {
-        throw system_error(path_, "cannot open", errno);
-    }
-}
-
-LineReader::~LineReader() { ::close(descriptor_); }
+    : name_(shown_input(path)), source_(path), buffer_(longest_line + 2 + chunk_size) {}
 
 std::optional<std::string_view> LineReader::next() {
     std::size_t searched = 0;
@@ -51,7 +41,7 @@ std::optional<std::string_view> LineReader::next() {
 }
 
 InputError LineReader::too_long(std::size_t line_number) const {
-    return InputError(shown(path_) + ":" + std::to_string(line_number) + ": expected a line of at most " +
+    return InputError(name_ + ":" + std::to_string(line_number) + ": expected a line of at most " +
                       std::to_string(longest_line) + " bytes, found a longer one");
 }
 
@@ -60,14 +50,8 @@ bool LineReader::fill() {
     std::copy(buffer_.data() + begin_, buffer_.data() + end_, buffer_.data());
     end_ -= begin_;
     begin_ = 0;
-    ssize_t count = 0;
-    do {
-        count = ::read(descriptor_, buffer_.data() + end_, chunk_size);
-    } while (count < 0 && errno == EINTR);
-    if (count < 0) {
-        throw system_error(path_, "cannot read", errno);
-    }
-    end_ += static_cast<std::size_t>(count);
+    const std::size_t count = source_.read(std::span(buffer_).subspan(end_, chunk_size));
+    end_ += count;
     return count > 0;
 }
 

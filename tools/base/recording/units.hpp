@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// Units of a recording's columns, where they are not s, rad, N·m and A: the factors to those units, per
+/// quantity `t`, `q`, `qd`, `qdd`, `tau`, `i` and `wrench`; one factor for all columns, or one per column.
+using Units = std::map<std::string, std::vector<double>>;
+
+/// Reads `t=ns,q=deg,i=mA`; several units of a quantity, one per column, are separated by `|`. `ticks:N` is
+/// an encoder with N ticks per turn. Without units for `qd` and `qdd` they have the unit of `q`, per s and
+/// s². Throws InputError for any other text.
+Units parse_units(std::string_view text);
+
+/// Returns the factor of column `index`, from 0, of `quantity`; 1 if there is none. Throws InputError if the
+/// quantity has factors for a different number of columns than `count`.
+double unit_factor(const Units& units, const std::string& quantity, std::size_t index, std::size_t count);
+
+/// A time on the recording's clock.
+struct TimeValue {
+    double seconds = 0;
+    std::int64_t nanoseconds = 0;
+};
+
+/// Returns the unit (s) of the times of a recording with this first time, which are seconds unless it can
+/// only be a time since 1970 in ms, µs or ns: from 1e11, 1e14 and 1e17 on.
+double likely_time_unit(double first_time);
+
+/// Returns the time with the value `value` and the text `text`, in units of `unit_s`; exact if the text is a
+/// whole number of ns, µs or ms. Empty if the time is not within 9.2e9 s of 0.
+std::optional<TimeValue> time_value(double value, std::string_view text, double unit_s);
+
+} // namespace dfdyn::tools
