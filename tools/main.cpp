@@ -20,6 +20,7 @@ int run(int argc, char** argv) {
     app.set_version_flag("--version", dfdyn::tools::build_flags());
     dfdyn::tools::Command command;
     dfdyn::tools::add_train_command(app, command);
+    dfdyn::tools::add_footprint_command(app, command);
     dfdyn::tools::add_replay_command(app, command);
     dfdyn::tools::add_identify_command(app, command);
     dfdyn::tools::add_evaluate_command(app, command);

@@ -273,6 +273,7 @@ int run(const TrainOptions& options) {
     }
     print_outcome(result, trained_on);
     std::cout << describe_clock(training.options, period_s) << '\n';
+    print_footprint(std::cout, model, find_target(options.sizes.target));
     return 0;
 }
 

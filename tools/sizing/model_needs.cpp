@@ -89,7 +89,12 @@ ModelNeeds needs_of(const TrainedModel& model) {
         learned_bytes(model) + number_bytes * work_numbers(model) + other_state_bytes + stack_bytes;
     needs.ram_bytes += structure_of(model).features ? window_bytes(model.input, model.joints) : 0;
     needs.ram_bytes += model.physics ? window_bytes(model.physics->motion, model.joints) : 0;
-    needs.tick_operations = cost.predict + cost.learn + (model.forgetting_factor < 1 ? cost.forget : 0);
+    needs.stack_bytes = stack_bytes;
+    needs.predict_operations = cost.predict;
+    needs.variance_operations = cost.variance;
+    needs.learn_operations = cost.learn;
+    needs.forget_operations = model.forgetting_factor < 1 ? cost.forget : 0;
+    needs.tick_operations = cost.predict + needs.learn_operations + needs.forget_operations;
     return needs;
 }
 

@@ -15,6 +15,13 @@ struct ModelNeeds {
     std::int64_t ram_bytes = 0;   ///< the estimator, and the stack of a tick
     /// multiply-adds of a tick that predicts and learns its sample completely
     std::int64_t tick_operations = 0;
+
+    std::int64_t stack_bytes = 0;        ///< of ram_bytes: the stack of a tick
+    std::int64_t predict_operations = 0; ///< of tick_operations: the prediction
+    std::int64_t learn_operations = 0;   ///< of tick_operations: learning
+    std::int64_t forget_operations = 0;  ///< of tick_operations: forgetting, at most
+    /// of the standard deviation, in addition in a tick that does not learn or that contradicts the model
+    std::int64_t variance_operations = 0;
 };
 
 /// Limits of a model's resources; unlimited by default.

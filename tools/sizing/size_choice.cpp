@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/sizing/size_choice.hpp"
 
+#include "tools/base/recording/row_parts.hpp"
 #include "tools/base/recording/sample_grid.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
@@ -28,54 +29,9 @@ constexpr std::array<double, 4> windows_s{0.04, 0.08, 0.16, 0.32};
 constexpr std::array<int, 3> row_counts{3, 4, 6};
 constexpr std::array<double, 3> memories_s{5, 30, 180};
 
-void cut(Columns& columns, std::size_t first, std::size_t last) {
-    const auto width = static_cast<std::ptrdiff_t>(columns.names.size());
-    const auto begin = columns.values.begin();
-    columns.values = {begin + width * static_cast<std::ptrdiff_t>(first),
-                      begin + width * static_cast<std::ptrdiff_t>(last)};
-}
+} // namespace
 
-Recording rows_between(Recording recording, std::size_t first, std::size_t last) {
-    const auto cut_rows = [&](auto& values) {
-        values = {values.begin() + static_cast<std::ptrdiff_t>(first),
-                  values.begin() + static_cast<std::ptrdiff_t>(last)};
-    };
-    cut_rows(recording.time_s);
-    cut_rows(recording.time_ns);
-    cut_rows(recording.gap_before);
-    for (Columns* const columns :
-         {&recording.position, &recording.velocity, &recording.acceleration, &recording.output}) {
-        cut(*columns, first, last);
-    }
-    recording.gap_before.front() = 1;
-    return recording;
-}
-
-/// The first rows for training, and the last ones for evaluation.
-struct Split {
-    std::vector<Recording> training, judging;
-
-    explicit Split(std::span<const Recording> recordings) {
-        std::size_t total = 0;
-        for (const Recording& recording : recordings) {
-            total += recording.row_count();
-        }
-        auto left = static_cast<std::size_t>(training_share * static_cast<double>(total));
-        for (const Recording& recording : recordings) {
-            const std::size_t rows = recording.row_count();
-            const std::size_t first = std::min(left, rows);
-            left -= first;
-            if (first > 0) {
-                training.push_back(rows_between(recording, 0, first));
-            }
-            if (first < rows) {
-                judging.push_back(rows_between(recording, first, rows));
-            }
-        }
-    }
-};
-
-double mean_error(const TrainedModel& model, std::span<const Recording> recordings) {
+double held_out_error(const TrainedModel& model, std::span<const Recording> recordings) {
     const auto estimator = make_estimator(model, false);
     const std::size_t outputs = model.outputs.names.size();
     double total = 0;
@@ -89,6 +45,8 @@ double mean_error(const TrainedModel& model, std::span<const Recording> recordin
     return std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
 }
 
+namespace {
+
 bool better(const SizeCandidate& a, const SizeCandidate& b) {
     if (a.needs.tick_operations <= b.needs.tick_operations) {
         return a.error <= same_error * b.error;
@@ -100,8 +58,8 @@ class SizeSearch {
   public:
     SizeSearch(std::span<const Recording> recordings, OutputKind outputs, const ModelTraining& training,
                const TargetBudget& budget, const std::function<void()>& on_candidate)
-        : split_(recordings), outputs_(outputs), training_(training), budget_(budget),
-          on_candidate_(on_candidate), period_s_(sample_period_s(recordings)) {
+        : split_(split_recordings(recordings, training_share)), outputs_(outputs), training_(training),
+          budget_(budget), on_candidate_(on_candidate), period_s_(sample_period_s(recordings)) {
         TrainingOptions& options = training_.options;
         options.starts = 1;
         options.likelihood_rows = std::min(options.likelihood_rows, 300);
@@ -123,7 +81,7 @@ class SizeSearch {
         if (free.memory) {
             choose_memory();
         }
-        SizeChoice choice{*best_, {}, {}, 0};
+        SizeChoice choice{*best_, {}, {}, {}, 0};
         if (free.features && options.model->features) {
             choose_features(choice);
         }
@@ -148,7 +106,7 @@ class SizeSearch {
         result.model = train_model(prepare_training(split_.training, training), outputs_, training, {}).model;
         result.model.limits.innovation = std::numeric_limits<float>::max();
         result.candidate = {options, period_s_ * options.lags * options.every, 0, needs_of(result.model),
-                            mean_error(result.model, split_.judging)};
+                            held_out_error(result.model, split_.judging)};
         const double lambda = options.forgetting_factor;
         result.candidate.memory_s = lambda < 1 ? -period_s_ / std::log(lambda) : 0;
         return result;
@@ -253,6 +211,10 @@ class SizeSearch {
                 break; // two steps without an improvement
             }
         }
+        for (const SizeCandidate& one : ladder) {
+            choice.sizes.push_back({one.options.feature_count, one.needs.flash_bytes, one.needs.ram_bytes,
+                                    one.needs.tick_operations, one.error});
+        }
         std::size_t best = 0;
         for (std::size_t rung = 1; rung < ladder.size(); ++rung) {
             if (fits(ladder[rung].needs, budget_) &&
@@ -267,7 +229,7 @@ class SizeSearch {
 
     static constexpr int most_spaced_lags = 20;
 
-    Split split_;
+    SplitRecordings split_;
     OutputKind outputs_;
     ModelTraining training_;
     TargetBudget budget_;

@@ -32,8 +32,9 @@ struct SizeCandidate {
 struct SizeChoice {
     SizeCandidate chosen;
     std::optional<SizeCandidate> smaller,
-        larger;    ///< the neighbouring numbers of features; the larger one may exceed the budget
-    int tried = 0; ///< number of trained models
+        larger; ///< the neighbouring numbers of features; the larger one may exceed the budget
+    std::vector<SizeRecord> sizes; ///< of all numbers of features that were compared, for the model's record
+    int tried = 0;                 ///< number of trained models
 };
 
 /// Chooses sizes within `budget` by a coordinate search: window, rows per joint, memory, features. Each
@@ -44,6 +45,10 @@ struct SizeChoice {
 SizeChoice choose_sizes(std::span<const Recording> recordings, OutputKind outputs,
                         const ModelTraining& training, const FreeSizes& free, const TargetBudget& budget,
                         const std::function<void()>& on_candidate = {});
+
+/// Returns the error of `model`, which starts as trained and learns, over recordings: nRMSE of the one-step
+/// predictions, mean over outputs and recordings; infinite without predictions.
+double held_out_error(const TrainedModel& model, std::span<const Recording> recordings);
 
 /// Returns the next smaller number of features of the search; 0 if there is none.
 int next_smaller_features(int feature_count);

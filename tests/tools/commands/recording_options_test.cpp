@@ -2,6 +2,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/commands/run_program.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <cstdlib>
 #include <regex>
 #include <string>
@@ -73,6 +75,27 @@ TEST_CASE("a misspelt subcommand, option or column gets the nearest known one su
     CHECK_THAT(error("train --log " + log_file + quick + "--columns q=Q* -o " + directory.path().string() +
                      "/x.json"),
                Catch::Matchers::ContainsSubstring("--columns q=Q*: expected columns that match, found none"));
+}
+
+TEST_CASE("footprint prints the needs of a model, as JSON too, and compares them with a budget") {
+    const TemporaryDirectory directory;
+    const std::string model = directory.path().string() + "/m.json";
+    const Outcome trained = run_program(directory, "train --log " + log_file + quick + "-o " + model);
+    REQUIRE(trained.status == 0);
+    const Outcome printed = run_program(directory, "footprint --model " + model);
+    CHECK(printed.status == 0);
+    CHECK_THAT(printed.out, Catch::Matchers::StartsWith("on cortex-m7: flash at most "));
+    CHECK_THAT(trained.out, Catch::Matchers::EndsWith(printed.out)); // train prints the same
+
+    const Outcome json = run_program(directory, "footprint --model " + model + " --json --target cortex-m4f");
+    REQUIRE(json.status == 0);
+    const auto figures = nlohmann::json::parse(json.out);
+    CHECK(figures.at("target") == "cortex-m4f");
+    const auto flash = figures.at("flash_bytes").get<long>();
+    const std::string budget = "footprint --model " + model + " --flash ";
+    CHECK(run_program(directory, budget + std::to_string(flash)).status == 0);
+    CHECK(run_program(directory, budget + std::to_string(flash - 1)).status == 1);
+    CHECK(run_program(directory, "footprint --model " + model + " --target z80").status == 2);
 }
 
 } // namespace recording_options_test

@@ -38,6 +38,10 @@ void SizeOptions::add_to(CLI::App& command) {
         ->transform(CLI::AsSizeValue(false))
         ->type_name("BYTES[K|M]")
         ->group(group);
+    command.add_option("--target", target, "Core whose instructions per tick are printed")
+        ->check(CLI::IsMember(target_names()))
+        ->capture_default_str()
+        ->group(group);
     command
         .add_option("--tick-operations", tick_operations,
                     "Multiply-adds of a tick that predicts and learns (docs/reference/performance.md has "
@@ -64,6 +68,7 @@ ModelTrainingResult train_within(const SizeOptions& sizes, const FreeSizes& free
                                  std::span<const Recording> recordings, OutputKind outputs,
                                  ModelTraining& training, const ProgressCallback& progress) {
     const TargetBudget budget = sizes.budget();
+    std::vector<SizeRecord> compared;
     {
         Progress line("choosing sizes: candidate", 0);
         std::size_t candidates = 0;
@@ -71,6 +76,7 @@ ModelTrainingResult train_within(const SizeOptions& sizes, const FreeSizes& free
             choose_sizes(recordings, outputs, training, free, budget, [&] { line.update(++candidates); });
         copy_sizes(choice.chosen.options, training.options);
         print_choice(std::cout, choice, budget);
+        compared = choice.sizes;
     }
     for (;;) {
         ModelTrainingResult result =
@@ -78,6 +84,7 @@ ModelTrainingResult train_within(const SizeOptions& sizes, const FreeSizes& free
         const ModelNeeds needs = needs_of(result.model);
         if (fits(needs, budget)) {
             std::cout << "the model takes at most " << to_text(needs) << '\n';
+            result.model.training.sizes = std::move(compared);
             return result;
         }
         // With all rows, the physics may have more parameters than with the first 70 %.

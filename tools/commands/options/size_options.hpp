@@ -2,12 +2,14 @@
 #pragma once
 
 #include "tools/sizing/size_choice.hpp"
+#include "tools/sizing/target.hpp"
 
 #include <CLI/CLI.hpp>
 
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 
 namespace dfdyn::tools {
 
@@ -15,6 +17,7 @@ namespace dfdyn::tools {
 struct SizeOptions {
     std::optional<std::uint64_t> flash_bytes, ram_bytes;
     std::optional<std::int64_t> tick_operations;
+    std::string target = "cortex-m7";
 
     void add_to(CLI::App& command);
 

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/commands/command.hpp"
+#include "tools/commands/options/size_options.hpp"
+#include "tools/model/file/model_file.hpp"
+#include "tools/sizing/target.hpp"
+
+#include <iostream>
+#include <memory>
+
+namespace dfdyn::tools {
+
+namespace {
+
+struct FootprintOptions {
+    std::filesystem::path model;
+    SizeOptions sizes;
+    bool json = false;
+};
+
+int run(const FootprintOptions& options) {
+    const TrainedModel model = read_model(options.model);
+    const Target& target = find_target(options.sizes.target);
+    if (options.json) {
+        std::cout << footprint_to_json(model, target);
+    } else {
+        print_footprint(std::cout, model, target);
+    }
+    const TargetBudget budget = options.sizes.budget();
+    if (fits(needs_of(model), budget)) {
+        return 0;
+    }
+    std::cerr << "beyond the budget: " << to_text(budget) << '\n';
+    return 1;
+}
+
+} // namespace
+
+void add_footprint_command(CLI::App& app, Command& chosen) {
+    const auto options = std::make_shared<FootprintOptions>();
+    CLI::App* command = app.add_subcommand(
+        "footprint", "Prints flash, RAM, stack and instructions per tick of a model on a controller");
+    command->add_option("--model", options->model, "The model")->required()->type_name("M.json");
+    options->sizes.add_to(*command);
+    command->add_flag("--json", options->json, "Print JSON");
+    command->footer(
+        "Example:\n  dfdyn footprint --model model.json --target cortex-m7 --flash 512K --ram 256K\n"
+        "A model of train --flash, --ram or --tick-operations also shows which smaller model would lose how "
+        "much accuracy.\n"
+        "Exit status: 0 done, 1 beyond the given budget, 2 bad usage or input.");
+    command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+}
+
+} // namespace dfdyn::tools
