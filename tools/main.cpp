@@ -19,6 +19,7 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     app.set_version_flag("--version", dfdyn::tools::build_flags());
     dfdyn::tools::Command command;
+    dfdyn::tools::add_start_command(app, command);
     dfdyn::tools::add_train_command(app, command);
     dfdyn::tools::add_footprint_command(app, command);
     dfdyn::tools::add_replay_command(app, command);

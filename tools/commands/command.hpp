@@ -11,6 +11,7 @@ namespace dfdyn::tools {
 using Command = std::function<int()>;
 
 /// Each function adds a subcommand to `app` and stores its work in `chosen` if the user calls it.
+void add_start_command(CLI::App& app, Command& chosen);
 void add_train_command(CLI::App& app, Command& chosen);
 void add_footprint_command(CLI::App& app, Command& chosen);
 void add_replay_command(CLI::App& app, Command& chosen);

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/base/recording/row_parts.hpp"
+#include "tools/base/recording/sample_grid.hpp"
+#include "tools/base/system/progress.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/base/text/number.hpp"
+#include "tools/base/text/text.hpp"
+#include "tools/commands/command.hpp"
+#include "tools/commands/options/clock_options.hpp"
+#include "tools/commands/options/options.hpp"
+#include "tools/commands/options/robot_options.hpp"
+#include "tools/commands/options/setup_options.hpp"
+#include "tools/commands/options/size_options.hpp"
+#include "tools/diagnosis/extension/extended_model.hpp"
+#include "tools/diagnosis/extension/joined_recording.hpp"
+#include "tools/diagnosis/output/diagnosis_json.hpp"
+#include "tools/diagnosis/output/diagnosis_page.hpp"
+#include "tools/diagnosis/output/diagnosis_summary.hpp"
+#include "tools/model/file/model_file.hpp"
+#include "tools/replay/contradiction.hpp"
+#include "tools/replay/replay_report.hpp"
+#include "tools/report/report.hpp"
+#include "tools/start/project.hpp"
+#include "tools/start/recording_overview.hpp"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+namespace dfdyn::tools {
+
+namespace start_command {
+
+constexpr double training_share = 0.7;
+constexpr double same_error = 1.02; ///< of errors within 2 %, the model with less flash is chosen
+
+struct StartOptions {
+    RecordingOptions recordings;
+    RobotOptions robot;
+    SetupOptions setup;
+    SizeOptions sizes;
+    std::string outputs;
+    std::filesystem::path folder;
+    bool quick = false;
+};
+
+/// What is known of the arm before training.
+struct Arm {
+    std::optional<Robot> robot;
+    OutputKind outputs = OutputKind::joint_torque;
+    std::vector<Recording> recordings;
+
+    const Robot* robot_or_null() const { return robot ? &*robot : nullptr; }
+};
+
+struct Candidate {
+    std::string name;
+    TrainedModel model;
+    ModelNeeds needs;
+    double error = 0; ///< on the held-out rows
+};
+
+void say(const std::string& step) { std::cout << "\n== " << step << '\n'; }
+
+std::vector<Recording> read_as(const StartOptions& options, const std::optional<Robot>& robot,
+                               OutputKind outputs) {
+    ReadOptions columns;
+    columns.outputs = outputs;
+    return options.recordings.read(robot ? columns_for(*robot, outputs) : columns);
+}
+
+/// Reads the recordings with the outputs that they have: torques, otherwise currents, otherwise a wrench.
+Arm read_arm(const StartOptions& options) {
+    Arm arm;
+    if (!options.robot.urdf.empty()) {
+        arm.robot = options.robot.read(OutputKind::joint_torque);
+    }
+    if (!options.outputs.empty()) {
+        arm.outputs = parse_output_kind(options.outputs);
+        arm.recordings = read_as(options, arm.robot, arm.outputs);
+        return arm;
+    }
+    std::string first_failure;
+    for (const OutputKind kind : {OutputKind::joint_torque, OutputKind::motor_current, OutputKind::wrench}) {
+        try {
+            arm.recordings = read_as(options, arm.robot, kind);
+            arm.outputs = kind;
+            std::cout << "outputs: " << listed(arm.recordings.front().output.names)
+                      << ", which the recording has (--outputs chooses others)\n";
+            return arm;
+        } catch (const InputError& failure) {
+            first_failure = first_failure.empty() ? failure.what() : first_failure;
+        }
+    }
+    throw InputError(first_failure);
+}
+
+/// Diagnoses the robot on the training rows. Adds pages to `files`, and the extended model to `candidates`.
+void diagnose_robot(const Arm& arm, const SplitRecordings& split, const StartOptions& options,
+                    FolderContent& files, std::vector<Candidate>& candidates) {
+    say("diagnosis of " + arm.robot->name + " on the training rows");
+    DiagnosisOptions how;
+    how.outputs = arm.outputs;
+    how.measure = false;
+    how.check_setup = !options.setup.unchecked;
+    std::optional<Progress> progress(std::in_place, "searching for causes, round", 0);
+    std::size_t rounds = 0;
+    how.progress = [&](int) { progress->update(++rounds); };
+    const DiagnosisWork work = diagnose(*arm.robot, joined_recording(split.training), how);
+    progress.reset();
+    const bool answered = work.signals != nullptr && !work.explanation.candidates.empty();
+    const Extension extension = answered ? extension_of(work) : Extension{};
+    files["diagnosis.json"] = diagnosis_to_json(work.diagnosis);
+    files["diagnosis.html"] = diagnosis_page({*arm.robot, split.training, work, extension, OnlineView{}});
+    print_diagnosis(std::cout, work.diagnosis, extension.carried);
+    if (answered) {
+        const Activity activity("building the extended model");
+        candidates.push_back(
+            {"the robot with the causes found", extended_model(extension, split.training), {}, 0});
+    }
+}
+
+/// Trains the black-box model that fits the budget.
+Candidate train_network(const Arm& arm, const SplitRecordings& split, const StartOptions& options) {
+    say("training a network of random features that fits " + to_text(options.sizes.budget()));
+    ModelTraining training;
+    ClockOptions{}.apply(training.options, sample_period_s(split.training));
+    if (options.quick) {
+        training.options.starts = 1;
+        training.options.likelihood_rows = 200;
+        training.options.refinement_evaluations = 0;
+    }
+    Progress progress("maximising the marginal likelihood", 0);
+    const auto show = [&](const TrainingProgress& at) {
+        progress.update(static_cast<std::size_t>(at.evaluations));
+    };
+    const FreeSizes free{.window = true, .rows = false, .features = true, .memory = false};
+    TrainedModel model = train_within(options.sizes, free, split.training, arm.outputs, training, show).model;
+    calibrate_innovation_limit(model, split.training);
+    return {"a network of random features", std::move(model), {}, 0};
+}
+
+/// Prints the candidates with their errors; returns the best one that fits.
+const Candidate& choose(std::vector<Candidate>& candidates, const SplitRecordings& split,
+                        const TargetBudget& budget) {
+    say("comparison on the last 30 % of the rows, which trained nothing");
+    const Candidate* best = nullptr;
+    for (Candidate& one : candidates) {
+        const Activity activity("replaying " + one.name);
+        one.needs = needs_of(one.model);
+        one.error = held_out_error(one.model, split.judging);
+        const bool fitting = fits(one.needs, budget);
+        std::cout << "  " << one.name << ": nRMSE " << rounded_text(one.error) << ", " << to_text(one.needs)
+                  << (fitting ? "\n" : " (beyond the budget)\n");
+        const auto better = [&](const Candidate& other) {
+            return one.needs.flash_bytes < other.needs.flash_bytes ? one.error <= same_error * other.error
+                                                                   : same_error * one.error < other.error;
+        };
+        if (fitting && (best == nullptr || better(*best))) {
+            best = &one;
+        }
+    }
+    if (best == nullptr) {
+        throw InputError("the budget (--flash, --ram): expected room for one of the models above, found " +
+                         to_text(budget));
+    }
+    std::cout << "chosen: " << best->name << ": "
+              << (candidates.size() > 1 ? "the least error; within 2 % the least flash\n" : "the only one\n");
+    return *best;
+}
+
+/// Replays the held-out rows with the chosen model; adds the report to `files`.
+void replay_held_out(const TrainedModel& model, const SplitRecordings& split, FolderContent& files) {
+    say("replay of the last 30 % of the rows");
+    const auto estimator = make_estimator(model, false);
+    std::vector<ReplayedRecording> replayed;
+    for (const Recording& recording : split.judging) {
+        Progress progress("replaying " + recording.source, recording.row_count());
+        replayed.push_back(
+            replay(*estimator, {&model, 1}, recording, 0, [&](std::size_t done) { progress.update(done); }));
+    }
+    const ReplaySummary summary = summarise({&model, 1}, *estimator, replayed, 0);
+    files["report.html"] = render_report(make_replay_report(model, replayed, summary));
+    print_summary(std::cout, summary);
+}
+
+/// Describes the training in the model, so that `replay` reads recordings in the same way.
+void describe_training(TrainedModel& model, const Arm& arm, const StartOptions& options) {
+    TrainingRecord& record = model.training;
+    record.recordings.clear();
+    for (const Recording& recording : arm.recordings) {
+        record.recordings.push_back(std::filesystem::path(recording.source).filename().string());
+    }
+    record.rows = "first 70 %";
+    record.columns = options.recordings.columns;
+    record.units = options.recordings.units;
+    record.joint_names = arm.robot ? names_of_joints(*arm.robot) : std::vector<std::string>{};
+}
+
+std::string next_steps(const StartOptions& options) {
+    const std::string folder = options.folder.string();
+    return "  cmake -S " + folder + " -B " + folder + "/build && cmake --build " + folder + "/build && " +
+           folder + "/build/replay_ticks\n  cmake -S " + folder + " -B " + folder +
+           "/build-arm -DCMAKE_TOOLCHAIN_FILE=cmake/cortex-m.cmake -DDFDYN_CORE=" + options.sizes.target +
+           " && cmake --build " + folder + "/build-arm --target run\n  dfdyn replay --model " + folder +
+           "/model.json --log another.csv --report another.html\n";
+}
+
+int run(StartOptions options) {
+    require_new_folder(options.folder);
+    options.sizes.flash_bytes = options.sizes.flash_bytes.value_or(512 * 1024);
+    options.sizes.ram_bytes = options.sizes.ram_bytes.value_or(256 * 1024);
+    say("the recording");
+    const Arm arm = read_arm(options);
+    print_overview(std::cout, arm.recordings);
+    if (!options.setup.accept(arm.recordings, {arm.outputs, arm.robot_or_null()})) {
+        return 1;
+    }
+    std::cout << "the set-up shows no mistake\n";
+    const SplitRecordings split = split_recordings(arm.recordings, training_share);
+    FolderContent files;
+    std::vector<Candidate> candidates;
+    if (arm.robot) {
+        diagnose_robot(arm, split, options, files, candidates);
+    }
+    candidates.push_back(train_network(arm, split, options));
+    TrainedModel model = choose(candidates, split, options.sizes.budget()).model;
+    describe_training(model, arm, options);
+    replay_held_out(model, split, files);
+    files.merge(project_files(model, split.judging.front()));
+    files["model.json"] = model_to_json(model);
+    files["README.txt"] =
+        "Written by dfdyn start. Next, in the folder above this one:\n" + next_steps(options);
+    write_folder(options.folder, files);
+    say("result");
+    print_footprint(std::cout, model, find_target(options.sizes.target));
+    std::cout << options.folder.string() << " has report.html, model.json"
+              << (arm.robot ? ", diagnosis.html" : "")
+              << ", include/robot_model.hpp and a CMake project. Next:\n"
+              << next_steps(options);
+    return 0;
+}
+
+} // namespace start_command
+
+void add_start_command(CLI::App& app, Command& chosen) {
+    const auto options = std::make_shared<start_command::StartOptions>();
+    CLI::App* command = app.add_subcommand(
+        "start",
+        "From a recording to a controller: checks, diagnoses, trains what fits, replays, writes a project");
+    options->recordings.add_to(*command);
+    options->robot.add_to(*command, false);
+    command
+        ->add_option("--outputs", options->outputs,
+                     "What to predict: tau (torques), i (motor currents), wrench; default: the first of them "
+                     "that the recording has")
+        ->type_name("tau|i|wrench");
+    command->add_option("-o,--output", options->folder, "New folder for the results")
+        ->required()
+        ->type_name("DIR");
+    command->add_flag("--quick", options->quick, "A first look: one short search for the hyperparameters");
+    options->sizes.add_to(*command);
+    options->setup.add_to(*command);
+    command->footer(
+        "Example:\n  dfdyn start --log run.csv -o controller\n"
+        "  dfdyn start --log run.csv --robot arm.urdf --tip tool0 --flash 512K --ram 256K -o controller\n"
+        "Without --flash and --ram: 512K and 256K. The folder appears at the end, as a whole.\n"
+        "Exit status: 0 done, 1 a mistake in the set-up of a recording (nothing is written), 2 bad usage or "
+        "input.");
+    command->callback([options, &chosen] { chosen = [options] { return start_command::run(*options); }; });
+}
+
+} // namespace dfdyn::tools
