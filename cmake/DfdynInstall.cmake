@@ -17,6 +17,19 @@ if(DFDYN_BUILD_TOOLS)
     install(TARGETS dfdyn)
 endif()
 
+# For other build systems: pkg-config dfdyn (headers), dfdyn-hal (with the backend for Linux). The files can be moved with the prefix.
+set(dfdyn_pc_dir "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+file(RELATIVE_PATH dfdyn_prefix_from_pc "/prefix/${dfdyn_pc_dir}" "/prefix")
+string(REGEX REPLACE "/$" "" dfdyn_prefix_from_pc "${dfdyn_prefix_from_pc}")
+foreach(dfdyn_pc_name IN ITEMS dfdyn dfdyn-hal)
+    set(dfdyn_pc_libs "")
+    if(dfdyn_pc_name STREQUAL "dfdyn-hal" AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
+        set(dfdyn_pc_libs "-L\${libdir} -ldfdyn_hal")
+    endif()
+    configure_file("${CMAKE_CURRENT_LIST_DIR}/dfdyn.pc.in" "${CMAKE_CURRENT_BINARY_DIR}/${dfdyn_pc_name}.pc" @ONLY)
+    install(FILES "${CMAKE_CURRENT_BINARY_DIR}/${dfdyn_pc_name}.pc" DESTINATION "${dfdyn_pc_dir}")
+endforeach()
+
 configure_package_config_file(
     "${CMAKE_CURRENT_LIST_DIR}/dfdynConfig.cmake.in" "${CMAKE_CURRENT_BINARY_DIR}/dfdynConfig.cmake"
     INSTALL_DESTINATION "${dfdyn_package_dir}"
