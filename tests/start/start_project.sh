@@ -30,6 +30,7 @@ grep -q 'controller: expected a new or empty folder, found files in it' refused.
 
 if [[ $core == host ]]; then
     test -s controller/diagnosis.html
+    "$dfdyn" footprint --model controller/model.json | grep -q '^smaller models'
     cmake -S controller -B controller/build >/dev/null
     cmake --build controller/build >/dev/null
     controller/build/replay_ticks | tee result.txt

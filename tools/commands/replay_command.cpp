@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/base/bag/bag.hpp"
 #include "tools/base/system/atomic_file.hpp"
 #include "tools/base/system/progress.hpp"
 #include "tools/base/text/error.hpp"
@@ -123,8 +124,10 @@ std::vector<ReplayedRecording> replay_all(const ReplayOptions& options, std::spa
     const TrainingRecord& trained = models.front().training;
     columns.joint_names = trained.joint_names;
     RecordingOptions recordings = options.recordings;
-    recordings.columns = recordings.columns.empty() ? trained.columns : recordings.columns;
-    recordings.units = recordings.units.empty() ? trained.units : recordings.units;
+    if (std::ranges::none_of(recordings.logs, is_bag)) { // a bag has columns and units of its own
+        recordings.columns = recordings.columns.empty() ? trained.columns : recordings.columns;
+        recordings.units = recordings.units.empty() ? trained.units : recordings.units;
+    }
     std::vector<ReplayedRecording> replayed;
     for (const Recording& recording : recordings.read(columns)) {
         Progress progress("replaying " + recording.source, recording.row_count());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/base/recording/header.hpp"
+#include "tools/base/recording/csv/header.hpp"
 
-#include "tools/base/recording/csv_line.hpp"
+#include "tools/base/recording/csv/csv_line.hpp"
 #include "tools/base/text/nearest_name.hpp"
 #include "tools/base/text/text.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/bag/bag.hpp"
-#include "tools/base/recording/csv_line.hpp"
-#include "tools/base/recording/header.hpp"
+#include "tools/base/recording/csv/csv_line.hpp"
+#include "tools/base/recording/csv/header.hpp"
 #include "tools/base/recording/read_bag.hpp"
 #include "tools/base/recording/recording.hpp"
 #include "tools/base/system/line_reader.hpp"

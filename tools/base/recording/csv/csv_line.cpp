@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/base/recording/csv_line.hpp"
+#include "tools/base/recording/csv/csv_line.hpp"
 
 #include "tools/base/text/text.hpp"
 
