@@ -19,6 +19,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr double most_torque_constant = 500; ///< N·m/A at a joint, behind its gear
+
 /// Returns the magnitude of the factor between an output and the rigid body's; empty if the rigid body
 /// explains too little.
 std::optional<double> size_of(const ArmRecording& arm, const RigidParts& parts, Index k) {
@@ -52,6 +54,14 @@ std::string unit_text(const ArmRecording& arm, double factor) {
            "; convert it";
 }
 
+std::string heavy_text(const ArmRecording& arm, double factor) {
+    return "columns " + listed(arm.recording.output.names) +
+           ": expected outputs of the robot's model, found " + rounded_text(factor) +
+           (arm.gains_known ? " times those" : " A per N·m of the model") +
+           " with the same course: the robot's masses look like grams; divide the masses and inertias in its "
+           "file by 1000";
+}
+
 } // namespace
 
 SetupFindings check_output_size(const ArmRecording& arm) {
@@ -68,15 +78,19 @@ SetupFindings check_output_size(const ArmRecording& arm) {
     const auto [least, largest] = std::ranges::minmax(sizes);
     const bool several = sizes.size() > 1 && largest < 10 * least && !arm.wrench();
     const double factor = median(std::move(sizes));
-    const bool mistake = arm.gains_known
-                             ? factor > (several ? 50.0 : 300.0) || factor < 1 / (several ? 50.0 : 300.0)
-                             : factor > (several ? 50.0 : 200.0);
-    if (!mistake) {
+    const double too_large = arm.gains_known ? (several ? 50.0 : 300.0) : (several ? 50.0 : 200.0);
+    const double too_small = 1 / (arm.gains_known ? too_large : most_torque_constant);
+    if (factor < too_large && factor > too_small) {
         return {};
     }
-    const bool certain = several || arm.wrench() || arm.counted() == 1; // a payload can dominate one joint
-    return {{SetupFault::output_unit, certain ? Severity::mistake : Severity::warning,
-             listed(arm.recording.output.names), unit_text(arm, factor)}};
+    // a payload can dominate one joint, but makes no output smaller
+    const bool certain = several || arm.wrench() || arm.counted() == 1 || factor < too_small;
+    const Severity severity = certain ? Severity::mistake : Severity::warning;
+    const std::string columns = listed(arm.recording.output.names);
+    if (factor < too_small && !arm.wrench()) {
+        return {{SetupFault::wrong_robot, severity, columns, heavy_text(arm, factor)}};
+    }
+    return {{SetupFault::output_unit, severity, columns, unit_text(arm, factor)}};
 }
 
 } // namespace dfdyn::tools

@@ -6,18 +6,18 @@
 
 namespace dfdyn::tools {
 
-/// Compares the columns with alternative interpretations, and returns the one that explains all outputs best
-/// if it is much better. Each output is fitted by least squares with gravity, inertia and friction of its
-/// joint, with nonnegative factors. The alternatives are:
+/// Compares the set-up with alternatives by their likelihood, and returns the best alternative if it is much
+/// more likely. Each output is fitted by least squares with gravity, a payload of at most 35 % of the arm's
+/// mass, inertia and friction of its joint, all with nonnegative factors. The alternatives are:
+/// - all outputs, one output, or the position of a joint with the opposite sign;
 /// - two outputs, or the positions of two joints, exchanged;
-/// - outputs, or the position of a joint, with the wrong sign, if friction confirms it;
-/// - gravity upside down, if two outputs or more show it and none the opposite;
+/// - gravity upside down;
 /// - positions in degrees.
 ///
-/// A mistake requires that less than half of the residual of each affected output remains, which must be
-/// above 30 % on average before. Warnings: an exchange with less than 60 % remaining, and a sign that only
-/// gravity shows. Cost: n^2 / 2 times 2,000 rigid-body regressors if some output is not explained, otherwise
-/// 2,000.
+/// The criterion is the sum over the outputs of the logarithm of the variance left by the set-up over the
+/// variance left by the alternative: 0.8 and more is a mistake, 0.5 a warning. An exchange is never a mistake
+/// for a wrench, nor is gravity for an arm of one joint. Cost: 3 n^2 / 2 times 1,000 rigid-body regressors if
+/// some output is not explained, otherwise 2,000.
 SetupFindings check_readings(const ArmRecording& arm);
 
 } // namespace dfdyn::tools

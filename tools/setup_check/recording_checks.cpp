@@ -92,18 +92,6 @@ std::vector<std::size_t> jumps(const Recording& recording, std::size_t joint, do
     return rows;
 }
 
-bool constant(const Columns& columns, std::size_t index) { return !(travel(columns, index) > 0); }
-
-/// Returns whether the links that joint `joint` moves have any inertia in the robot's file; true without a
-/// robot.
-bool moves_mass(const Robot* robot, std::size_t joint) {
-    if (robot == nullptr || joint >= robot->joints.size()) {
-        return true;
-    }
-    return std::any_of(robot->joints.begin() + static_cast<std::ptrdiff_t>(joint), robot->joints.end(),
-                       [](const RobotJoint& one) { return !one.inertia.isZero(0); });
-}
-
 std::string names_of(const Columns& columns, const std::vector<std::size_t>& indices) {
     std::vector<std::string> names;
     for (const std::size_t index : indices) {
@@ -213,36 +201,6 @@ SetupFindings check_wrapping(const Recording& recording) {
                 break;
             }
         }
-    }
-    return findings;
-}
-
-SetupFindings check_dead_outputs(const Recording& recording, OutputKind outputs, const Robot* robot) {
-    constexpr std::size_t fewest_rows = 20;
-    constexpr double least_travel = 0.1; // rad (m)
-    SetupFindings findings;
-    if (recording.row_count() < fewest_rows || !(largest_travel(recording) > least_travel)) {
-        return findings;
-    }
-    const Columns& columns = recording.output;
-    std::vector<std::size_t> dead;
-    for (std::size_t output = 0; output < columns.names.size(); ++output) {
-        if (constant(columns, output)) {
-            dead.push_back(output);
-        }
-    }
-    for (const std::size_t output : dead) {
-        const bool wrench = outputs == OutputKind::wrench;
-        if (!wrench && !moves_mass(robot, output)) {
-            continue;
-        }
-        const bool certain = !wrench && dead.size() < columns.names.size() &&
-                             travel(recording.position, output) > least_travel;
-        findings.push_back({SetupFault::dead_output, certain ? Severity::mistake : Severity::warning,
-                            columns.names[output],
-                            "column " + columns.names[output] + ": expected values that vary, found " +
-                                number_text(value(columns, 0, output)) +
-                                " in every row: a dead channel; check its sensor and its name"});
     }
     return findings;
 }

@@ -16,12 +16,6 @@ SetupFindings check_clock(const Recording& recording);
 /// joint moves less than a tenth of a turn before and after. Cost: O(rows).
 SetupFindings check_wrapping(const Recording& recording);
 
-/// Detects outputs with one value in every row while the arm moves by 0.1 rad (m). A mistake if the output's
-/// own joint moves that far and other outputs vary. Otherwise a warning, because all motors may be off, and
-/// an axis of a wrench may have no load. Joints that move no mass are ignored (`robot` may be null). Cost:
-/// O(rows).
-SetupFindings check_dead_outputs(const Recording& recording, OutputKind outputs, const Robot* robot);
-
 /// Detects implausible outputs: more than 1000 A, or whole numbers above 200 (a warning), indicate mA; more
 /// than 20,000 N·m indicates mN·m. The 99.9 % quantile of the magnitudes is used. Cost: O(rows).
 SetupFindings check_output_unit(const Recording& recording, OutputKind outputs);

@@ -95,14 +95,55 @@ std::optional<RecordedMotion> checked_motion(const Recording& recording) {
                           recorded.outputs(kept, Eigen::all)};
 }
 
+namespace {
+
+/// 35 % of the arm's mass; for a light arm 6 kg, but not more than its own mass.
+double heaviest_payload(const Robot& robot) {
+    constexpr double share = 0.35;
+    constexpr double of_light_arm_kg = 6;
+    double mass = 0;
+    for (const RobotJoint& joint : robot.joints) {
+        mass += joint.inertia[0];
+    }
+    return std::max(share * mass, std::min(of_light_arm_kg, mass));
+}
+
+/// `regressor`: of the last link's mass and first moments at standstill, stacked, 4 columns.
+std::vector<MatrixXd> loaded_gravity(const Robot& robot, const MatrixXd& gravity, const MatrixXd& regressor) {
+    constexpr double reach = 0.15; // m, along each axis of the last link
+    const double mass = heaviest_payload(robot);
+    std::vector<MatrixXd> result;
+    for (const double x : {-reach, reach}) {
+        for (const double y : {-reach, reach}) {
+            for (const double z : {-reach, reach}) {
+                const Eigen::Vector3d centre = robot.tip_placement.translation() + Eigen::Vector3d(x, y, z);
+                const VectorXd torque = mass * (regressor.col(0) + regressor.rightCols<3>() * centre).eval();
+                result.push_back(gravity + unstacked(torque, gravity.cols()));
+            }
+        }
+    }
+    return result;
+}
+
+} // namespace
+
 RigidParts rigid_parts(const Robot& robot, OutputKind kind, const RobotMotion& motion) {
     RobotMotion stationary = motion;
     stationary.velocity.setZero();
     stationary.acceleration.setZero();
-    const MatrixXd gravity = outputs_of(robot, kind, stationary);
+    const MatrixXd regressor = stacked_regressor(robot, kind, stationary);
+    const VectorXd stacked = regressor * nominal_parameters(robot, kind);
+    const MatrixXd gravity = unstacked(stacked, stacked.size() / motion.rows());
     const MatrixXd inertia = outputs_of(robot, kind, motion) - gravity;
     const double largest = std::max(gravity.cwiseAbs().maxCoeff(), inertia.cwiseAbs().maxCoeff());
-    return {without_rounding(gravity, largest), without_rounding(inertia, largest)};
+    RigidParts parts{without_rounding(gravity, largest), without_rounding(inertia, largest), {}};
+    if (kind != OutputKind::wrench) {
+        parts.loaded_gravity = loaded_gravity(robot, parts.gravity, regressor.rightCols<10>().leftCols<4>());
+        for (MatrixXd& loaded : parts.loaded_gravity) {
+            loaded = without_rounding(loaded, largest);
+        }
+    }
+    return parts;
 }
 
 VectorXd friction_direction(const VectorXd& velocity) {
@@ -131,10 +172,6 @@ bool swings(const RobotMotion& motion, Index joint, int turns) {
     return position.maxCoeff() - position.minCoeff() >= least_travel && found >= turns;
 }
 
-namespace {
-
-/// Columns of positions, of their sines and cosines, of those of sums of two and three neighbours, and of
-/// accelerations.
 MatrixXd smooth_columns(const RobotMotion& motion) {
     const Index joints = motion.position.cols();
     std::vector<VectorXd> columns;
@@ -154,6 +191,8 @@ MatrixXd smooth_columns(const RobotMotion& motion) {
     }
     return result;
 }
+
+namespace {
 
 /// Returns whether all but one of the parts with visible friction, at least five, have this sign.
 bool parts_agree(const VectorXd& output, const VectorXd& direction, double sign) {
@@ -202,18 +241,11 @@ MatrixXd expected_columns(const ArmRecording& arm, const RobotMotion& motion, co
     if (arm.wrench()) {
         return parts.sum(k);
     }
-    MatrixXd columns(motion.rows(), 4);
-    columns << parts.gravity.col(k), parts.inertia.col(k), friction_columns(motion, k);
-    return columns;
-}
-
-MatrixXd payload_columns(const ArmRecording& arm, const RobotMotion& motion, Index k) {
-    const MatrixXd regressor = stacked_regressor(arm.robot, arm.kind, motion);
-    const Index outputs = regressor.rows() / motion.rows();
-    const MatrixXd last = regressor.rightCols<10>().leftCols<4>();
-    MatrixXd columns(motion.rows(), 4);
-    for (Index row = 0; row < motion.rows(); ++row) {
-        columns.row(row) = last.row(row * outputs + k);
+    const auto loads = std::ssize(parts.loaded_gravity);
+    MatrixXd columns(motion.rows(), 4 + loads);
+    columns.leftCols<4>() << parts.gravity.col(k), parts.inertia.col(k), friction_columns(motion, k);
+    for (Index load = 0; load < loads; ++load) {
+        columns.col(4 + load) = parts.loaded_gravity[static_cast<std::size_t>(load)].col(k);
     }
     return columns;
 }

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <optional>
+#include <vector>
 
 namespace dfdyn::tools {
 
@@ -36,6 +37,9 @@ struct ArmRecording {
 struct RigidParts {
     Eigen::MatrixXd gravity; ///< torque at standstill at each position
     Eigen::MatrixXd inertia; ///< additional torque of the motion
+    /// Gravity with the heaviest plausible payload at each corner of a cube of 0.3 m
+    /// around the tip: 8 matrices, none for a wrench.
+    std::vector<Eigen::MatrixXd> loaded_gravity;
 
     Eigen::VectorXd sum(Eigen::Index k) const { return gravity.col(k) + inertia.col(k); }
 };
@@ -50,6 +54,10 @@ Eigen::MatrixXd friction_columns(const RobotMotion& motion, Eigen::Index joint);
 /// rad/s).
 Eigen::VectorXd friction_direction(const Eigen::VectorXd& velocity);
 
+/// Smooth functions of the motion: each position, its sine and cosine, those of sums of two and three
+/// neighbours, and the accelerations, T x (at most 8 n).
+Eigen::MatrixXd smooth_columns(const RobotMotion& motion);
+
 /// Returns whether a joint moves by at least 0.1 rad (m) and reverses at least `turns` times, from a tenth of
 /// its largest speed to the opposite.
 bool swings(const RobotMotion& motion, Eigen::Index joint, int turns);
@@ -57,8 +65,8 @@ bool swings(const RobotMotion& motion, Eigen::Index joint, int turns);
 /// Number of a joint's reversals after which its friction is reliable evidence.
 inline constexpr int certain_turns = 4;
 
-/// Returns the columns whose sum with nonnegative factors should be output `k`: the rigid body's (for a
-/// joint's output, gravity and inertia separately), and its friction.
+/// Returns the columns whose sum with nonnegative factors should be output `k`: the rigid body's for a
+/// wrench; for a joint's output gravity, without and with payloads, inertia and friction.
 Eigen::MatrixXd expected_columns(const ArmRecording& arm, const RobotMotion& motion, const RigidParts& parts,
                                  Eigen::Index k);
 
@@ -71,9 +79,6 @@ enum class FrictionSign { unclear, brakes, drives };
 /// variance, and all but one of eight parts of the recording with visible friction, at least five, agree.
 /// Cost: T (7 n)^2.
 FrictionSign friction_sign(const RecordedMotion& recorded, Eigen::Index joint);
-
-/// Returns the columns of output `k` for a point mass fixed to the last link: mass and first moments, T x 4.
-Eigen::MatrixXd payload_columns(const ArmRecording& arm, const RobotMotion& motion, Eigen::Index k);
 
 /// Returns the share of an output's variance that remains after a fit with nonnegative factors and an offset.
 double left_by(const Eigen::VectorXd& output, const Eigen::MatrixXd& columns);

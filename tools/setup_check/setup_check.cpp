@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/setup_check/setup_check.hpp"
 
+#include "tools/setup_check/channel_checks.hpp"
 #include "tools/setup_check/motion_checks.hpp"
 #include "tools/setup_check/output_size.hpp"
 #include "tools/setup_check/readings.hpp"
 #include "tools/setup_check/recording_checks.hpp"
 #include "tools/setup_check/rigid_comparison.hpp"
+#include "tools/setup_check/robot_match.hpp"
 
 #include <Eigen/Core>
 
@@ -37,6 +39,9 @@ SetupFindings check_by_robot(const Recording& recording, const SetupQuestion& qu
     if (findings.empty()) {
         append(findings, check_readings(arm));
     }
+    if (findings.empty()) {
+        append(findings, check_robot_match(arm));
+    }
     return findings;
 }
 
@@ -57,6 +62,11 @@ SetupFindings check_setup(const Recording& recording, const SetupQuestion& quest
     append(findings, check_position_unit(recording, question.robot));
     append(findings, check_dead_outputs(recording, question.outputs, question.robot));
     append(findings, check_output_unit(recording, question.outputs));
+    append(findings, check_saturated_outputs(recording, question.outputs));
+    append(findings, check_quantised_positions(recording));
+    if (!any_mistake(findings)) {
+        append(findings, check_stamps(recording));
+    }
     if (any_mistake(findings)) {
         return findings;
     }

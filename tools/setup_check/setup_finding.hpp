@@ -13,10 +13,14 @@ enum class SetupFault {
     time_unit,
     position_unit,
     wrapped_position,
+    quantised_position,
     dead_output,
+    saturated_output,
     output_unit,
+    clock,
     joint_order,
     torque_sign,
+    wrong_robot,
     gravity,
 };
 
@@ -29,14 +33,22 @@ constexpr std::string_view name_of(SetupFault fault) {
         return "position_unit";
     case SetupFault::wrapped_position:
         return "wrapped_position";
+    case SetupFault::quantised_position:
+        return "quantised_position";
     case SetupFault::dead_output:
         return "dead_output";
+    case SetupFault::saturated_output:
+        return "saturated_output";
     case SetupFault::output_unit:
         return "output_unit";
+    case SetupFault::clock:
+        return "clock";
     case SetupFault::joint_order:
         return "joint_order";
     case SetupFault::torque_sign:
         return "torque_sign";
+    case SetupFault::wrong_robot:
+        return "wrong_robot";
     case SetupFault::gravity:
         break;
     }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/setup_check/channel_checks.hpp"
 #include "tools/setup_check/recording_checks.hpp"
 
 #include "tests/support/catch.hpp"
@@ -122,7 +123,8 @@ TEST_CASE("a constant output is a dead channel if its joint moves and other outp
     REQUIRE(all_off.size() == 2); // the motors have no power
     CHECK_FALSE(any_mistake(all_off));
     dead.output.values[1] = 0.26;
-    CHECK(check_dead_outputs(dead, OutputKind::joint_torque, nullptr).empty());
+    check_single(check_dead_outputs(dead, OutputKind::joint_torque, nullptr), Severity::mistake,
+                 "column tau2: expected values that vary, found 0.25 in every row from t");
 }
 
 TEST_CASE("a joint that moves no mass has no dead output") {

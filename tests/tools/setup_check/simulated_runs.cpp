@@ -78,6 +78,15 @@ void add_noise(MatrixXd& values, const VectorXd& deviation, std::mt19937_64& eng
     }
 }
 
+/// 6 kg, or the arm's own mass if it is lighter.
+double heaviest_payload(const Robot& robot) {
+    double mass = 0;
+    for (const tools::RobotJoint& joint : robot.joints) {
+        mass += joint.inertia[0];
+    }
+    return std::min(6.0, mass);
+}
+
 VectorXd deviations(const MatrixXd& values) {
     const MatrixXd centred = values.rowwise() - values.colwise().mean();
     return centred.colwise().norm().transpose() / std::sqrt(static_cast<double>(values.rows()));
@@ -140,7 +149,7 @@ RunKind random_kind(const Robot& robot, OutputKind outputs, std::mt19937_64& eng
     kind.speed = 0.05 * std::pow(60, uniform(engine, 0, 1));
     kind.rate_hz = 40 * std::pow(25, uniform(engine, 0, 1));
     kind.duration_s = uniform(engine, 8, 40);
-    kind.payload_kg = chance(engine, 0.5) ? uniform(engine, 0, 6) : 0;
+    kind.payload_kg = chance(engine, 0.5) ? uniform(engine, 0, heaviest_payload(robot)) : 0;
     kind.friction = chance(engine, 0.5) ? uniform(engine, 0, 1) : 0;
     kind.noise = chance(engine, 0.5) ? uniform(engine, 0, 0.3) : 0;
     kind.position_noise = chance(engine, 0.5) ? 0 : 1e-4 * uniform(engine, 0, 1);

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/setup_check/robot_match.hpp"
+
+#include "tools/base/text/number.hpp"
+#include "tools/base/text/text.hpp"
+#include "tools/setup_check/signed_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace dfdyn::tools {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+VectorXd deviations(const MatrixXd& columns) {
+    return (columns.rowwise() - columns.colwise().mean()).colwise().norm();
+}
+
+} // namespace
+
+SetupFindings check_robot_match(const ArmRecording& arm) {
+    constexpr double carries = 0.1; // of the largest deviation of gravity
+    constexpr double least_share = 0.01;
+    constexpr double far_better = 1.2;
+    constexpr double much = 0.06;
+    constexpr int turns = 2;
+    const RobotMotion& motion = arm.recorded.motion;
+    if (arm.wrench()) {
+        return {};
+    }
+    const RigidParts parts = rigid_parts(arm.robot, arm.kind, motion);
+    const VectorXd weight = deviations(parts.gravity);
+    const MatrixXd smooth = smooth_columns(motion);
+    std::vector<std::string> columns;
+    double ratio = 0;
+    double left = 0;
+    for (Index k = 0; k < arm.counted(); ++k) {
+        if (!(weight[k] > carries * weight.maxCoeff()) || !swings(motion, k, turns)) {
+            continue;
+        }
+        const double by_robot = left_by(arm.output(k), expected_columns(arm, motion, parts, k));
+        const double by_any = fit_signed(arm.output(k), smooth, friction_columns(motion, k)).left;
+        ratio += std::log(std::max(by_robot, least_share) / std::max(by_any, least_share));
+        left += by_robot;
+        columns.push_back(arm.recording.output.names[static_cast<std::size_t>(k)]);
+    }
+    const auto count = static_cast<double>(columns.size());
+    if (columns.empty() || ratio < far_better * count || left < much * count) {
+        return {};
+    }
+    return {{SetupFault::wrong_robot, Severity::mistake, listed(columns),
+             "columns " + listed(columns) +
+                 ": expected the outputs of the robot's model, found that it leaves " +
+                 percent(left / count) +
+                 " of their variance, any payload included, and smooth functions of the motion " +
+                 percent(left / count * std::exp(-ratio / count)) +
+                 ": another robot, tip, base, mounting or zeros of joints; give the file of this robot "
+                 "(--robot)"}};
+}
+
+} // namespace dfdyn::tools
