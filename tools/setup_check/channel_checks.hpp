@@ -25,7 +25,7 @@ SetupFindings check_quantised_positions(const Recording& recording);
 
 /// Detects time stamps that deviate from the instants of the samples by 15 % of a step and more (rms),
 /// as rounded ones do. While two joints or more move, the deviation from a smooth course is then the velocity
-/// times one common time. Cost: O(rows).
+/// times one common time. Rows 25 ms apart and more are not checked. Cost: O(rows).
 SetupFindings check_stamps(const Recording& recording);
 
 } // namespace dfdyn::tools

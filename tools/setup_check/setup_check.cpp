@@ -63,7 +63,6 @@ SetupFindings check_setup(const Recording& recording, const SetupQuestion& quest
     append(findings, check_dead_outputs(recording, question.outputs, question.robot));
     append(findings, check_output_unit(recording, question.outputs));
     append(findings, check_saturated_outputs(recording, question.outputs));
-    append(findings, check_quantised_positions(recording));
     if (!any_mistake(findings)) {
         append(findings, check_stamps(recording));
     }
@@ -75,6 +74,9 @@ SetupFindings check_setup(const Recording& recording, const SetupQuestion& quest
         return findings;
     }
     append(findings, check_degrees_by_gravity(recording, *recorded));
+    if (!any_mistake(findings)) {
+        append(findings, check_quantised_positions(recording));
+    }
     if (!any_mistake(findings) && robot_fits(recording, question)) {
         append(findings, check_by_robot(recording, question, *recorded));
     }
