@@ -4,9 +4,11 @@
 #include "tests/support/temporary_directory.hpp"
 #include "tests/tools/support/small_model.hpp"
 #include "tools/model/file/model_file.hpp"
+#include "tools/model/header/header_text.hpp"
 #include "tools/model/header/model_header.hpp"
 #include "tools/model/inputs/input_description.hpp"
 #include "tools/model/run_time/host_estimator.hpp"
+#include "tools/model/run_time/host_model.hpp"
 
 #include <array>
 #include <cmath>
@@ -147,6 +149,17 @@ TEST_CASE("the header contains the extrapolation data of the model file") {
     with_physics.extrapolation->output_variance = {3, 4};
     CHECK(run_host(with_physics) != once);
     check_header(with_physics);
+}
+
+TEST_CASE("the header has the amplitude of the features to the last bit") {
+    DFDYN_SEEDED_ENGINE(engine);
+    std::normal_distribution<double> normal;
+    TrainedModel model = small_model(engine, InputKind::DF);
+    model.features.count = 7; // 1 / sqrt(7) is rounded differently in single and in double precision
+    model.features.omega = dfdyn::tests::numbers(engine, 7 * 2 * 5, normal);
+    const auto host = make_host_constants<HostNonparametric>(model, false);
+    CHECK(model_to_header(model, "m").find(".amplitude = " + literal(host->constants.features.amplitude)) !=
+          std::string::npos);
 }
 
 TEST_CASE("hostile names do not escape from their comment") {

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/model/header/model_header.hpp"
 
-#include "tools/model/file/model_file.hpp"
 #include "tools/model/header/header_text.hpp"
 #include "tools/model/header/physics_header.hpp"
 #include "tools/model/run_time/host_model.hpp"
 #include "tools/model/structure.hpp"
 
-#include <array>
 #include <cctype>
-#include <charconv>
-#include <cmath>
-#include <span>
 #include <sstream>
 #include <string_view>
 
@@ -28,21 +23,13 @@ std::string comment(std::string_view text) {
     return result;
 }
 
-std::string arm_type(const TrainedModel& model) {
-    const std::string joints = std::to_string(model.joints);
-    if (!model.physics) {
-        return type("Joints", {joints, std::to_string(model.outputs.names.size())});
-    }
-    return type("Chain",
-                {joints, model.physics->chain.sensor
-                             ? type("WrenchAtSensor", {std::to_string(body_count(model.physics->chain))})
-                             : "dfdyn::JointTorques"});
-}
-
 std::string learned_type(const Structure& structure) { return type(structure.firmware_type, {"Physics"}); }
 
 std::string model_type(const TrainedModel& model) {
-    const std::string arm = arm_type(model);
+    const std::string arm =
+        model.physics
+            ? arm_type(model.physics->chain)
+            : type("Joints", {std::to_string(model.joints), std::to_string(model.outputs.names.size())});
     const Structure& structure = structure_of(model);
     if (!structure.features) {
         return type("Model", {"float", arm, "dfdyn::NoInput", "dfdyn::NoFeatures", learned_type(structure)});
@@ -55,77 +42,96 @@ std::string model_type(const TrainedModel& model) {
     return type("Model", parts);
 }
 
-std::string feature_constants(const TrainedModel& model) {
-    return "{.frequencies = " +
-           braced(firmware_frequencies(model.features, model.joints * model.input.rows_per_joint)) +
-           ",\n        .amplitude = " + literal(1 / std::sqrt(static_cast<double>(model.features.count))) +
-           "}";
-}
-
-/// Returns the definition of a constant with the initial state of a learner with `outputs` outputs.
-std::string start_constant(const char* name, const StartModel& start, const std::vector<double>& weights,
-                           std::size_t outputs) {
+/// Returns the definition of a constant with the initial state of a learner.
+template <int m>
+std::string start_constant(const char* name, const LearnerStart<float, dynamic, m>& start) {
+    const int columns = start.diagonal.size();
     return "inline constexpr " +
-           type("LearnerStart", {"float", std::to_string(start.diagonal.size()), std::to_string(outputs)}) +
-           " " + name + "{\n    .weights = " + braced(weights) +
-           ",\n    .unit_upper = " + braced(start.unit_upper) +
-           ",\n    .diagonal = " + braced(start.diagonal) + "};\n\n";
+           type("LearnerStart",
+                {"float", std::to_string(columns), std::to_string(start.weights.size() / columns)}) +
+           " " + name + "{\n    .weights = " + literal(start.weights) +
+           ",\n    .unit_upper = " + literal(start.unit_upper) +
+           ",\n    .diagonal = " + literal(start.diagonal) + "};\n\n";
 }
 
-std::string starts(const TrainedModel& model) {
-    std::string result;
-    if (structure_of(model).features) {
-        const std::vector<double> weights = firmware_weights(model);
-        result += start_constant("start", model.start, weights, weights.size() / model.start.diagonal.size());
+std::string learner(const auto& constants, const char* start) {
+    return "{.prior_variance = " + literal(constants.prior_variance) +
+           ", .forgetting_factor = " + literal(constants.forgetting_factor) + ", .start = &" + start + "}";
+}
+
+/// Returns the constants of the learner, or of both learners, of a structure.
+template <class Model>
+std::string learner_constants(const typename Model::StructureConstants& constants) {
+    if constexpr (requires { constants.common; }) {
+        return "{.features = " + learner(constants.features, "start") +
+               ", .common = " + learner(constants.common, "parameter_start") + "}";
+    } else if constexpr (requires { constants.residual; }) {
+        return "{.parameters_of_mean = " + literal(constants.parameters_of_mean) +
+               ",\n        .residual = " + learner(constants.residual, "start") + "}";
+    } else {
+        return learner(constants, Model::columns == 0 ? "parameter_start" : "start");
     }
-    if (structure_of(model).learns_parameters()) {
-        const StartModel& start = model.physics->start;
-        result += start_constant("parameter_start", start, start.weights, 1);
+}
+
+template <class Features>
+std::string feature_constants(const Features& features) {
+    if constexpr (std::is_empty_v<Features>) {
+        return "{}";
+    } else {
+        return "{.frequencies = " + literal(features.frequencies) +
+               ",\n        .amplitude = " + literal(features.amplitude) + "}";
     }
-    return result;
 }
 
-std::string learner(double prior_variance, double forgetting_factor, const char* start) {
-    return "{.prior_variance = " + literal(prior_variance) +
-           ", .forgetting_factor = " + literal(forgetting_factor) + ", .start = &" + start + "}";
-}
-
-std::string learner_constants(const TrainedModel& model) {
-    const auto features = [&] {
-        return learner(model.outputs.prior_variance, model.forgetting_factor, "start");
-    };
-    if (!model.physics) {
-        return features();
-    }
-    if (model.physics->prior_variance <= 0) {
-        return "{.parameters_of_mean = " + braced(model.physics->start.weights) +
-               ",\n        .residual = " + features() + "}";
-    }
-    const std::string parameters =
-        learner(model.physics->prior_variance, model.forgetting_factor, "parameter_start");
-    return !structure_of(model).features ? parameters
-                                         : "{.features = " + features() + ", .common = " + parameters + "}";
-}
-
-/// Returns the initializer of the prediction limits; empty if the model has none.
-std::string prediction_limit(const LimitModel& limits) {
-    return limits.prediction.empty() ? "" : ",\n    .prediction_limit = " + braced(limits.prediction);
-}
-
-std::string extrapolation_constants(const TrainedModel& model) {
+/// Returns the initializers of the members that a model may lack.
+template <class Constants>
+std::string extrapolation_constants(const TrainedModel& model, const Constants& constants) {
     if (!model.extrapolation) {
         return "";
     }
-    const ExtrapolationModel& known = *model.extrapolation;
+    const auto& known = constants.extrapolation;
     std::string text =
         ",\n    .extrapolation = {.inverse_far_variance = " + literal(known.inverse_far_variance) +
-        ",\n        .extra_noise = " + braced(known.extra_noise) +
-        ",\n        .prior_variance = " + braced(known.prior_variance);
-    if (!known.output_variance.empty()) {
+        ",\n        .extra_noise = " + literal(known.extra_noise) +
+        ",\n        .prior_variance = " + literal(known.prior_variance);
+    if (!model.extrapolation->output_variance.empty()) {
         text += ",\n        .parameter_variance_factor = " + literal(known.parameter_variance_factor) +
-                ",\n        .output_variance = " + braced(known.output_variance);
+                ",\n        .output_variance = " + literal(known.output_variance);
     }
     return text + "}";
+}
+
+/// Prints the constants of the run-time model, so that the firmware gets the numbers that the program uses.
+template <class Model>
+std::string constants_text(const TrainedModel& model) {
+    const auto host = make_host_constants<Model>(model, false);
+    const typename Model::Constants& constants = host->constants;
+    std::string text;
+    if (Model::columns != 0) {
+        text += start_constant("start", host->features);
+    }
+    if (structure_of(model).learns_parameters()) {
+        text += start_constant("parameter_start", host->parameters);
+    }
+    std::string physics = "{}";
+    if constexpr (!std::is_same_v<typename Model::Physics, NoPhysics>) {
+        physics = physics_constants<typename Model::Arm>(constants.physics);
+    }
+    const bool limited = !model.limits.prediction.empty();
+    return text + "inline constexpr Model::Constants constants{\n    .sizes = {},\n    .identity = " +
+           std::to_string(constants.identity) + "U,\n    .gap_ns = " + std::to_string(constants.gap_ns) +
+           ",\n    .period_ns = " + std::to_string(constants.period_ns) +
+           ",\n    .input = " + input_constants(constants.input) +
+           ",\n    .features = " + feature_constants(constants.features) + ",\n    .physics = " + physics +
+           ",\n    .output_offset = " + literal(constants.output_offset) +
+           ",\n    .output_noise_std = " + literal(constants.output_noise_std) +
+           ",\n    .position_limit = " + literal(constants.position_limit) +
+           ",\n    .output_limit = " + literal(constants.output_limit) +
+           ",\n    .innovation_limit = " + literal(constants.innovation_limit) +
+           ",\n    .innovation_patience = " + std::to_string(constants.innovation_patience) +
+           (limited ? ",\n    .prediction_limit = " + literal(constants.prediction_limit) : "") +
+           ",\n    .learner = " + learner_constants<Model>(constants.learner) +
+           extrapolation_constants(model, constants) + "};\n\n";
 }
 
 } // namespace
@@ -140,7 +146,6 @@ std::string to_identifier(const std::string& stem) {
 }
 
 std::string model_to_header(const TrainedModel& model, const std::string& name_space) {
-    const bool features = structure_of(model).features;
     std::ostringstream header;
     header << "// Written by `dfdyn train`; do not edit. Outputs: "
            << comment(joined(model.outputs.names, " ")) << ".\n"
@@ -152,21 +157,11 @@ std::string model_to_header(const TrainedModel& model, const std::string& name_s
         header << "using Physics = " << physics_type(*model.physics) << ";\n\n";
     }
     header << "using Model = " << model_type(model) << ";\n\n"
-           << starts(model)
-           << "inline constexpr Model::Constants constants{\n    .sizes = {},\n    .identity = "
-           << model_identity(model) << "U,\n    .gap_ns = " << gap_ns(model)
-           << ",\n    .period_ns = " << std::llround(1e9 * model.sample_period_s)
-           << ",\n    .input = " << (features ? input_constants(model.input) : "{}")
-           << ",\n    .features = " << (features ? feature_constants(model) : "{}")
-           << ",\n    .physics = " << (model.physics ? physics_constants(*model.physics) : "{}")
-           << ",\n    .output_offset = " << braced(model.outputs.offset)
-           << ",\n    .output_noise_std = " << braced(model.outputs.noise_std)
-           << ",\n    .position_limit = " << braced(model.limits.position_rad)
-           << ",\n    .output_limit = " << braced(model.limits.output)
-           << ",\n    .innovation_limit = " << literal(model.limits.innovation)
-           << ",\n    .innovation_patience = " << model.limits.innovation_patience
-           << prediction_limit(model.limits) << ",\n    .learner = " << learner_constants(model)
-           << extrapolation_constants(model) << "};\n\n} // namespace " << name_space << "\n";
+           << with_host_type(model,
+                             [&]<class Model>(std::type_identity<Model> /*type*/) {
+                                 return constants_text<Model>(model);
+                             })
+           << "} // namespace " << name_space << "\n";
     return header.str();
 }
 

@@ -3,108 +3,98 @@
 
 #include "tools/model/effects.hpp"
 #include "tools/model/header/header_text.hpp"
+#include "tools/model/inputs/input_description.hpp"
+
+#include <algorithm>
 
 namespace dfdyn::tools {
 
 namespace {
 
-/// Returns `{a, b}`.
-std::string in_braces(const std::vector<std::string>& items) {
-    std::string result("{");
-    result += joined(items, ", ");
-    result += '}';
-    return result;
+std::string placement(const Placement<float>& pose) {
+    return "{" + array(pose.rotation) + ", " + array(pose.translation) + "}";
 }
 
-/// Returns a plain array: `{1.0F, 2.0F}`.
-std::string array(std::span<const double> values) {
-    const std::string text = braced(values);
-    return text.substr(1, text.size() - 2);
+std::string sensor_constants(const JointTorques::Constants<float>& /*output*/) { return "{}"; }
+std::string sensor_constants(const WrenchAtSensor<dynamic>::Constants<float>& output) {
+    return "{.link = " + std::to_string(output.link) + ", .sensor = " + placement(output.sensor) +
+           ", .sign = " + literal(output.sign) + "}";
 }
 
-std::string placement(const ChainModel::Frame& frame) {
-    return in_braces({array(frame.rotation), array(frame.translation)});
-}
-
-std::string chain_constants(const ChainModel& chain) {
-    std::vector<std::string> joints;
-    for (const ChainModel::Joint& joint : chain.joints) {
-        joints.push_back("{.placement = " + placement(joint.placement) + ", .axis = " + array(joint.axis) +
-                         ", .prismatic = " + (joint.prismatic ? "true" : "false") + "}");
-    }
-    std::string output = "{}";
-    if (chain.sensor) {
-        output = "{.link = " + std::to_string(chain.sensor->link) +
-                 ", .sensor = " + placement(chain.sensor->placement) +
-                 ", .sign = " + literal(chain.sensor->parent_to_child ? 1 : -1) + "}";
-    }
-    return "{.joint = {{" + joined(joints, ",\n            ") +
-           "}},\n        .gravity = " + array(chain.gravity) + ", .output = " + output + "}";
-}
-
-/// The columns of one kind of effect.
-struct EffectColumns {
-    const EffectKind* kind;
-    std::vector<EffectModel> columns;
-
-    std::vector<int> rows() const {
-        std::vector<int> result;
-        for (const EffectModel& column : columns) {
-            result.push_back(column.row);
-        }
-        return result;
-    }
-    /// Returns `, .NAME = {{…}}`.
-    std::string field(const char* name, double EffectModel::*member) const {
-        std::vector<double> values;
-        for (const EffectModel& column : columns) {
-            values.push_back(column.*member);
-        }
-        return std::string(", .").append(name).append(" = ").append(braced(values));
-    }
-};
-
-std::vector<EffectColumns> by_kind(const PhysicsModel& physics) {
-    std::vector<EffectColumns> result;
-    for (const EffectModel& effect : physics.effects) {
-        const EffectKind& kind = effect_kind(effect.name);
-        if (result.empty() || result.back().kind != &kind) {
-            result.push_back({&kind, {}});
-        }
-        result.back().columns.push_back(effect);
-    }
-    return result;
-}
-
-std::string effect_constants(const EffectColumns& effect) {
-    std::string fields = ".row = " + integers(effect.rows());
-    for (const EffectConstant& constant : effect.kind->constants) {
-        fields += effect.field(constant.name, constant.value);
-    }
+template <class Constants>
+std::string effect_constants(const Constants& effect) {
+    std::string fields = ".row = " + literal(effect.row);
+    for_each_constant(effect, [&](const char* name, const auto& values, double EffectModel::* /*member*/) {
+        fields.append(", .").append(name).append(" = ").append(literal(values));
+    });
     return "{" + fields + "}";
+}
+
+/// Returns the constants of the effects that have columns.
+template <class Motion, int p, class... Effects>
+std::string effects_constants(Physics<Motion, p, Effects...> /*of*/,
+                              const HostPhysics::EffectConstants<float>& effects) {
+    std::vector<std::string> texts;
+    const auto add = [&](const auto& effect) {
+        if (effect.row.size() > 0) {
+            texts.push_back(effect_constants(effect));
+        }
+    };
+    (add(static_cast<const typename Effects::template Constants<float>&>(effects)), ...);
+    return "{" + joined(texts, ", ") + "}";
 }
 
 } // namespace
 
+std::string input_type(const InputModel& input) {
+    return "dfdyn::" + input_description(input.kind).firmware_type(input);
+}
+
+std::string arm_type(const ChainModel& chain) {
+    return type("Chain", {std::to_string(chain.joints.size()),
+                          chain.sensor ? type("WrenchAtSensor", {std::to_string(body_count(chain))})
+                                       : "dfdyn::JointTorques"});
+}
+
 std::string physics_type(const PhysicsModel& physics) {
     std::vector<std::string> parts{input_type(physics.motion), std::to_string(physics.selected.size())};
-    for (const EffectColumns& effect : by_kind(physics)) {
-        parts.push_back(type(effect.kind->firmware_type, {std::to_string(effect.columns.size())}));
+    for (auto first = physics.effects.begin(); first != physics.effects.end();) {
+        const EffectKind& kind = effect_kind(first->name);
+        const auto next = std::find_if(first, physics.effects.end(), [&](const EffectModel& effect) {
+            return &effect_kind(effect.name) != &kind;
+        });
+        parts.push_back(type(kind.firmware_type, {std::to_string(next - first)}));
+        first = next;
     }
     return type("Physics", parts);
 }
 
-std::string physics_constants(const PhysicsModel& physics) {
-    std::vector<std::string> effects;
-    for (const EffectColumns& effect : by_kind(physics)) {
-        effects.push_back(effect_constants(effect));
+template <class Arm>
+std::string chain_constants(const typename Arm::template Constants<float>& chain) {
+    std::vector<std::string> joints;
+    for (const ChainJoint<float>& joint : chain.joint) {
+        joints.push_back("{.placement = " + placement(joint.placement) + ", .axis = " + array(joint.axis) +
+                         ", .prismatic = " + (joint.prismatic ? "true" : "false") + "}");
     }
-    return "{.chain = " + chain_constants(physics.chain) +
-           ",\n        .motion = " + input_constants(physics.motion) + ",\n        .effects = {" +
-           joined(effects, ", ") + "},\n        .motion_limit = " + braced(physics.motion_limit) +
-           ",\n        .selected = " + integers(physics.selected) +
-           ",\n        .column_scale = " + braced(physics.column_scale) +
-           ",\n        .output_gain = " + braced(physics.output_gain) + "}";
+    return "{.joint = {{" + joined(joints, ",\n            ") +
+           "}},\n        .gravity = " + array(chain.gravity) +
+           ", .output = " + sensor_constants(chain.output) + "}";
 }
+
+template <class Arm>
+std::string physics_constants(const typename HostPhysics::template Constants<float, Arm>& physics) {
+    return "{.chain = " + chain_constants<Arm>(physics.chain) +
+           ",\n        .motion = " + input_constants(physics.motion) +
+           ",\n        .effects = " + effects_constants(HostPhysics{}, physics.effects) +
+           ",\n        .motion_limit = " + literal(physics.motion_limit) +
+           ",\n        .selected = " + literal(physics.selected) +
+           ",\n        .column_scale = " + literal(physics.column_scale) +
+           ",\n        .output_gain = " + literal(physics.output_gain) + "}";
+}
+
+template std::string chain_constants<TorqueArm>(const TorqueArm::Constants<float>&);
+template std::string chain_constants<WrenchArm>(const WrenchArm::Constants<float>&);
+template std::string physics_constants<TorqueArm>(const HostPhysics::Constants<float, TorqueArm>&);
+template std::string physics_constants<WrenchArm>(const HostPhysics::Constants<float, WrenchArm>&);
 
 } // namespace dfdyn::tools

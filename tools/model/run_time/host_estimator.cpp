@@ -127,25 +127,13 @@ class EstimatorOf final : public HostEstimator {
     std::int64_t input_cost_;
 };
 
-template <class Arm>
-std::unique_ptr<HostEstimator> make_with_physics(const TrainedModel& model, bool from_prior) {
-    if (!structure_of(model).features) {
-        return std::make_unique<EstimatorOf<HostParametric<Arm>>>(model, from_prior);
-    }
-    if (structure_of(model).coupled()) {
-        return std::make_unique<EstimatorOf<HostKernel<Arm>>>(model, from_prior);
-    }
-    return std::make_unique<EstimatorOf<HostMean<Arm>>>(model, from_prior);
-}
-
 } // namespace
 
 std::unique_ptr<HostEstimator> make_estimator(const TrainedModel& model, bool from_prior) {
-    if (!model.physics) {
-        return std::make_unique<EstimatorOf<HostNonparametric>>(model, from_prior);
-    }
-    return model.physics->chain.sensor ? make_with_physics<WrenchArm>(model, from_prior)
-                                       : make_with_physics<TorqueArm>(model, from_prior);
+    return with_host_type(
+        model, [&]<class Model>(std::type_identity<Model> /*type*/) -> std::unique_ptr<HostEstimator> {
+            return std::make_unique<EstimatorOf<Model>>(model, from_prior);
+        });
 }
 
 std::unique_ptr<HostEstimator> make_estimator(std::span<const TrainedModel> models, bool from_prior) {

@@ -26,6 +26,65 @@ Storage<Scalar, count> converted(const std::vector<Number>& values) {
 
 int output_count(const TrainedModel& model) { return static_cast<int>(model.outputs.names.size()); }
 
+/// Returns the largest |prediction| of each output; 0 without a bound.
+std::vector<double> prediction_limits(const TrainedModel& model) {
+    return model.limits.prediction.empty() ? std::vector<double>(model.outputs.names.size(), 0)
+                                           : model.limits.prediction;
+}
+
+/// Returns the factor of each element of ξ. For DFW it includes the weight of the lag.
+std::vector<double> firmware_scale(const InputModel& input) {
+    std::vector<double> scale = input.scale;
+    if (input_description(input.kind).weighted) {
+        const auto lags = static_cast<std::size_t>(input.lags) + 1;
+        for (std::size_t element = 0; element < scale.size(); ++element) {
+            const std::size_t lag = element % lags;
+            scale[element] *= input.rows[lag * lags + lag];
+        }
+    }
+    return scale;
+}
+
+/// Returns R in the firmware's difference form (see `to_difference_form`); k × (M+1).
+std::vector<double> firmware_rows(const InputModel& input) {
+    std::vector<double> rows = input.rows;
+    to_difference_form(input.rows.data(), input.rows_per_joint, input.lags, rows.data());
+    return rows;
+}
+
+/// Returns ω / ℓ ordered by inputs: element (input a, feature b) at a·d + b.
+std::vector<double> firmware_frequencies(const FeatureModel& features, int inputs) {
+    std::vector<double> frequencies(features.omega.size());
+    for (int b = 0; b < features.count; ++b) {
+        for (int a = 0; a < inputs; ++a) {
+            frequencies[static_cast<std::size_t>(a) * static_cast<std::size_t>(features.count) +
+                        static_cast<std::size_t>(b)] =
+                features.omega[static_cast<std::size_t>(b) * static_cast<std::size_t>(inputs) +
+                               static_cast<std::size_t>(a)] /
+                features.length_scale;
+        }
+    }
+    return frequencies;
+}
+
+/// Returns the initial weights in the order of the learner. For SPK: those of each output, then those of its
+/// columns ψ.
+std::vector<double> firmware_weights(const TrainedModel& model) {
+    if (!structure_of(model).coupled()) {
+        return model.start.weights;
+    }
+    const auto columns = 2 * static_cast<std::ptrdiff_t>(model.features.count);
+    const auto coupled = columns * static_cast<std::ptrdiff_t>(model.physics->selected.size());
+    std::vector<double> weights;
+    for (std::ptrdiff_t k = 0; k < output_count(model); ++k) {
+        const auto own = model.start.weights.begin() + k * columns;
+        const auto coupling = model.physics->coupling.begin() + k * coupled;
+        weights.insert(weights.end(), own, own + columns);
+        weights.insert(weights.end(), coupling, coupling + coupled);
+    }
+    return weights;
+}
+
 template <class Scalar>
 Placement<Scalar> placement(const ChainModel::Frame& frame) {
     Placement<Scalar> result{};
@@ -73,32 +132,23 @@ Storage<Scalar, dynamic> gathered(const std::vector<EffectModel>& columns, doubl
     return converted<Scalar>(values);
 }
 
-template <class Constants>
+template <class Scalar, class Constants>
 void set_effect(Constants& constants, const std::vector<EffectModel>& columns) {
     std::vector<int> rows;
     for (const EffectModel& column : columns) {
         rows.push_back(column.row);
     }
     constants.row = converted<std::int32_t>(rows);
-    if constexpr (requires { constants.sign_velocity; }) {
-        using Scalar = std::remove_cvref_t<decltype(constants.sign_velocity[0])>;
-        constants.sign_velocity = gathered<Scalar>(columns, &EffectModel::sign_velocity);
-    }
-    if constexpr (requires { constants.stribeck_velocity; }) {
-        using Scalar = std::remove_cvref_t<decltype(constants.stribeck_velocity[0])>;
-        constants.stribeck_velocity = gathered<Scalar>(columns, &EffectModel::stribeck_velocity);
-    }
-    if constexpr (requires { constants.cycles_per_rev; }) {
-        using Scalar = std::remove_cvref_t<decltype(constants.cycles_per_rev[0])>;
-        constants.cycles_per_rev = gathered<Scalar>(columns, &EffectModel::cycles_per_rev);
-        constants.phase = gathered<Scalar>(columns, &EffectModel::phase);
-    }
+    for_each_constant(constants, [&](const char* /*name*/, auto& values, double EffectModel::*member) {
+        values = gathered<Scalar>(columns, member);
+    });
 }
 
 template <class Scalar, class Motion, int p, class... Effects>
 auto effect_constants_of(Physics<Motion, p, Effects...> /*of*/, const PhysicsModel& physics) {
     typename Physics<Motion, p, Effects...>::template EffectConstants<Scalar> result{};
-    (set_effect<typename Effects::template Constants<Scalar>>(result, columns_of(physics, Effects::identity)),
+    (set_effect<Scalar, typename Effects::template Constants<Scalar>>(result,
+                                                                      columns_of(physics, Effects::identity)),
      ...);
     return result;
 }
@@ -210,59 +260,6 @@ typename Arm::template Constants<Scalar> host_chain(const ChainModel& chain) {
 }
 
 std::int64_t gap_ns(const TrainedModel& model) { return std::llround(1.5e9 * model.sample_period_s); }
-
-std::vector<double> prediction_limits(const TrainedModel& model) {
-    return model.limits.prediction.empty() ? std::vector<double>(model.outputs.names.size(), 0)
-                                           : model.limits.prediction;
-}
-
-std::vector<double> firmware_scale(const InputModel& input) {
-    std::vector<double> scale = input.scale;
-    if (input_description(input.kind).weighted) {
-        const auto lags = static_cast<std::size_t>(input.lags) + 1;
-        for (std::size_t element = 0; element < scale.size(); ++element) {
-            const std::size_t lag = element % lags;
-            scale[element] *= input.rows[lag * lags + lag];
-        }
-    }
-    return scale;
-}
-
-std::vector<double> firmware_rows(const InputModel& input) {
-    std::vector<double> rows = input.rows;
-    to_difference_form(input.rows.data(), input.rows_per_joint, input.lags, rows.data());
-    return rows;
-}
-
-std::vector<double> firmware_frequencies(const FeatureModel& features, int inputs) {
-    std::vector<double> frequencies(features.omega.size());
-    for (int b = 0; b < features.count; ++b) {
-        for (int a = 0; a < inputs; ++a) {
-            frequencies[static_cast<std::size_t>(a) * static_cast<std::size_t>(features.count) +
-                        static_cast<std::size_t>(b)] =
-                features.omega[static_cast<std::size_t>(b) * static_cast<std::size_t>(inputs) +
-                               static_cast<std::size_t>(a)] /
-                features.length_scale;
-        }
-    }
-    return frequencies;
-}
-
-std::vector<double> firmware_weights(const TrainedModel& model) {
-    if (!structure_of(model).coupled()) {
-        return model.start.weights;
-    }
-    const auto columns = 2 * static_cast<std::ptrdiff_t>(model.features.count);
-    const auto coupled = columns * static_cast<std::ptrdiff_t>(model.physics->selected.size());
-    std::vector<double> weights;
-    for (std::ptrdiff_t k = 0; k < output_count(model); ++k) {
-        const auto own = model.start.weights.begin() + k * columns;
-        const auto coupling = model.physics->coupling.begin() + k * coupled;
-        weights.insert(weights.end(), own, own + columns);
-        weights.insert(weights.end(), coupling, coupling + coupled);
-    }
-    return weights;
-}
 
 int body_count(const ChainModel& chain) {
     const auto joints = static_cast<int>(chain.joints.size());

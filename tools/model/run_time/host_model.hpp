@@ -4,8 +4,10 @@
 #include "dfdyn/dfdyn.hpp"
 #include "tools/model/model.hpp"
 #include "tools/model/run_time/any_input.hpp"
+#include "tools/model/structure.hpp"
 
 #include <memory>
+#include <type_traits>
 
 namespace dfdyn::tools {
 
@@ -49,25 +51,42 @@ struct HostConstants {
 template <class Model>
 std::unique_ptr<HostConstants<Model>> make_host_constants(const TrainedModel& model, bool from_prior);
 
+/// Calls `use(std::type_identity<Model>{})` with the host model of a trained model's structure and outputs.
+template <class Use>
+auto with_host_type(const TrainedModel& model, const Use& use) {
+    const Structure& structure = structure_of(model);
+    const auto with_arm = [&]<class Arm>(std::type_identity<Arm> /*type*/) {
+        if (!structure.features) {
+            return use(std::type_identity<HostParametric<Arm>>{});
+        }
+        return structure.coupled() ? use(std::type_identity<HostKernel<Arm>>{})
+                                   : use(std::type_identity<HostMean<Arm>>{});
+    };
+    if (!model.physics) {
+        return use(std::type_identity<HostNonparametric>{});
+    }
+    return model.physics->chain.sensor ? with_arm(std::type_identity<WrenchArm>{})
+                                       : with_arm(std::type_identity<TorqueArm>{});
+}
+
+/// Calls `use(name, values, member)` for each member of an effect's constants except `row`: with its name,
+/// one value per column, and the member of EffectModel.
+template <class Constants, class Use>
+void for_each_constant(Constants& constants, const Use& use) {
+    if constexpr (requires { constants.sign_velocity; }) {
+        use("sign_velocity", constants.sign_velocity, &EffectModel::sign_velocity);
+    }
+    if constexpr (requires { constants.stribeck_velocity; }) {
+        use("stribeck_velocity", constants.stribeck_velocity, &EffectModel::stribeck_velocity);
+    }
+    if constexpr (requires { constants.cycles_per_rev; }) {
+        use("cycles_per_rev", constants.cycles_per_rev, &EffectModel::cycles_per_rev);
+        use("phase", constants.phase, &EffectModel::phase);
+    }
+}
+
 /// Returns the time step (ns) that an estimator without a known sample period treats as a gap: 1.5 periods.
 std::int64_t gap_ns(const TrainedModel& model);
-
-/// Returns the largest |prediction| of each output; 0 without a bound.
-std::vector<double> prediction_limits(const TrainedModel& model);
-
-/// Returns the factor that the firmware applies to each element of ξ. For DFW it includes the weight of the
-/// lag.
-std::vector<double> firmware_scale(const InputModel& input);
-
-/// Returns R in the firmware's difference form (see `to_difference_form`); k × (M+1).
-std::vector<double> firmware_rows(const InputModel& input);
-
-/// Returns ω / ℓ ordered by inputs: element (input a, feature b) at a·d + b.
-std::vector<double> firmware_frequencies(const FeatureModel& features, int inputs);
-
-/// Returns the initial weights in the order of the firmware's learner. For SPK: those of each output, then
-/// those of its columns ψ.
-std::vector<double> firmware_weights(const TrainedModel& model);
 
 /// Returns the number of bodies whose parameters influence the outputs.
 int body_count(const ChainModel& chain);
