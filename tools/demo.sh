@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# demo.sh: installs what is missing, builds dfdyn, lets it learn a UR5's motor currents from joint positions in one recording,
-# and replays further recordings through the estimator that would run on the robot. Then trains on one part of two recordings that
-# chose no setting of the program, and prints how well the rest is predicted, beside simple opponents. Writes into build/demo.
+# demo.sh: installs missing packages, builds dfdyn and learns a UR5's motor currents from joint positions in one recording. Replays
+# further recordings through the estimator that would run on the robot. Then trains on one part of two recordings that chose no setting
+# of the program, and prints the prediction errors of the rest, together with those of simple predictors. Writes into build/demo.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

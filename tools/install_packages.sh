@@ -1,11 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# install_packages.sh demo|test|virtual-time: installs the Debian packages that are missing for building and running the demo, or for
-# the tests as well, or for the kernel of tests/vcan/virtual_time alone. Where nothing is missing it changes nothing and needs no
-# network.
+# install_packages.sh demo|test|virtual-time: installs the missing Debian packages: for building and running the demo, for the
+# tests as well, or only for the kernel of tests/vcan/virtual_time. If no package is missing, it changes nothing and needs no network.
 set -euo pipefail
 
-# package:what is missing without it
+# package:consequence of its absence
 demo_packages=(
     "cmake:nothing can be built"
     "ninja-build:nothing can be built with the presets"
@@ -90,7 +89,7 @@ install_optional() {
     done
 }
 
-# What is still missing after all tries, each with apt's own reason and with what does not work without it.
+# Prints each package that is still missing after all tries, with apt's reason and the consequence.
 explain_missing() {
     local entry package
     for entry in "${packages[@]}"; do

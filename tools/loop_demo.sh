@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# loop_demo.sh DFDYN OUT [--vcan]: a loop that learns the arm it moves, on the simulated UR5 and on the iCub's right arm, over the
-# frames of their devices. For each arm: half a minute under the nominal rigid body, without payload, for the hyperparameters; then a
-# minute and a half of another motion with friction and a payload that nothing knows of, and a second payload at 65 s, under the
-# nominal rigid body and under a model that begins with nothing learned. Prints the tables, and without --vcan recursive least
-# squares of rigid body and friction (model P, a memory of 8 s) beside them.
-# Without --vcan in simulated time, frames in memory, in a minute; writes OUT/ARM/tracking.{csv,svg,html} and recordings.
-# With --vcan arm and loop are two programs on a virtual CAN interface, at the devices' rates, in a user-mode Linux whose time stands
-# still while programs run, a machine per run: some 6 minutes of two cores, and 5 for that kernel the first time (build/virtual_time).
-# By measured positions; writes OUT/vcan/ARM/{nominal,learned,again}. One run is done twice: its recordings have to be equal bit for bit.
+# loop_demo.sh DFDYN OUT [--vcan]: a loop that learns the arm that it moves: the simulated UR5 and the iCub's right arm, with the
+# frames of their devices. For each arm, the hyperparameters come from half a minute with the nominal rigid body and without payload.
+# Then another motion of a minute and a half has unknown friction, an unknown payload and a second payload from 65 s. It runs with the
+# nominal rigid body, and with a model that has learned nothing yet. Prints the tables; without --vcan also those of recursive least
+# squares of rigid body and friction (model P, a memory of 8 s).
+# Without --vcan: simulated time, frames in memory, one minute; writes OUT/ARM/tracking.{csv,svg,html} and recordings.
+# With --vcan: arm and loop are two programs on a virtual CAN interface, at the devices' rates. They run in a user-mode Linux whose clock
+# stops while programs run, one machine per run: about 6 minutes on two cores, and 5 for that kernel the first time (build/virtual_time).
+# Errors are those of measured positions; writes OUT/vcan/ARM/{nominal,learned,again}. One run is repeated: both recordings must be equal.
 set -euo pipefail
 usage() {
     echo "usage: loop_demo.sh DFDYN OUT [--vcan]" >&2

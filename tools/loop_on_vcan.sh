@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# loop_on_vcan.sh DFDYN FOLDER ARM_OPTION... -- [LOOP_OPTION...]: where there is vcan0, 95 s of an arm (dfdyn plant) and its loop
-# (dfdyn loop) as two programs on it. Writes what they say, the tracking error and the recording into FOLDER. Fails where the loop did.
+# loop_on_vcan.sh DFDYN FOLDER ARM_OPTION... -- [LOOP_OPTION...]: runs an arm (dfdyn plant) and its loop (dfdyn loop) for 95 s as
+# two programs on vcan0. Writes their output, the tracking error and the recording into FOLDER. Fails if the loop fails.
 set -euo pipefail
 dfdyn=$1 folder=$2
 shift 2

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# measure_cortex_m.sh: builds the images for every Cortex-M core, with benchmarks of all sizes, runs them under QEMU and writes
-# the table between the marks "cortex-m" of docs/reference/performance.md anew. The same sources and compiler give the same numbers on any
-# machine.
+# measure_cortex_m.sh: builds the images for every Cortex-M core, with benchmarks of all sizes, runs them under QEMU and
+# replaces the table between the marks "cortex-m" of docs/reference/performance.md. The same sources and compiler give the same numbers
+# on any machine.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# measure_host.sh [PASSES]: builds dfdyn for this machine, runs `dfdyn bench` and writes its tables between the marks "host" of
-# docs/reference/performance.md anew, and its picture beside it. Takes some 20 minutes, 10 of them the loop; more passes on a busy machine.
-# Peers from Debian, measured where they are installed: libqrupdate-dev, libdlib-dev, and libopenblas-serial-dev for BLAS.
+# measure_host.sh [PASSES]: builds dfdyn for this machine, runs `dfdyn bench` and replaces the tables between the marks "host" of
+# docs/reference/performance.md, and its picture. Takes about 20 minutes, 10 of them for the loop. A busy machine needs more passes.
+# Libraries from Debian are measured if they are installed: libqrupdate-dev, libdlib-dev, and libopenblas-serial-dev for BLAS.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# measure_loop.sh DFDYN OUT: everything that can go wrong in a control loop, on both arms, in simulated time: prints the tables of
-# docs/results/loop.md. Models are those of loop_demo.sh, which begin with nothing learned; the faults are those of
-# tests/data/loop_faults, as they are for the UR5 and adapted in size for the iCub's arm. Beside each other: the nominal rigid
-# body, an observer, recursive least squares of rigid body and friction (model P, a memory of 8 s), the learned model alone, and
-# the complete loop (learned model and observer). Takes about 10 minutes; keeps what it ran in OUT.
+# measure_loop.sh DFDYN OUT: simulates all faults of a control loop on both arms and prints the tables of docs/results/loop.md. The
+# models are those of loop_demo.sh, which have learned nothing yet. The faults are those of tests/data/loop_faults, unchanged for the
+# UR5 and adapted in size for the iCub's arm. Each table compares the nominal rigid body, an observer, recursive least squares of rigid
+# body and friction (model P, a memory of 8 s), the learned model alone, and the complete loop (learned model and observer). Takes about
+# 10 minutes; keeps its runs in OUT.
 set -euo pipefail
 dfdyn=${1:?usage: measure_loop.sh DFDYN OUT}
 out=${2:?usage: measure_loop.sh DFDYN OUT}

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# reproduce.sh [--quick] [EVALUATE OPTION...]: installs what is missing, builds dfdyn, simulates the paper's two recordings of the
+# reproduce.sh [--quick] [EVALUATE OPTION...]: installs missing packages, builds dfdyn, simulates the paper's two recordings of the
 # iCub arm, runs the paper's experiment on them and on recordings of a real UR5, and writes docs/results/reproduction.md with the
 # verdicts; comparisons, tables and all pictures are written into build/reproduction.
-# A run that was ended goes on where it was.
-# --quick: one draw, few features and rows, into build/reproduction only; shows that everything runs, not how good it is.
+# A run that was interrupted continues.
+# --quick: one draw, few features and rows, into build/reproduction only; shows that everything runs; its figures mean nothing.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -36,7 +36,7 @@ build_program() {
     cmake --build --preset release --parallel "$(nproc)" --target dfdyn
 }
 
-# simulate SCENARIO NAME: unless it is there from the same program, scenario and robot, whose checksums stand beside it.
+# simulate SCENARIO NAME: unless the recording exists with the checksums of the same program, scenario and robot.
 simulate() {
     local scenario=$1 csv=$out/data/$2.csv inputs
     inputs=$(cksum "$dfdyn" "$scenario" "$robot")

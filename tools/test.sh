@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# test.sh [--long]: installs what is missing, builds and runs all checks. --long adds the tests that take minutes. The logs are
-# in build/logs; the last line says whether all passed, or which step failed and where its log is.
+# test.sh [--long]: installs missing packages, builds and runs all checks. --long adds the tests that take minutes. The logs
+# are in build/logs. The last line reports that all passed, or the step that failed and its log.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -119,7 +119,7 @@ struct EffectModel {
 /// A rigid body with friction, fitted to the training recordings by least squares, as a reference for the
 /// learned models. Output k is output_gain[k] times the rigid body's torque, plus its friction terms.
 struct RigidBodyFit {
-    bool identified = false;         ///< inertia: fitted; otherwise that of the robot file
+    bool identified = false;         ///< inertia: fitted; otherwise from the robot file
     double sign_velocity = 0;        ///< v of dry friction's tanh(qd / v), rad/s
     std::vector<double> output_gain; ///< m: output per N·m (N)
     std::vector<double> inertia; ///< ten per body: kg, kg·m, kg·m²; 0 where the recordings determine none

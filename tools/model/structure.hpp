@@ -13,7 +13,7 @@ namespace dfdyn::tools {
 enum class PhysicsRole {
     none,          ///< the model has no physics
     fixed_first,   ///< least squares of the physics alone; the features learn its residual
-    fixed_jointly, ///< generalised least squares with the kernel of the features; likewise
+    fixed_jointly, ///< the same, with generalised least squares and the kernel of the features
     learned,       ///< learned online
 };
 

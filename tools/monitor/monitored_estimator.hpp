@@ -21,7 +21,7 @@ struct MonitorSetup {
     double false_alarm_hours = 5;      ///< mean time between false alarms, > 0
 };
 
-/// Returns the description for the outputs of `model`: with the chain of its physics, otherwise that of
+/// Returns the description for the outputs of `model`: with the chain of its physics, otherwise of
 /// `robot`. Throws InputError, naming `source`, if there is neither, or if the robot does not have the joints
 /// or the sensor of the model.
 MonitorSetup monitor_setup(const TrainedModel& model, const Robot* robot, const std::string& source);

@@ -43,7 +43,7 @@ Arm make_arm(int output_bus) {
              {.track = {.max_age_ns = 3 * ms, .latency_ns = force_latency_ns, .qualification = at_once},
               .range = {wide, wide, wide, wide, wide, wide},
               .pairing = {.period_ns = ms, .delay_ns = 400 * us},
-              .frozen_limit = 50}}}; // these forces have no noise, and stand at their peaks
+              .frozen_limit = 50}}}; // these forces have no noise, and are constant at their peaks
 }
 
 /// What the devices send between 0 and `end_ns`, by their stamps: joint 1 each 1 ms, joint 2 each 0.97 ms

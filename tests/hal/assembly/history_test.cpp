@@ -36,7 +36,7 @@ TEST_CASE("a history has the neighbours of any instant it reaches back to") {
     }
 }
 
-TEST_CASE("a history does not take what is not later than its newest") {
+TEST_CASE("a history ignores entries that are not later than its newest") {
     History history;
     CHECK(push(history, -5));
     CHECK(push(history, 10));

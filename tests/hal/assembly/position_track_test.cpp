@@ -88,7 +88,7 @@ TEST_CASE("two positions of one instant make a hole of both") {
     CHECK(joint.track.not_later() == 1);
 }
 
-TEST_CASE("a second sender of a joint is seen by how often it sends, whatever it says") {
+TEST_CASE("a second sender of a joint is detected by its rate, with any values") {
     Joint joint = moving();
     int collisions = 0;
     for (std::int64_t time_ns = 42 * ms; time_ns < 60 * ms; time_ns += 2 * ms) {

@@ -137,7 +137,7 @@ TEST_CASE("no more samples wait than there is room for") {
     CHECK(bench.times.back() == start + 8 * ms);
 }
 
-TEST_CASE("a frame whose stamp is ahead is left out if the next one shows that it was a stray") {
+TEST_CASE("a frame whose stamp is ahead is left out if the next stamp does not continue from it") {
     Bench bench(timer);
     bench.frames(start, start + 4 * ms, ms);
     bench.frame(start + 700 * ms);
@@ -148,7 +148,7 @@ TEST_CASE("a frame whose stamp is ahead is left out if the next one shows that i
     CHECK(bench.times == std::vector{start + 2 * ms, start + 4 * ms});
 }
 
-TEST_CASE("a frame whose stamp is ahead is taken if time goes on from it") {
+TEST_CASE("a frame whose stamp is ahead is taken if the next stamp continues from it") {
     Bench bench(timer);
     bench.frames(start, start + 4 * ms, ms);
     bench.frame(start + 700 * ms);

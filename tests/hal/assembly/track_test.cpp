@@ -21,7 +21,7 @@ Joint ready_joint() {
     return joint;
 }
 
-TEST_CASE("a value is that of the instant: measured, interpolated, or held") {
+TEST_CASE("a value belongs to its instant: measured, interpolated, or held") {
     Joint joint = ready_joint();
     CHECK(joint.at(30, 30).value[0] == Approx(0.3));
     CHECK(joint.at(30, 30).stamp_ns == 30);
@@ -65,7 +65,7 @@ TEST_CASE("a reading beyond the range is refused") {
     CHECK(joint.range().count() == 1);
 }
 
-TEST_CASE("a joint qualifies, and does so anew after a silence or a fault") {
+TEST_CASE("a joint qualifies, and again after a silence or a fault") {
     Joint joint = make_joint();
     joint.push(12, Reason::ok, {0}, false);
     joint.push(22, Reason::ok, {0}, false);

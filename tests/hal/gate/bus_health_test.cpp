@@ -30,7 +30,7 @@ TEST_CASE("a passive bus is degraded and still good") {
     CHECK_FALSE(health.degraded());
 }
 
-TEST_CASE("lost frames are told once, and counted from the start on") {
+TEST_CASE("lost frames are reported once, and counted from the start") {
     BusHealth health;
     BusCounters counters;
     counters.dropped = 1000; // before us

@@ -47,7 +47,7 @@ TEST_CASE("a stamp a little ahead of the reader's time is taken for that time") 
     CHECK(gate.accept(100 * second + 12 * ms, 100 * second + 11 * ms) == 100 * second + 11 * ms);
 }
 
-TEST_CASE("a single stray stamp is refused and forgotten") {
+TEST_CASE("a single wrong stamp is refused and forgotten") {
     ClockGate gate = running_gate();
     CHECK_FALSE(gate.accept(94 * second, 100 * second + 11 * ms).has_value());
     CHECK(gate.doubtful());

@@ -46,7 +46,7 @@ TEST_CASE("a full scale that cannot be is refused, also before all are known") {
     }
 }
 
-TEST_CASE("a full scale that changes is in doubt until all channels are told again, and agree") {
+TEST_CASE("a full scale that changes is in doubt until all channels are reported again, and agree") {
     Gate gate = complete_gate();
     gate.report(0, 500);
     CHECK(gate.reason() == Reason::full_scale_contradicted);

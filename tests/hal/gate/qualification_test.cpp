@@ -36,7 +36,7 @@ TEST_CASE("very many zeros in a row are believed") {
     CHECK(gate.qualified(false));
 }
 
-TEST_CASE("a source that was away qualifies anew") {
+TEST_CASE("a source that was silent qualifies again") {
     QualificationGate gate(quick);
     gate.restart(); // nothing to lose
     CHECK(gate.restarts() == 0);

@@ -19,7 +19,7 @@ std::int64_t between(std::mt19937_64& engine, std::int64_t lowest, std::int64_t 
     return std::uniform_int_distribution<std::int64_t>(lowest, highest)(engine);
 }
 
-TEST_CASE("one sender is never suspected, however its frames wait, and what is known of it is true") {
+TEST_CASE("one sender is never suspected for any delays, and its earliest send time is true") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const std::int64_t delay_ns : {0 * us, 130 * us, 500 * us, 780 * us, 990 * us}) {
         for (const double clock : {0.993, 1.0, 1.0001, 1.3, 7.7}) { // fast, exact, slow, on demand
@@ -38,7 +38,7 @@ TEST_CASE("one sender is never suspected, however its frames wait, and what is k
     }
 }
 
-TEST_CASE("two senders are seen within three periods, whatever their offset, and as long as they send") {
+TEST_CASE("two senders are detected within three periods, with any offset, while they send") {
     DFDYN_SEEDED_ENGINE(engine);
     for (const std::int64_t delay_ns : {130 * us, 500 * us, 780 * us}) {
         for (const std::int64_t offset_ns : {60 * us, 300 * us, 500 * us, 800 * us, 940 * us}) {

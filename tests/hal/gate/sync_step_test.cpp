@@ -21,14 +21,14 @@ SyncStep running(int cycles) {
 
 TEST_CASE("no answer is in step before the first SYNC") { CHECK_FALSE(SyncStep().answer(5 * us)); }
 
-TEST_CASE("a lost answer refuses none of those after it at the usual time") {
+TEST_CASE("a lost answer does not refuse later answers at the usual time") {
     SyncStep step = running(50);
     step.sync(50 * period);
     step.sync(51 * period);
     CHECK(step.answer(51 * period + 420 * us));
 }
 
-TEST_CASE("an answer that comes after the next SYNC is not taken for the answer to it") {
+TEST_CASE("an answer after the next SYNC is not assigned to that SYNC") {
     SyncStep step = running(50);
     step.sync(50 * period);
     step.sync(51 * period);
@@ -51,7 +51,7 @@ TEST_CASE("where all answers are a period late none is in step, until two come b
     CHECK(step.answer(140 * period + 400 * us));
 }
 
-TEST_CASE("two lost answers and a lost SYNC after them refuse no answer to the next SYNC") {
+TEST_CASE("after two lost answers and a lost SYNC, the answers to the next SYNC are valid") {
     SyncStep step = running(50);
     step.sync(50 * period);
     step.sync(51 * period);
@@ -60,7 +60,7 @@ TEST_CASE("two lost answers and a lost SYNC after them refuse no answer to the n
     CHECK(step.answer(53 * period + 400 * us));
 }
 
-TEST_CASE("after a lost answer, one that is a whole period late is not taken for an answer to a lost SYNC") {
+TEST_CASE("after a lost answer, one that is a period late is not assigned to a lost SYNC") {
     SyncStep step = running(50);
     step.sync(50 * period);
     step.sync(51 * period);
@@ -81,7 +81,7 @@ TEST_CASE("an answer that comes just before the next SYNC is in step, if answers
     CHECK_FALSE(step.answer(51 * period + 2750 * us)); // SYNC 52 was lost and came early
 }
 
-TEST_CASE("after a lost SYNC, the answer to it is not taken for one to the SYNC before") {
+TEST_CASE("after a lost SYNC, its answer is not assigned to the SYNC before") {
     SyncStep step = running(50);
     CHECK_FALSE(step.answer(50 * period + 400 * us)); // the second since SYNC 49
     CHECK(step.late());                               // which leaves the first one as it is

@@ -14,9 +14,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// The position, velocity and acceleration rows of Section V-C of the paper, truncated after lag M. Learned:
-/// log alpha_1, log alpha_2, logit beta_1, logit beta_2. The stored R is that of the paper with these alphas.
-/// Its scale is 1 / standard deviation of the row with alpha = 1. Therefore alpha is the relevance of the
-/// input with unit standard deviation, instead of 1/T_s and 1/T_s^2, and the sample period is not needed. 2
+/// log alpha_1, log alpha_2, logit beta_1, logit beta_2. The stored R is the paper's matrix with these
+/// alphas. Its scale is 1 / standard deviation of the row with alpha = 1. Therefore alpha is the relevance of
+/// the input with unit standard deviation, instead of 1/T_s and 1/T_s^2, and the sample period is not needed.
+/// 2
 /// <= lags.
 class StructuredRows final : public RowFamily {
   public:

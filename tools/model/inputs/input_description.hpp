@@ -18,7 +18,8 @@ enum class InputForm {
     rows,        ///< R times the last positions
 };
 
-/// Velocities and accelerations of the physics beside the input, unless the physics has filters of its own.
+/// Velocities and accelerations of the physics, in addition to the input, unless the physics has filters of
+/// its own.
 enum class MotionSource {
     derivatives, ///< those of the recording
     own_filters, ///< rows 2 and 3 in physical units

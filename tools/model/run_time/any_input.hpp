@@ -10,7 +10,7 @@
 
 namespace dfdyn::tools {
 
-/// An input map of the firmware whose kind is chosen at run time. The arithmetic is that of the kind. DFW
+/// An input map of the firmware whose kind is chosen at run time. Its arithmetic is the kind's own. DFW
 /// runs as DF (its weights are part of the scale), and DFSR as DFR (with its rows).
 template <int k>
 struct AnyInput {

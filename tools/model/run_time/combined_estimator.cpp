@@ -28,8 +28,8 @@ std::vector<float> noise_of(const Members& members) {
     return noise;
 }
 
-/// Returns the variance factor before any error is known: that of the paper's deviations unless all members
-/// are calibrated.
+/// Returns the variance factor before any error is known: the one of the paper's deviations unless all
+/// members are calibrated.
 float unjudged_factor_of(const Members& members) {
     return std::ranges::all_of(members, &CombinationMember::calibrated)
                ? Combination::calibrated_variance_factor

@@ -26,9 +26,9 @@ struct CombinationMember {
 /// ahead, and on their variances at each input. While no error is known, the variances count as calibrated if
 /// all members are calibrated.
 ///
-/// - Prediction: requires the predictions of all members. The status is that of the first member without a
+/// - Prediction: requires the predictions of all members. The status comes from the first member without a
 ///   prediction, or without learning.
-/// - Normalised innovation squared: that of the member with the smallest value relative to its limit, scaled
+/// - Normalised innovation squared: from the member with the smallest value relative to its limit, scaled
 ///   to the first member's limit.
 /// - Budget: each member has the complete budget. The combination learns from every measured sample that at
 ///   least one member accepted, for any budget > 0. With Budget::predict_only() its weights follow the

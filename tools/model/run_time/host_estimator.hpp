@@ -80,7 +80,7 @@ class HostEstimator {
 /// `model`.
 std::unique_ptr<HostEstimator> make_estimator(const TrainedModel& model, bool from_prior);
 
-/// Returns the estimator of the models' combination (combined_estimator.hpp), or that of a single model.
+/// Returns the estimator of the models' combination (combined_estimator.hpp), or of a single model.
 /// `models`: at least one, all for the same joints and outputs.
 std::unique_ptr<HostEstimator> make_estimator(std::span<const TrainedModel> models, bool from_prior);
 

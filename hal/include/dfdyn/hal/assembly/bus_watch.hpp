@@ -7,15 +7,15 @@
 
 namespace dfdyn::hal {
 
-/// What is known of one bus, whatever device is on it.
+/// State of one bus, independent of its devices.
 struct BusWatch {
     explicit constexpr BusWatch(const ClockGate::Config& config) noexcept : clock(config) {}
 
     ClockGate clock;
     BusHealth health;
-    Offenders unknown;     ///< on identifiers that nobody here sends
-    Offenders rejected;    ///< on known ones, and not what is sent there
-    std::uint64_t own = 0; ///< our own frames come back: not looked at
+    Offenders unknown;     ///< on identifiers of no known device
+    Offenders rejected;    ///< on known identifiers, but of another form
+    std::uint64_t own = 0; ///< our own frames, which the socket returns: ignored
     std::uint64_t from_host =
         0; ///< from another program of this host: a simulation, or a replay on a live bus
 };

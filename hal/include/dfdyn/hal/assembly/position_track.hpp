@@ -8,8 +8,8 @@
 
 namespace dfdyn::hal {
 
-/// What one sender of a joint's values can do: a frame may wait for the bus for a whole period, or be an
-/// answer to a SYNC that is that uneven.
+/// Returns the gate for one sender of a joint's values: a frame may wait for the bus for a whole period, and
+/// the SYNC that it answers may be irregular by a period.
 [[nodiscard]] constexpr SendRateGate joint_rate(const TrackConfig& config) noexcept {
     return SendRateGate(SendRateGate::Config{config.period_ns, config.period_ns});
 }
@@ -26,7 +26,7 @@ class PositionTrack {
               {limits, range, config.max_age_ns, config.period_ns, config.jitter_ns, config.qualification}),
           rate_(joint_rate(config)), rated_(config.period_ns > 0), latency_ns_(config.latency_ns) {}
 
-    /// Takes what a device says about this joint's position; what became of it.
+    /// Takes a device's value of this joint's position. Returns ok if it is accepted, or the reason why not.
     constexpr Reason push(const JointValue& value) noexcept {
         if (!track_.is_later(value.stamp_ns)) {
             track_.push(value.stamp_ns, value.position_reason, {value.position_rad}, false);
@@ -63,7 +63,7 @@ class PositionTrack {
     [[nodiscard]] constexpr MotionGate& motion() noexcept { return motion_; }
     [[nodiscard]] constexpr const MotionGate& motion() const noexcept { return motion_; }
 
-    /// How often a second sender was seen.
+    /// Number of times a second sender was seen.
     [[nodiscard]] constexpr std::uint64_t collisions() const noexcept { return collision_.count(); }
 
   private:

@@ -20,9 +20,9 @@ struct SamplerConfig {
     std::int64_t patience_ns = 0; ///< after the last moment; then the period calls for samples
 };
 
-/// Makes the samples of a stream of frames when they are due. Time is what the frames' stamps say (LogClock),
-/// so that the same frames with the same stamps give the same samples, bit for bit, whether they come from a
-/// bus or from a recording.
+/// Makes the samples of a stream of frames when they are due. Time comes from the frames' stamps (LogClock),
+/// so that the same frames with the same stamps give the same samples, bit for bit, from a bus and from a
+/// recording.
 ///
 /// A frame whose stamp is ahead is held until the next: where time did not go on from it, it is left out.
 /// A sample with a value that is missing waits for the next value, from which it is interpolated, or until it
@@ -31,7 +31,8 @@ struct SamplerConfig {
 /// most after the last frame.
 ///
 /// `Arm`: `take(frame, now)` returns the instant that can be assembled, if any; `update`, `pending` and
-/// `assemble` as of SampleAssembly. `on_sample(assembled, now_ns)` gets every sample, in the order of time.
+/// `assemble` are those of SampleAssembly. `on_sample(assembled, now_ns)` gets every sample, in order of
+/// time.
 template <class Arm, std::size_t capacity = 16>
 class Sampler {
   public:
@@ -61,8 +62,8 @@ class Sampler {
         }
     }
 
-    /// No frame will come with a stamp up to `stamp_ns`: what is due by then is assembled. A frame must have
-    /// come.
+    /// Declares that no further frame has a stamp up to `stamp_ns`, and assembles the samples that are due by
+    /// then. Requires at least one frame.
     template <class OnSample>
     void advance_to(Arm& arm, std::int64_t stamp_ns, OnSample&& on_sample) {
         let_go(arm, on_sample);
@@ -71,7 +72,7 @@ class Sampler {
         release(arm, end_ns, on_sample);
     }
 
-    /// No frame will come any more: what waits is assembled as it is.
+    /// Declares the end of the frames. Waiting samples are assembled without the missing values.
     template <class OnSample>
     void finish(Arm& arm, OnSample&& on_sample) {
         let_go(arm, on_sample);
@@ -94,7 +95,7 @@ class Sampler {
         return (place + 1) % capacity;
     }
 
-    /// Whether time went on from a stamp to the one of the next frame.
+    /// Whether the stamp of the next frame continues from a stamp.
     [[nodiscard]] static constexpr bool goes_on_from(std::int64_t held_ns, std::int64_t next_ns) noexcept {
         return next_ns >= held_ns - LogClock::overtaken_ns && next_ns <= held_ns + LogClock::longest_step_ns;
     }
@@ -179,7 +180,7 @@ class Sampler {
     std::array<std::int64_t, capacity> instant_{}; ///< of the samples that wait, a ring
     std::size_t first_ = 0;
     std::size_t waiting_ = 0;
-    bool holds_ = false; ///< a frame that leads, until the next shows whether time went on
+    bool holds_ = false; ///< a frame whose stamp is ahead, until the next frame
     Frame held_;
     BusState held_state_ = BusState::active;
     BusCounters held_counters_;

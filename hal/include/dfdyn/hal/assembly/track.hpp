@@ -14,7 +14,7 @@ struct TrackConfig {
     std::int64_t latency_ns; ///< from the measurement to the stamp of its frame
     QualificationGate::Config qualification;
     std::int64_t period_ns = 0; ///< in which a source sends; 0: not known, so that nothing is ever missing
-    std::int64_t jitter_ns = 0; ///< by how much a frame is later than another one, at most
+    std::int64_t jitter_ns = 0; ///< largest difference of the lateness of two frames
 };
 
 /// How the value of an instant came about.
@@ -26,7 +26,7 @@ enum class ValueOrigin : std::uint8_t {
     held          ///< from the last measurement, because the next is not due yet
 };
 
-/// What is missing or wrong is called differently for positions and outputs.
+/// Names of the reasons, which differ between positions and outputs.
 struct TrackReasons {
     Reason waiting;
     Reason stale;
@@ -84,11 +84,11 @@ class Track {
         return history_.empty() || stamp_ns - latency_ns_ > history_.newest().stamp_ns;
     }
 
-    /// The source is not itself (any more): it must qualify anew.
+    /// The source is not itself: it must qualify again.
     constexpr void disqualify() noexcept { qualification_.restart(); }
 
-    /// The values at an instant, as far as is known at `now_ns`; see the class. `stamp_ns` is that of the
-    /// newest measurement that takes part. O(capacity).
+    /// Returns the values at an instant from the measurements until `now_ns`; see the class. `stamp_ns` is
+    /// the stamp of the newest measurement used. O(capacity).
     constexpr Measurement<values> at(std::int64_t instant_ns, std::int64_t now_ns) noexcept {
         const auto [before, after] = history_.around(instant_ns);
         Measurement<values> result;

@@ -8,11 +8,11 @@
 
 namespace dfdyn::hal {
 
-/// What a bus' own state and counters mean for the samples. Lost arbitration is normal; an error-passive
-/// controller is degraded, yet what it receives is good.
+/// Decides from the state and the counters of a bus whether its samples are valid. Lost arbitration is
+/// normal. An error-passive controller is degraded, but the frames that it receives are valid.
 class BusHealth {
   public:
-    /// As of the last drain. The first counters are the start: what was lost before is nobody's loss here.
+    /// Takes the state and counters after a drain. Losses count from the first counters.
     constexpr void update(BusState state, const BusCounters& counters) noexcept {
         const std::uint64_t lost = counters.dropped + counters.controller_overruns;
         if (started_ && lost != lost_) {

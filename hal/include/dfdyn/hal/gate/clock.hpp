@@ -7,17 +7,16 @@
 
 namespace dfdyn::hal {
 
-/// Holds the stamps of one bus to the time at which they are read. A stamp that lies ahead of that time, or
-/// behind the latest by more than frames overtake each other, is refused; after several in a row that go on
-/// from each other their clock is adopted: from then on its stamps are shifted so that they continue the old
-/// ones. What comes out never runs backward by more than `tolerance`, nor ahead.
+/// Compares the stamps of one bus with the time at which they are read. It refuses a stamp ahead of that
+/// time, and one further behind the latest than frames overtake each other. After several refused stamps in a
+/// row that are consistent, their clock is adopted: its stamps are shifted so that they continue the old
+/// ones. The resulting time is never ahead, and runs backward by at most `tolerance`.
 class ClockGate {
   public:
     struct Config {
-        std::int64_t tolerance_ns = 5'000'000; ///< how far a stamp may lie ahead, or behind the latest
-        std::int64_t max_step_ns =
-            100'000'000;      ///< between frames that go on from each other; of the first one's age
-        int adopt_after = 20; ///< consistent frames, at least 1
+        std::int64_t tolerance_ns = 5'000'000;  ///< largest lead, and lag behind the latest stamp
+        std::int64_t max_step_ns = 100'000'000; ///< between consistent frames; and age of the first
+        int adopt_after = 20;                   ///< consistent frames, at least 1
     };
 
     explicit constexpr ClockGate(const Config& config) noexcept : config_(config) {}
@@ -48,7 +47,7 @@ class ClockGate {
     [[nodiscard]] constexpr bool doubtful() const noexcept { return run_ > 0; }
     [[nodiscard]] constexpr std::uint64_t refused() const noexcept { return refused_; }
 
-    /// How often another clock was adopted.
+    /// Number of times another clock was adopted.
     [[nodiscard]] constexpr std::uint64_t adopted() const noexcept { return adopted_; }
 
   private:

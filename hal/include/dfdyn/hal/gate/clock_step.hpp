@@ -34,8 +34,8 @@ class ClockStepWatch {
         mine.heard = true;
     }
 
-    /// By how much the clock was set recently before `now_ns`, if all sources show it, to within
-    /// `tolerance_ns`. A source that lost frames meanwhile shows that many periods more.
+    /// Step (ns) of the clock shortly before `now_ns`, if all sources show it, to within `tolerance_ns`. A
+    /// source that lost frames meanwhile shows one period more for each of them.
     [[nodiscard]] constexpr std::optional<std::int64_t> step_ns(std::int64_t now_ns,
                                                                 std::int64_t tolerance_ns) const noexcept {
         std::optional<std::int64_t> least;

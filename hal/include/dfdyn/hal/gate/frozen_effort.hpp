@@ -8,10 +8,10 @@
 
 namespace dfdyn::hal {
 
-/// Detects an effort that repeats the very same value while its joint moves. The effort of a joint at rest
-/// may be constant for ever, which is no fault. How often values repeat in motion depends on the device's
-/// resolution; so the limit is twice the longest run of equal values that was seen to end by a few counts.
-/// Shorter runs cannot be told from coincidence. O(1).
+/// Detects an effort that repeats the same value while its joint moves; at rest a constant effort is no
+/// fault. The length of such runs in motion depends on the device's resolution. So the limit is twice the
+/// longest run of equal values that ended with a change of a few counts. Shorter runs may be coincidence.
+/// O(1).
 class FrozenEffortGate {
   public:
     /// `limit`: equal values in a row that are too many for any device, at least 2.
@@ -30,7 +30,7 @@ class FrozenEffortGate {
         return now;
     }
 
-    /// How often the effort froze.
+    /// Number of times the effort froze.
     [[nodiscard]] constexpr std::uint64_t count() const noexcept { return episodes_; }
 
   private:

@@ -10,11 +10,11 @@
 
 namespace dfdyn::hal {
 
-/// The full scales of a sensor's channels, as described or as the sensor reports them. Gives none until all
-/// are known and can be: with a full scale of 0 a wrench looks healthy and is nothing, with a default or with
-/// that of another calibration it is off by a factor. So a report never replaces one silently:
-/// - where it contradicts the description, there is none until a report of that channel agrees with it;
-/// - where it contradicts an earlier report, there is none until all channels were reported again, alike.
+/// The full scales of a sensor's channels, as described or as the sensor reports them. It returns none until
+/// all are known and plausible. With a full scale of 0 every wrench is zero; with a default, or the value of
+/// another calibration, it is wrong by a factor. So a report never replaces a full scale silently:
+/// - if it contradicts the description, there is none until a report of that channel agrees with it;
+/// - if it contradicts an earlier report, there is none until all channels were reported again, alike.
 template <int channels>
 class FullScaleGate {
   public:
@@ -26,14 +26,14 @@ class FullScaleGate {
 
     explicit constexpr FullScaleGate(const Ranges& plausible) noexcept : plausible_(plausible) {}
 
-    /// Of the sensor's description. Channel 0 … channels-1; another is ignored.
+    /// Sets a full scale from the sensor's description. A channel outside 0 … channels-1 is ignored.
     constexpr void describe(int channel, double full_scale) noexcept {
         if (has(channel)) {
             channel_[static_cast<std::size_t>(channel)] = {full_scale, true, true, false};
         }
     }
 
-    /// Of the sensor itself; channels likewise.
+    /// Takes a full scale that the sensor reports. A channel outside 0 … channels-1 is ignored.
     constexpr void report(int channel, double full_scale) noexcept {
         if (!has(channel)) {
             return;
@@ -77,7 +77,7 @@ class FullScaleGate {
                channel_[static_cast<std::size_t>(channel)].value == full_scale;
     }
 
-    /// How often a full scale was reported that differs from the one before, or from the description.
+    /// Number of reports that differ from the one before, or from the description.
     [[nodiscard]] constexpr std::uint64_t changed() const noexcept { return changed_; }
 
   private:

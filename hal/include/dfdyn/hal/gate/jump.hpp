@@ -10,10 +10,10 @@
 
 namespace dfdyn::hal {
 
-/// Detects an output that is much further from where it is expected than outputs usually are. Expected is the
-/// last one, or the line through the last two, whichever is usually nearer, channel by channel. Too far is
-/// ten times the usual distance and half a hundredth of the largest value so far. Nothing bounds how fast a
-/// force may change; so several such outputs in a row that agree with each other are believed. O(values).
+/// Detects an output whose prediction error is much larger than usual. The prediction of each channel is the
+/// last output or the line through the last two, whichever has had the smaller errors. The limit is ten times
+/// the usual error, and at least 0.5 % of the largest value so far. A force may change at any rate; so
+/// several such outputs in a row that agree with each other are believed. O(values).
 template <int values>
 class JumpGate {
   public:
@@ -74,7 +74,7 @@ class JumpGate {
         line.count = std::min(line.count + 1, enough);
     }
 
-    /// Whether an output may follow a line. How far it is from it is learned, as far as it is plausible.
+    /// Whether an output may follow a line. Its plausible distances from the line are learned.
     constexpr bool follows(const Line& line, const Values& value, std::int64_t stamp_ns) noexcept {
         constexpr double memory = 64; // outputs
         const std::int64_t age_ns = stamp_ns - line.stamp_ns;

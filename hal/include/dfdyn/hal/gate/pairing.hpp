@@ -64,7 +64,7 @@ class PairGate {
         return orphans_[static_cast<std::size_t>(part)];
     }
 
-    /// How often a second sender was seen.
+    /// Number of times a second sender was seen.
     [[nodiscard]] constexpr std::uint64_t doubles() const noexcept { return doubles_; }
 
   private:

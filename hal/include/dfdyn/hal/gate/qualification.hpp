@@ -6,8 +6,8 @@
 
 namespace dfdyn::hal {
 
-/// Keeps a source back until it has shown enough readings. Encoders answer well-formed zeros before they know
-/// their position, so zeros do not count, unless there are very many: then the joint does stand there.
+/// Refuses a source until it has sent enough readings. Encoders send well-formed zeros before they have their
+/// position. So zeros do not count, unless there are very many: then the joint is at rest at zero.
 class QualificationGate {
   public:
     struct Config {
@@ -27,7 +27,7 @@ class QualificationGate {
         return readings_ == config_.readings;
     }
 
-    /// The source was away, or was not itself: it must qualify anew.
+    /// The source was silent, or not itself: it must qualify again.
     constexpr void restart() noexcept {
         restarts_ += readings_ > 0 || zeros_ > 0 ? 1U : 0U;
         readings_ = 0;

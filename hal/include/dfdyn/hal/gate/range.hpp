@@ -15,7 +15,7 @@ struct Range {
     double highest;
 };
 
-/// Refuses values beyond what the sensor can measure, and what is not a number.
+/// Refuses values outside the sensor's range, and NaN.
 template <int values>
 class RangeGate {
   public:

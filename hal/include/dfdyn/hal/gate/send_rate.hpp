@@ -6,13 +6,13 @@
 
 namespace dfdyn::hal {
 
-/// Tells one sender of an identifier from two, by what one sender can do: it sends at most once per period,
-/// and each frame is on the wire at most `delay` after that. Two frames may so come closer together than a
-/// period, which on a loaded bus they do all the time; not more of them than the periods that have passed. A
-/// sender that is slower than its period, pauses, or sends when asked is never suspected.
+/// Detects two nodes that use one CAN identifier, with a leaky bucket (GCRA; Turner 1986). One node sends at
+/// most one frame per period, and each frame arrives at most `delay` later. So two frames may arrive within
+/// less than a period, as they often do on a loaded bus, but not more frames than periods have passed. A node
+/// that is slower than its period, pauses, or sends on request is never suspected.
 ///
-/// It keeps the earliest time at which the last frame can have been sent: not earlier than `delay` before the
-/// frame came, nor than a period after the one before (the leaky bucket of network policing, Turner 1986).
+/// The state is the earliest time at which the last frame can have been sent: not earlier than `delay` before
+/// its arrival, and not earlier than a period after the frame before.
 class SendRateGate {
   public:
     struct Config {
@@ -23,8 +23,8 @@ class SendRateGate {
     explicit constexpr SendRateGate(const Config& config) noexcept
         : shortest_ns_(config.period_ns - config.period_ns / clock_tolerance), delay_ns_(config.delay_ns) {}
 
-    /// Whether this frame cannot be of the sender of the one before; it starts anew with this one. Frames
-    /// that share a stamp, or were overtaken, are no evidence.
+    /// Whether this frame cannot be from the sender of the frame before. If so, the state restarts with it.
+    /// Frames that share a stamp, or were overtaken, are no evidence.
     constexpr bool too_soon(std::int64_t stamp_ns) noexcept {
         if (started_ && stamp_ns <= last_ns_) {
             return false;
@@ -42,13 +42,13 @@ class SendRateGate {
         return sent_ns_ + shortest_ns_ <= stamp_ns;
     }
 
-    /// The last frames of two identifiers were sent together: what is known of one holds for the other.
+    /// The last frames of two identifiers were sent together: both get the later of their earliest times.
     static constexpr void sent_together(SendRateGate& one, SendRateGate& other) noexcept {
         one.sent_ns_ = other.sent_ns_ = std::max(one.sent_ns_, other.sent_ns_);
     }
 
   private:
-    /// A sender's clock is fast by one part in so many at most; CAN's own bit timing asks for better ones.
+    /// A sender's clock is fast by at most 1/128; the bit timing of CAN requires better clocks.
     static constexpr std::int64_t clock_tolerance = 128;
 
     std::int64_t shortest_ns_;
@@ -58,7 +58,7 @@ class SendRateGate {
     bool started_ = false;
 };
 
-/// Refuses what comes right after a second sender was seen, too: of two interleaved senders every other frame
+/// Also refuses the frames right after a second sender was seen: of two interleaved senders every other frame
 /// is in time.
 class CollisionHold {
   public:
@@ -69,7 +69,7 @@ class CollisionHold {
         return left_ > 0;
     }
 
-    /// How often a second sender was seen.
+    /// Number of times a second sender was seen.
     [[nodiscard]] constexpr std::uint64_t count() const noexcept { return count_; }
 
   private:

@@ -20,7 +20,7 @@ class StalenessGate {
 
     [[nodiscard]] constexpr std::int64_t max_age_ns() const noexcept { return max_age_ns_; }
 
-    /// How often a stale value was asked for.
+    /// Number of requests for a stale value.
     [[nodiscard]] constexpr std::uint64_t count() const noexcept { return stale_; }
 
   private:
