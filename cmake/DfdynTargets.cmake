@@ -19,7 +19,7 @@ function(dfdyn_compile_strictly target)
     target_compile_options(${target} PRIVATE
         -Wall -Wextra -Wpedantic -Wconversion -Wshadow)
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-        # clang's own version of this also warns of every intended widening, as of a float in a test of doubles.
+        # clang's own version also warns of every intended widening, for example of a float in a test of doubles.
         target_compile_options(${target} PRIVATE -Wdouble-promotion)
     endif()
     if(PROJECT_IS_TOP_LEVEL)
@@ -34,10 +34,9 @@ function(dfdyn_compile_strictly target)
     endif()
 endfunction()
 
-# dfdyn_compile_by_folder(TARGET [HEADER...]): with DFDYN_COMPILE_BY_FOLDER, compiles the sources of a target that lie in one
-# folder of the caller's as one, with its subfolders, and the headers, which most of them include, once for all; call it when all
-# sources have been added. What is compiled together depends on the folder alone, so that two files whose names clash do so in
-# every build.
+# dfdyn_compile_by_folder(TARGET [HEADER...]): with DFDYN_COMPILE_BY_FOLDER, compiles all sources of a target in one folder of the
+# caller, with its subfolders, as one file. The headers, which most of them include, are precompiled. Call it after all sources have
+# been added. Only the folder decides what is compiled together, so that names clash in every build or in none.
 function(dfdyn_compile_by_folder target)
     if(NOT DFDYN_COMPILE_BY_FOLDER)
         return()
@@ -58,7 +57,7 @@ function(dfdyn_compile_by_folder target)
         target_compile_options(${target} PRIVATE --param=ggc-min-heapsize=1048576)
     endif()
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-        # What GCC 12 says of bounds depends on what it inlines, and is mostly wrong where a folder is inlined into one file.
+        # GCC 12's warnings about bounds depend on inlining, and most are wrong if a folder is one file.
         target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
     elseif(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
         # A name that another file of the folder has to itself is none that could be mistaken.

@@ -54,7 +54,7 @@ std::vector<Frame> frames_of(const std::string& log) {
 
 } // namespace
 
-TEST_CASE("candump receives what dfdyn play sends in order and at the pace of the log or another") {
+TEST_CASE("candump receives the frames of dfdyn play in order, at the rate of the log or another") {
     DFDYN_SEEDED_ENGINE(engine);
     std::vector<Frame> played;
     std::vector<Frame> on_the_wire;
@@ -88,7 +88,7 @@ TEST_CASE("candump receives what dfdyn play sends in order and at the pace of th
     CHECK(std::abs(seen_s - log_s / rate) < late_s + 0.02);
 }
 
-TEST_CASE("Ctrl-C ends dfdyn play before the end of the log and it reports what it did") {
+TEST_CASE("Ctrl-C ends dfdyn play before the end of the log, with a report") {
     const TemporaryDirectory directory;
     const std::string log =
         directory.write("run.log", "(1.000000) can0 123#\n(9999.000000) can0 456#\n").string();

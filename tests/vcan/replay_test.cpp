@@ -19,7 +19,7 @@ bool same_bits(const std::vector<float>& one, const std::vector<float>& other, s
                       [](float a, float b) { return std::bit_cast<int>(a) == std::bit_cast<int>(b); });
 }
 
-/// Predictions made while `dfdyn play` sent the log, and predictions from the recording of those frames.
+/// Predictions while `dfdyn play` sent the log, and predictions from the recording of its frames.
 struct LiveAndReplayed {
     ReplayedRecording live;
     ReplayedBus again;
