@@ -27,7 +27,7 @@ double angle(int k, double t) { return 0.3 * k - 0.5 + 0.4 * std::sin(pi * t + k
 double speed(int k, double t) { return 0.4 * pi * std::cos(pi * t + k); }
 double effort(int k, double t) { return (0.5 + 0.1 * k) * std::cos(0.5 * pi * t + k); }
 
-/// A log, and how far its values are from the truth at most: a count of the coarsest device.
+/// A log, and the largest error of its values: a count of the coarsest device.
 struct DeviceLog {
     const char* name;
     const char* family;

@@ -113,7 +113,7 @@ void read_cubemars_motors(const JsonReader& joints, const std::filesystem::path&
     }
 }
 
-/// 0: no feedback of such a motor; above 1: what speaks for it.
+/// Returns 0 if the frame is no feedback of such a motor, 1 if it can be one, more with evidence for it.
 double cubemars_plausibility(const hal::Frame& frame) {
     const bool short_frame = frame.length == 6;
     if (!short_frame && (frame.data[6] > 150 || frame.data[7] > 6)) {

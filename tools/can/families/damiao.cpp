@@ -76,7 +76,7 @@ void read_damiao_motors(const JsonReader& joints, const std::filesystem::path& /
         joints, false, [&](const JsonReader& board) { return read_damiao_motor(board, fd); }, description);
 }
 
-/// 0: no feedback of such a motor; above 1: what speaks for it.
+/// Returns 0 if the frame is no feedback of such a motor, 1 if it can be one, more with evidence for it.
 double damiao_plausibility(const hal::Frame& frame) {
     const unsigned state = frame.data[0] >> 4U;
     if (state != 0 && state != 1 && (state < 8 || state > 14)) {

@@ -55,7 +55,7 @@ std::string device_page() {
     for (const JointFamily& family : joint_families()) {
         text += section_of(family);
         text += family.types.empty() ? "" : types_table(family.types);
-        text += list_of("What is often decoded wrongly:", family.pitfalls);
+        text += list_of("Common decoding errors:", family.pitfalls);
         text += list_of("Sources:", family.sources);
         text +=
             family.recognise == nullptr ? "" : "\n`buscheck` recognises it on a bus that nobody described.\n";

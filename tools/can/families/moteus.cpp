@@ -104,9 +104,9 @@ Recognition recognise_moteus(FrameSpan frames) {
             recognition.score += 3 * static_cast<double>(count);
         }
         if (!answering.empty()) {
-            recognition.silent = silent_motors(frames, 1, 127, answering, [&](unsigned id) {
-                return hal::MoteusController(
-                    {.id = static_cast<int>(id), .prefix = static_cast<int>(address.first)});
+            const int prefix = static_cast<int>(address.first);
+            recognition.silent = silent_motors(frames, 1, 127, answering, [prefix](unsigned id) {
+                return hal::MoteusController({.id = static_cast<int>(id), .prefix = prefix});
             });
         }
         if (recognition.score > best.score) {

@@ -153,7 +153,7 @@ Recognition recognise_piper_arm(FrameSpan frames, std::uint32_t feedback_id) {
     std::vector<CodecFit> fits;
     for (int pair = 0; pair < 3; ++pair) {
         const std::uint32_t angles = feedback_id + 4 + static_cast<std::uint32_t>(pair);
-        CodecFit fit = fit_codec(hal::PiperPair({.pair = pair, .feedback_id = feedback_id}), frames);
+        const CodecFit fit = fit_codec(hal::PiperPair({.pair = pair, .feedback_id = feedback_id}), frames);
         if (!fit.fits() || std::max(fit.joint[0].highest_rad, fit.joint[1].highest_rad) > 7) {
             continue;
         }
@@ -166,7 +166,7 @@ Recognition recognise_piper_arm(FrameSpan frames, std::uint32_t feedback_id) {
         recognition.boards.push_back(std::move(board));
         recognition.identifiers.insert({false, angles});
         recognition.score += 3 * static_cast<double>(fit.values);
-        fits.push_back(std::move(fit));
+        fits.push_back(fit);
     }
     for (std::uint32_t id = feedback_id; id < feedback_id + 8 && !fits.empty(); ++id) {
         recognition.identifiers.insert({false, id});

@@ -20,7 +20,7 @@ struct RecognisedBoard {
     nlohmann::json entry = {}; ///< of `boards`, without its joints
     int joints = 1;
     double rate_hz = 0;        ///< of its positions
-    std::string measured = {}; ///< what its frames show beside that; "" nothing
+    std::string measured = {}; ///< other results from its frames; "": none
 };
 
 /// What a family has recognised in the frames of a bus that nobody described.

@@ -188,7 +188,7 @@ Recognition recognise_private_robstride(FrameSpan frames) {
     return recognition;
 }
 
-/// 0: no feedback of such a motor; above 1: what speaks for it.
+/// Returns 0 if the frame is no feedback of such a motor, 1 if it can be one, more with evidence for it.
 double robstride_plausibility(const hal::Frame& frame) {
     const double celsius = hal::RobstrideMitProtocol::temperature(frame);
     return celsius > 150 ? 0 : 1 + (celsius >= 5 && celsius <= 130 ? 1 : 0) + (frame.id == 0xFD ? 0.5 : 0);

@@ -23,7 +23,7 @@ void JointFit::take(const hal::JointValue& value) noexcept {
 }
 
 bool CodecFit::fits() const noexcept {
-    constexpr std::uint64_t most_bad = 10; ///< one of so many
+    constexpr std::uint64_t most_bad = 10; ///< the largest share of bad frames is 1 / most_bad
     const std::uint64_t positions = joint[0].positions + joint[1].positions;
     const std::uint64_t jumps = joint[0].jumps + joint[1].jumps;
     const std::uint64_t at_end = joint[0].at_end + joint[1].at_end;

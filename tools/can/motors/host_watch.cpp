@@ -8,7 +8,7 @@ namespace {
 using hal::MotorCommand;
 
 constexpr std::uint64_t repeated = 5; ///< as often, it is no single command of a person
-constexpr double share_of_two = 0.05; ///< of all commands: what one program does not do at its start only
+constexpr double share_of_two = 0.05; ///< of all commands; a smaller share may be the start of one program
 
 struct CommandName {
     MotorCommand command;

@@ -16,7 +16,7 @@ class HostWatch {
   public:
     /// `only_torque`: a control command without stiffness and damping.
     void take(hal::MotorCommand command, bool only_torque) noexcept;
-    /// An answer to another host than the described one.
+    /// Counts an answer for another host than the described one.
     void answered_other_host() noexcept { ++other_host_; }
 
     std::uint64_t count(hal::MotorCommand command) const noexcept {

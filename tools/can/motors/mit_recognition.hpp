@@ -85,7 +85,7 @@ struct MeasuredMaxima {
 /// How to find the motors of one family.
 struct MotorSearch {
     std::span<const MotorType> types;
-    std::string_view ask; ///< how to learn the maxima, for what is unsure
+    std::string_view ask; ///< instruction to obtain the maxima, for the report
     unsigned last_motor = 255;
     bool own_id = false; ///< motors may answer on the identifier of their commands
 };

@@ -16,7 +16,7 @@ namespace dfdyn::tools {
 /// Names of the fields of the three maxima.
 inline constexpr std::array<const char*, 3> maximum_names{"position_max", "velocity_max", "torque_max"};
 
-/// Reads `motor` and the three maxima. Without a field, a maximum is that of the motor's type. `expected`:
+/// Reads `motor` and the three maxima. A maximum without a field is taken from the motor's type. `expected`:
 /// what the errors about missing maxima ask for.
 Maxima read_maxima(const JsonReader& board, std::span<const MotorType> types,
                    const std::array<std::string, 3>& expected);

@@ -16,7 +16,7 @@ class VelocityCheck {
     void take(const hal::JointValue& value) noexcept;
 
     /// Change of the positions over the integral of the velocity; 1 if there is nothing to compare, 0 if the
-    /// positions stand.
+    /// positions are constant.
     double ratio() const noexcept;
     /// Standard error of `ratio`.
     double ratio_error() const noexcept;

@@ -101,7 +101,7 @@ nlohmann::json draft_of(const RecognisedFamily& family) {
             {"output", {{"family", "efforts"}, {"quantity", recognition.quantity}}}};
 }
 
-/// Names of rules that need a description by a person: who sends what, and how often.
+/// Returns true for rules that require a description by a person: senders and their rates.
 bool judges_description(const BusFinding& finding, const BusCheck& check) {
     const std::vector<BusFinding> source = source_findings(check);
     return finding.rule == "unknown_traffic" || finding.rule == "overload" ||

@@ -59,10 +59,10 @@ struct RecognisedFamily {
     Recognition recognition;
 };
 
-/// What is on a bus that nobody described.
+/// Result of the recognition of a bus without a description.
 struct RecognisedBus {
     double duration_s = 0;                  ///< of the frames that it was recognised by
-    std::vector<RecognisedFamily> families; ///< with joints; the first is that of the draft
+    std::vector<RecognisedFamily> families; ///< families with joints; the first one is in the draft
     std::optional<nlohmann::json> draft; ///< a description that can be read; none without joints and efforts
     std::string draft_error;             ///< why there is no draft
     std::vector<BusFinding> findings;    ///< of the draft's devices, in these frames
@@ -72,7 +72,7 @@ struct RecognisedBus {
 /// Recognises the devices that sent these frames, which must be in the order of time.
 RecognisedBus recognise_bus(std::span<const hal::Frame> frames);
 
-/// Prints the families with their boards, rates and what is unsure.
+/// Prints the families with their boards, rates and uncertain properties.
 void print_recognised_bus(std::ostream& out, const RecognisedBus& bus);
 
 } // namespace dfdyn::tools

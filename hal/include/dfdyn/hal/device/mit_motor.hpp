@@ -124,7 +124,7 @@ class MitMotor {
         Frame& frame = frames.frame[0];
         frame = new_frame(config_.feedback_id);
         Protocol::mark_sound(frame, motor_id());
-        feedback.encode(values[0], scale(), frame);
+        feedback_codes.encode(values[0], scale(), frame);
         return frames;
     }
 
@@ -186,8 +186,8 @@ class MitMotor {
     }
 
   private:
-    static constexpr LinearFeedback feedback{big_endian_code(8, 16), big_endian_code(24, 12),
-                                             big_endian_code(36, 12)};
+    static constexpr LinearFeedback feedback_codes{big_endian_code(8, 16), big_endian_code(24, 12),
+                                                   big_endian_code(36, 12)};
     static constexpr LinearCode commanded_position = big_endian_code(0, 16);
     static constexpr LinearCode commanded_velocity = big_endian_code(16, 12);
     static constexpr Signal commanded_gains = big_endian_code(28, 24).signal; ///< kp, kd
@@ -234,7 +234,7 @@ class MitMotor {
     }
 
     [[nodiscard]] constexpr Decoded decode_feedback(const Frame& frame) const noexcept {
-        Decoded decoded = feedback.decode(frame, scale(), Protocol::condition(frame));
+        Decoded decoded = feedback_codes.decode(frame, scale(), Protocol::condition(frame));
         JointValue& value = decoded.joint[0];
         value.has_velocity = !contradicted_[1];
         if (value.position_reason == Reason::ok && contradicted_[0]) {

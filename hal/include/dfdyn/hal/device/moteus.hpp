@@ -114,7 +114,7 @@ class MoteusSubframes {
         at_ += size;
         switch (type_) {
         case 0:
-            item.integer = std::bit_cast<std::int8_t>(bytes[0]);
+            item.integer = bytes[0] < 0x80 ? bytes[0] : bytes[0] - 0x100;
             break;
         case 1:
             item.integer = load_little<std::int16_t>(bytes);

@@ -89,7 +89,7 @@ class RmdMotor {
         }
     }
 
-    /// Encodes the answers to 0x92 (or 0x60) and 0x9C.
+    /// Encodes the replies 0x92 (or 0x60) and 0x9C.
     [[nodiscard]] FrameList encode(const std::array<JointValue, 1>& values) const noexcept {
         FrameList frames;
         const JointValue& value = values[0];

@@ -78,7 +78,7 @@ class RobstrideMotor {
         frames.count = 1;
         Frame& frame = frames.frame[0];
         frame = new_frame(feedback_type, run << 14U | motor_id(), host_id());
-        feedback.encode(values[0], scale(), frame);
+        feedback_codes.encode(values[0], scale(), frame);
         return frames;
     }
 
@@ -147,7 +147,7 @@ class RobstrideMotor {
 
     static constexpr LinearCode position_code = big_endian_code(0, 16);
     static constexpr LinearCode velocity_code = big_endian_code(16, 16);
-    static constexpr LinearFeedback feedback{position_code, velocity_code, big_endian_code(32, 16)};
+    static constexpr LinearFeedback feedback_codes{position_code, velocity_code, big_endian_code(32, 16)};
 
     [[nodiscard]] static constexpr bool is_private(const Frame& frame) noexcept {
         return frame.extended && !frame.error;
@@ -205,7 +205,7 @@ class RobstrideMotor {
     }
 
     constexpr Decoded decode_feedback(const Frame& frame) noexcept {
-        return feedback.decode(frame, scale(), condition_of(frame));
+        return feedback_codes.decode(frame, scale(), condition_of(frame));
     }
 
     Config config_;
