@@ -198,6 +198,20 @@ void set_velocity_code(Frame& frame, unsigned code) {
     frame.data[4] = static_cast<std::uint8_t>((code & 15U) << 4U | (frame.data[4] & 15U));
 }
 
+TEST_CASE("boards with other protocols are recognised, too, without a draft where it would be a guess") {
+    const auto recognised = [](const BusDescription& arm) {
+        const RecognisedBus bus = recognise_bus(sound(arm, 1));
+        return bus.families.size() == 1 && bus.families[0].name == arm.joint_family->name
+                   ? bus.families[0].recognition.boards.size()
+                   : 0;
+    };
+    CHECK(recognised(drives()) == 6);
+    CHECK(recognised(icub()) == 2);
+    CHECK(recognised(described(odrive_and_ati)) == 2);
+    CHECK(recognised(described(foc_and_robotous)) == 2);
+    CHECK_FALSE(recognise_bus(sound(drives(), 1)).draft);
+}
+
 TEST_CASE("faults of motors are found on a bus that nobody described") {
     CHECK(rules_without_description(frames_of("damiao")) == Names{});
     CHECK(rules_without_description(damiao_with([](Frame& frame) {

@@ -65,6 +65,11 @@ void print_bus(std::ostream& out, const BusCheck& check) {
     if (check.from_host() > 0) {
         out << "     " << check.from_host() << " frames were sent by programs of this computer\n";
     }
+    for (const BusBoard& board : check.boards()) {
+        if (const std::string summary = board.board->host_summary(); !summary.empty()) {
+            out << "     other programs command joint " << board.joint[0] + 1 << ": " << summary << '\n';
+        }
+    }
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "dfdyn/hal/device/cia402.hpp"
 
 #include "tools/can/families/family_fields.hpp"
+#include "tools/can/motors/codec_fit.hpp"
 
 #include <numbers>
 
@@ -92,6 +93,46 @@ void read_drives(const JsonReader& joints, const std::filesystem::path& /*folder
         joints, [&](const JsonReader& board) { return read_drive(board, config); }, description);
 }
 
+/// Identifiers of the TPDOs and of the heartbeat, without the node.
+constexpr std::array<std::uint32_t, 4> tpdo_identifiers{0x180, 0x280, 0x380, 0x480};
+constexpr std::uint32_t heartbeat_identifier = 0x700;
+
+/// Requires a SYNC or a heartbeat, because other devices use the identifiers of TPDOs. The contents of the
+/// TPDOs are configured in each drive.
+Recognition recognise_drives(FrameSpan frames) {
+    std::map<std::uint32_t, std::vector<std::int64_t>> stamps;
+    for (const hal::Frame& frame : frames) {
+        if (!frame.extended && !frame.error && !frame.fd && !frame.remote) {
+            stamps[frame.id].push_back(frame.stamp_ns);
+        }
+    }
+    const bool synchronous = stamps[0x080].size() >= frames_to_recognise;
+    Recognition recognition;
+    for (std::uint32_t node = 1; node <= 127; ++node) {
+        RecognisedBoard board{.name = "node " + std::to_string(node), .entry = {{"node", node}}};
+        for (const std::uint32_t tpdo : tpdo_identifiers) {
+            const std::vector<std::int64_t>& times = stamps[tpdo + node];
+            if (times.size() < frames_to_recognise ||
+                (!synchronous && stamps[heartbeat_identifier + node].empty())) {
+                continue;
+            }
+            const double duration_s = 1e-9 * static_cast<double>(times.back() - times.front());
+            board.rate_hz = std::max(board.rate_hz, static_cast<double>(times.size() - 1) / duration_s);
+            board.measured += (board.measured.empty() ? "sends " : ", ") + identifier_text(tpdo + node);
+            recognition.identifiers.insert({false, tpdo + node});
+            recognition.score += static_cast<double>(times.size());
+        }
+        if (board.rate_hz > 0) {
+            recognition.boards.push_back(std::move(board));
+        }
+    }
+    if (!recognition.boards.empty()) {
+        recognition.unsure.emplace_back(
+            "what the TPDOs contain, and its units: read the objects 0x1A00 to 0x1A03");
+    }
+    return recognition;
+}
+
 } // namespace
 
 JointFamily cia402() {
@@ -112,6 +153,7 @@ JointFamily cia402() {
                 {"node": 2, "joint": 2, "counts_per_turn": -1048576, "effort_per_count": 0.01}]})",
         .read = read_drives,
         .devices = "Drives with CANopen and the profile CiA 402",
+        .recognise = recognise_drives,
         .sync = hal::Cia402Drive::encode_sync};
 }
 

@@ -2,6 +2,7 @@
 #include "dfdyn/hal/device/icub_2foc.hpp"
 
 #include "tools/can/families/family_fields.hpp"
+#include "tools/can/motors/codec_fit.hpp"
 
 #include <cmath>
 
@@ -40,6 +41,26 @@ void read_foc_boards(const JsonReader& joints, const std::filesystem::path& /*fo
     read_each_board(joints, read_foc_board, description);
 }
 
+Recognition recognise_foc_boards(FrameSpan frames) {
+    Recognition recognition;
+    recognition.quantity = "i";
+    for (int address = 1; address <= 14; ++address) {
+        const CodecFit fit = fit_codec(hal::icub::FocBoard({.address = address}), frames);
+        if (fit.fits()) {
+            recognition.boards.push_back({.name = "board " + std::to_string(address),
+                                          .entry = {{"address", address}},
+                                          .rate_hz = fit.joint[0].rate_hz()});
+            recognition.identifiers.insert({false, 0x100U | static_cast<std::uint32_t>(address) << 4U});
+            recognition.score += 2 * static_cast<double>(fit.values);
+        }
+    }
+    if (!recognition.boards.empty()) {
+        recognition.unsure.emplace_back(
+            "motor_per_joint: turns of the encoder are taken for those of the joint");
+    }
+    return recognition;
+}
+
 } // namespace
 
 JointFamily icub_2foc() {
@@ -50,7 +71,8 @@ JointFamily icub_2foc() {
             .example = R"({"family": "icub_2foc",
                 "boards": [{"address": 1, "joint": 1}, {"address": 2, "joint": 2, "motor_per_joint": -2}]})",
             .read = read_foc_boards,
-            .devices = "iCub motor boards (2FOC, AMC), one joint each"};
+            .devices = "iCub motor boards (2FOC, AMC), one joint each",
+            .recognise = recognise_foc_boards};
 }
 
 } // namespace dfdyn::tools::families

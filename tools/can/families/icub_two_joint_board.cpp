@@ -2,6 +2,7 @@
 #include "dfdyn/hal/device/icub_two_joint_board.hpp"
 
 #include "tools/can/families/family_fields.hpp"
+#include "tools/can/motors/codec_fit.hpp"
 
 namespace dfdyn::tools::families {
 
@@ -43,6 +44,28 @@ void read_two_joint_boards(const JsonReader& joints, const std::filesystem::path
     read_each_board(joints, read_two_joint_board, description);
 }
 
+Recognition recognise_two_joint_boards(FrameSpan frames) {
+    constexpr double usual_ticks = 11.375; // per degree: 12 bits per turn
+    Recognition recognition;
+    for (int address = 1; address <= 14; ++address) {
+        const CodecFit fit =
+            fit_codec(hal::icub::TwoJointBoard(address, {0, usual_ticks, 0}, {1, usual_ticks, 0}), frames);
+        if (fit.fits()) {
+            recognition.boards.push_back(
+                {.name = "board " + std::to_string(address),
+                 .entry = {{"address", address}, {"ticks_per_degree", {usual_ticks, usual_ticks}}},
+                 .joints = 2,
+                 .rate_hz = fit.joint[0].rate_hz()});
+            recognition.identifiers.insert({false, 0x101U | static_cast<std::uint32_t>(address) << 4U});
+            recognition.score += 2 * static_cast<double>(fit.values);
+        }
+    }
+    if (!recognition.boards.empty()) {
+        recognition.unsure.emplace_back("ticks_per_degree: 11.375 of encoders with 12 bits are assumed");
+    }
+    return recognition;
+}
+
 } // namespace
 
 JointFamily icub_two_joint_board() {
@@ -53,7 +76,8 @@ JointFamily icub_two_joint_board() {
             .example = R"({"family": "icub_two_joint_board", "boards": [
                 {"address": 1, "joints": [1, 2], "ticks_per_degree": [182.04, -182.04]}]})",
             .read = read_two_joint_boards,
-            .devices = "iCub motor boards with two joints (MC4, BLL, DSP)"};
+            .devices = "iCub motor boards with two joints (MC4, BLL, DSP)",
+            .recognise = recognise_two_joint_boards};
 }
 
 } // namespace dfdyn::tools::families

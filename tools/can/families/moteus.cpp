@@ -97,6 +97,11 @@ Recognition recognise_moteus(FrameSpan frames) {
                 .name = "controller " + std::to_string(id), .entry = {}, .rate_hz = fit.joint[0].rate_hz()};
             board.entry = {{"id", id}};
             answering.insert(id);
+            if (fit.joint[0].efforts == 0) {
+                recognition.unsure.push_back(
+                    "controller " + std::to_string(id) +
+                    ": nobody asks for its torque (register 3), without which it has no efforts");
+            }
             recognition.boards.push_back(std::move(board));
             const std::uint32_t reply = address.first << 16U | id << 8U | address.second;
             recognition.identifiers.insert({reply > 0x7FF, reply});

@@ -2,6 +2,7 @@
 #include "dfdyn/hal/device/odrive.hpp"
 
 #include "tools/can/families/family_fields.hpp"
+#include "tools/can/motors/codec_fit.hpp"
 
 #include <cmath>
 
@@ -57,6 +58,31 @@ void read_odrive_axes(const JsonReader& joints, const std::filesystem::path& /*f
         joints, [&](const JsonReader& board) { return read_odrive_axis(board, config); }, description);
 }
 
+/// Requires the heartbeat, because many frames look like two floats.
+Recognition recognise_odrive_axes(FrameSpan frames) {
+    Recognition recognition;
+    for (int node = 0; node <= 63; ++node) {
+        const auto heartbeat_id = static_cast<std::uint32_t>(node) << 5U | 1U;
+        const auto heartbeats = std::ranges::count_if(frames, [&](const hal::Frame& frame) {
+            return hal::has_id(frame, heartbeat_id) && hal::check_form(frame, 8) == hal::Reason::ok;
+        });
+        const CodecFit fit = fit_codec(hal::OdriveAxis({.node = node}), frames);
+        if (heartbeats >= 3 && fit.fits()) {
+            recognition.boards.push_back({.name = "axis " + std::to_string(node),
+                                          .entry = {{"node", node}},
+                                          .rate_hz = fit.joint[0].rate_hz()});
+            recognition.identifiers.insert({false, heartbeat_id});
+            recognition.identifiers.insert({false, heartbeat_id + 8});
+            recognition.score += 2 * static_cast<double>(fit.values);
+        }
+    }
+    if (!recognition.boards.empty()) {
+        recognition.unsure.emplace_back(
+            "motor_per_joint: turns of the motor are taken for those of the joint");
+    }
+    return recognition;
+}
+
 } // namespace
 
 JointFamily odrive() {
@@ -70,7 +96,8 @@ JointFamily odrive() {
             .example = R"({"family": "odrive", "boards": [{"node": 1, "joint": 1, "motor_per_joint": 9},
                                                           {"node": 2, "joint": 2, "motor_per_joint": -9}]})",
             .read = read_odrive_axes,
-            .devices = "ODrive axes with CANSimple, firmware 0.5 and 0.6"};
+            .devices = "ODrive axes with CANSimple, firmware 0.5 and 0.6",
+            .recognise = recognise_odrive_axes};
 }
 
 } // namespace dfdyn::tools::families

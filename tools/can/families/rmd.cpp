@@ -137,8 +137,15 @@ Recognition recognise_rmd_driver(FrameSpan frames, hal::RmdDriver driver) {
             .name = "motor " + std::to_string(motor), .entry = {}, .rate_hz = fit.joint[0].rate_hz()};
         board.entry = {{"motor_id", motor}};
         answering.insert(static_cast<unsigned>(motor));
+        if (fit.joint[0].efforts == 0) {
+            recognition.unsure.push_back(
+                "motor " + std::to_string(motor) +
+                ": nobody asks for its current (0x9C), without which it has no efforts");
+        }
         recognition.boards.push_back(std::move(board));
-        recognition.identifiers.insert({false, (old ? 0x140U : 0x240U) + static_cast<std::uint32_t>(motor)});
+        for (const std::uint32_t base : {0x140U, 0x240U}) { // requests and answers
+            recognition.identifiers.insert({false, base + static_cast<std::uint32_t>(motor)});
+        }
         for (const auto& [command, count] : commands) {
             recognition.score += 3 * static_cast<double>(count);
         }

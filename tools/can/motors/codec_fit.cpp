@@ -5,6 +5,7 @@ namespace dfdyn::tools {
 
 void JointFit::take(const hal::JointValue& value) noexcept {
     velocity.take(value);
+    efforts += value.effort_reason != hal::Reason::no_output ? 1 : 0;
     if (value.position_reason == hal::Reason::waiting_for_position) {
         return;
     }

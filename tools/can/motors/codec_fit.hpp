@@ -23,6 +23,7 @@ struct JointFit {
     std::uint64_t positions = 0;
     std::uint64_t jumps = 0;  ///< between consecutive positions, faster than any joint
     std::uint64_t at_end = 0; ///< at an end of their code
+    std::uint64_t efforts = 0;
     std::int64_t first_ns = 0, last_ns = 0;
     double last_rad = 0;
     double lowest_rad = std::numeric_limits<double>::max(),

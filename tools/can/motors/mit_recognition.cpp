@@ -32,6 +32,31 @@ std::string numbers_text(const std::set<double>& numbers) {
 
 } // namespace
 
+void SteadyBytes::take(const hal::Frame& frame) {
+    if (steps_ > 0 || last_.length > 0) {
+        const auto jumped = [&](std::size_t i) { return std::abs(frame.data[i] - last_.data[i]) > 3; };
+        ++steps_;
+        jumps_ += jumped(6) || jumped(7) ? 1 : 0;
+        intervals_ns_.push_back(frame.stamp_ns - last_.stamp_ns);
+    }
+    last_ = frame;
+}
+
+bool SteadyBytes::is_steady(bool alone) const {
+    if (intervals_ns_.empty()) {
+        return false;
+    }
+    std::vector<std::int64_t> sorted = intervals_ns_;
+    std::ranges::sort(sorted);
+    const std::int64_t median_ns = sorted[sorted.size() / 2];
+    const auto even = std::ranges::count_if(sorted, [&](std::int64_t interval_ns) {
+        return 2 * interval_ns > median_ns && 2 * interval_ns < 3 * median_ns;
+    });
+    constexpr double least_even = 0.45; // of frames that a random selection has, 0.35
+    const bool is_even = static_cast<double>(even) > least_even * static_cast<double>(sorted.size());
+    return 10 * jumps_ < steps_ && (alone || is_even);
+}
+
 MeasuredMaxima measure_maxima(const VelocityCheck& velocity, double assumed, const MotorSearch& search,
                               const Maxima& known) {
     const std::span<const MotorType> types = search.types;

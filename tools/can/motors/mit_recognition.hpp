@@ -15,6 +15,20 @@
 
 namespace dfdyn::tools {
 
+/// Tells the frames of one motor from a selection of other frames: they come at even intervals, and their
+/// temperatures change slowly.
+class SteadyBytes {
+  public:
+    void take(const hal::Frame& frame);
+    /// `alone`: no other motor has the identifier, so that intervals need not be even.
+    bool is_steady(bool alone) const;
+
+  private:
+    hal::Frame last_;
+    std::uint64_t steps_ = 0, jumps_ = 0;
+    std::vector<std::int64_t> intervals_ns_;
+};
+
 /// A motor with MIT mode that may have sent some frames of a bus.
 struct MitCandidate {
     std::uint32_t feedback_id = 0;
@@ -23,7 +37,8 @@ struct MitCandidate {
     std::uint64_t of_id = 0;  ///< of all motors on its identifier
     std::uint64_t motors = 0; ///< on its identifier
     double plausibility = 0;  ///< mean of what `plausible` gave its frames
-    CodecFit fit;             ///< with `assumed`
+    SteadyBytes steady;
+    CodecFit fit; ///< with `assumed`
     static constexpr Maxima assumed{12.5, 30, 10};
     static constexpr double least_plausibility = 1.5;
 };
@@ -45,7 +60,11 @@ std::vector<MitCandidate> mit_candidates(FrameSpan frames, double position_max, 
         candidate.feedback_id = frame.id;
         candidate.motor = motor;
         ++candidate.frames;
-        candidate.plausibility += Protocol::is_feedback(frame, motor) ? plausible(frame) : 1;
+        const bool feedback = Protocol::is_feedback(frame, motor);
+        candidate.plausibility += feedback ? plausible(frame) : 1;
+        if (feedback) {
+            candidate.steady.take(frame);
+        }
     }
     std::vector<MitCandidate> candidates;
     for (auto& [key, candidate] : found) {
@@ -54,7 +73,8 @@ std::vector<MitCandidate> mit_candidates(FrameSpan frames, double position_max, 
         const bool command = !own_id && candidate.feedback_id == candidate.motor;
         const bool rare = 20 * candidate.frames < candidate.of_id;
         if (candidate.motor == 0 || command || rare || candidate.frames < frames_to_recognise ||
-            candidate.plausibility < MitCandidate::least_plausibility) {
+            candidate.plausibility < MitCandidate::least_plausibility ||
+            !candidate.steady.is_steady(5 * candidate.frames > 4 * candidate.of_id)) {
             continue;
         }
         candidate.fit = fit_codec(hal::MitMotor<Protocol>({.motor_id = static_cast<int>(candidate.motor),
