@@ -57,6 +57,20 @@ bool SteadyBytes::is_steady(bool alone) const {
     return 10 * jumps_ < steps_ && (alone || is_even);
 }
 
+void drop_selections(std::vector<MitCandidate>& candidates) {
+    constexpr double least_coverage = 0.95; ///< of the frames of an identifier
+    std::map<std::uint32_t, std::pair<int, std::uint64_t>> explained;
+    for (const MitCandidate& candidate : candidates) {
+        ++explained[candidate.feedback_id].first;
+        explained[candidate.feedback_id].second += candidate.frames;
+    }
+    std::erase_if(candidates, [&](const MitCandidate& candidate) {
+        const auto& [motors, frames] = explained[candidate.feedback_id];
+        return motors > 1 &&
+               static_cast<double>(frames) < least_coverage * static_cast<double>(candidate.of_id);
+    });
+}
+
 MeasuredMaxima measure_maxima(const VelocityCheck& velocity, double assumed, const MotorSearch& search,
                               const Maxima& known) {
     const std::span<const MotorType> types = search.types;

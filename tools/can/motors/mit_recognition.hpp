@@ -35,13 +35,16 @@ struct MitCandidate {
     unsigned motor = 0;
     std::uint64_t frames = 0; ///< its own
     std::uint64_t of_id = 0;  ///< of all motors on its identifier
-    std::uint64_t motors = 0; ///< on its identifier
     double plausibility = 0;  ///< mean of what `plausible` gave its frames
     SteadyBytes steady;
     CodecFit fit; ///< with `assumed`
     static constexpr Maxima assumed{12.5, 30, 10};
     static constexpr double least_plausibility = 1.5;
 };
+
+/// Removes the candidates of identifiers on which several together leave more than a few frames unexplained:
+/// their byte 0 is no motor number.
+void drop_selections(std::vector<MitCandidate>& candidates);
 
 /// Groups frames by identifier and motor. `Protocol`: a MitProtocol. `plausible(frame)`: 0 (not such a frame)
 /// to 1.
@@ -88,10 +91,7 @@ std::vector<MitCandidate> mit_candidates(FrameSpan frames, double position_max, 
             candidates.push_back(candidate);
         }
     }
-    for (MitCandidate& candidate : candidates) {
-        candidate.motors = static_cast<std::uint64_t>(
-            std::ranges::count(candidates, candidate.feedback_id, &MitCandidate::feedback_id));
-    }
+    drop_selections(candidates);
     return candidates;
 }
 
