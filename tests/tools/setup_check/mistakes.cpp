@@ -18,12 +18,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-void scale(Columns& columns, double factor) {
-    for (double& value : columns.values) {
-        value *= factor;
-    }
-}
-
 /// Moves the wrap into the middle of each joint's range, so that every moving joint is wrapped.
 void wrap(Recording& recording, std::size_t joint) {
     const std::size_t count = recording.joint_count();
@@ -73,6 +67,12 @@ void add_output_mistakes(std::vector<Mistake>& mistakes, std::size_t joints, Out
 }
 
 } // namespace
+
+void scale(Columns& columns, double factor) {
+    for (double& value : columns.values) {
+        value *= factor;
+    }
+}
 
 void change_positions(Recording& recording, const std::function<void(double*)>& change) {
     for (std::size_t row = 0; row < recording.row_count(); ++row) {

@@ -38,6 +38,7 @@ void change_positions(tools::Recording& recording, const std::function<void(doub
 void change_outputs(tools::Recording& recording, const std::function<void(double*)>& change);
 
 /// Multiplies the times by `factor`.
+void scale(tools::Columns& columns, double factor);
 void scale_clock(tools::Recording& recording, double factor);
 
 } // namespace dfdyn::tests

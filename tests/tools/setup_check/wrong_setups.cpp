@@ -18,12 +18,6 @@ using tools::SetupFault;
 
 namespace {
 
-void scale(Columns& columns, double factor) {
-    for (double& value : columns.values) {
-        value *= factor;
-    }
-}
-
 /// Every row nearest to a multiple of `step_s`; slower recordings keep all rows.
 void thin(Recording& recording, double step_s) {
     Recording kept = cut(recording, 0, 0, 1);
