@@ -75,6 +75,7 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     auto signals = std::make_shared<DiagnosisSignals>(
         diagnosis_signals(robot, options.outputs, measured_motion(recording)));
     work.signals = signals;
+    work.samples = raw_samples(recording, signals->measured);
     work.torque_gains = torque_gains(*signals, options);
     work.measured = signals->measured.outputs * work.torque_gains.cwiseInverse().asDiagonal();
     const bool gains_known =
@@ -101,6 +102,7 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     } else {
         measure_from(work, 0, work.explanation);
     }
+    doubt_useless_findings(work.diagnosis);
     return work;
 }
 

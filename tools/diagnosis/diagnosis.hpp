@@ -4,6 +4,7 @@
 #include "tools/base/recording/recording.hpp"
 #include "tools/diagnosis/search/explanation.hpp"
 #include "tools/diagnosis/search/standing_contacts.hpp"
+#include "tools/diagnosis/signals/raw_samples.hpp"
 #include "tools/diagnosis/signals/signals.hpp"
 #include "tools/robot/robot.hpp"
 
@@ -81,7 +82,11 @@ struct ErrorMeasure {
 struct Diagnosis {
     std::vector<std::string> output_names;
     std::vector<Suspicion> suspicions;
-    ErrorMeasure nominal, extended; ///< on the held-out time, or over the whole recording without one
+    /// On the held-out time, or over the whole recording without one; of the samples as measured.
+    ErrorMeasure nominal, extended;
+    ErrorMeasure least_squares; ///< of plain least squares for each output (`textbook_fit`)
+    /// Per output: plain least squares is the extended model, because the causes found err more.
+    std::vector<bool> by_least_squares;
     Eigen::VectorXd standing_share; ///< m: share of the rows of these errors that `moving_nrmse` excludes
     double heldout_from_s = 0, heldout_to_s = 0;
     std::vector<Finding> findings; ///< in descending order of gain
@@ -110,6 +115,7 @@ struct DiagnosisWork {
     Eigen::VectorXd torque_gains; ///< per output: measured unit per N·m (N); 1 except for currents
     Explanation explanation;
     std::vector<StandingContact> pushes; ///< at stationary joints
+    RawSamples samples;                  ///< of the recording; without rows: errors are those of `measured`
     Eigen::MatrixXd rest; ///< T x m: residual after the explanation and the contacts, as `measured`
     Diagnosis diagnosis;
 };

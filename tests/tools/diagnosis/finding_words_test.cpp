@@ -26,6 +26,9 @@ TEST_CASE(
     const FoundParameter along_z{"delta_com_z", "m", 0.125, 0.115, 0.135};
     CHECK(main_parameter({no_mass, along_x, along_z}) == "delta_com_z 0.125 m (0.115 … 0.135)");
     CHECK(main_parameter({no_mass, along_z, along_x}) == "delta_com_z 0.125 m (0.115 … 0.135)");
+    // An uncertain error of a mass comes after a certain one of its centre.
+    CHECK(main_parameter({{"delta_mass", "kg", -0.158, -1.32, 1}, along_z}) ==
+          "delta_com_z 0.125 m (0.115 … 0.135)");
     // An uncertain mass comes before a certain position.
     CHECK(main_parameter({{"mass", "kg", 0.15, -0.1, 0.4}, along_z}) == "mass 0.15 kg (-0.1 … 0.4)");
     CHECK(main_parameter({{"amplitude", "rad", 0.2, 0.1, 0.3}, {"phase", "rad", 1.8, 1.7, 1.9}}) ==

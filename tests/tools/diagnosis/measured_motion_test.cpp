@@ -73,7 +73,7 @@ TEST_CASE("a gap splits a recording and parts that are too short are dropped or 
     CHECK(measured.stretches[0].count == 1200);
     CHECK(measured.stretches[1].count == 700);
     CHECK(measured.time_s[1200] == Approx(13.0));
-    CHECK_THROWS_AS(measured_motion(swinging(100, 3, engine, 0)), InputError);
+    CHECK_THROWS_AS(measured_motion(swinging(100, 1.5, engine, 0)), InputError);
 }
 
 TEST_CASE("the low pass keeps frequencies below its cutoff and removes those above") {

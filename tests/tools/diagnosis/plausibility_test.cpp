@@ -113,7 +113,8 @@ TEST_CASE(
         const Eigen::ArrayXd time = VectorXd::LinSpaced(other.torque.rows(), 0, other.duration_s);
         other.torque.col(joint) = 20 * (4.3 * time + static_cast<double>(joint)).sin();
     }
-    check_refused(diagnosis_of(other.recording()), "wrong_robot", "next to nothing in common");
+    check_refused(diagnosis_of(other.recording()), "wrong_robot",
+                  "expected the outputs of the robot's model");
     check_refused(diagnosis_of(CleanRecording(30, 0.001).recording()), "standing", "the arm stands still");
     check_refused(diagnosis_of(CleanRecording(2).recording()), "too_little_information",
                   "s long: causes need");

@@ -4,7 +4,9 @@
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/extension/extension_parts.hpp"
+#include "tools/diagnosis/verdict/textbook.hpp"
 #include "tools/robot/firmware_chain.hpp"
+#include "tools/robot/regressor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +27,56 @@ void add_nuisance(Extension& extension, const DiagnosisWork& work) {
             extension.bodies.segment<10>(10 * i) *= factor;
         } else {
             scale_output(extension, i - bodies, factor, false);
+        }
+    }
+}
+
+/// Replaces the columns of an output by those of plain least squares, beside the extension's rigid body.
+void take_least_squares(Extension& extension, const DiagnosisWork& work, Eigen::Index output,
+                        const Eigen::VectorXd& coefficients) {
+    constexpr double least_gain = 0.1;
+    const std::string joint = numbered("joint", static_cast<std::size_t>(output));
+    std::erase_if(extension.columns,
+                  [output](const ExtensionColumn& column) { return column.effect.row == output; });
+    for (CarriedFinding& carried : extension.carried) {
+        if (carried.where == joint) {
+            carried.how = EffectDisposition::left_out;
+        }
+    }
+    const double gain = std::max(coefficients[0], least_gain);
+    extension.output_gain[output] = work.torque_gains[output] * gain;
+    const auto add = [&](const EffectKind& kind, double coefficient) {
+        EffectModel effect;
+        effect.name = kind.name;
+        effect.row = static_cast<int>(output);
+        if (kind.has(&EffectModel::sign_velocity)) {
+            effect.sign_velocity = work.signals->sign_velocity[output];
+        }
+        add_column(extension, effect, coefficient / gain, std::abs(coefficient / gain));
+    };
+    if (!work.signals->wrench()) {
+        add(effect_kinds::rotor_inertia, coefficients[1]);
+        add(effect_kinds::viscous_friction, coefficients[2]);
+        add(effect_kinds::coulomb_friction, coefficients[3]);
+    }
+    add(work.signals->wrench() ? effect_kinds::ft_bias : effect_kinds::torque_offset, coefficients[4]);
+}
+
+/// Takes plain least squares at all outputs where it is the extended model.
+void take_least_squares(Extension& extension, const DiagnosisWork& work) {
+    const std::vector<bool>& chosen = work.diagnosis.by_least_squares;
+    if (std::ranges::find(chosen, true) == chosen.end()) {
+        return;
+    }
+    const DiagnosisSignals& signals = *work.signals;
+    const Eigen::VectorXd stacked =
+        stacked_regressor(extension.robot, extension.kind, signals.measured.motion) * extension.bodies;
+    const TextbookFit fit =
+        textbook_fit(signals, work.measured, unstacked(stacked, signals.outputs()), signals.rows());
+    for (std::size_t output = 0; output < chosen.size(); ++output) {
+        if (chosen[output]) {
+            const auto at = static_cast<Eigen::Index>(output);
+            take_least_squares(extension, work, at, fit.coefficients.col(at));
         }
     }
 }
@@ -63,6 +115,7 @@ Extension extension_of(const DiagnosisWork& work) {
             {effects::external_contact().name, numbered("joint", push.joint), EffectDisposition::left_out});
     }
     add_nuisance(extension, work);
+    take_least_squares(extension, work);
     sort_columns(extension);
     return extension;
 }

@@ -42,7 +42,11 @@ ordered_json to_json(const FoundParameter& parameter) {
     ordered_json entry{{"name", parameter.name}, {"value", value_of(parameter)}};
     if (!entry["value"].is_string()) {
         entry["unit"] = parameter.unit;
-        entry["ci95"] = {parameter.low, parameter.high};
+        if (parameter.low < parameter.high) {
+            entry["ci95"] = {parameter.low, parameter.high};
+        } else {
+            entry["ci95"] = nullptr; // not fitted
+        }
     }
     return entry;
 }
@@ -101,6 +105,8 @@ std::string diagnosis_to_json(const Diagnosis& diagnosis) {
                       {"refusals", refusals(diagnosis.suspicions)},
                       {"nominal", to_json(diagnosis.nominal)},
                       {"extended", to_json(diagnosis.extended)},
+                      {"least_squares", to_json(diagnosis.least_squares)},
+                      {"extended_by_least_squares", diagnosis.by_least_squares},
                       {"heldout",
                        {{"from", diagnosis.heldout_from_s},
                         {"to", diagnosis.heldout_to_s},

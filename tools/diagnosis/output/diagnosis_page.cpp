@@ -131,7 +131,8 @@ void add_moving_errors(ReportTable& table, const Diagnosis& diagnosis) {
 
 ReportTable error_table(const Diagnosis& diagnosis) {
     ReportTable table{"Error per output",
-                      {"output", "unit", "simulated, rms", "of deviation", "extended, rms", "of deviation "},
+                      {"output", "unit", "simulated, rms", "of deviation", "extended, rms", "of deviation ",
+                       "plain least squares, of deviation"},
                       {},
                       {}};
     const bool held_out = diagnosis.heldout_to_s > diagnosis.heldout_from_s;
@@ -145,8 +146,12 @@ ReportTable error_table(const Diagnosis& diagnosis) {
         const auto row = static_cast<Eigen::Index>(k);
         table.rows.push_back({diagnosis.output_names[k], output_unit(diagnosis.output_names[k]),
                               diagnosis.nominal.rms[row], percent(diagnosis.nominal.nrmse[row]),
-                              diagnosis.extended.rms[row], percent(diagnosis.extended.nrmse[row])});
+                              diagnosis.extended.rms[row], percent(diagnosis.extended.nrmse[row]),
+                              percent(diagnosis.least_squares.nrmse[row])});
     }
+    table.note +=
+        " Errors are those of the samples as measured, at their own rate. Plain least squares: each "
+        "output by itself, with a gain of the rigid body, inertia, viscous and dry friction and an offset.";
     if (diagnosis.standing_share.maxCoeff() > noticeable_standing) {
         add_moving_errors(table, diagnosis);
     }
@@ -170,7 +175,7 @@ std::string carried_words(const DiagnosisCase& one, const Finding& finding) {
 
 ReportTable findings_table(const DiagnosisCase& one) {
     const Diagnosis& diagnosis = one.work.diagnosis;
-    ReportTable table{"Causes, by gain",
+    ReportTable table{"Causes, by the ratio of the errors before and after",
                       {"cause", "main parameter (95 % interval)", "confidence", "output", "error before",
                        "after", "in the extended model"},
                       {},

@@ -56,7 +56,8 @@ void print_errors(std::ostream& out, const Diagnosis& diagnosis) {
         show(diagnosis.nominal);
         out << "  ->";
         show(diagnosis.extended);
-        out << ' ' << output_unit(diagnosis.output_names[k]) << while_moving(diagnosis, row) << '\n';
+        out << ' ' << output_unit(diagnosis.output_names[k]) << while_moving(diagnosis, row)
+            << "; plain least squares " << percent(diagnosis.least_squares.nrmse[row]) << '\n';
     }
 }
 
@@ -67,7 +68,7 @@ void print_finding(std::ostream& out, const Diagnosis& diagnosis, const Finding&
     const std::string parameter = main_parameter_words(finding);
     out << parameter << (parameter.empty() ? "" : ", ");
     out << output << " error " << rounded_text(finding.rms_before) << " -> "
-        << rounded_text(finding.rms_after) << '\n';
+        << rounded_text(finding.rms_after) << (output.front() == 'f' ? " N" : " N·m") << '\n';
     if (!finding.indistinguishable.empty()) {
         out << "        this motion hardly tells it from: ";
         for (std::size_t i = 0; i < finding.indistinguishable.size(); ++i) {
@@ -92,7 +93,9 @@ void print_findings(std::ostream& out, const Diagnosis& diagnosis) {
             perhaps.append(perhaps.empty() ? "" : "; ").append(cause_words(finding));
         }
     }
-    out << (likely.empty() ? "no likely cause found\n" : "likely causes, by gain, with their confidence:\n");
+    out << (likely.empty()
+                ? "no likely cause found\n"
+                : "likely causes with their confidence, by the ratio of the errors without and with each:\n");
     for (std::size_t i = 0; i < std::min(likely.size(), most_findings); ++i) {
         print_finding(out, diagnosis, *likely[i]);
     }

@@ -55,10 +55,12 @@ std::string main_parameter_words(const Finding& finding) {
     if (measured == finding.parameters.end()) {
         return "";
     }
-    // of the components of a vector, or of both directions, the one with the smallest interval
+    const bool any_change = measured->name.starts_with("delta_") && measured->low <= 0 && measured->high >= 0;
+    // of the components of a vector, or of both directions, the one with the smallest interval; likewise of
+    // all errors of a link, if the first may be 0
     const auto known = [&](const FoundParameter& parameter) {
         const double reach = parameter.high - parameter.low;
-        return are_parts_of_one(parameter.name, measured->name) && reach > 0
+        return reach > 0 && (any_change || are_parts_of_one(parameter.name, measured->name))
                    ? std::abs(parameter.value) / reach
                    : 0;
     };

@@ -37,6 +37,23 @@ Candidate about(const Candidate& chosen, const EffectShape& shape, const Eigen::
     return result;
 }
 
+/// Returns the joint (from 0) at which a named candidate acts on measured torques; empty for other places.
+std::optional<std::size_t> own_joint(const DiagnosisSignals& signals, const Candidate& candidate) {
+    const std::string& where = candidate.where;
+    const bool at_joint = where.starts_with("joint") || where.starts_with("actuator");
+    const std::size_t digits = where.find_first_of("0123456789");
+    if (signals.wrench() || !candidate.named() || !at_joint || digits == std::string::npos) {
+        return std::nullopt;
+    }
+    return std::stoul(where.substr(digits)) - 1;
+}
+
+/// Returns whether a candidate can be seen: nothing can be at a joint that hardly moves.
+bool visible(const DiagnosisSignals& signals, const Candidate& candidate) {
+    const std::optional<std::size_t> joint = own_joint(signals, candidate);
+    return !joint || !signals.hardly_moves(*joint);
+}
+
 class Search {
   public:
     Search(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
@@ -45,7 +62,9 @@ class Search {
           regression_(rows_, measured - signals.nominal, rows_.frames_within(options.fitted_share)) {
         add_nuisance();
         for (Candidate& candidate : lasting_candidates(signals_)) {
-            lasting_.emplace_back(rows_, std::move(candidate));
+            if (visible(signals_, candidate)) {
+                lasting_.emplace_back(rows_, std::move(candidate));
+            }
         }
         for (const Effect& effect : effect_catalogue()) {
             if (effect.scan != nullptr) {
@@ -164,7 +183,8 @@ std::vector<CandidateEntry> Search::passing() const {
     std::vector<Candidate> found;
     const auto add = [&](std::vector<Candidate> more) {
         for (Candidate& candidate : more) {
-            if (std::ranges::find(found, candidate.key(), &Candidate::key) == found.end()) {
+            if (visible(signals_, candidate) &&
+                std::ranges::find(found, candidate.key(), &Candidate::key) == found.end()) {
                 found.push_back(std::move(candidate));
             }
         }

@@ -25,7 +25,7 @@ struct MeasuredMotion {
     Eigen::MatrixXd weight;      ///< T x m, 0 to 1: weight of each row of an output; empty: all have weight 1
     std::vector<Stretch> stretches; ///< in order; none shorter than `shortest_stretch_s`
 
-    static constexpr double shortest_stretch_s = 4;
+    static constexpr double shortest_stretch_s = 2;
 };
 
 /// Resamples a recording to a uniform clock by cubic interpolation. The rate is the median rate, or an

@@ -11,6 +11,13 @@
 
 namespace dfdyn::tools {
 
+bool DiagnosisSignals::hardly_moves(std::size_t joint) const {
+    constexpr double least_rad = 0.05;
+    constexpr double least_m = 0.005;
+    const auto position = measured.motion.position.col(static_cast<Eigen::Index>(joint));
+    return position.maxCoeff() - position.minCoeff() < (robot.joints[joint].prismatic ? least_m : least_rad);
+}
+
 Eigen::VectorXd DiagnosisSignals::direction(Eigen::Index joint) const {
     return (measured.motion.velocity.col(joint).array() / sign_velocity[joint]).tanh();
 }

@@ -3,6 +3,7 @@
 
 #include "tools/base/numerics/root_mean_square.hpp"
 #include "tools/base/text/number.hpp"
+#include "tools/diagnosis/verdict/textbook.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,9 @@ ErrorMeasure error_measure(const Eigen::MatrixXd& error, const Eigen::MatrixXd& 
                         Eigen::VectorXd(error.cols())};
     for (Eigen::Index output = 0; output < error.cols(); ++output) {
         result.rms[output] = root_mean_square(error.col(output));
-        result.nrmse[output] = result.rms[output] / standard_deviation(measured.col(output));
+        const double deviation = standard_deviation(measured.col(output));
+        result.nrmse[output] =
+            deviation > 0 ? result.rms[output] / deviation : std::numeric_limits<double>::quiet_NaN();
         const std::vector<Eigen::Index>& rows = moving[static_cast<std::size_t>(output)];
         result.moving_nrmse[output] =
             std::ssize(rows) < fewest_moving
@@ -39,20 +42,47 @@ ErrorMeasure error_measure(const Eigen::MatrixXd& error, const Eigen::MatrixXd& 
     return result;
 }
 
-/// Returns, per output, the rows among the last `count` in which static friction does not determine the
-/// torque.
-std::vector<std::vector<Eigen::Index>> moving_rows(const DiagnosisSignals& signals, Eigen::Index count) {
+/// Returns, per output, the samples from `first` on, counted from there, in which static friction does not
+/// determine the torque.
+std::vector<std::vector<Eigen::Index>> moving_samples(const DiagnosisSignals& signals,
+                                                      const RawSamples& samples, Eigen::Index first) {
     std::vector<std::vector<Eigen::Index>> result;
-    const auto weight = signals.measured.weight.bottomRows(count);
-    for (Eigen::Index output = 0; output < weight.cols(); ++output) {
+    for (Eigen::Index output = 0; output < signals.outputs(); ++output) {
         result.emplace_back();
-        for (Eigen::Index row = 0; row < count; ++row) {
-            if (weight(row, output) > 0) {
-                result.back().push_back(row);
+        for (Eigen::Index sample = first; sample < samples.outputs.rows(); ++sample) {
+            if (signals.measured.weight(samples.nearest(sample), output) > 0) {
+                result.back().push_back(sample - first);
             }
         }
     }
     return result;
+}
+
+void take(ErrorMeasure& measure, const ErrorMeasure& other, Eigen::Index output) {
+    measure.rms[output] = other.rms[output];
+    measure.nrmse[output] = other.nrmse[output];
+    measure.moving_nrmse[output] = other.moving_nrmse[output];
+}
+
+/// Replaces the causes by plain least squares at the outputs where these err less.
+void take_better(Diagnosis& diagnosis) {
+    constexpr double tolerance = 1.03;
+    std::string names;
+    for (Eigen::Index output = 0; output < diagnosis.extended.rms.size(); ++output) {
+        const bool better = diagnosis.extended.rms[output] > tolerance * diagnosis.least_squares.rms[output];
+        diagnosis.by_least_squares.push_back(better);
+        if (better) {
+            take(diagnosis.extended, diagnosis.least_squares, output);
+            names.append(names.empty() ? "" : ", ")
+                .append(diagnosis.output_names[static_cast<std::size_t>(output)]);
+        }
+    }
+    if (!names.empty()) {
+        diagnosis.suspicions.push_back({"at " + names +
+                                        " the causes found err more than plain least squares per joint "
+                                        "(gain, inertia, viscous and dry friction, "
+                                        "offset), which the extended model has there instead"});
+    }
 }
 
 /// Returns a reason at the joint why the extended model can have a larger error at an output than the nominal
@@ -97,19 +127,35 @@ void suspect_poor_extension(Diagnosis& diagnosis) {
 
 void measure_from(DiagnosisWork& work, Eigen::Index first, const Explanation& explanation) {
     const DiagnosisSignals& signals = *work.signals;
-    const Eigen::Index count = signals.rows() - first;
-    const Eigen::MatrixXd nominal_error = work.measured - signals.nominal;
-    const Eigen::MatrixXd scaled = work.measured.bottomRows(count) * work.torque_gains.asDiagonal();
-    const std::vector<std::vector<Eigen::Index>> moving = moving_rows(signals, count);
-    const auto measure = [&](const Eigen::MatrixXd& error) {
-        return error_measure(error.bottomRows(count) * work.torque_gains.asDiagonal(), scaled, moving);
+    const auto in_output_units = [&](const Eigen::MatrixXd& torques) -> Eigen::MatrixXd {
+        return torques * work.torque_gains.asDiagonal();
     };
-    work.diagnosis.standing_share.resize(signals.outputs());
-    std::ranges::transform(moving, work.diagnosis.standing_share.begin(), [count](const auto& rows) {
+    const RawSamples& samples = work.samples.outputs.rows() > 0
+                                    ? work.samples
+                                    : work.samples =
+                                          own_samples(signals.measured, in_output_units(work.measured));
+    const Eigen::Index begin = samples.before(first);
+    const Eigen::Index count = samples.outputs.rows() - begin;
+    const Eigen::MatrixXd outputs = samples.outputs.bottomRows(count);
+    const std::vector<std::vector<Eigen::Index>> moving = moving_samples(signals, samples, begin);
+    const auto measure = [&](const Eigen::MatrixXd& prediction) {
+        return error_measure(outputs - samples.at(in_output_units(prediction)).bottomRows(count), outputs,
+                             moving);
+    };
+    Diagnosis& diagnosis = work.diagnosis;
+    diagnosis.standing_share.resize(signals.outputs());
+    std::ranges::transform(moving, diagnosis.standing_share.begin(), [count](const auto& rows) {
         return 1 - static_cast<double>(rows.size()) / static_cast<double>(count);
     });
-    work.diagnosis.nominal = measure(nominal_error);
-    work.diagnosis.extended = measure(nominal_error - explanation.model(signals));
+    const Eigen::Index fitted = first > 0 ? first : signals.rows();
+    diagnosis.nominal = measure(signals.nominal);
+    diagnosis.extended = measure(signals.nominal + explanation.model(signals));
+    diagnosis.least_squares =
+        measure(textbook_fit(signals, work.measured, signals.nominal, fitted).prediction);
+    diagnosis.by_least_squares.clear();
+    if (!explanation.candidates.empty()) {
+        take_better(diagnosis);
+    }
 }
 
 void measure_on_held_out(DiagnosisWork& work, ExplanationOptions options) {

@@ -5,8 +5,10 @@
 
 namespace dfdyn::tools {
 
-/// Measures the errors from row `first` on (less than the number of rows), without and with the effects of an
-/// explanation. Sets `nominal`, `extended` and `standing_share` of the diagnosis.
+/// Measures the errors of the samples from row `first` on (less than the number of rows): without and with
+/// the effects of an explanation, and of plain least squares, fitted before that row (0: on all rows). Sets
+/// `nominal`, `extended`, `least_squares`, `by_least_squares` and `standing_share` of the diagnosis. Where
+/// the effects err 3 % more than plain least squares, `extended` has its errors.
 void measure_from(DiagnosisWork& work, Eigen::Index first, const Explanation& explanation);
 
 /// Measures the errors on the last third, for a model that is chosen and fitted on the first two thirds. Adds

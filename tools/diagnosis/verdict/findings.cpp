@@ -198,6 +198,19 @@ double calibrated_confidence(const Finding& finding, double duration_s) {
     return 1 / (1 + std::exp(2 + burst + 0.8 * time - 0.74 * to_nothing));
 }
 
+void doubt_useless_findings(Diagnosis& diagnosis) {
+    constexpr double unlikely = 0.49;
+    constexpr double least_gain = 1.01;
+    for (Finding& finding : diagnosis.findings) {
+        const bool unexplained = diagnosis.extended.nrmse[finding.output] > 1;
+        const bool no_gain = !has_trait(finding.effect, &Effect::interval) &&
+                             finding.rms_before < least_gain * finding.rms_after;
+        if (unexplained || no_gain) {
+            finding.confidence = std::min(finding.confidence, unlikely);
+        }
+    }
+}
+
 std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanation& explanation,
                                  const std::vector<StandingContact>& pushes, const Eigen::MatrixXd& rest,
                                  const std::vector<std::string>& output_names) {

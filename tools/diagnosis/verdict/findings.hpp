@@ -15,4 +15,9 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
 /// Calibrated probability from the finding's margin, its effect and the recording's length.
 double calibrated_confidence(const Finding& finding, double duration_s);
 
+/// Lowers the confidence of findings below 0.5 that cannot be relied on: at outputs where even the extended
+/// model errs by more than the output's standard deviation, and those that reduce no error by 1 %. Events are
+/// short and exempt from the latter.
+void doubt_useless_findings(Diagnosis& diagnosis);
+
 } // namespace dfdyn::tools

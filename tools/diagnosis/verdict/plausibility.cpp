@@ -12,8 +12,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double least_travel = 0.05; ///< rad (m): a joint with less travel counts as stationary
-constexpr double least_duration_s = 10;
+constexpr double least_duration_s = 3;
 
 /// The diagnosis filters at a few Hz and needs a sufficient sampling rate.
 void suspect_rate(const Recording& recording, std::vector<Suspicion>& result) {
@@ -42,8 +41,7 @@ void suspect_standstill(const DiagnosisSignals& signals, const Recording& record
                         std::vector<Suspicion>& result) {
     std::vector<std::size_t> standing;
     for (std::size_t joint = 0; joint < signals.joints(); ++joint) {
-        const auto column = signals.measured.motion.position.col(static_cast<Eigen::Index>(joint));
-        if (column.maxCoeff() - column.minCoeff() < least_travel) {
+        if (signals.hardly_moves(joint)) {
             standing.push_back(joint);
         }
     }

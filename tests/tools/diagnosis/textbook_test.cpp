@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plain least squares for each output, and where it replaces the causes found.
+#include "tools/diagnosis/verdict/textbook.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/diagnosis/small_explanation.hpp"
+#include "tests/tools/robot/arms.hpp"
+#include "tools/diagnosis/verdict/extension_errors.hpp"
+#include "tools/diagnosis/verdict/findings.hpp"
+
+#include <memory>
+#include <random>
+
+namespace textbook_test {
+
+using namespace dfdyn::tools;
+using namespace dfdyn::tests;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+TEST_CASE("plain least squares finds gain, inertia, friction and offset of each joint") {
+    const DiagnosisSignals signals = signals_of(ur5(), OutputKind::joint_torque);
+    const RobotMotion& motion = signals.measured.motion;
+    MatrixXd measured = 0.9 * signals.nominal;
+    for (Index joint = 0; joint < measured.cols(); ++joint) {
+        measured.col(joint) += 0.5 * motion.acceleration.col(joint) + 3 * motion.velocity.col(joint) +
+                               2 * signals.direction(joint);
+        measured.col(joint).array() += 0.25;
+    }
+    const Index fitted = signals.rows() / 2; // the rest is predicted
+    const TextbookFit fit = textbook_fit(signals, measured, signals.nominal, fitted);
+    CHECK((fit.prediction - measured).cwiseAbs().maxCoeff() < 1e-3);
+    const VectorXd shoulder = fit.coefficients.col(1); // carries weight and reverses
+    CHECK(shoulder[0] == Approx(0.9).margin(1e-3));
+    CHECK(shoulder[1] == Approx(0.5).margin(5e-3));
+    CHECK(shoulder[2] == Approx(3).margin(5e-3));
+    CHECK(shoulder[3] == Approx(2).margin(5e-3));
+}
+
+TEST_CASE("plain least squares replaces causes that err more, and the diagnosis names the output") {
+    DFDYN_SEEDED_ENGINE(engine);
+    auto signals = std::make_shared<DiagnosisSignals>(signals_of(ur5(), OutputKind::joint_torque));
+    DiagnosisWork work;
+    work.signals = signals;
+    work.torque_gains = VectorXd::Ones(6);
+    work.measured = signals->nominal;
+    work.measured.col(0) += 5 * signals->measured.motion.velocity.col(0);
+    work.measured.col(1) += random_series(*signals, engine);
+    work.diagnosis.output_names = {"tau1", "tau2", "tau3", "tau4", "tau5", "tau6"};
+    const VectorXd noise = random_series(*signals, engine);
+    const Explanation explanation =
+        explanation_of({of_one_column("coulomb_friction", "joint1", noise)}, 1, noise);
+
+    measure_from(work, signals->rows() / 2, explanation);
+
+    const Diagnosis& diagnosis = work.diagnosis;
+    CHECK(diagnosis.by_least_squares[0]);
+    CHECK(diagnosis.extended.rms[0] == diagnosis.least_squares.rms[0]);
+    CHECK(diagnosis.extended.rms[0] < 0.1 * diagnosis.nominal.rms[0]);
+    CHECK_FALSE(diagnosis.by_least_squares[1]); // nothing there to be found
+    REQUIRE(diagnosis.suspicions.size() == 1);
+    CHECK_THAT(diagnosis.suspicions.front().text, Catch::Matchers::ContainsSubstring("at tau1 the causes"));
+}
+
+TEST_CASE("nothing is likely at an output that ends above its own deviation, or that reduces no error") {
+    Diagnosis diagnosis;
+    diagnosis.extended.nrmse = Eigen::Vector2d(0.3, 1.2);
+    Finding right;
+    right.effect = "viscous_friction";
+    right.confidence = 0.95;
+    right.rms_before = 2;
+    right.rms_after = 1;
+    Finding above = right;
+    above.output = 1;
+    Finding idle = right;
+    idle.rms_before = 15.2;
+    idle.rms_after = 15.1;
+    Finding push = idle;
+    push.effect = "external_contact";
+    diagnosis.findings = {right, above, idle, push};
+    doubt_useless_findings(diagnosis);
+    CHECK(diagnosis.findings[0].confidence == 0.95);
+    CHECK(diagnosis.findings[1].confidence < 0.5);
+    CHECK(diagnosis.findings[2].confidence < 0.5);
+    CHECK(diagnosis.findings[3].confidence == 0.95); // an event is short
+}
+
+} // namespace textbook_test
