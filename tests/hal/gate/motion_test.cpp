@@ -172,4 +172,14 @@ TEST_CASE("a clock that was set explains the positions of a lost joint, another 
     }
 }
 
+TEST_CASE("a clock that was set does not explain where a joint is after a silence") {
+    MotionGate gate = ready_gate();
+    for (int tick = 400; tick < 420; ++tick) { // counted from where the encoder was switched on
+        gate.take(reading(tick, truth(tick) - truth(400) - 1));
+    }
+    REQUIRE(gate.lost());
+    gate.explain_by_clock(300'000); // what is left of the silence within a period
+    CHECK(gate.lost());
+}
+
 } // namespace motion_test

@@ -82,8 +82,9 @@ class MotionGate {
         run_ = {};
     }
 
-    /// Believes the readings of a lost joint, if a clock that was set by this much explains where they are.
-    /// To be called only where other sources show that the clock was set.
+    /// Believes the readings of a lost joint, if a clock that was set by this much explains where they are:
+    /// they follow at once after the last trusted reading, by the clock as it was set. After a silence
+    /// nothing shows that. To be called only where other sources show that the clock was set.
     constexpr void explain_by_clock(std::int64_t step_ns) noexcept {
         if (!lost()) {
             return;
@@ -91,7 +92,8 @@ class MotionGate {
         MotionLine before = trusted_.end_line(0, config_.period_ns);
         before.begin_ns += step_ns;
         before.end_ns += step_ns;
-        if (meets(before, refused_.begin_line(0, config_.period_ns), refused_.first())) {
+        const bool follows = near(before.end_ns, refused_.first().stamp_ns);
+        if (follows && meets(before, refused_.begin_line(0, config_.period_ns), refused_.first())) {
             believe(MotionRun(refused_));
         }
     }
