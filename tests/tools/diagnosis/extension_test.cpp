@@ -119,7 +119,7 @@ std::map<std::string, int> check_all(const std::shared_ptr<const DiagnosisSignal
                                      const std::vector<Candidate>& candidates, std::mt19937_64& engine) {
     std::map<std::string, int> carried;
     const MatrixXd nominal =
-        outputs_of(nominal_extension({signals, {}, VectorXd::Ones(signals->outputs()), {}, {}, {}, {}}),
+        outputs_of(nominal_extension({signals, {}, VectorXd::Ones(signals->outputs()), {}, {}, {}, {}, {}}),
                    signals->measured.motion);
     std::uniform_real_distribution<double> uniform(0.5e-4, 1e-4);
     for (const Candidate& candidate : candidates) {
