@@ -84,6 +84,7 @@ struct Diagnosis {
     std::vector<Suspicion> suspicions;
     /// On the held-out time, or over the whole recording without one; of the samples as measured.
     ErrorMeasure nominal, extended;
+    ErrorMeasure causes;        ///< of the causes found, also where plain least squares replaces them
     ErrorMeasure least_squares; ///< of plain least squares for each output (`textbook_fit`)
     /// Per output: plain least squares is the extended model, because the causes found err more.
     std::vector<bool> by_least_squares;

@@ -123,7 +123,7 @@ TEST_CASE("nanoseconds beyond the range of the clock are reported as nanoseconds
         run_program(directory, "train --outputs i --log " + log + " -o " + (directory.path() / "m").string());
     CHECK(outcome.status == 2);
     CHECK_THAT(outcome.error, ContainsSubstring("run.csv:4: column t: ") &&
-                                  ContainsSubstring("(nanoseconds? divide by 1e9)"));
+                                  ContainsSubstring("(--units t=ns if they are nanoseconds)"));
 }
 
 TEST_CASE("a recording with a mistake trains with --no-setup-check and a correct one without options") {
@@ -142,8 +142,9 @@ TEST_CASE("a recording with a mistake trains with --no-setup-check and a correct
 }
 
 /// Runs `dfdyn diagnose` on the recording, which is refused; returns its output and its JSON.
-std::pair<Outcome, nlohmann::json> diagnose(const Bench& bench, const std::string& option) {
-    Outcome outcome = bench.call("diagnose" + robot + "--outputs i --no-held-out --rows :1200 --log " +
+std::pair<Outcome, nlohmann::json> diagnose(const Bench& bench, const std::string& option,
+                                            const std::string& rows = ":1200") {
+    Outcome outcome = bench.call("diagnose" + robot + "--outputs i --no-held-out --rows " + rows + " --log " +
                                  bench.path("run.csv") + " -o " + bench.path("out") + " " + option);
     INFO(outcome.error);
     REQUIRE(outcome.status == 1);
@@ -158,8 +159,8 @@ TEST_CASE("diagnose has the same check and the same option to skip it") {
     CHECK(refused["findings"].empty());
     CHECK(refused["refusals"][0]["code"] == "output_unit");
     CHECK_FALSE(std::filesystem::exists(bench.path("out/extended_model.json")));
-    const auto [unchecked, next] = diagnose(bench, "--no-setup-check"); // reports the next reason
-    CHECK_THAT(unchecked.out, !ContainsSubstring("looks like mA") && ContainsSubstring("causes need 10 s"));
+    const auto [unchecked, next] = diagnose(bench, "--no-setup-check", ":200"); // reports the next reason
+    CHECK_THAT(unchecked.out, !ContainsSubstring("looks like mA") && ContainsSubstring("causes need 3 s"));
     CHECK(next["refusals"][0]["code"] == "too_little_information");
 }
 

@@ -149,7 +149,8 @@ void measure_from(DiagnosisWork& work, Eigen::Index first, const Explanation& ex
     });
     const Eigen::Index fitted = first > 0 ? first : signals.rows();
     diagnosis.nominal = measure(signals.nominal);
-    diagnosis.extended = measure(signals.nominal + explanation.model(signals));
+    diagnosis.causes = measure(signals.nominal + explanation.model(signals));
+    diagnosis.extended = diagnosis.causes;
     diagnosis.least_squares =
         measure(textbook_fit(signals, work.measured, signals.nominal, fitted).prediction);
     diagnosis.by_least_squares.clear();
