@@ -11,10 +11,10 @@ namespace dfdyn::tools {
 
 void RecordingOptions::add_to(CLI::App& command) {
     command
-        .add_option(
-            "--log", logs,
-            "Recording(s), CSV (plain or .gz) or ROS 2 bag (MCAP or SQLite), in order; - is standard input; the lag window restarts between "
-            "them")
+        .add_option("--log", logs,
+                    "Recording(s), CSV (plain or .gz) or ROS 2 bag (MCAP or SQLite), in order; - is standard "
+                    "input; the lag window restarts between "
+                    "them")
         ->required()
         ->delimiter(',')
         ->type_name("L.csv[,L2.csv...]");
