@@ -36,7 +36,7 @@ build_release() { build release; }
 test_units() { run_tests release --label-regex '^(firmware|hal|tools|embedding|truth|headers|panel)$'; }
 test_promises() { run_tests release --label-regex '^acceptance$'; }
 test_can() { run_tests release --label-regex '^vcan$'; }
-test_elsewhere() { run_tests release --label-regex '^(consumer|cortex_m|realtime)$' --verbose; }
+test_elsewhere() { run_tests release --label-regex '^(consumer|packaging|cortex_m|realtime)$' --verbose; }
 # Every plan of the experiment, with one draw and few rows.
 test_experiment() { tools/reproduce.sh --quick; }
 test_long() { ctest --test-dir build/release --label-regex '^long$' --parallel "$jobs" --output-on-failure --no-tests=error; }
