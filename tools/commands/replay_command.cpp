@@ -6,6 +6,7 @@
 #include "tools/base/text/text.hpp"
 #include "tools/build_flags.hpp"
 #include "tools/commands/command.hpp"
+#include "tools/commands/options/contact_options.hpp"
 #include "tools/commands/options/monitor_options.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/stop_signal.hpp"
@@ -40,6 +41,7 @@ struct ReplayOptions {
     bool from_prior = false;
     bool frozen = false;
     MonitorOptions monitor;
+    ContactOptions contacts;
 
     std::filesystem::path bus; ///< if given, the recordings are candump logs, or the source is an interface
     std::string log_interface;
@@ -67,25 +69,36 @@ void check_usage(const ReplayOptions& options) {
            "--duration, --record: expected --can, found a recording");
 }
 
-/// The estimator of the replay, and its monitor if there is one.
+/// The estimator of the replay, with its contact detector and its monitor if there are any.
 struct Replaying {
     std::unique_ptr<HostEstimator> estimator;
     MonitoredEstimator* monitor = nullptr;
     std::vector<RecordedChanges> changes;
+    ContactEstimator* detector = nullptr;
+    std::vector<RecordedContacts> contacts;
 
-    /// Moves the changes of the last replayed recording to `changes`.
+    /// Moves the changes and contacts of the last replayed recording here.
     void collect(const ReplayedRecording& replayed) {
+        const std::string recording = std::filesystem::path(replayed.source).filename().string();
         if (monitor != nullptr) {
-            changes.push_back({std::filesystem::path(replayed.source).filename().string(),
-                               replayed.clock_origin_s, monitor->take_changes()});
+            changes.push_back({recording, replayed.clock_origin_s, monitor->take_changes()});
+        }
+        if (detector != nullptr) {
+            contacts.push_back({recording, replayed.clock_origin_s, detector->take_contacts()});
         }
     }
 };
 
 Replaying make_replaying(const ReplayOptions& options, std::span<const TrainedModel> models) {
-    Replaying replaying{make_estimator(models, options.from_prior), nullptr, {}};
+    Replaying replaying{make_estimator(models, options.from_prior), nullptr, {}, nullptr, {}};
     if (options.frozen) {
         replaying.estimator = frozen(std::move(replaying.estimator));
+    }
+    if (options.contacts.wanted()) {
+        auto watched = with_contacts(std::move(replaying.estimator),
+                                     ContactOptions::limits(models.front(), shown(options.models.front())));
+        replaying.detector = watched.get();
+        replaying.estimator = std::move(watched);
     }
     if (options.monitor.wanted()) {
         auto watched = monitored(std::move(replaying.estimator),
@@ -180,6 +193,9 @@ void write_results(const ReplayOptions& options, std::span<const TrainedModel> m
     if (replaying.monitor != nullptr) {
         options.monitor.show(replaying.changes);
     }
+    if (replaying.detector != nullptr) {
+        options.contacts.show(replaying.contacts, models.front().outputs.names);
+    }
 }
 
 bool predicted(const ReplayedRecording& replayed) { return replayed.totals.predicted > 0; }
@@ -215,7 +231,9 @@ int run(const ReplayOptions& options) {
     std::vector<std::filesystem::path> inputs = options.recordings.logs;
     inputs.insert(inputs.end(), options.models.begin(), options.models.end());
     inputs.push_back(options.bus);
-    check_outputs({options.csv, options.report, options.can.record, options.monitor.file}, std::move(inputs));
+    check_outputs(
+        {options.csv, options.report, options.can.record, options.monitor.file, options.contacts.file},
+        std::move(inputs));
     const std::vector<TrainedModel> models = read_models(options.models);
     Replaying replaying = make_replaying(options, models);
     if (options.bus.empty()) {
@@ -284,11 +302,13 @@ void add_replay_command(CLI::App& app, Command& chosen) {
         "--frozen", options->frozen,
         "Predict without learning: nothing of the recording's outputs reaches the model; errors "
         "and innovations are reported as always");
+    options->contacts.add_to(*command);
     options->monitor.add_to(*command);
     command->footer(
         "Example:\n  dfdyn replay --model model.json --log run.csv -o out.csv --report report.html\n"
         "  dfdyn replay --model model.json --log unseen.csv --frozen\n"
         "  dfdyn replay --model model.json --log run.csv --monitor --changes changes.json\n"
+        "  dfdyn replay --model model.json --log run.csv --contacts\n"
         "  dfdyn replay --model model.json --bus bus.json --log run.log -o out.csv\n"
         "  dfdyn replay --model model.json --bus bus.json --can can0 --record run.log -o out.csv\n"
         "Exit status: 0 done, 1 nothing was predicted (of several buses: by one of them), 2 bad usage or "

@@ -17,6 +17,7 @@
 #include "tools/diagnosis/output/diagnosis_page.hpp"
 #include "tools/diagnosis/output/diagnosis_summary.hpp"
 #include "tools/model/file/model_file.hpp"
+#include "tools/replay/contacts/contact_limits.hpp"
 #include "tools/replay/contradiction.hpp"
 #include "tools/replay/replay_report.hpp"
 #include "tools/report/report.hpp"
@@ -138,6 +139,9 @@ Candidate train_network(const Arm& arm, const SplitRecordings& split, const Star
     const FreeSizes free{.window = true, .rows = false, .features = true, .memory = false};
     TrainedModel model = train_within(options.sizes, free, split.training, arm.outputs, training, show).model;
     calibrate_innovation_limit(model, split.training);
+    if (arm.outputs != OutputKind::wrench) {
+        model.contact = measure_contact_limits(model, split.training);
+    }
     return {"a network of random features", std::move(model), {}, 0};
 }
 

@@ -16,6 +16,7 @@
 #include "tools/model/header/model_header.hpp"
 #include "tools/model/inputs/input_description.hpp"
 #include "tools/model/structure.hpp"
+#include "tools/replay/contacts/contact_limits.hpp"
 #include "tools/replay/contradiction.hpp"
 #include "tools/replay/opponents/rigid_body.hpp"
 #include "tools/training/model_training.hpp"
@@ -261,8 +262,11 @@ int run(const TrainOptions& options) {
     const std::string trained_on = file_names(recordings, model.training);
     describe_reading(options.recordings, robot, model.training);
     {
-        const Activity activity("calibrating the innovation limit");
+        const Activity activity("calibrating the limits of innovations and contacts");
         calibrate_innovation_limit(model, recordings);
+        if (outputs != OutputKind::wrench) {
+            model.contact = measure_contact_limits(model, recordings);
+        }
     }
     fit_rigid_body_of(model, training, recordings);
     const std::string json = model_to_json(model);

@@ -53,6 +53,13 @@ struct OutputModel {
     double prior_variance = 1; ///< rho^2 / sigma^2, shared: the outputs share one factor
 };
 
+/// Deviations of joints without contact (see dfdyn::ContactDetector), m x 3: per joint standing, changing,
+/// moving. Empty: not measured, because the outputs are a wrench or by an older version.
+struct ContactModel {
+    std::vector<double> limit; ///< smallest deviation of a contact, > 0
+    std::vector<double> usual; ///< median, >= 0
+};
+
 /// Plausible range of the sensors; samples beyond it are rejected.
 struct LimitModel {
     std::vector<double> position_rad; ///< largest |q_i|
@@ -181,6 +188,7 @@ struct TrainedModel {
     std::optional<PhysicsModel> physics;
     OutputModel outputs;
     LimitModel limits;
+    ContactModel contact;
     std::optional<ExtrapolationModel> extrapolation; ///< empty: as in the paper
     StartModel start;
     TrainingRecord training;

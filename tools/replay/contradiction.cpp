@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/replay/contradiction.hpp"
 #include "tools/base/numerics/quantile.hpp"
+#include "tools/replay/recorded_rows.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,23 +21,15 @@ constexpr double no_limit = 1e30;
 std::vector<double> learn_rows(HostEstimator& estimator, std::span<const Recording> recordings,
                                std::size_t first, std::size_t last) {
     std::vector<double> innovations;
-    std::size_t count = 0;
-    bool begins = true;
-    for (const Recording& recording : recordings) {
-        for (std::size_t row = 0; row < recording.row_count(); ++row, ++count) {
-            if (count < first || count >= last) {
-                continue;
-            }
-            if (begins || recording.gap_before[row] != 0) {
-                estimator.begin_recording();
-            }
-            begins = false;
-            const Tick tick = estimator.tick(sample_at(recording, row));
-            if (tick.status.estimated()) {
-                innovations.push_back(static_cast<double>(tick.normalised_innovation_squared));
-            }
+    for_each_row(recordings, first, last, [&](const Recording& recording, std::size_t row, bool begins) {
+        if (begins) {
+            estimator.begin_recording();
         }
-    }
+        const Tick tick = estimator.tick(sample_at(recording, row));
+        if (tick.status.estimated()) {
+            innovations.push_back(static_cast<double>(tick.normalised_innovation_squared));
+        }
+    });
     return innovations;
 }
 
@@ -44,10 +37,7 @@ std::vector<double> learn_rows(HostEstimator& estimator, std::span<const Recordi
 /// estimator that has learned the other half.
 std::array<std::vector<double>, 2>
 innovations_of_halves(const TrainedModel& model, std::span<const Recording> recordings, bool from_prior) {
-    std::size_t rows = 0;
-    for (const Recording& recording : recordings) {
-        rows += recording.row_count();
-    }
+    const std::size_t rows = row_count(recordings);
     const auto later = make_estimator(model, from_prior);
     learn_rows(*later, recordings, 0, rows / 2);
     const auto earlier = make_estimator(model, from_prior);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A real UR5 that is undisturbed for two minutes and is then pushed by a person.
+#include "tools/model/run_time/frozen_estimator.hpp"
 #include "tools/monitor/monitored_estimator.hpp"
+#include "tools/replay/contacts/contact_estimator.hpp"
+#include "tools/replay/contacts/contact_limits.hpp"
 #include "tools/replay/contradiction.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/robot/urdf/read_robot.hpp"
@@ -71,4 +74,73 @@ TEST_CASE("a real arm's monitor is silent for two minutes and then finds three o
     CHECK(onsets[0] == Approx(8.4).margin(0.4)); // the pushes are at 8.5, 11.6, 14.0, 15.8 and 18.8 s
     CHECK(onsets[1] == Approx(11.7).margin(0.4));
     CHECK(onsets[2] == Approx(15.7).margin(0.4));
+}
+
+namespace {
+
+/// Start of each contact that is detected in a recording, in its own time.
+std::vector<double> contact_starts(const TrainedModel& model, bool learning, const std::string& name) {
+    auto estimator = make_estimator(model, false);
+    const auto detector =
+        with_contacts(learning ? std::move(estimator) : frozen(std::move(estimator)), model.contact);
+    const auto replayed = replay(*detector, std::span(&model, 1), recording(name), 0, [](std::size_t) {});
+    std::vector<double> starts;
+    for (const DetectedContact& contact : detector->take_contacts()) {
+        CHECK_FALSE(contact.persistent);
+        starts.push_back(replayed.clock_origin_s + 1e-9 * static_cast<double>(contact.start_ns));
+    }
+    return starts;
+}
+
+/// Times at which the mean of joint 2's current over 0.2 s begins to differ by more than 1 A from the
+/// undisturbed run of the same commands.
+std::vector<double> push_starts(const std::string& undisturbed, const std::string& pushed) {
+    const Recording without = recording(undisturbed);
+    const Recording with = recording(pushed);
+    constexpr std::size_t half = 12;
+    constexpr double apart_s = 0.5;
+    std::vector<double> starts;
+    double last = -1;
+    const std::size_t rows = std::min(without.row_count(), with.row_count());
+    for (std::size_t row = half; row + half < rows; ++row) {
+        double sum = 0;
+        for (std::size_t i = row - half; i <= row + half; ++i) {
+            sum += with.output.row(i)[1] - without.output.row(i)[1];
+        }
+        if (std::abs(sum) > 2 * half + 1) {
+            if (last < 0 || with.time_s[row] - last > apart_s) {
+                starts.push_back(with.time_s[row]);
+            }
+            last = with.time_s[row];
+        }
+    }
+    return starts;
+}
+
+} // namespace
+
+TEST_CASE("every push of a person on a real arm is detected within a tenth of a second and nothing else is",
+          "[contacts]") {
+    const Recording first = recording("No6_Acc_slow_Verify_Model");
+    TrainedModel model = trained(first, ur5());
+    model.contact = measure_contact_limits(model, std::span(&first, 1));
+    const bool learning = GENERATE(false, true);
+    CAPTURE(learning);
+    for (const char* name : {"No3_Acc", "No5_Acc_slow_no_disturbance", "No6_Acc_slow_Verify_Model",
+                             "No7_Acc_slow_Verify_Model_short", "No9_Singularity_Free_NoDist"}) {
+        CAPTURE(name);
+        CHECK(contact_starts(model, learning, name).empty());
+    }
+    const auto check = [&](const std::string& undisturbed, const std::string& pushed) {
+        const std::vector<double> pushes = push_starts(undisturbed, pushed);
+        const std::vector<double> contacts = contact_starts(model, learning, pushed);
+        CAPTURE(pushes, contacts);
+        REQUIRE(pushes.size() == 5);
+        REQUIRE(contacts.size() == 5);
+        for (std::size_t i = 0; i < pushes.size(); ++i) {
+            CHECK(contacts[i] == Approx(pushes[i]).margin(0.1));
+        }
+    };
+    check("No7_Acc_slow_Verify_Model_short", "No7_Acc_slow_Verify_Model_short_with_disturbance");
+    check("No9_Singularity_Free_NoDist", "No9_Singularity_Free_WDist");
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/model/file/model_file.hpp"
 
+#include "dfdyn/monitor/contact_detector.hpp"
 #include "dfdyn/snapshot.hpp"
 #include "tools/base/system/read_file.hpp"
 #include "tools/base/text/error.hpp"
@@ -103,6 +104,9 @@ ordered_json model_json(const TrainedModel& model) {
     if (!model.limits.prediction.empty()) { // absent from older files, which keep their identity
         json["limits"]["prediction"] = singles(model.limits.prediction);
     }
+    if (!model.contact.limit.empty()) {
+        json["contact"] = {{"limit", singles(model.contact.limit)}, {"usual", singles(model.contact.usual)}};
+    }
     if (model.extrapolation) {
         json["extrapolation"] = extrapolation_to_json(*model.extrapolation, structure_of(model));
     }
@@ -154,6 +158,17 @@ ExtrapolationModel read_extrapolation(const JsonReader& reader, int outputs, con
         extrapolation.output_variance = reader.positive_numbers("output_variance", outputs);
     }
     return extrapolation;
+}
+
+ContactModel read_contact(const JsonReader& reader, int outputs) {
+    ContactModel contact{reader.positive_numbers("limit", joint_motion_count * outputs),
+                         reader.numbers("usual", joint_motion_count * outputs)};
+    for (const double value : contact.usual) {
+        if (value < 0) {
+            throw reader.error("usual", "numbers of at least 0", in_quotes(number_text(value)));
+        }
+    }
+    return contact;
 }
 
 LimitModel read_limits(const JsonReader& reader, int joints, int outputs) {
@@ -215,6 +230,9 @@ TrainedModel read_fields(const JsonReader& reader) {
     model.outputs = read_outputs(reader.object("outputs"));
     const int outputs = static_cast<int>(model.outputs.names.size());
     model.limits = read_limits(reader.object("limits"), model.joints, outputs);
+    if (reader.has("contact")) {
+        model.contact = read_contact(reader.object("contact"), outputs);
+    }
     double least = 0;
     if (structure_of(model).features) {
         model.start = read_start(reader.object("start"), 2 * model.features.count, outputs);

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dfdyn/monitor/contact_detector.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+namespace contact_detector_test {
+
+using Detector = dfdyn::ContactDetector<double, 2>;
+
+constexpr std::int64_t period_ns = 2'000'000;
+constexpr double period_s = 0.002;
+constexpr dfdyn::ContactLimits<double> limit{{1, 1, 1}, {0.1, 0.1, 0.1}};
+constexpr dfdyn::ContactLimits<double> limits[2]{limit, limit};
+
+/// Function of the time in seconds.
+using Signal = std::function<double(double)>;
+
+/// A detector of two joints. The second one stands and has no error.
+struct Arm {
+    Detector detector{{}, limits};
+    std::int64_t time_ns = 0;
+    int contacts = 0; ///< that have begun
+    double first_s = -1, last_s = -1;
+
+    double time_s() const { return 1e-9 * static_cast<double>(time_ns); }
+
+    void run(double duration_s, const Signal& position, const Signal& error) {
+        const double end_s = time_s() + duration_s;
+        while (time_s() < end_s) {
+            time_ns += period_ns;
+            const double q[2]{position(time_s()), 0};
+            const double e[2]{error(time_s()), 0};
+            const bool before = detector.contact();
+            const bool now = detector.tick(time_ns, q, e);
+            contacts += now && !before ? 1 : 0;
+            first_s = now && first_s < 0 ? time_s() : first_s;
+            last_s = now ? time_s() : last_s;
+        }
+    }
+};
+
+double still(double /*t*/) { return 0; }
+double moving(double t) { return 0.5 * t; }
+
+/// Error of `size` from 2 s until `end_s`.
+Signal push(double size, double end_s) {
+    return [=](double t) { return t >= 2 && t < end_s ? size : 0.0; };
+}
+
+TEST_CASE("a push of twice the limit is a contact within a tenth of a second and ends with the push",
+          "[contacts]") {
+    const double sign = GENERATE(-1.0, 1.0);
+    const Signal position = GENERATE(Signal(still), Signal(moving));
+    Arm arm;
+    arm.run(4, position, push(2 * sign, 2.5));
+    CHECK(arm.contacts == 1);
+    CHECK(arm.detector.joint() == 0);
+    CHECK(arm.first_s == Approx(2.05).margin(0.05));
+    CHECK(arm.last_s == Approx(2.65).margin(0.15));
+    CHECK_FALSE(arm.detector.contact());
+    CHECK_FALSE(arm.detector.persistent());
+}
+
+TEST_CASE("deviations of several joints add to one contact", "[contacts]") {
+    const auto contact = [](double first, double second) {
+        Detector detector({}, limits);
+        bool found = false;
+        for (int i = 0; i < 1200; ++i) {
+            const double q[2]{};
+            const double e[2]{i < 1000 ? 0 : first, i < 1000 ? 0 : second};
+            found = detector.tick(i * period_ns, q, e) || found;
+        }
+        return found;
+    };
+    CHECK_FALSE(contact(0.9, 0));
+    CHECK_FALSE(contact(0.5, 0.5));
+    CHECK(contact(0.9, -0.9));
+}
+
+TEST_CASE("errors that change slowly are no contact however large they become", "[contacts]") {
+    Arm arm;
+    arm.run(60, still, [](double t) { return 0.5 * t; });
+    CHECK(arm.contacts == 0);
+}
+
+TEST_CASE("friction that a start, stop or reversal releases is no contact", "[contacts]") {
+    // The error of a standing joint is what its friction bears; in motion the model is accurate.
+    const double borne = GENERATE(-5.0, 5.0);
+    Arm arm;
+    arm.run(10, still, [borne](double t) { return borne * std::min(t / 8, 1.0); });
+    arm.run(
+        0.02, [](double t) { return 0.5 * (t - 10); }, [borne](double) { return borne; });
+    arm.run(
+        5, [](double t) { return 0.5 * (t - 10); }, still);
+    CHECK(arm.contacts == 0);
+}
+
+TEST_CASE("an error that stays is accepted as a change of the arm after three seconds, once", "[contacts]") {
+    // Larger than what the baseline follows in three seconds.
+    Arm arm;
+    arm.run(20, still, push(8, 20));
+    CHECK(arm.contacts == 1);
+    CHECK(arm.detector.persistent());
+    CHECK(arm.last_s == Approx(2 + Detector::longest_s).margin(0.1));
+}
+
+TEST_CASE("noise and a hundred pushes in it do not raise the limits of an arm", "[contacts]") {
+    DFDYN_SEEDED_ENGINE(engine);
+    std::normal_distribution<double> noise(0, 0.1);
+    const auto period = GENERATE(5.0, 50.0);
+    const auto pushed = [period](double t) { return t > 2 && std::fmod(t, period) < 0.5; };
+    Arm arm; // pushes at period, 2 period, ... below 500 s
+    arm.run(500, moving, [&](double t) { return noise(engine) + (pushed(t) ? 2 : 0); });
+    CHECK(arm.contacts == std::lround(500 / period) - 1); // none in the first 2 s
+}
+
+TEST_CASE("nothing that is not finite, late or early becomes a contact or blinds the detector",
+          "[contacts]") {
+    using Limits = std::numeric_limits<double>;
+    for (const double bad : {Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()}) {
+        CAPTURE(bad);
+        Arm arm;
+        arm.run(2, still, still);
+        const double q[2]{};
+        const double e[2]{bad, 0};
+        CHECK_FALSE(arm.detector.tick(arm.time_ns + period_ns, q, e));
+        CHECK_FALSE(arm.detector.tick(arm.time_ns + period_ns, e, q));
+        CHECK_FALSE(arm.detector.running());
+        arm.time_ns += 10'000'000'000; // a gap
+        const double start_s = arm.time_s();
+        arm.run(3, still, [start_s](double t) { return t >= start_s + 1 && t < start_s + 1.5 ? 2.0 : 0.0; });
+        CHECK(arm.contacts == 1);
+        CHECK(arm.first_s == Approx(start_s + 1.05).margin(0.05));
+        CHECK_FALSE(arm.detector.tick(arm.time_ns, q, q));     // the same stamp again
+        CHECK_FALSE(arm.detector.tick(arm.time_ns - 5, q, q)); // back
+    }
+}
+
+} // namespace contact_detector_test

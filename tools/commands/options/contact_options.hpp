@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/model/model.hpp"
+#include "tools/replay/contacts/contact_list.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace dfdyn::tools {
+
+/// The options of a replay with contact detection.
+struct ContactOptions {
+    bool chosen = false;
+    std::filesystem::path file; ///< contacts.json; empty: none
+
+    bool wanted() const { return chosen || !file.empty(); }
+
+    void add_to(CLI::App& command);
+
+    /// Returns the limits of the first model. Throws InputError, naming `source`, if it has none.
+    static const ContactModel& limits(const TrainedModel& model, const std::string& source);
+
+    /// Prints the contacts, and writes the file if one was requested.
+    void show(std::span<const RecordedContacts> contacts, std::span<const std::string> outputs) const;
+};
+
+} // namespace dfdyn::tools

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/monitor/contact_detector.hpp"
+#include "tools/base/numerics/dynamic_storage.hpp"
+#include "tools/model/model.hpp"
+#include "tools/model/run_time/host_estimator.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace dfdyn::tools {
+
+/// A contact on the clock of the samples.
+struct DetectedContact {
+    std::int64_t start_ns = 0;
+    std::int64_t end_ns = 0; ///< 0: not by the end
+    int joint = 0;           ///< from 0: the largest deviation in units of its limit at the start
+    double peak = 0;         ///< largest deviation of this joint, with its sign, in the output's unit
+    bool persistent = false; ///< it did not end, and counts as a change of the arm
+};
+
+/// A detector with its limits, for any number of joints.
+class ContactWatch {
+  public:
+    using Detector = ContactDetector<float, dynamic>;
+
+    explicit ContactWatch(const ContactModel& contact);
+
+    /// Adds a tick. Returns true during a contact. Allocates nothing.
+    bool tick(std::int64_t time_ns, std::span<const float> position, std::span<const float> error) {
+        return detector_->tick(time_ns, position.data(), error.data());
+    }
+    void interrupt() { detector_->interrupt(); }
+    const Detector& detector() const { return *detector_; }
+
+  private:
+    std::vector<ContactLimits<float>> limits_;
+    std::unique_ptr<Detector> detector_;
+};
+
+/// Limits that no deviation reaches.
+ContactModel unlimited_contact(std::size_t joints);
+
+/// Returns measured - predicted of each output. Requires both.
+std::vector<float> prediction_errors(const MeasuredSample& sample, const Tick& tick);
+
+/// An estimator that detects contacts.
+class ContactEstimator : public HostEstimator {
+  public:
+    /// Returns the newest 4096 contacts since the last call, and removes them.
+    virtual std::vector<DetectedContact> take_contacts() = 0;
+};
+
+/// `contact`: with limits.
+std::unique_ptr<ContactEstimator> with_contacts(std::unique_ptr<HostEstimator> estimator,
+                                                const ContactModel& contact);
+
+} // namespace dfdyn::tools
