@@ -4,7 +4,7 @@
 # frames of their devices. For each arm, the hyperparameters come from half a minute with the nominal rigid body and without payload.
 # Then another motion of a minute and a half has unknown friction, an unknown payload and a second payload from 65 s. It runs with the
 # nominal rigid body, and with a model that has learned nothing yet. Prints the tables; without --vcan also those of recursive least
-# squares of rigid body and friction (model P, a memory of 8 s).
+# squares of rigid body and friction (model P, a memory of 8 s), without and with observer.
 # Without --vcan: simulated time, frames in memory, one minute; writes OUT/ARM/tracking.{csv,svg,html} and recordings.
 # With --vcan: arm and loop are two programs on a virtual CAN interface, at the devices' rates. They run in a user-mode Linux whose clock
 # stops while programs run, one machine per run: about 6 minutes on two cores, and 5 for that kernel the first time (build/virtual_time).
@@ -49,11 +49,12 @@ in_memory() {
     basename "$1"
     "${loop[@]}" --model "$1/SPK.json" -o "$1"
     hyperparameters P "$1" "$3" "$tip"
-    "${loop[@]}" --model "$1/P.json" --observer-bandwidth 0 -o "$1/least_squares" >/dev/null
-    awk -F, 'BEGIN { print "beside recursive least squares, mrad\n  window (s)  least squares  learned" }
-        $1 != "learned" { next }
-        NR == FNR { least_squares[$2] = $4; next }
-        { printf "%6d to %2d%15.2f%9.2f\n", $2, $3, least_squares[$2], $4 }' "$1/least_squares/tracking.csv" "$1/tracking.csv"
+    "${loop[@]}" --model "$1/P.json" -o "$1/least_squares" >/dev/null
+    awk -F, 'BEGIN { print "beside recursive least squares, mrad\n  window (s)  least squares  with observer  learned" }
+        NR == FNR { least_squares[$1, $2] = $4; next }
+        $1 == "learned" {
+            printf "%6d to %2d%15.2f%15.2f%9.2f\n", $2, $3, least_squares["learned_alone", $2], least_squares["learned", $2], $4
+        }' "$1/least_squares/tracking.csv" "$1/tracking.csv"
 }
 
 # one_run CORE FOLDER ARM_OPTION... -- [LOOP_OPTION...]: in a machine of its own, on that core.
