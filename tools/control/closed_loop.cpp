@@ -72,8 +72,8 @@ void ClosedLoop::measure() {
 LoopInput ClosedLoop::sense(std::int64_t due_ns, std::int64_t now_ns) {
     if (link_) {
         link_->loop_end.set_time(now_ns + bus_set_ns_);
-        link_->loop.receive(link_->loop_end);
-        return link_->loop.sense(due_ns + bus_set_ns_, now_ns + bus_set_ns_);
+        link_->loop.receive(link_->loop_end, due_ns + bus_set_ns_);
+        return link_->loop.sense(now_ns + bus_set_ns_);
     }
     LoopInput input;
     input.time_ns = readings_.fresh ? readings_.time_ns : due_ns + bus_set_ns_;

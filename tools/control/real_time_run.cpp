@@ -45,8 +45,8 @@ PaceOutcome keep_pace(const RealTimeRun& run, const Tick& tick) try {
 PaceOutcome run_loop(ControlLoop& loop, LoopPort& port, const RealTimeRun& run, LoopLog& log) {
     bool brakes = false; // requested
     return keep_pace(run, [&](hal::SocketCanBus& bus, std::int64_t due_ns, bool missed, bool over) {
-        port.receive(bus);
-        LoopInput input = port.sense(due_ns, bus.now_ns());
+        port.receive(bus, due_ns);
+        LoopInput input = port.sense(bus.now_ns());
         input.deadline_missed = missed;
         input.stop_requested = over;
         loop.enable_learned(run.learned_off == nullptr || !*run.learned_off);

@@ -66,6 +66,21 @@ TEST_CASE("at a SYNC the values measured at the one before are complete, and exa
     CHECK_FALSE(arm.colliding_id().has_value());
 }
 
+TEST_CASE("after an incomplete set was dropped the next one begins with the next frame") {
+    MomentWatch<2> moments{{}};
+    CHECK_FALSE(moments.drop_set(0));
+    moments.measured(0);
+    CHECK(moments.completed(5).kind == SampleMoment::Kind::none); // joint 2 is lost
+    CHECK(moments.drop_set(5));
+    CHECK_FALSE(moments.drop_set(5));
+    moments.measured(0);
+    moments.measured(1);
+    CHECK(moments.completed(5).kind == SampleMoment::Kind::none); // the output belongs to the dropped set
+    const SampleMoment moment = moments.completed(6);
+    CHECK(moment.kind == SampleMoment::Kind::set);
+    CHECK(moment.instant_ns == 6);
+}
+
 TEST_CASE("a drive that does not answer a SYNC has no new sample") {
     Arm arm = make_drives();
     const std::array<Cia402Drive, 2> drives = two_drives();

@@ -129,9 +129,9 @@ class FaultyLoop {
     }
 
     void tick_loop(const LoopFault& fault) {
-        port_.receive(loop_end_);
         const auto period_ns = std::llround(period_s_ * 1e9);
-        tools::LoopInput input = port_.sense(now_ns_ - (due_ - 1) * period_ns, now_ns_);
+        port_.receive(loop_end_, now_ns_ - (due_ - 1) * period_ns);
+        tools::LoopInput input = port_.sense(now_ns_);
         input.deadline_missed = fault.given.deadline_missed;
         input.bus_lost = input.bus_lost || fault.given.bus_lost;
         input.stop_requested = fault.given.stop_requested;

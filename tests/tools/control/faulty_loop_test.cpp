@@ -5,8 +5,11 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
+#include "tests/tools/simulation/read_faults.hpp"
 #include "tools/commands/options/robot_options.hpp"
+#include "tools/control/closed_loop.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -110,6 +113,43 @@ TEST_CASE(
         CHECK(static_cast<double>(loop.loop().counters().coasted) > 3000 * share);
         CHECK(loop.peak_step() < 0.1);
         CHECK(loop.loop().state() == LoopState::running);
+    }
+}
+
+TEST_CASE("setting the common clock of ticks and stamps leaves commands and errors almost unchanged") {
+    const auto [arm, bus] =
+        GENERATE(table<std::string, std::string>({{"ur5", "ur5_loop.json"}, {"icub", "icub_loop.json"}}));
+    Arm parts = arm == "ur5" ? ur5() : icub();
+    const BusDescription description = bus_of(bus);
+    const auto peaks = [&](double by_s) {
+        parts.scenario.faults.clear();
+        if (by_s != 0) {
+            parts.scenario.faults =
+                faults_of(R"([{"kind": "clock_jump", "clock": "bus", "at_s": 3.4, "by_s": )" +
+                              std::to_string(by_s) + "}]",
+                          static_cast<int>(parts.robot.joints.size()));
+        }
+        ClosedLoop loop(parts.robot, parts.scenario, "test", nullptr, &description);
+        JointVector before;
+        double step = 0, error = 0;
+        loop.run_to(4, [&](const ClosedLoopInstant& instant) {
+            if (before.size() > 0 && instant.time_s > 3.3) {
+                const JointVector change = instant.command - before;
+                step = std::max(
+                    step, change.cwiseQuotient(*parts.scenario.actuators.torque_limit).cwiseAbs().maxCoeff());
+                error = std::max(error, instant.error.cwiseAbs().maxCoeff());
+            }
+            before = instant.command;
+        });
+        CHECK(loop.loop().state() == LoopState::running);
+        return std::pair(step, error);
+    };
+    const auto [usual_step, usual_error] = peaks(0);
+    for (const double by_s : {-1.0, -0.1, -0.004, 0.004, 0.1, 1.0}) {
+        CAPTURE(arm, by_s);
+        const auto [step, error] = peaks(by_s);
+        CHECK(step < 1.5 * usual_step);
+        CHECK(error < 1.1 * usual_error);
     }
 }
 

@@ -119,8 +119,8 @@ TEST_CASE("without faults the loop and the devices alternate in the same way ove
             loop_end.set_time(now_ns);
             plant_end.set_time(now_ns);
             devices.send(plant_end, plant);
-            port.receive(loop_end);
-            loop->tick(port.sense(now_ns, now_ns));
+            port.receive(loop_end, now_ns);
+            loop->tick(port.sense(now_ns));
             now_ns += 1'000'000;
         } while (loop->state() == LoopState::waiting);
         JointVector command = JointVector::Constant(1, tick.command);

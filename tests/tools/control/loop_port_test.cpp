@@ -34,8 +34,8 @@ class Line {
         if (sends) {
             send(position);
         }
-        port_.receive(bus);
-        return port_.sense(bus.time_ns, bus.time_ns);
+        port_.receive(bus, bus.time_ns);
+        return port_.sense(bus.time_ns);
     }
     LoopPort& port() { return port_; }
 
@@ -258,7 +258,7 @@ TEST_CASE("a sensor that has not sent its full scales is requested to do so ten 
     LoopPort port(description, 0.001);
     ScriptedBus bus;
     for (int tick = 0; tick < 200; ++tick) {
-        port.receive(bus);
+        port.receive(bus, bus.time_ns);
         bus.time_ns += period;
     }
     REQUIRE(bus.taken.size() == 12);
@@ -268,7 +268,7 @@ TEST_CASE("a sensor that has not sent its full scales is requested to do so ten 
         bus.waiting.push_back(stamped(*devices.answer(bus.taken[channel]), bus.time_ns));
     }
     for (int tick = 0; tick < 200; ++tick) {
-        port.receive(bus);
+        port.receive(bus, bus.time_ns);
         bus.time_ns += period;
     }
     CHECK(bus.taken.size() == 12);

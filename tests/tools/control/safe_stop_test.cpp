@@ -106,6 +106,28 @@ TEST_CASE("returning devices that still qualify have a patience of their own in 
     CHECK(stop.cause() == StopCause::no_position);
 }
 
+TEST_CASE("ticks in which different joints lack a reading do not add up and those of one joint do") {
+    SafeStop stop = running();
+    for (int tick = 0; tick < 100; ++tick) { // each joint has a reading in every second tick
+        CHECK(stop.tick(health([&](TickHealth& h) {
+                            h.position_valid = false;
+                            h.longest_silence = 1;
+                            h.returning = tick % 2 == 0;
+                        }),
+                        no_error) == LoopState::running);
+    }
+    const int patience = small_config().position_patience;
+    for (int silence = 1; silence <= patience + 1; ++silence) {
+        const LoopState expected = silence <= patience ? LoopState::running : LoopState::stopping;
+        CHECK(stop.tick(health([&](TickHealth& h) {
+                            h.position_valid = false;
+                            h.longest_silence = silence;
+                        }),
+                        no_error) == expected);
+    }
+    CHECK(stop.cause() == StopCause::no_position);
+}
+
 TEST_CASE("a stopping loop is stopped after the ramp and never runs again") {
     SafeStop stop = running();
     stop.tick(health([](TickHealth& h) { h.bus_lost = true; }), no_error);

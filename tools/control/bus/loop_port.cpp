@@ -57,8 +57,7 @@ bool returns(const BusSample& sample) {
 } // namespace
 
 LoopPort::LoopPort(const BusDescription& description, double loop_period_s)
-    : timer_(description.trigger == BusTrigger::timer),
-      measures_torque_(description.outputs == OutputKind::joint_torque),
+    : trigger_(description.trigger), measures_torque_(description.outputs == OutputKind::joint_torque),
       delay_ticks_(delay_of(description, loop_period_s)), period_ns_(std::llround(loop_period_s * 1e9)),
       latency_ns_(description.joints.latency_ns), clock_(period_ns_),
       arm_(for_loop(description, loop_period_s)), commands_(description), position_(description.joint_count),
@@ -92,17 +91,20 @@ void ArrivalClock::drained(std::int64_t newest_ns, std::int64_t now_ns, std::int
 }
 
 void LoopPort::follow_ticks(std::int64_t tick_ns) noexcept {
-    constexpr std::int64_t longest_wait = 1000; // ticks
     const std::int64_t jump_ns = tick_ns - next_tick_ns_.value_or(tick_ns);
-    ticks_across_ = std::max(ticks_across_ - 1, 0);
+    last_set_ns_ = set_ns_;
     if (2 * std::abs(jump_ns) > period_ns_) {
         set_ns_ += jump_ns;
-        // after a step back, readings must become newer than those before it
-        const std::int64_t back = std::clamp<std::int64_t>(-jump_ns / period_ns_, 0, longest_wait);
-        ticks_across_ = delay_ticks_ + static_cast<int>(back);
         ++counters_.clock_jumps;
     }
     next_tick_ns_ = tick_ns + period_ns_;
+}
+
+/// Returns a stamp on the time scale before all steps of the clock. In the tick of a step, frames may still
+/// have a stamp from before it: the correction that leaves the stamp closer to `now_ns` is the right one.
+std::int64_t LoopPort::continued(std::int64_t stamp_ns, std::int64_t now_ns) const noexcept {
+    const std::int64_t after_ns = stamp_ns - set_ns_, before_ns = stamp_ns - last_set_ns_;
+    return std::abs(now_ns - before_ns) < std::abs(now_ns - after_ns) ? before_ns : after_ns;
 }
 
 void LoopPort::follow_clock(const BusSample& sample, std::int64_t now_ns) noexcept {
@@ -129,14 +131,20 @@ bool LoopPort::find_missing(const BusSample& sample, std::int64_t now_ns) {
     return any;
 }
 
-LoopInput LoopPort::sense(std::int64_t tick_ns, std::int64_t now_ns) {
-    follow_ticks(tick_ns);
+/// Returns the time of the sample for a tick whose measurement is due at `due_ns`; none without a sample.
+std::optional<std::int64_t> LoopPort::sample_time(std::int64_t due_ns) noexcept {
+    const bool timer = trigger_ == BusTrigger::timer;
+    const bool incomplete = trigger_ == BusTrigger::set && !moment_ && sampled_ && arm_.drop_set();
+    return timer || incomplete ? std::optional(due_ns - clock_.correction_ns()) : moment_;
+}
+
+LoopInput LoopPort::sense(std::int64_t now_ns) {
+    now_ns -= set_ns_;
     LoopInput input;
-    const std::int64_t due_ns = tick_ns - delay_ticks_ * period_ns_;
-    input.time_ns = due_ns - set_ns_;
+    const std::int64_t due_ns = next_tick_ns_.value_or(0) - set_ns_ - (delay_ticks_ + 1) * period_ns_;
+    input.time_ns = due_ns;
     input.bus_lost = bus_lost_;
-    const std::optional<std::int64_t> instant =
-        timer_ ? std::optional(due_ns - clock_.correction_ns()) : moment_;
+    const std::optional<std::int64_t> instant = sample_time(due_ns);
     if (!instant) {
         ++counters_.incomplete;
         clock_.drained(now_ns);
@@ -147,7 +155,7 @@ LoopInput LoopPort::sense(std::int64_t tick_ns, std::int64_t now_ns) {
     const std::int64_t correction_ns = clock_.correction_ns();
     follow_clock(sample, now_ns);
     // or the requested sample time was wrong
-    const bool corrected = ticks_across_ > 0 || (timer_ && clock_.correction_ns() != correction_ns);
+    const bool corrected = trigger_ == BusTrigger::timer && clock_.correction_ns() != correction_ns;
     const bool usable = sample.valid() || lacks_single_joints(sample.joint_reasons());
     if (!usable) {
         ++counters_.invalid;
@@ -163,9 +171,10 @@ LoopInput LoopPort::sense(std::int64_t tick_ns, std::int64_t now_ns) {
         position_[joint] = sample.report.joint_reason[index] == hal::Reason::ok ? sample.positions()[index]
                                                                                 : position_[joint];
     }
-    input.time_ns = *instant + clock_.correction_ns() - set_ns_;
+    input.time_ns = *instant + clock_.correction_ns();
     input.position = &position_;
     input.missing = find_missing(sample, now_ns) ? &missing_ : nullptr;
+    sampled_ = true;
     if (measures_torque_ && sample.sample.output_valid) {
         torque_ = Eigen::Map<const Eigen::VectorXd>(sample.sample.output.data(), torque_.size());
         input.torque = &torque_;

@@ -59,34 +59,42 @@ class LoopPort {
 
     LoopPort(const BusDescription& description, double loop_period_s);
 
-    /// Receives the frames that have arrived, up to `frames_per_tick`. Requests from the sensor the data that
-    /// it must send before it can be used.
+    /// Receives the frames that have arrived for the tick that is due at `tick_ns`, up to `frames_per_tick`.
+    /// Requests from the sensor the data that it must send before it can be used. Call it once per tick.
+    ///
+    /// If `tick_ns` differs from the expected time by more than half a period, the clock of ticks and stamps
+    /// was set. All later times of the bus are corrected by the sum of these steps, so that the devices'
+    /// readings continue on the time scale before the step.
     template <hal::Bus B>
-    void receive(B& bus) {
+    void receive(B& bus, std::int64_t tick_ns) {
         moment_.reset();
+        follow_ticks(tick_ns);
         const std::span<const hal::Frame> frames = bus.drain(room_);
+        const std::int64_t now_ns = bus.now_ns() - set_ns_;
         arm_.update(bus.state(), bus.counters());
-        for (const hal::Frame& frame : frames) {
-            if (const std::optional<std::int64_t> moment = arm_.take(frame, bus.now_ns())) {
+        for (hal::Frame frame : frames) {
+            frame.stamp_ns = continued(frame.stamp_ns, now_ns);
+            if (const std::optional<std::int64_t> moment = arm_.take(frame, now_ns)) {
                 moment_ = moment;
             }
         }
         count(frames.size());
         bus_lost_ = bus.state() == hal::BusState::off || bus.state() == hal::BusState::interface_down;
-        if (bus.now_ns() >= next_request_ns_) {
-            next_request_ns_ = bus.now_ns() + request_period_ns;
+        if (now_ns >= next_request_ns_) {
+            next_request_ns_ = now_ns + request_period_ns;
             offer(bus, arm_.requests());
         }
     }
 
-    /// Returns the measurements for the tick that was due at `tick_ns`. The result refers to this port. Call
-    /// it once per tick.
+    /// Returns the measurements for the tick of the last `receive`, at `now_ns` on the clock of the bus. The
+    /// result refers to this port. A joint is `missing` if its value is held from the previous sample's
+    /// reading. Devices are `returning` while they qualify, or while their clock is invalid or being
+    /// corrected (hal::Reason).
     ///
-    /// If `tick_ns` differs from the expected time by more than half a period, the clock was set. The
-    /// measurements then continue on the previous time scale. A joint is `missing` if its value is held from
-    /// the previous sample's reading. Devices are `returning` while they qualify, or while their clock is
-    /// invalid or being corrected (hal::Reason).
-    LoopInput sense(std::int64_t tick_ns, std::int64_t now_ns);
+    /// With the trigger `set`, a tick with a reading of at least one joint does not wait for lost frames: it
+    /// receives a sample of its own time without the joints that have no reading, and the next tick's set
+    /// begins with the next frame.
+    LoopInput sense(std::int64_t now_ns);
 
     /// Sends a command. It also serves as the torque of the next tick if the bus does not measure torques.
     template <hal::Bus B>
@@ -104,7 +112,9 @@ class LoopPort {
 
     void count(std::size_t frames) noexcept;
     void follow_ticks(std::int64_t tick_ns) noexcept;
+    std::int64_t continued(std::int64_t stamp_ns, std::int64_t now_ns) const noexcept;
     void follow_clock(const BusSample& sample, std::int64_t now_ns) noexcept;
+    std::optional<std::int64_t> sample_time(std::int64_t due_ns) noexcept;
     bool find_missing(const BusSample& sample, std::int64_t now_ns);
 
     template <hal::Bus B>
@@ -114,18 +124,20 @@ class LoopPort {
         }
     }
 
-    bool timer_, measures_torque_;
+    BusTrigger trigger_;
+    bool measures_torque_;
     int delay_ticks_;
     std::int64_t period_ns_, latency_ns_;
     std::optional<std::int64_t> next_tick_ns_;
-    std::int64_t set_ns_ = 0; ///< sum of all steps of the ticks' clock
-    int ticks_across_ = 0;    ///< remaining ticks whose sample time may precede the clock's step
+    std::int64_t set_ns_ = 0;      ///< sum of all steps of the ticks' clock
+    std::int64_t last_set_ns_ = 0; ///< the same at the previous tick
     ArrivalClock clock_;
     BusArm arm_;
     TorqueFrames commands_;
     std::array<hal::Frame, frames_per_tick> room_{};
     std::optional<std::int64_t> moment_;
     bool arrived_ = false; ///< whether the last drain received frames
+    bool sampled_ = false; ///< whether there has been a sample with positions
     bool bus_lost_ = false;
     JointVector position_, torque_, command_;
     std::vector<bool> missing_;

@@ -72,9 +72,10 @@ const JointVector& ControlLoop::tick(const LoopInput& input) {
     }
     const bool found = !actions_.empty() && actions_.back().action == FindingAction::stop;
     const StopCause joint = watch_.cause() == StopCause::none && found ? StopCause::finding : watch_.cause();
-    const LoopState state = safe_stop_.tick({feedback_.complete(), input.deadline_missed, input.bus_lost,
-                                             input.stop_requested, input.returning, joint},
-                                            error_);
+    const LoopState state =
+        safe_stop_.tick({feedback_.complete(), input.deadline_missed, input.bus_lost, input.stop_requested,
+                         input.returning, joint, feedback_.longest_silence()},
+                        error_);
     if (state == LoopState::running) {
         follow();
     } else if (state != LoopState::waiting && moved()) {

@@ -131,9 +131,12 @@ JointVector PositionFeedback::torque() const {
     return result;
 }
 
-bool PositionFeedback::complete() const noexcept {
-    return std::ranges::all_of(observed_tick_, [this](std::int64_t tick) { return tick == tick_; });
+int PositionFeedback::longest_silence() const noexcept {
+    constexpr std::int64_t most = std::numeric_limits<int>::max();
+    return static_cast<int>(std::min(tick_ - std::ranges::min(observed_tick_), most));
 }
+
+bool PositionFeedback::complete() const noexcept { return longest_silence() == 0; }
 
 bool PositionFeedback::regular() const noexcept {
     return complete() && std::ranges::all_of(regular_, [](bool regular) { return regular; });

@@ -66,6 +66,8 @@ class PositionFeedback {
     std::int64_t age(Eigen::Index joint) const noexcept {
         return tick_ - newest_tick_[static_cast<std::size_t>(joint)];
     }
+    /// Returns the ticks since the last reading of the joint that has waited longest.
+    int longest_silence() const noexcept;
     /// Returns whether every joint has a reading of this tick.
     bool complete() const noexcept;
     /// Returns whether the tick is complete, each reading follows its joint's previous one by one tick, and

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/control/loop/safe_stop.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -50,6 +51,8 @@ SafeStop::SafeStop(SafeStopConfig config) : config_(std::move(config)) {}
 void SafeStop::count(const TickHealth& health) {
     returning_ += !health.position_valid && health.returning ? 1 : 0;
     lost_ += health.position_valid || health.returning ? 0 : 1;
+    lost_ = std::min(lost_, health.longest_silence);
+    returning_ = std::min(returning_, health.longest_silence);
     if (health.position_valid) {
         lost_ = returning_ = 0;
     }

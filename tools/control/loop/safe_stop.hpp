@@ -4,6 +4,7 @@
 #include "tools/robot/dynamics/joint_vector.hpp"
 
 #include <cstdint>
+#include <limits>
 
 namespace dfdyn::tools {
 
@@ -40,7 +41,7 @@ enum class StopMode : std::uint8_t {
 
 /// Limits and patience; see StopCause. An empty vector means no limit. Ticks are those of the loop.
 struct SafeStopConfig {
-    int position_patience = 5;   ///< most successive lost cycles that are bridged
+    int position_patience = 5;   ///< most successive lost cycles of a joint that are bridged
     int return_patience = 20;    ///< additional successive ticks while devices send and still qualify
     int deadline_patience = 10;  ///< most successive missed deadlines
     int speed_patience = 2;      ///< most successive readings above the speed limit
@@ -63,6 +64,9 @@ struct TickHealth {
     bool stop_requested = false;
     bool returning = false;            ///< no position yet, from devices that send and still qualify
     StopCause joint = StopCause::none; ///< abnormal behaviour of a joint: see JointWatch
+    /// Ticks since the last reading of the joint that has waited longest. Successive ticks in which
+    /// different joints lack a reading count no further than this.
+    int longest_silence = std::numeric_limits<int>::max();
 };
 
 /// State machine for a safe stop. The first cause is kept. A stopped loop cannot be restarted.

@@ -121,6 +121,13 @@ class SampleAssembly {
         }
     }
 
+    /// Drops a set that is not complete. The next set begins with the next frame. Returns whether the dropped
+    /// set contained a joint.
+    constexpr bool drop_set() noexcept {
+        constexpr std::int64_t never = std::numeric_limits<std::int64_t>::min();
+        return moments_.drop_set(output_.heard() ? output_.newest_ns() : never);
+    }
+
     /// Whether a value of this instant is missing that may yet be interpolated: `assemble` gives more after
     /// the next frames. Never for longer than the sources' `max_age` and a period after the last value.
     [[nodiscard]] constexpr bool pending(std::int64_t instant_ns, std::int64_t now_ns) const noexcept {

@@ -43,6 +43,15 @@ class MomentWatch {
     /// A new position of a joint.
     constexpr void measured(std::size_t joint) noexcept { seen_[joint] = true; }
 
+    /// Drops a set that is not complete, for a caller that does not wait for lost frames: its joints and the
+    /// output measured at `output_ns`. Returns whether it contained a joint.
+    constexpr bool drop_set(std::int64_t output_ns) noexcept {
+        const bool any = std::any_of(seen_.begin(), seen_.begin() + joints_, [](bool seen) { return seen; });
+        seen_ = {};
+        set_ns_ = std::max(set_ns_, output_ns);
+        return any;
+    }
+
     /// A moment if all joints and the output, measured at `output_ns`, are new.
     constexpr SampleMoment completed(std::int64_t output_ns) noexcept {
         const bool joints =
