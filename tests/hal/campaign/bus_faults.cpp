@@ -6,14 +6,14 @@ namespace dfdyn::tests {
 using Role = Sent::Role;
 
 void lose_frames(FaultSite& site) {
-    site.remove([&](const Sent& sent) { return is_device(sent) && site.chance(0.2); });
+    site.remove([&](const Sent& sent) { return FaultSite::is_device(sent) && site.chance(0.2); });
 }
 void lose_cycles(FaultSite& site) {
-    site.remove([](const Sent& sent) { return is_device(sent); });
+    site.remove([](const Sent& sent) { return FaultSite::is_device(sent); });
 }
 void silence_board(FaultSite& site) {
-    const int unit = site.pick(2);
-    site.remove([&](const Sent& sent) { return is_joint(sent, unit); });
+    const std::size_t joint = site.pick_joint();
+    site.remove([&](const Sent& sent) { return site.is_joint(sent, joint); });
 }
 void silence_sensor(FaultSite& site) {
     site.remove([](const Sent& sent) { return sent.role == Role::wrench; });
@@ -21,7 +21,7 @@ void silence_sensor(FaultSite& site) {
 
 void delay_frames(FaultSite& site) {
     site.change([&](Sent& sent) {
-        if (is_device(sent) && site.chance(0.1)) {
+        if (FaultSite::is_device(sent) && site.chance(0.1)) {
             move(sent, std::int64_t{bus_us} * site.pick(2400));
         }
     });
@@ -29,7 +29,7 @@ void delay_frames(FaultSite& site) {
 }
 void duplicate_frames(FaultSite& site) {
     site.add([&](const Sent& sent, Traffic& more) {
-        if (is_device(sent) && site.chance(0.2)) {
+        if (FaultSite::is_device(sent) && site.chance(0.2)) {
             more.push_back(sent);
             move(more.back(), std::int64_t{bus_us} * (50 + site.pick(2150)));
         }
@@ -38,7 +38,7 @@ void duplicate_frames(FaultSite& site) {
 /// They are read in another order than they were stamped in.
 void swap_frames(FaultSite& site) {
     for (std::size_t i = 1; i < site.traffic.size(); ++i) {
-        if (site.covers(site.traffic[i]) && is_device(site.traffic[i]) && site.chance(0.2)) {
+        if (site.covers(site.traffic[i]) && FaultSite::is_device(site.traffic[i]) && site.chance(0.2)) {
             std::swap(site.traffic[i - 1].true_ns, site.traffic[i].true_ns);
         }
     }
@@ -47,12 +47,15 @@ void swap_frames(FaultSite& site) {
 /// Not those of efforts, which may step.
 void corrupt_bits(FaultSite& site) {
     site.change([&](Sent& sent) {
-        if (is_device(sent) && sent.frame.length > 0 && site.chance(0.1)) {
-            const bool has_effort_too = sent.role == Role::joints && has_effort(sent.frame);
-            const Bytes bytes =
-                has_effort_too ? position_bytes(sent.frame, sent.unit) : Bytes{0, sent.frame.length};
-            const int bit = 8 * bytes.begin + site.pick(8 * bytes.length);
-            sent.frame.data[static_cast<std::size_t>(bit / 8)] ^= static_cast<std::uint8_t>(1 << bit % 8);
+        if (FaultSite::is_device(sent) && sent.frame.length > 0 && site.chance(0.1)) {
+            const auto bit = static_cast<std::size_t>(site.pick(8 * sent.frame.length));
+            const auto mask = static_cast<std::uint8_t>(1U << bit % 8);
+            const bool of_effort = sent.role == Role::joints &&
+                                   std::ranges::any_of(site.fields(sent).effort, [&](const Bits& effort) {
+                                       return (effort[bit / 8] & mask) != 0;
+                                   });
+            sent.frame.data[bit / 8] ^= of_effort ? std::uint8_t{0} : mask;
+            sent.corrupted = true;
         }
     });
 }
@@ -93,8 +96,8 @@ void bus_off(FaultSite& site) {
     site.change([&](const Sent& sent) { clock_ns = sent.clock_ns; });
     site.remove([](const Sent&) { return true; });
     for (const auto& [classes, time_ns] : {std::pair{0x040U, site.begin_ns}, {0x100U, site.end_ns}}) {
-        site.traffic.push_back({error_frame(classes, time_ns + clock_ns), time_ns});
-        site.traffic.back().clock_ns = clock_ns;
+        site.traffic.push_back(
+            {.frame = error_frame(classes, time_ns + clock_ns), .true_ns = time_ns, .clock_ns = clock_ns});
     }
     site.sort();
 }
@@ -126,7 +129,8 @@ void overload(FaultSite& site) {
     site.change([&](const Sent& sent) { clock_ns = sent.clock_ns; });
     for (std::int64_t t = site.begin_ns; t < site.end_ns; t += 130 * bus_us) {
         if (site.chance(others * 0.8)) {
-            dummy.push_back({wire::frame(site.chance(0.7) ? 0x0F0 : 0x380, {1, 2, 3, 4, 5, 6, 7, 8}), t});
+            dummy.push_back({.frame = wire::frame(site.chance(0.7) ? 0x0F0 : 0x7F0, {1, 2, 3, 4, 5, 6, 7, 8}),
+                             .true_ns = t});
             dummy.back().frame.stamp_ns = t + clock_ns;
             dummy.back().clock_ns = clock_ns;
         }
@@ -147,14 +151,16 @@ void overload(FaultSite& site) {
         }
         free_ns = std::max(free_ns, time_ns);
     };
+    // Not the SYNCs: a drive measures when it receives one.
+    const auto waits = [](const Sent& sent) { return sent.role != Role::sync; };
     for (const Sent& sent : site.traffic) {
-        if (site.covers(sent)) {
+        if (site.covers(sent) && waits(sent)) {
             serve_until(sent.true_ns - 125 * bus_us);
             queue.push_back(sent);
         }
     }
     serve_until(site.end_ns + 200 * bus_period);
-    site.remove([](const Sent&) { return true; });
+    site.remove(waits);
     std::erase_if(done, [&](const Sent& sent) { return sent.true_ns >= site.end_ns; });
     site.traffic.insert(site.traffic.end(), done.begin(), done.end());
     site.sort();
@@ -162,23 +168,24 @@ void overload(FaultSite& site) {
 
 void malform(FaultSite& site) {
     site.change([&](Sent& sent) {
-        if (!is_device(sent) || !site.chance(0.1)) {
+        if (!FaultSite::is_device(sent) || !site.chance(0.1)) {
             return;
         }
         sent.role = Role::noise; // for faults that are put on top
         switch (site.pick(4)) {
         case 0:
             sent.frame.length = static_cast<std::uint8_t>((sent.frame.length + 1 + site.pick(7)) % 9);
-            sent.frame.length = sent.frame.length == 7 ? 8 : sent.frame.length; // 7: a saturated sensor
+            sent.frame.length = sent.frame.length == 7 ? 5 : sent.frame.length; // 7: a saturated sensor
             break;
         case 1:
             sent.frame.remote = true;
             break;
         case 2:
-            sent.frame.fd = true;
+            sent.frame.fd = !sent.frame.fd;
             break;
         default:
-            sent.frame.extended = true;
+            sent.frame.extended = !sent.frame.extended;
+            sent.frame.id &= 0x7FFU;
             break;
         }
     });
@@ -189,8 +196,7 @@ void babble(FaultSite& site) {
             hal::Frame frame =
                 wire::frame(static_cast<std::uint32_t>(0x700 + site.pick(0xFF)), {1, 2, 3, 4, 5, 6, 7, 8});
             frame.stamp_ns = sent.frame.stamp_ns;
-            more.push_back({frame, sent.true_ns});
-            more.back().clock_ns = sent.clock_ns;
+            more.push_back({.frame = frame, .true_ns = sent.true_ns, .clock_ns = sent.clock_ns});
         }
     });
 }

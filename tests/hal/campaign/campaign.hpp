@@ -6,54 +6,34 @@
 #include "tests/hal/campaign/judge.hpp"
 
 #include <deque>
+#include <limits>
 #include <optional>
+#include <sstream>
 #include <vector>
 
 namespace dfdyn::tests {
 
 /// What came of one family and trigger.
 struct CampaignRow {
-    const char* family = "";
+    std::string family;
     Trigger trigger = Trigger::timer;
     std::uint64_t frames = 0, faults = 0, samples = 0, accepted = 0, outputs = 0;
     std::uint64_t wrong_positions = 0, wrong_outputs = 0;
-    std::uint64_t unseen_positions = 0, unseen_outputs = 0; ///< see Match; samples
-    std::uint64_t good = 0;                                 ///< samples outside of every fault's own time
-    std::uint64_t refused_good = 0;                         ///< of them: without positions
+    std::uint64_t undecidable_positions = 0, undecidable_outputs = 0; ///< see Match; samples
+    std::uint64_t good = 0;           ///< samples outside of every fault's own time
+    std::uint64_t refused_good = 0;   ///< of them: without positions
     std::uint64_t unlearned_good = 0; ///< of them: with positions and without an output, where it is due
     std::vector<std::uint64_t> wrong_by_fault;   ///< of the last fault that began before
     std::vector<std::uint64_t> refused_by_fault; ///< likewise, of good samples
-};
-
-/// An assembly as a Sampler takes it.
-template <class Assembly>
-struct ArmOfSampler {
-    Assembly assembly;
-    Trigger trigger;
-
-    std::optional<std::int64_t> take(const hal::Frame& frame, std::int64_t now_ns) {
-        using Kind = hal::SampleMoment::Kind;
-        const hal::SampleMoment moment = assembly.take(frame, now_ns);
-        const Kind wanted = trigger == Trigger::sync ? Kind::sync : Kind::set;
-        return trigger != Trigger::timer && moment.kind == wanted ? std::optional(moment.instant_ns)
-                                                                  : std::nullopt;
-    }
-    void update(hal::BusState state, const hal::BusCounters& counters) { assembly.update(state, counters); }
-    bool pending(std::int64_t instant_ns, std::int64_t now_ns) const {
-        return assembly.pending(instant_ns, now_ns);
-    }
-    auto assemble(std::int64_t instant_ns, std::int64_t now_ns) {
-        return assembly.assemble(instant_ns, now_ns);
-    }
+    std::vector<std::string> wrong, refused;     ///< the first ones, in words
 };
 
 /// Puts random mixtures of faults on the bus of one kind of arm, and compares every accepted value with the
 /// truth.
-template <class Arm>
 class Campaign {
   public:
-    Campaign(Trigger trigger, std::mt19937_64& engine) : engine_(engine) {
-        row_.family = Arm::name;
+    Campaign(const CampaignArm& arm, Trigger trigger, std::mt19937_64& engine) : arm_(arm), engine_(engine) {
+        row_.family = arm.name;
         row_.trigger = trigger;
         row_.wrong_by_fault.resize(100);
         row_.refused_by_fault.resize(100);
@@ -72,18 +52,31 @@ class Campaign {
     };
     /// A sample with the sampler's time and the true one.
     struct Unjudged {
-        typename Arm::Assembly::Assembled assembled;
+        CampaignSample sample;
         std::int64_t now_ns, true_ns;
+        std::int64_t heard_ns; ///< true time without the silences
     };
 
     static constexpr std::int64_t second = 1'000'000'000;
+    static constexpr std::int64_t forever_ns = std::numeric_limits<std::int64_t>::max();
     static constexpr int cycles = 1500;
     static constexpr std::int64_t clock_shows_ns = 60 * bus_period; ///< after it was set
     static constexpr std::int64_t start_up_ns = 60 * bus_period;
 
     static std::int64_t nanoseconds(double time_s) { return static_cast<std::int64_t>(1e9 * time_s); }
 
-    /// One fault after the other, at times two at once; one that stays ends the run.
+    /// The longest of the recoveries that are still to come when a fault begins, and its own.
+    static std::int64_t recovery_ns(std::span<const PlacedFault> before, const Fault& fault,
+                                    std::int64_t begin_ns) {
+        std::int64_t longest_ns = nanoseconds(fault.recovery_s);
+        for (const PlacedFault& placed : before) {
+            const bool over = placed.fault->stays || begin_ns > placed.recovered_ns;
+            longest_ns = over ? longest_ns : std::max(longest_ns, placed.recovered_ns - placed.end_ns);
+        }
+        return longest_ns;
+    }
+
+    /// One fault after the other, half of them while the one before is there.
     std::vector<PlacedFault> place(const Scene& scene, std::span<const Fault> faults) {
         std::vector<PlacedFault> placed;
         std::uniform_real_distribution<double> unit(0, 1);
@@ -92,19 +85,11 @@ class Campaign {
         while (std::max(at_ns, free_ns) < scene.cycle_ns(cycles) - second / 2) {
             const Fault& fault =
                 faults[std::uniform_int_distribution<std::size_t>(0, faults.size() - 1)(engine_)];
-            const bool mixes_with_all = std::ranges::all_of(placed, [&](const PlacedFault& one) {
-                const bool over = one.end_ns + nanoseconds(one.fault->recovery_s + 0.1) < at_ns;
-                return over || mix(one.fault->effect, fault.effect);
-            });
-            at_ns = mixes_with_all ? at_ns : std::max(at_ns, free_ns);
             const double length_s = fault.shortest_s + (fault.longest_s - fault.shortest_s) * unit(engine_);
-            const std::int64_t end_ns =
-                fault.ends ? at_ns + nanoseconds(length_s) : scene.cycle_ns(cycles + 1);
-            placed.push_back({&fault, at_ns, end_ns});
-            free_ns = std::max(free_ns, end_ns + nanoseconds(fault.recovery_s + 0.1));
-            if (!fault.ends) {
-                break;
-            }
+            const std::int64_t end_ns = at_ns + nanoseconds(length_s);
+            const std::int64_t recovered_ns = end_ns + recovery_ns(placed, fault, at_ns);
+            free_ns = std::max(free_ns, recovered_ns + nanoseconds(0.1));
+            placed.push_back({&fault, at_ns, end_ns, fault.stays ? forever_ns : recovered_ns});
             at_ns = unit(engine_) < 0.5 ? at_ns + nanoseconds(0.5 * length_s * unit(engine_))
                                         : free_ns + nanoseconds(0.4 * unit(engine_));
         }
@@ -114,44 +99,42 @@ class Campaign {
     void run_once(std::span<const Fault> faults) {
         Scene scene{Truth(engine_), 100 * second, &engine_};
         limits_ = std::bernoulli_distribution(0.5)(engine_) ? own_limits : hal::MotionLimits{};
-        Traffic traffic;
-        Arm::start(scene, traffic);
-        for (int k = 0; k < cycles; ++k) {
-            Arm::cycle(scene, k, traffic);
-        }
-        std::ranges::stable_sort(traffic, {}, &Sent::true_ns);
+        Traffic traffic = arm_.run(scene, cycles);
         placed_ = place(scene, faults);
+        described_ = nullptr;
         for (PlacedFault& placed : placed_) {
-            FaultSite site{traffic, placed.begin_ns, placed.end_ns, engine_, scene.truth};
+            FaultSite site{arm_, traffic, placed.begin_ns, placed.end_ns, engine_, scene.truth};
             placed.fault->apply(site);
             placed.begin_ns = site.begin_ns; // some wait for motion
         }
         row_.faults += placed_.size();
+        const FaultSite all{arm_, traffic, 0, 0, engine_, scene.truth};
+        sight_ = {JointSight(all, 0), JointSight(all, 1)};
         feed(scene, traffic);
     }
 
     void feed(const Scene& scene, const Traffic& traffic) {
-        using Assembly = typename Arm::Assembly;
-        using Adapter = ArmOfSampler<Assembly>;
-        Adapter arm{Arm::make(limits_), row_.trigger};
-        hal::Sampler<Adapter> sampler({.timer = row_.trigger == Trigger::timer,
-                                       .period_ns = bus_period,
-                                       .delay_ns = timer_delay,
-                                       .patience_ns = 3 * bus_period});
+        const std::unique_ptr<ReceivingArm> arm = arm_.receive(row_.trigger, limits_);
+        hal::Sampler<ReceivingArm> sampler({.timer = row_.trigger == Trigger::timer,
+                                            .period_ns = bus_period,
+                                            .delay_ns = timer_delay,
+                                            .patience_ns = 3 * bus_period});
         hal::BusState state = hal::BusState::active;
         hal::BusCounters counters;
         std::deque<Unjudged> samples;
-        std::int64_t now_ns = 0;
+        std::int64_t now_ns = scene.start_ns;
+        std::int64_t heard_ns = 0;
         errors_.clear();
         for (const Sent& sent : traffic) {
             hal::note_frame(sent.frame, state, counters);
             ++row_.frames;
+            heard_ns += std::clamp<std::int64_t>(sent.true_ns - now_ns, 0, bus_period);
             now_ns = sent.true_ns;
-            sampler.take(arm, sent.frame, state, counters, [&](const auto& assembled, std::int64_t time_ns) {
-                samples.push_back({assembled, time_ns, now_ns});
+            sampler.take(*arm, sent.frame, state, counters, [&](const auto& sample, std::int64_t time_ns) {
+                samples.push_back({sample, time_ns, now_ns, heard_ns});
             });
-            note_error(sent.clock_ns + sampler.clock().offset_ns(), now_ns);
-            for (; !samples.empty() && samples.front().true_ns + clock_shows_ns < now_ns;
+            note_error(sent.clock_ns + sampler.clock().offset_ns(), heard_ns);
+            for (; !samples.empty() && samples.front().heard_ns + clock_shows_ns < heard_ns;
                  samples.pop_front()) {
                 judge(scene, samples.front());
             }
@@ -161,9 +144,9 @@ class Campaign {
         }
     }
 
-    void note_error(std::int64_t error_ns, std::int64_t true_ns) {
+    void note_error(std::int64_t error_ns, std::int64_t heard_ns) {
         if (errors_.empty() || error_ns != errors_.back().error_ns) {
-            errors_.push_back({error_ns, true_ns});
+            errors_.push_back({error_ns, heard_ns});
         }
     }
 
@@ -180,52 +163,103 @@ class Campaign {
         return std::ranges::any_of(placed_,
                                    [&](const PlacedFault& placed) { return placed.covers(time_ns); });
     }
+    /// Whether an output has just frozen, or is frozen and has just come back from another fault.
     bool undetectable_at(std::int64_t time_ns) const {
-        return std::ranges::any_of(placed_, [&](const PlacedFault& placed) {
-            return time_ns >= placed.begin_ns - bus_period &&
-                   time_ns <= placed.begin_ns + nanoseconds(placed.fault->undetectable_s) + bus_period;
+        const auto begins = [&](std::int64_t begin_ns, double undetectable_s) {
+            return time_ns >= begin_ns - bus_period &&
+                   time_ns <= begin_ns + nanoseconds(undetectable_s) + bus_period;
+        };
+        return std::ranges::any_of(placed_, [&](const PlacedFault& frozen) {
+            const double undetectable_s = frozen.fault->undetectable_s;
+            const bool comes_back = std::ranges::any_of(placed_, [&](const PlacedFault& other) {
+                return other.end_ns > frozen.begin_ns && other.end_ns < frozen.end_ns &&
+                       begins(other.end_ns, undetectable_s + 0.01);
+            });
+            return begins(frozen.begin_ns, undetectable_s) || (undetectable_s > 0 && comes_back);
         });
     }
 
-    void judge(const Scene& scene, const Unjudged& sample) {
-        const auto& [assembled, now_ns, true_ns] = sample;
+    void judge(const Scene& scene, const Unjudged& unjudged) {
+        const auto& [sample, now_ns, true_ns, heard_ns] = unjudged;
         ++row_.samples;
         const bool good = !in_own_time(true_ns) && true_ns > scene.cycle_ns(0) + start_up_ns;
         row_.good += good ? 1 : 0;
         const PlacedFault* const fault = fault_at(true_ns);
         const auto number = static_cast<std::size_t>(fault == nullptr ? 0 : fault->fault->number);
-        if (!assembled.valid()) {
+        if (!sample.valid) {
             row_.refused_good += good ? 1 : 0;
             row_.refused_by_fault[number] += good ? 1 : 0;
+            if (good) {
+                describe(scene, unjudged, row_.refused);
+            }
             return;
         }
         ++row_.accepted;
-        const bool output_valid = assembled.sample.output_valid;
-        const Judge<Arm> judge(scene.truth, limits_, placed_);
+        const Judge judge(arm_, scene.truth, limits_, placed_, sight_);
         Match position = Match::wrong;
-        Match output = output_valid && !undetectable_at(true_ns) ? Match::wrong : Match::right;
-        for (const ErrorRange& error : errors_at(true_ns)) {
-            position = std::max(position, match_positions(judge, sample, error));
-            output = std::max(output, output == Match::right ? output : match_outputs(judge, sample, error));
+        Match output = sample.output_valid && !undetectable_at(true_ns) ? Match::wrong : Match::right;
+        for (const ErrorRange& error : errors_at(heard_ns)) {
+            position = std::max(position, match_positions(judge, unjudged, error));
+            output =
+                std::max(output, output == Match::right ? output : match_outputs(judge, unjudged, error));
         }
-        row_.outputs += output_valid ? 1 : 0;
+        row_.outputs += sample.output_valid ? 1 : 0;
         row_.wrong_positions += position == Match::wrong ? 1 : 0;
         row_.wrong_outputs += output == Match::wrong ? 1 : 0;
-        row_.unseen_positions += position == Match::unseen ? 1 : 0;
-        row_.unseen_outputs += output == Match::unseen ? 1 : 0;
-        row_.wrong_by_fault[number] += position == Match::wrong || output == Match::wrong ? 1 : 0;
-        const bool due = assembled.report.output != hal::Reason::output_not_new;
-        row_.unlearned_good += good && due && !output_valid ? 1 : 0;
+        row_.undecidable_positions += position == Match::undecidable ? 1 : 0;
+        row_.undecidable_outputs += output == Match::undecidable ? 1 : 0;
+        if (position == Match::wrong || output == Match::wrong) {
+            ++row_.wrong_by_fault[number];
+            wrong_kind_ = position == Match::wrong ? "position" : "output";
+            describe(scene, unjudged, row_.wrong);
+        }
+        const bool due = sample.report.output != hal::Reason::output_not_new;
+        row_.unlearned_good += good && due && !sample.output_valid ? 1 : 0;
     }
 
-    /// Of the sampler's time at that time. A clock that was set shows for a while after. A value between two
-    /// measurements, one by the old clock and one by the new, is of an instant between.
-    std::vector<ErrorRange> errors_at(std::int64_t true_ns) const {
+    /// What was accepted, what is true, and the faults so far.
+    void describe(const Scene& scene, const Unjudged& unjudged, std::vector<std::string>& list) {
+        constexpr std::size_t most = 20;
+        if (list.size() == most || described_ == &list) {
+            return;
+        }
+        described_ = &list;
+        const auto& [sample, now_ns, true_ns, heard_ns] = unjudged;
+        const auto seconds = [&](std::int64_t time_ns) { return seconds_of(time_ns - scene.start_ns); };
+        const std::int64_t error_ns = errors_at(heard_ns).front().least_ns;
+        std::ostringstream text;
+        text << wrong_kind_ << " at " << seconds(true_ns) << " s:";
+        for (std::size_t i = 0; i < Truth::joints; ++i) {
+            const hal::ValueOrigin origin = sample.report.position_origin[i];
+            const std::int64_t time_ns =
+                origin == hal::ValueOrigin::held ? now_ns - sample.report.position_age_ns[i] : sample.time_ns;
+            const Claim claim{sample.position[i], seconds_of(time_ns - error_ns), 0, origin};
+            const auto [off, limit] = Judge(arm_, scene.truth, limits_, placed_, sight_).explain(i, claim);
+            text << " joint " << i + 1 << ' ' << sample.position[i] << " not "
+                 << scene.truth.position(i, seconds_of(time_ns - error_ns)) << ", off by " << off << " where "
+                 << limit << " is undecidable (" << hal::name(sample.report.joint_reason[i])
+                 << "; its readings were right until " << seconds_of(sight_[i].run_at(true_ns).blind_ns)
+                 << " s before " << seconds(sight_[i].run_at(true_ns).begin_ns) << ", then off by "
+                 << sight_[i].run_at(true_ns).error_rad << ", from zero by "
+                 << sight_[i].run_at(true_ns).from_zero_rad << ")";
+        }
+        for (const PlacedFault& placed : placed_) {
+            if (placed.begin_ns <= true_ns) {
+                text << "; fault " << placed.fault->number << " from " << seconds(placed.begin_ns) << " to "
+                     << seconds(placed.end_ns);
+            }
+        }
+        list.push_back(text.str());
+    }
+
+    /// Of the sampler's time at that time without silences. A clock that was set shows for a while after. A
+    /// value between two measurements, one by the old clock and one by the new, is of an instant between.
+    std::vector<ErrorRange> errors_at(std::int64_t heard_ns) const {
         std::vector<ErrorRange> errors;
         for (std::size_t i = 0; i < errors_.size(); ++i) {
             const auto [error_ns, since_ns] = errors_[i];
-            const bool gone = i + 1 < errors_.size() && errors_[i + 1].since_ns + clock_shows_ns < true_ns;
-            if (gone || since_ns > true_ns + clock_shows_ns) {
+            const bool gone = i + 1 < errors_.size() && errors_[i + 1].since_ns + clock_shows_ns < heard_ns;
+            if (gone || since_ns > heard_ns + clock_shows_ns) {
                 continue;
             }
             for (std::size_t k = 0, before = errors.size(); k < before; ++k) {
@@ -242,40 +276,42 @@ class Campaign {
 
     /// The least good of the joints, of a sample by a clock with that error. A held value is of its reading's
     /// instant, which the report tells.
-    static Match match_positions(const Judge<Arm>& judge, const Unjudged& sample, const ErrorRange& error) {
-        const auto& [assembled, now_ns, true_ns] = sample;
+    static Match match_positions(const Judge& judge, const Unjudged& unjudged, const ErrorRange& error) {
+        const auto& [sample, now_ns, true_ns, heard_ns] = unjudged;
         Match all = Match::right;
         for (std::size_t i = 0; i < Truth::joints; ++i) {
-            const hal::ValueOrigin origin = assembled.report.position_origin[i];
-            const std::int64_t time_ns = origin == hal::ValueOrigin::held
-                                             ? now_ns - assembled.report.position_age_ns[i]
-                                             : assembled.sample.time_ns;
-            const Claim claim{assembled.sample.position[static_cast<int>(i)],
-                              seconds_of(time_ns - error.least_ns), seconds_of(error.range_ns), origin};
+            const hal::ValueOrigin origin = sample.report.position_origin[i];
+            const std::int64_t time_ns =
+                origin == hal::ValueOrigin::held ? now_ns - sample.report.position_age_ns[i] : sample.time_ns;
+            const Claim claim{sample.position[i], seconds_of(time_ns - error.least_ns),
+                              seconds_of(error.range_ns), origin};
             all = std::min(all, judge.position(i, claim, true_ns));
         }
         return all;
     }
 
-    static Match match_outputs(const Judge<Arm>& judge, const Unjudged& sample, const ErrorRange& error) {
-        const auto& [assembled, now_ns, true_ns] = sample;
-        const hal::ValueOrigin origin = assembled.report.output_origin;
-        const std::int64_t time_ns = origin == hal::ValueOrigin::held
-                                         ? now_ns - assembled.report.output_age_ns
-                                         : assembled.sample.time_ns;
+    static Match match_outputs(const Judge& judge, const Unjudged& unjudged, const ErrorRange& error) {
+        const auto& [sample, now_ns, true_ns, heard_ns] = unjudged;
+        const hal::ValueOrigin origin = sample.report.output_origin;
+        const std::int64_t time_ns =
+            origin == hal::ValueOrigin::held ? now_ns - sample.report.output_age_ns : sample.time_ns;
         Match all = Match::right;
-        for (std::size_t k = 0; k < static_cast<std::size_t>(assembled.sample.output.size()); ++k) {
-            const Claim claim{assembled.sample.output[static_cast<int>(k)],
-                              seconds_of(time_ns - error.least_ns), seconds_of(error.range_ns), origin};
+        for (std::size_t k = 0; k < sample.outputs; ++k) {
+            const Claim claim{sample.output[k], seconds_of(time_ns - error.least_ns),
+                              seconds_of(error.range_ns), origin};
             all = std::min(all, judge.output(k, claim, true_ns));
         }
         return all;
     }
 
+    const CampaignArm& arm_;
     std::mt19937_64& engine_;
     hal::MotionLimits limits_;
     CampaignRow row_;
     std::vector<PlacedFault> placed_;
+    std::vector<JointSight> sight_;
+    const char* wrong_kind_ = "";
+    const std::vector<std::string>* described_ = nullptr; ///< one sample of each run is enough
     struct ClockError {
         std::int64_t error_ns;
         std::int64_t since_ns;

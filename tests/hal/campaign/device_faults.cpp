@@ -8,108 +8,119 @@ namespace dfdyn::tests {
 
 using Role = Sent::Role;
 
+void FaultSite::show_position(Sent& sent, std::size_t joint, double position_rad) const {
+    sent.shown[joint].position_rad = position_rad;
+    copy_bits(arm.frames(sent.unit, sent.shown).frame[sent.part], fields(sent).position[joint], sent.frame);
+}
+void FaultSite::show_effort(Sent& sent, std::size_t joint, double effort) const {
+    sent.shown[joint].effort = effort;
+    copy_bits(arm.frames(sent.unit, sent.shown).frame[sent.part], fields(sent).effort[joint], sent.frame);
+}
+
 void zero_positions(FaultSite& site) {
-    const int unit = site.pick(2);
+    const std::size_t joint = site.pick_joint();
     site.change([&](Sent& sent) {
-        if (is_joint(sent, unit)) {
-            clear_position(sent.frame, unit);
+        if (site.has_position(sent, joint)) {
+            site.show_position(sent, joint, site.arm.zero_rad[joint]);
         }
     });
 }
 /// Silent for a third of the time, zero for another, and then where it is.
 void restart_absolute(FaultSite& site) {
     const std::int64_t third_ns = (site.end_ns - site.begin_ns) / 3;
-    const int unit = site.pick(2);
-    FaultSite silent{site.traffic, site.begin_ns, site.begin_ns + third_ns, site.engine, site.truth};
-    FaultSite zero{site.traffic, silent.end_ns, silent.end_ns + third_ns, site.engine, site.truth};
-    silent.remove([&](const Sent& sent) { return is_joint(sent, unit); });
+    const std::size_t joint = site.pick_joint();
+    FaultSite silent = site;
+    silent.end_ns = site.begin_ns + third_ns;
+    FaultSite zero = site;
+    zero.begin_ns = silent.end_ns;
+    zero.end_ns = silent.end_ns + third_ns;
+    silent.remove([&](const Sent& sent) { return site.is_joint(sent, joint); });
     zero.change([&](Sent& sent) {
-        if (is_joint(sent, unit)) {
-            clear_position(sent.frame, unit);
+        if (site.has_position(sent, joint)) {
+            site.show_position(sent, joint, site.arm.zero_rad[joint]);
         }
     });
 }
 /// Silent for a while, or not at all, and then counted from where it was switched on.
 void restart_incremental(FaultSite& site) {
-    const int unit = site.pick(2);
+    const std::size_t joint = site.pick_joint();
     const std::int64_t back_ns = site.begin_ns + (site.chance(0.5) ? 0 : bus_period * site.pick(200));
     std::erase_if(site.traffic, [&](const Sent& sent) {
-        return is_joint(sent, unit) && sent.true_ns >= site.begin_ns && sent.true_ns < back_ns;
+        return site.is_joint(sent, joint) && sent.true_ns >= site.begin_ns && sent.true_ns < back_ns;
     });
-    std::optional<double> begin;
+    std::optional<double> begin_rad;
     for (Sent& sent : site.traffic) {
-        if (is_joint(sent, unit) && sent.true_ns >= back_ns) {
-            const double now = position_of(sent.frame, unit);
-            begin = begin.value_or(now);
-            set_position(sent.frame, unit, now - *begin);
+        if (site.has_position(sent, joint) && sent.true_ns >= back_ns) {
+            const double now_rad = sent.shown[joint].position_rad;
+            begin_rad = begin_rad.value_or(now_rad);
+            site.show_position(sent, joint, now_rad - *begin_rad + site.arm.zero_rad[joint]);
         }
     }
 }
 
-/// The bytes of `field` stay as they were at the begin.
-template <class Covers, class Field>
-static void freeze(const FaultSite& site, Covers covers, Field field) {
-    std::map<std::uint32_t, hal::Frame> first;
-    site.change([&](Sent& sent) {
-        if (covers(sent)) {
-            const hal::Frame& kept = first.emplace(sent.frame.id, sent.frame).first->second;
-            const auto [begin, length] = field(sent.frame);
-            std::copy_n(kept.data.begin() + begin, length, sent.frame.data.begin() + begin);
-        }
-    });
-}
+/// The values stay as they were at the begin, where the joint passes five counts within `max_age`. A slower
+/// one may have stopped, for all that its counts show.
 void freeze_encoder(FaultSite& site) {
-    const int unit = site.pick(2);
-    if (site.wait_for_motion(unit, 0.8)) {
-        freeze(
-            site, [&](const Sent& sent) { return is_joint(sent, unit); },
-            [&](const hal::Frame& frame) { return position_bytes(frame, unit); });
+    const std::size_t joint = site.pick_joint();
+    std::optional<double> kept_rad;
+    const double least_rad_s = std::max(0.8, 5 * site.arm.step_rad[joint] / seconds_of(bus_max_age));
+    if (site.wait_for_motion(joint, least_rad_s)) {
+        site.change([&](Sent& sent) {
+            if (site.has_position(sent, joint)) {
+                kept_rad = kept_rad.value_or(sent.shown[joint].position_rad);
+                site.show_position(sent, joint, *kept_rad);
+            }
+        });
     }
 }
 void freeze_effort(FaultSite& site) {
-    const int unit = site.pick(2);
-    if (site.wait_for_motion(unit, 0.8)) {
-        freeze(
-            site, [&](const Sent& sent) { return is_joint(sent, unit) && has_effort(sent.frame); },
-            effort_bytes);
+    const std::size_t joint = site.pick_joint();
+    std::optional<double> kept;
+    if (site.wait_for_motion(joint, 0.8)) {
+        site.change([&](Sent& sent) {
+            if (site.has_effort(sent, joint)) {
+                kept = kept.value_or(sent.shown[joint].effort);
+                site.show_effort(sent, joint, *kept);
+            }
+        });
     }
 }
 void freeze_sensor(FaultSite& site) {
-    freeze(
-        site, [](const Sent& sent) { return sent.role == Role::wrench; },
-        [](const hal::Frame& frame) {
-            return Bytes{0, frame.length};
-        });
+    std::map<std::size_t, hal::Frame> kept;
+    site.change([&](Sent& sent) {
+        if (sent.role == Role::wrench) {
+            sent.frame.data = kept.emplace(sent.part, sent.frame).first->second.data;
+        }
+    });
 }
 void saturate_effort(FaultSite& site) {
-    const int unit = site.pick(2);
-    const bool high = site.chance(0.5);
+    const std::size_t joint = site.pick_joint();
+    const double beyond = site.chance(0.5) ? 1e6 : -1e6;
     site.change([&](Sent& sent) {
-        if (is_joint(sent, unit) && has_effort(sent.frame)) {
-            const auto place = static_cast<std::size_t>(effort_bytes(sent.frame).begin);
-            const std::size_t last = is_dbc(sent.frame) ? place : place + 1; // the more significant one
-            sent.frame.data[2 * place + 1 - last] = high ? 0xFF : 0x00;
-            sent.frame.data[last] = high ? 0x7F : 0x80;
+        if (site.has_effort(sent, joint)) {
+            site.show_effort(sent, joint, beyond);
         }
     });
 }
 void saturate_sensor(FaultSite& site) {
-    site.change([](Sent& sent) {
+    site.change([&](Sent& sent) {
         if (sent.role == Role::wrench) {
-            saturate_half(sent.frame, sent.unit);
+            site.arm.saturate_wrench(sent.frame, sent.part);
         }
     });
 }
 
 /// Another joint's motion, on the same identifier.
 void second_joint(FaultSite& site) {
-    const int unit = site.pick(2);
+    const std::size_t joint = site.pick_joint();
     const std::int64_t behind_ns = std::int64_t{bus_us} * (200 + site.pick(1600));
+    const double zero_rad = site.arm.zero_rad[joint];
     site.add([&](const Sent& sent, Traffic& more) {
-        if (is_joint(sent, unit)) {
+        if (site.has_position(sent, joint)) {
             more.push_back(sent);
             move(more.back(), behind_ns);
-            set_position(more.back().frame, unit, -0.7 * position_of(sent.frame, unit));
+            const double position_rad = zero_rad - 0.7 * (sent.shown[joint].position_rad - zero_rad);
+            site.show_position(more.back(), joint, position_rad);
         }
     });
 }
@@ -126,54 +137,65 @@ void second_sensor(FaultSite& site) {
 }
 /// The values of 60 ms ago under fresh stamps.
 void replay_old(FaultSite& site) {
-    const int unit = site.pick(2);
-    if (!site.wait_for_motion(unit, 0.8)) {
+    const std::size_t joint = site.pick_joint();
+    if (!site.wait_for_motion(joint, 0.8)) {
         return;
     }
-    std::map<int, hal::Frame> sent_in;
-    for (Sent& sent : site.traffic) {
-        if (sent.role == Role::joints && sent.unit == (is_two_joint_board(sent.frame) ? 0 : unit)) {
-            sent_in[sent.cycle] = sent.frame;
+    std::map<std::pair<int, std::size_t>, Sent> sent_in; // by cycle and part
+    for (const Sent& sent : site.traffic) {
+        if (site.is_joint(sent, joint)) {
+            sent_in[{sent.cycle, sent.part}] = sent;
         }
     }
     site.change([&](Sent& sent) {
-        const auto old = sent_in.find(sent.cycle - 30);
-        if (is_joint(sent, unit) && old != sent_in.end()) {
-            sent.frame.data = old->second.data;
+        const auto old = sent_in.find({sent.cycle - 30, sent.part});
+        if (site.is_joint(sent, joint) && old != sent_in.end()) {
+            sent.frame.data = old->second.frame.data;
+            sent.shown = old->second.shown;
         }
     });
 }
 
+/// One of four bits that are worth about 6 to 100 mrad.
 void stick_bit(FaultSite& site) {
-    const int unit = site.pick(2);
+    const std::size_t joint = site.pick_joint();
+    const double zero_rad = site.arm.zero_rad[joint];
+    const double step_rad = site.arm.step_rad[joint];
+    const double place = std::ceil(std::log2(6e-3 / step_rad)) + site.pick(4);
+    const double worth_rad = step_rad * std::exp2(place);
     std::optional<bool> stuck;
-    const int bit = site.pick(4);
     site.change([&](Sent& sent) {
-        if (is_joint(sent, unit)) {
-            stuck = stuck.value_or(!position_bit(sent.frame, unit, bit));
-            set_position_bit(sent.frame, unit, bit, *stuck);
+        if (site.has_position(sent, joint)) {
+            const double position_rad = sent.shown[joint].position_rad;
+            const bool bit = std::llround(std::floor((position_rad - zero_rad) / worth_rad)) % 2 != 0;
+            stuck = stuck.value_or(!bit);
+            const double added_rad = bit == *stuck ? 0 : *stuck ? worth_rad : -worth_rad;
+            site.show_position(sent, joint, position_rad + added_rad);
         }
     });
 }
 /// Two boards with each other's identifiers, where both show that.
 void swap_nodes(FaultSite& site) {
-    std::array<const Sent*, 2> last{};
+    std::array<std::optional<double>, 2> last;
     for (const Sent& sent : site.traffic) {
-        if (sent.role == Role::joints && sent.true_ns < site.begin_ns) {
-            last[static_cast<std::size_t>(sent.unit)] = &sent;
+        for (std::size_t joint = 0; joint < 2; ++joint) {
+            if (site.has_position(sent, joint) && sent.true_ns < site.begin_ns) {
+                last[joint] = sent.shown[joint].position_rad;
+            }
         }
     }
-    if (last[0] == nullptr || last[1] == nullptr) {
+    if (site.arm.boards < 2 || !last[0] || !last[1] || std::abs(*last[0] - *last[1]) < 0.2) {
         return;
     }
-    const double apart = std::abs(position_of(last[0]->frame, 0) - position_of(last[1]->frame, 1));
-    if (apart > 0.2 * std::max(per_radian(last[0]->frame), per_radian(last[1]->frame))) {
-        site.change([](Sent& sent) {
-            if (sent.role == Role::joints && !is_two_joint_board(sent.frame)) {
-                sent.frame.id = other_node(sent.frame.id);
-            }
-        });
-    }
+    site.change([&](Sent& sent) {
+        if (sent.role == Role::joints) {
+            const wire::Joint own = sent.shown[sent.unit];
+            const wire::Joint other = sent.shown[1 - sent.unit];
+            site.show_position(sent, sent.unit, other.position_rad);
+            site.show_effort(sent, sent.unit, other.effort);
+            sent.shown[1 - sent.unit] = own;
+        }
+    });
 }
 
 } // namespace dfdyn::tests

@@ -2,16 +2,9 @@
 #pragma once
 
 #include "tests/hal/campaign/faults.hpp"
-#include "tests/hal/campaign/frame_fields.hpp"
 
 namespace dfdyn::tests {
 
-inline bool is_device(const Sent& sent) {
-    return sent.role == Sent::Role::joints || sent.role == Sent::Role::wrench;
-}
-inline bool is_joint(const Sent& sent, int unit) {
-    return sent.role == Sent::Role::joints && (sent.unit == unit || is_two_joint_board(sent.frame));
-}
 inline void move(Sent& sent, std::int64_t by_ns) {
     sent.true_ns += by_ns;
     sent.frame.stamp_ns += by_ns;

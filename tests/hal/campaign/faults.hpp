@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tests/hal/campaign/arms.hpp"
+#include "tests/hal/campaign/arm.hpp"
 
+#include <algorithm>
 #include <span>
 
 namespace dfdyn::tests {
 
 /// What a fault is put into.
 struct FaultSite {
+    const CampaignArm& arm;
     Traffic& traffic; ///< in the order of true time
     std::int64_t begin_ns;
     std::int64_t end_ns;
@@ -21,7 +23,29 @@ struct FaultSite {
     [[nodiscard]] int pick(int count) const {
         return std::uniform_int_distribution<int>(0, count - 1)(engine);
     }
+    [[nodiscard]] std::size_t pick_joint() const { return static_cast<std::size_t>(pick(2)); }
     [[nodiscard]] bool chance(double share) const { return std::bernoulli_distribution(share)(engine); }
+
+    [[nodiscard]] static bool is_device(const Sent& sent) {
+        return sent.role == Sent::Role::joints || sent.role == Sent::Role::wrench;
+    }
+    [[nodiscard]] const CampaignArm::Fields& fields(const Sent& sent) const {
+        return arm.fields[sent.unit][sent.part];
+    }
+    [[nodiscard]] bool has_position(const Sent& sent, std::size_t joint) const {
+        return sent.role == Sent::Role::joints && any(fields(sent).position[joint]);
+    }
+    [[nodiscard]] bool has_effort(const Sent& sent, std::size_t joint) const {
+        return sent.role == Sent::Role::joints && any(fields(sent).effort[joint]);
+    }
+    /// Whether it is of the board of this joint.
+    [[nodiscard]] bool is_joint(const Sent& sent, std::size_t joint) const {
+        return has_position(sent, joint) || has_effort(sent, joint);
+    }
+
+    /// Puts another position, or effort, of a joint into a frame.
+    void show_position(Sent& sent, std::size_t joint, double position_rad) const;
+    void show_effort(Sent& sent, std::size_t joint, double effort) const;
 
     /// Removes the frames of the fault's time for which `drop` holds.
     template <class Drop>
@@ -49,24 +73,9 @@ struct FaultSite {
         sort();
     }
     /// Moves the begin to where this joint moves fast; the fault is left out where it does not.
-    [[nodiscard]] bool wait_for_motion(int joint, double least_rad_s);
+    [[nodiscard]] bool wait_for_motion(std::size_t joint, double least_rad_s);
     void sort() const { std::ranges::stable_sort(traffic, {}, &Sent::true_ns); }
 };
-
-/// What a fault does to what can be known of a joint's motion.
-enum class Effect {
-    none,    ///< nothing: it is about the output
-    spoils,  ///< single values are bad, late or missing
-    hides,   ///< for a while nothing is known of the joint
-    misleads ///< the joint shows another motion than its own
-};
-
-/// Whether two faults may be at the same time. Nobody can tell a motion that is not the joint's own where it
-/// begins while the joint's own is not seen well; nor how long a silence was during which the clock was set.
-constexpr bool mix(Effect one, Effect other) {
-    const auto either = [&](Effect effect) { return one == effect || other == effect; };
-    return either(Effect::none) || (either(Effect::spoils) && !either(Effect::misleads));
-}
 
 /// One fault of the legend (docs/reference/faults.md).
 struct Fault {
@@ -74,13 +83,12 @@ struct Fault {
     const char* name;
     double shortest_s, longest_s;
     void (*apply)(FaultSite& site);
-    double recovery_s = 0.06; ///< after its end: qualification, and what is in between
-    Effect effect = Effect::none;
-    bool ends = true; ///< false: what it changed stays so
+    double recovery_s = 0.5; ///< after its end, until joints are trusted again
     /// For so long from its begin no receiver can tell what it shows from good outputs.
     double undetectable_s = 0;
-    /// It may change values by so little that no limit shows it.
-    bool alters_positions = false, alters_outputs = false;
+    bool stays = false; ///< what it changed stays so until the end
+    /// It may change outputs by so little that no limit shows it.
+    bool alters_outputs = false;
     /// By how much outputs may be older, or newer, than their stamps without a sign of it.
     double late_s = 0, early_s = 0;
     /// By how much all frames without a stamp of their device come late, one as much as the next.

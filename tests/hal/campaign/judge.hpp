@@ -2,7 +2,7 @@
 // What is right: the encoder's or sensor's resolution and the true motion decide, nothing else.
 #pragma once
 
-#include "tests/hal/campaign/faults.hpp"
+#include "tests/hal/campaign/sight.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,18 +15,18 @@ namespace dfdyn::tests {
 struct PlacedFault {
     const Fault* fault;
     std::int64_t begin_ns, end_ns;
+    std::int64_t recovered_ns; ///< where it ends and those from which there was no recovery before it began
 
     [[nodiscard]] bool covers(std::int64_t time_ns) const {
-        const auto recovery_ns = static_cast<std::int64_t>(1e9 * fault->recovery_s);
-        return time_ns >= begin_ns - 5 * bus_period && time_ns <= end_ns + recovery_ns;
+        return time_ns >= begin_ns - 5 * bus_period && time_ns <= recovered_ns;
     }
 };
 
 /// How an accepted value compares with the truth.
 enum class Match {
     wrong,
-    unseen, ///< off, by no more than the limits of the joint or of the sensor's gate can show
-    right   ///< as the device measured it, or on the line between two measurements
+    undecidable, ///< off, where no receiver can tell it from a right one: docs/reference/faults.md
+    right        ///< as the device measured it, or on the line between two measurements
 };
 
 /// A value that was accepted for an instant, and how long before it was measured if it is held.
@@ -38,49 +38,57 @@ struct Claim {
 };
 
 /// Compares the values of one kind of arm with the truth.
-template <class Arm>
 class Judge {
   public:
-    Judge(const Truth& truth, const hal::MotionLimits& limits, std::span<const PlacedFault> faults)
-        : truth_(truth), limits_(limits), faults_(faults) {}
+    Judge(const CampaignArm& arm, const Truth& truth, const hal::MotionLimits& limits,
+          std::span<const PlacedFault> faults, std::span<const JointSight> sight)
+        : arm_(arm), truth_(truth), limits_(limits), faults_(faults), sight_(sight) {}
 
     /// Position of a joint; `true_ns`: when it was assembled.
     [[nodiscard]] Match position(std::size_t joint, const Claim& claim, std::int64_t true_ns) const {
         const auto truth = [&](double time_s) { return truth_.position(joint, time_s); };
-        const double counts = 0.5 * Arm::step + 1e-7; // a float has no more
+        const double counts = 0.5 * arm_.step_rad[joint] + 1e-7; // a float has no more
         const double tolerance = counts + chord(Truth::most_acceleration, claim.origin);
-        const double waited_s = longest(true_ns, [](const Fault& fault) { return fault.waits_s; });
-        if (is_near(truth, claim, waited_s, 0, tolerance)) {
+        if (is_near(truth, claim, 0, 0, tolerance)) {
             return Match::right;
         }
-        const bool altered = std::ranges::any_of(faults_, [&](const PlacedFault& placed) {
-            return placed.fault->alters_positions && placed.covers(true_ns);
-        });
-        const double unseen = unseen_rad(truth_.velocity(joint, claim.time_s));
-        return altered && is_near(truth, claim, waited_s, 0, tolerance + unseen) ? Match::unseen
-                                                                                 : Match::wrong;
+        const double off = std::abs(claim.value - truth(claim.time_s)) - tolerance;
+        const double within = within_limits(joint, claim);
+        const double waited_s = sum(true_ns, [](const Fault& fault) { return fault.waits_s; });
+        const double silence =
+            std::max(after_silence(joint, true_ns), after_silence(joint, true_ns - bus_max_age));
+        const bool waited =
+            waited_s > 0 && !arm_.synchronous && is_near(truth, claim, waited_s, 0, tolerance + within);
+        return off <= within || waited || off <= silence ? Match::undecidable : Match::wrong;
+    }
+
+    /// How far a position is off, and how far it may be where no receiver can tell it.
+    [[nodiscard]] std::array<double, 2> explain(std::size_t joint, const Claim& claim) const {
+        return {std::abs(claim.value - truth_.position(joint, claim.time_s)), within_limits(joint, claim)};
     }
 
     /// Channel of the wrench, or effort of a joint.
     [[nodiscard]] Match output(std::size_t channel, const Claim& claim, std::int64_t true_ns) const {
         const auto truth = [&](double time_s) {
-            return Arm::efforts ? truth_.effort(channel, time_s)
-                                : Arm::output_range * truth_.load(channel, time_s);
+            return arm_.efforts() ? truth_.effort(channel, time_s)
+                                  : arm_.output_range * truth_.load(channel, time_s);
         };
-        const double bend = Arm::efforts ? Truth::effort_bend : Arm::output_range * Truth::load_bend;
+        const double bend = arm_.efforts() ? Truth::effort_bend : arm_.output_range * Truth::load_bend;
         const double tolerance = noise() + chord(bend, claim.origin);
-        const double waited_s = longest(true_ns, [](const Fault& fault) { return fault.waits_s; });
-        if (is_near(truth, claim, waited_s, 0, tolerance)) {
+        if (is_near(truth, claim, 0, 0, tolerance)) {
             return Match::right;
         }
-        const double late_s = longest(true_ns, [](const Fault& fault) { return fault.late_s; });
-        const double early_s = longest(true_ns, [](const Fault& fault) { return fault.early_s; });
-        const bool corrupted = !Arm::efforts && std::ranges::any_of(faults_, [&](const PlacedFault& placed) {
-            return placed.fault->alters_outputs && placed.covers(true_ns);
-        });
-        const double unseen = corrupted ? unseen_output() : 0;
-        return is_near(truth, claim, waited_s + late_s, early_s, tolerance + unseen) ? Match::unseen
-                                                                                     : Match::wrong;
+        const double waited_s = sum(true_ns, [](const Fault& fault) { return fault.waits_s; });
+        const double late_s = sum(true_ns, [](const Fault& fault) { return fault.late_s; });
+        const double early_s = sum(true_ns, [](const Fault& fault) { return fault.early_s; });
+        const bool corrupted =
+            !arm_.efforts() && std::ranges::any_of(faults_, [&](const PlacedFault& placed) {
+                return placed.fault->alters_outputs && placed.covers(true_ns);
+            });
+        const double unseen = corrupted ? below_jumps() : 0;
+        const bool near = is_near(truth, claim, waited_s + late_s, early_s, tolerance + unseen);
+        return near || (arm_.efforts() && of_undecidable_joint(channel, claim, true_ns)) ? Match::undecidable
+                                                                                         : Match::wrong;
     }
 
   private:
@@ -94,13 +102,14 @@ class Judge {
     }
 
     /// The devices' noise of two counts, and the rounding.
-    static double noise() { return 2.5 * (Arm::efforts ? 1e-3 : Arm::output_range / 32768) + 1e-6; }
+    [[nodiscard]] double noise() const { return 2.5 * arm_.output_step + 1e-6; }
 
     /// Whether the truth was near the value at its instant or before, by the lateness of its frames.
     template <class Value>
-    static bool is_near(Value value, const Claim& claim, double late_s, double early_s, double tolerance) {
+    [[nodiscard]] bool is_near(Value value, const Claim& claim, double late_s, double early_s,
+                               double tolerance) const {
         constexpr double step_s = 0.5e-3; // the truth is straight for so long, to a fraction of the tolerance
-        const double latest_s = (Arm::synchronous ? 0 : seconds_of(bus_jitter)) + claim.unknown_s + late_s;
+        const double latest_s = (arm_.synchronous ? 0 : seconds_of(bus_jitter)) + claim.unknown_s + late_s;
         for (double late = -early_s; late < latest_s + step_s; late += step_s) {
             const double one = value(claim.time_s - std::min(late, latest_s));
             const double next = value(claim.time_s - std::min(late + step_s, latest_s));
@@ -112,37 +121,68 @@ class Judge {
         return false;
     }
 
+    /// Of all faults at that time: one delays what another has delayed.
     template <class Length>
-    double longest(std::int64_t true_ns, Length length) const {
+    double sum(std::int64_t true_ns, Length length) const {
         double result = 0;
         for (const PlacedFault& placed : faults_) {
-            result = placed.covers(true_ns) ? std::max(result, length(*placed.fault)) : result;
+            result += placed.covers(true_ns) ? length(*placed.fault) : 0;
         }
         return result;
     }
 
-    /// How far the limits allow a joint to be from where it is: what it can do from the last trusted reading
-    /// on, `max_age` and the jitter before, whose readings show the velocity over three periods only so well.
-    double unseen_rad(double velocity) const {
+    /// How far the joint's limits allow a single position to be off that follows right readings: for the time
+    /// since the last right one, at least a period and at most `max_age`.
+    [[nodiscard]] double within_limits(std::size_t joint, const Claim& claim) const {
+        const auto time_ns = static_cast<std::int64_t>(1e9 * claim.time_s);
+        const std::int64_t blind_ns = sight_[joint].blind_at(time_ns);
+        return blind_ns == 0 ? 0
+                             : reach_rad(joint, truth_.velocity(joint, claim.time_s),
+                                         std::clamp(blind_ns, bus_period, bus_max_age));
+    }
+
+    /// How far a run of readings may be off that begins after more than `max_age` without a right one: as
+    /// far as the limits allow for that time. Nothing where it begins at the device's zero.
+    [[nodiscard]] double after_silence(std::size_t joint, std::int64_t true_ns) const {
+        const JointSight::Run& run = sight_[joint].run_at(true_ns);
+        const double at_zero =
+            1.5 * std::abs(run.velocity) * seconds_of(bus_period) + 3 * arm_.step_rad[joint];
+        const double reach = reach_rad(joint, run.velocity, run.blind_ns);
+        const bool decidable = run.blind_ns <= bus_max_age || std::abs(run.from_zero_rad) <= at_zero ||
+                               std::abs(run.error_rad) > reach;
+        return decidable ? 0 : reach;
+    }
+
+    /// Whether an effort comes in frames with a position that is undecidable.
+    [[nodiscard]] bool of_undecidable_joint(std::size_t joint, const Claim& claim,
+                                            std::int64_t true_ns) const {
+        return within_limits(joint, claim) > 0 || after_silence(joint, true_ns) > 0;
+    }
+
+    /// How far the limits allow a joint to be from where it is: what it can do for so long after its last
+    /// right readings, which show its velocity over three periods only so well.
+    [[nodiscard]] double reach_rad(std::size_t joint, double velocity, std::int64_t blind_ns) const {
         const double jitter_s = seconds_of(bus_track_jitter);
-        const double age_s = seconds_of(bus_max_age) + 2 * jitter_s;
+        const double age_s = seconds_of(blind_ns) + 2 * jitter_s;
         const double span_s = 3 * seconds_of(bus_period);
         const double fastest = std::abs(velocity) + limits_.acceleration * (age_s + span_s);
-        const double reading = Arm::step + fastest * jitter_s;
+        const double reading = arm_.step_rad[joint] + fastest * jitter_s;
         const double speed = 2 * reading / span_s + 0.5 * limits_.acceleration * span_s;
         return reading + speed * age_s + 0.5 * limits_.acceleration * age_s * age_s;
     }
 
     /// Ten times what wrenches are usually off their line, by noise and lateness, and what else the gate
     /// allows.
-    static double unseen_output() {
-        const double usual = 2 * noise() + Truth::load_rate * Arm::output_range * seconds_of(bus_jitter);
-        return 10 * usual + 0.005 * 0.2 * Arm::output_range;
+    [[nodiscard]] double below_jumps() const {
+        const double usual = 2 * noise() + Truth::load_rate * arm_.output_range * seconds_of(bus_jitter);
+        return 10 * usual + 0.005 * 0.2 * arm_.output_range;
     }
 
+    const CampaignArm& arm_;
     const Truth& truth_;
     hal::MotionLimits limits_;
     std::span<const PlacedFault> faults_;
+    std::span<const JointSight> sight_; ///< joint by joint
 };
 
 } // namespace dfdyn::tests

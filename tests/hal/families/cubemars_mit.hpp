@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dfdyn/hal/device/cubemars.hpp"
+#include "tests/hal/support/wire.hpp"
 
 namespace dfdyn::tests::families {
 
@@ -23,6 +24,13 @@ struct cubemars_mit {
         return std::array{first, hal::CubemarsMitMotor(config)};
     }
     static auto other_frames() noexcept { return std::array<hal::Frame, 0>{}; }
+
+    struct on_wire {
+        static wire::Frames frames(std::size_t board, const wire::Joints& joints) {
+            return wire::one(wire::mit_feedback(0, static_cast<unsigned>(3 + board), joints[board],
+                                                {12.5, 50, 18}, {25, 0}));
+        }
+    };
 };
 
 } // namespace dfdyn::tests::families

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dfdyn/hal/device/damiao.hpp"
+#include "tests/hal/support/wire.hpp"
 
 namespace dfdyn::tests::families {
 
@@ -29,6 +30,22 @@ struct damiao {
         hal::store_little(torque_max.data.data() + 4, 10.0F);
         return std::array{torque_max};
     }
+
+    /// Feedback: state 1 (enabled) and motor id, position u16 over ±12.5 rad, velocity u12 over ±30 rad/s,
+    /// torque u12 over ±10 N·m, most significant byte first; two temperatures. Register 23: the torque's
+    /// range.
+    struct on_wire {
+        static constexpr double step_rad = 25.0 / 65535;
+
+        static auto boards() noexcept { return damiao::boards(); }
+        static wire::Frames frames(std::size_t board, const wire::Joints& joints) {
+            return wire::one(wire::mit_feedback(board == 0 ? 0x15 : 0x16, board == 0 ? 0x15 : 0x16,
+                                                joints[board], {12.5, 30, 10}, {30, 31}));
+        }
+        static auto status() {
+            return std::array{wire::frame(0x15, {5, 0, 0x33, 23, 0, 0, 0x20, 0x41})}; // 10.0F
+        }
+    };
 };
 
 } // namespace dfdyn::tests::families

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dfdyn/hal/device/robstride.hpp"
+#include "tests/hal/support/wire.hpp"
 
 namespace dfdyn::tests::families {
 
@@ -23,6 +24,13 @@ struct robstride_mit {
         return std::array{first, hal::RobstrideMitMotor(config)};
     }
     static auto other_frames() noexcept { return std::array<hal::Frame, 0>{}; }
+
+    struct on_wire {
+        static wire::Frames frames(std::size_t board, const wire::Joints& joints) {
+            return wire::one(wire::mit_feedback(0xFD, static_cast<unsigned>(1 + board), joints[board],
+                                                {12.57, 33, 14}, {0, 250}));
+        }
+    };
 };
 
 } // namespace dfdyn::tests::families

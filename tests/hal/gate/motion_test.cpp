@@ -99,6 +99,25 @@ TEST_CASE("after a silence a joint is trusted where it can have gone, and not at
     }
 }
 
+TEST_CASE("an encoder that has lost its zero is not trusted again, wherever it jumps") {
+    for (const int seen : {0, 1, 3}) { // true readings between the silence and the restart
+        MotionGate gate = ready_gate();
+        follow(gate, 270, 270 + seen);
+        const double offset_rad = -1 - truth(270 + seen);
+        CHECK(follow(gate, 270 + seen, 700, offset_rad) == Reason::position_lost);
+        CHECK(follow(gate, 700, 1500) == Reason::position_lost);
+    }
+}
+
+TEST_CASE("a reading of unknown time shows a lost zero, and nothing else") {
+    MotionGate gate = ready_gate();
+    gate.glance(reading(20, truth(20) + 1e-3));
+    gate.glance(reading(20, -1)); // exactly zero: no position yet
+    CHECK(follow(gate, 20, 22) == Reason::ok);
+    gate.glance(reading(22, -1 + count_rad));
+    CHECK(follow(gate, 22, 900) == Reason::position_lost);
+}
+
 TEST_CASE("an impact changes the velocity at once and is followed after ten readings") {
     MotionGate gate = make_gate();
     int tick = 0;

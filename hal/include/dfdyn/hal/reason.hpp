@@ -102,8 +102,9 @@ enum class Reason : std::uint8_t {
     /// acceleration_limit.
     position_jump = 64,
     /// After a jump or a restart the joint's positions continue from a different value: the encoder has lost
-    /// its zero, or another device sends. Ends when they return to values that the joint can have. Remedy:
-    /// check the joint's position; set its zero; start again.
+    /// its zero, or another device sends. Ends when they return to values that the joint can have. After a
+    /// restart at the encoder's zero it ends with a new start only. Remedy: check the joint's position; set
+    /// its zero; start again.
     position_lost = 65,
     /// A moving joint repeats its last position bit for bit and cannot have stopped. Ends when the position
     /// changes.

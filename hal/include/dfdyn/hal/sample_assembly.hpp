@@ -78,7 +78,11 @@ class SampleAssembly {
             return {};
         }
         watch.from_host += frame.origin == Origin::this_host ? 1U : 0U;
+        const std::uint64_t clocks = watch.clock.adopted();
         const auto stamp_ns = watch.clock.accept(frame.stamp_ns, now_ns);
+        if (bus == 0 && watch.clock.adopted() != clocks) {
+            position_.clock_set();
+        }
         if (!stamp_ns) {
             return {};
         }

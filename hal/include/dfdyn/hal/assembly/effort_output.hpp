@@ -45,7 +45,8 @@ class EffortOutput {
         if (later && rated_ && collision_[joint].seen(rate_[joint].too_soon(value.stamp_ns))) {
             reason = Reason::id_collision;
         }
-        if (later && reason == Reason::ok && frozen_[joint].frozen(value.effort, position_rad)) {
+        const bool known = later && value.effort_reason == Reason::ok; // whoever sent it
+        if (known && frozen_[joint].frozen(value.effort, position_rad) && reason == Reason::ok) {
             reason = Reason::output_frozen;
         }
         track_[joint].push(value.stamp_ns, reason, {value.effort}, false);

@@ -36,6 +36,13 @@ class JointTracks {
         steps_.take(places(n), stamp_ns, period_ns, jitter_ns_);
     }
 
+    /// The clock of the stamps was set: nobody knows how long the joints were not seen.
+    constexpr void clock_set() noexcept {
+        for (PositionTrack<capacity>& track : track_) {
+            track.motion().forget_time();
+        }
+    }
+
     /// Whether a position of this instant is missing and may yet be interpolated.
     [[nodiscard]] constexpr bool pending(std::int64_t instant_ns, std::int64_t now_ns) const noexcept {
         return std::any_of(track_.begin(), track_.begin() + joints_,

@@ -37,7 +37,8 @@ class MomentWatch {
         const std::int64_t before_ns = sync_ns_;
         synchronised_ = true;
         sync_ns_ = stamp_ns;
-        return first ? SampleMoment{} : SampleMoment{SampleMoment::Kind::sync, before_ns};
+        const bool ran_back = stamp_ns < before_ns; // so that the time of the one before is not known
+        return first || ran_back ? SampleMoment{} : SampleMoment{SampleMoment::Kind::sync, before_ns};
     }
 
     /// A new position of a joint.

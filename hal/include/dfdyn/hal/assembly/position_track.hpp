@@ -37,7 +37,9 @@ class PositionTrack {
         if (value.position_reason == Reason::ok) {
             verdict = motion_.take(reading_of(value));
             verdict.reason = collides ? Reason::id_collision : verdict.reason;
-        } else if (value.position_reason != Reason::sync_unknown) { // which says nothing about the device
+        } else if (value.position_reason == Reason::sync_unknown) { // which says nothing about the device
+            motion_.glance(reading_of(value));
+        } else {
             motion_.interrupt();
         }
         track_.push(value.stamp_ns, verdict.reason, {verdict.position_rad}, false);

@@ -21,12 +21,17 @@ namespace dfdyn::hal {
 /// - Otherwise (start, silence, jump) it takes `qualification.readings` consecutive readings that lead from
 ///   one to the next. They also must connect with the last trusted position. After a jump between two
 ///   readings: velocity may change at once (an impact), position may not. After a silence: no further than
-///   the limits allow, and not beginning at the device's own zero, unless the joint stood there.
-/// - A run that does not connect is refused for as long as its readings lead from one to the next
-///   (`position_lost`): an encoder that counts from where it was switched on does not get its zero back by
-///   time. A jump to where the joint can be ends it, after twenty times as many readings.
+///   the limits allow, and not beginning at the device's own zero, unless the joint stood there. Where the
+///   clock was set, it takes twenty times as many readings, unless the joint is still close.
+/// - A run that begins at the device's zero, away from the joint, is of an encoder that counts from where it
+///   was switched on. It does not get its zero back by itself: no position is trusted any more
+///   (`position_lost`) until the program starts again.
+/// - Another run that does not connect is refused for as long as its readings lead from one to the next. A
+///   jump or a silence that leads to where the joint can be ends it, after twenty times as many readings. So
+///   do twenty times as many readings themselves where the jump was within the velocity limit.
 /// - A moving joint that repeats its last reading, bit for bit, where it cannot have stopped, is frozen until
-///   the reading changes. A joint that stopped within its limits may repeat its reading for ever.
+///   the readings change. So is one that returns from a silence with readings that do not change, unless it
+///   was at rest and still is where it was.
 ///
 /// An integer that wraps is unwrapped where a single turn can be meant. O(1).
 class MotionGate {
@@ -51,6 +56,16 @@ class MotionGate {
 
     /// Takes a reading; stamps must increase.
     constexpr Verdict take(EncoderReading reading) noexcept {
+        if (zero_lost_) {
+            return refuse(reading, Reason::position_lost);
+        }
+        if (lost() && still_lost(reading)) {
+            run_ = {};
+            if (jumped_little() && refused_.readings() >= most_readings()) {
+                believe(MotionRun(refused_));
+            }
+            return refuse(reading, Reason::position_lost);
+        }
         if (!unwrap(reading)) {
             return refuse(reading, Reason::position_lost);
         }
@@ -68,11 +83,18 @@ class MotionGate {
             disturbed_ = !frozen;
             return follow(reading, frozen ? Reason::position_frozen : Reason::position_jump);
         }
-        if (lost() && !continues(run_, reading) && still_lost(reading)) {
-            run_ = {};
-            return refuse(reading, Reason::position_lost);
-        }
         return follow(reading, disturbed_ ? Reason::position_jump : Reason::qualifying);
+    }
+
+    /// Takes a reading of unknown time. It is not compared, but it shows an encoder that counts from its own
+    /// zero, far from where the joint was.
+    constexpr void glance(EncoderReading reading) noexcept {
+        unwrap_near(reading, trusted_.last().position_rad);
+        const bool far = magnitude(reading.position_rad - trusted_.last().position_rad) >
+                         tolerance_.reach(seconds_between(0, config_.max_age_ns), reading.step_rad);
+        const bool counts = !trusted_.empty() && !reading.zero;
+        zero_lost_ =
+            zero_lost_ || (counts && far && begins_at_zero(reading, trusted_.end_line(0, config_.period_ns)));
     }
 
     /// The device was not itself: it must qualify again.
@@ -81,6 +103,9 @@ class MotionGate {
         interrupted_ = true;
         run_ = {};
     }
+
+    /// The time since the last trusted reading is not known any more: the clock of the stamps was set.
+    constexpr void forget_time() noexcept { time_known_ = trusted_.empty() || disturbed_ || lost(); }
 
     /// Believes the readings of a lost joint, if a clock that was set by this much explains where they are:
     /// they follow at once after the last trusted reading, by the clock as it was set. After a silence
@@ -93,7 +118,8 @@ class MotionGate {
         before.begin_ns += step_ns;
         before.end_ns += step_ns;
         const bool follows = near(before.end_ns, refused_.first().stamp_ns);
-        if (follows && meets(before, refused_.begin_line(0, config_.period_ns), refused_.first())) {
+        if (follows && !zero_lost_ &&
+            meets(before, refused_.begin_line(0, config_.period_ns), refused_.first())) {
             believe(MotionRun(refused_));
         }
     }
@@ -113,7 +139,7 @@ class MotionGate {
         return to_ns - from_ns <= config_.max_age_ns + 2 * config_.jitter_ns;
     }
     [[nodiscard]] constexpr bool fresh(std::int64_t stamp_ns) const noexcept {
-        return !trusted_.empty() && !interrupted_ && near(trusted_.last().stamp_ns, stamp_ns);
+        return !trusted_.empty() && !interrupted_ && time_known_ && near(trusted_.last().stamp_ns, stamp_ns);
     }
     /// After a jump, the time that passes does not make the positions that it led to more likely: from here
     /// on it allows no larger distance.
@@ -127,9 +153,10 @@ class MotionGate {
     [[nodiscard]] constexpr bool continues(const MotionRun& run, const EncoderReading& to) const noexcept {
         return !run.empty() && near(run.last().stamp_ns, to.stamp_ns) && run.leads_to(to, tolerance_);
     }
-    /// Whether a reading belongs to those that are refused: tightly while they are recent, after a silence if
-    /// it can. Takes it.
-    constexpr bool still_lost(const EncoderReading& reading) noexcept {
+    /// Whether a reading belongs to those that are refused, in whichever turn: tightly while they are recent,
+    /// after a silence if it can. Takes it.
+    constexpr bool still_lost(EncoderReading reading) noexcept {
+        unwrap_near(reading, refused_.last().position_rad);
         if (near(refused_.last().stamp_ns, reading.stamp_ns)) {
             const bool leads = refused_.leads_to(reading, tolerance_);
             if (leads) {
@@ -137,11 +164,30 @@ class MotionGate {
             }
             return leads;
         }
-        const bool reaches = tolerance_.reaches(refused_.last(), reading);
-        if (reaches) {
+        const bool can_be = has_lost_zero() ? tolerance_.reaches(refused_.last(), reading)
+                                            : recently(refused_.last().stamp_ns, reading.stamp_ns) &&
+                                                  comes_from_motion(refused_, reading);
+        const bool goes_on = can_be && !continues(run_, reading);
+        if (goes_on) {
             refused_.resume(reading, tolerance_);
         }
-        return reaches;
+        return goes_on;
+    }
+
+    /// Whether the velocity limit allows what the acceleration limit does not, from one reading to the next:
+    /// an impact, or a clock that was set by a few milliseconds.
+    [[nodiscard]] constexpr bool jumped_little() const noexcept {
+        return !zero_lost_ && tolerance_.reaches(trusted_.last(), refused_.first()) &&
+               refused_.first().stamp_ns - trusted_.last().stamp_ns <= 2 * config_.period_ns;
+    }
+
+    /// Whether the readings that are refused are those of an encoder that has lost its zero, not of a fault
+    /// that passes: they began at the device's zero, or are very many.
+    [[nodiscard]] constexpr bool has_lost_zero() const noexcept {
+        return zero_lost_ || refused_.readings() >= most_readings();
+    }
+    [[nodiscard]] constexpr bool recently(std::int64_t from_ns, std::int64_t to_ns) const noexcept {
+        return to_ns - from_ns <= 3 * config_.max_age_ns;
     }
 
     /// The turn that is meant, if it is clear: the range has room for one only, or the last reading is near.
@@ -166,17 +212,17 @@ class MotionGate {
     }
 
     constexpr Verdict take_beyond_range(const EncoderReading& reading) noexcept {
+        if (continues(run_, reading)) { // it is no better when it comes back, or round
+            refused_ = run_;
+            refused_.extend(reading, tolerance_);
+        }
         run_ = {};
         note(true);
         ++beyond_;
-        if (lost()) {
-            refused_.extend(reading, tolerance_); // it is no better when it comes back
-        }
         return refuse(reading, Reason::position_out_of_range);
     }
 
     constexpr Verdict trust(const EncoderReading& reading) noexcept {
-        newest_ns_ = reading.stamp_ns;
         trusted_.extend(reading, tolerance_);
         refused_ = {};
         disturbed_ = false;
@@ -198,55 +244,132 @@ class MotionGate {
         refused_ = {};
         interrupted_ = false;
         disturbed_ = false;
+        time_known_ = true;
     }
 
     /// Counts a reading that is not trusted yet; trusts it where it ends a run that is long enough.
     constexpr Verdict follow(const EncoderReading& reading, Reason reason) noexcept {
         const bool continued = continues(run_, reading);
         note(!continued);
-        if (!continued) {
-            if (run_.readings() > 1 && near(run_.last().stamp_ns, reading.stamp_ns)) {
-                return refuse(reading, reason); // a single one that is off does not end a run
-            }
-            run_ = {};
-            suspected_ = near(newest_ns_, reading.stamp_ns) && trusted_.moves(tolerance_);
+        const bool recent = !run_.empty() && near(run_.last().stamp_ns, reading.stamp_ns);
+        if (!continued && recent && !changes_over(reading)) {
+            return refuse(reading, reason);
         }
-        newest_ns_ = reading.stamp_ns;
-        const bool second = !run_.empty();
+        if (!continued && !recent) {
+            begin_run(continues(other_, reading) ? MotionRun(other_) : MotionRun(), reading);
+        }
+        if (continued) {
+            other_ = {};
+        }
+        const bool repeats = !run_.empty() && reading.position_rad == run_.last().position_rad;
         run_.extend(reading, tolerance_);
-        const bool unmoved = suspected_ && !run_.changed();
-        const bool disturbed =
-            disturbed_ && !near(trusted_.last().stamp_ns + config_.max_age_ns, run_.first().stamp_ns);
-        const int times = lost() || disturbed ? times_when_lost : 1;
-        const bool enough = run_.readings() >= times * config_.qualification.readings ||
-                            run_.zeros() >= config_.qualification.zero_readings;
-        if (unmoved || !enough) {
-            return refuse(reading, unmoved && second ? Reason::position_frozen : reason);
+        if (suspected_ && run_.still()) {
+            return refuse(reading, repeats ? Reason::position_frozen : reason);
         }
-        if (!trusted_.empty() && !connects(run_)) {
-            refused_ = run_;
-            run_ = {};
-            return refuse(reading, Reason::position_lost);
+        const bool stands_at_zero = run_.zeros() >= config_.qualification.zero_readings;
+        if (run_.readings() < config_.qualification.readings && !stands_at_zero) {
+            return refuse(reading, reason);
         }
+        if (!trusted_.empty() &&
+            (!comes_from_trusted(run_) || (has_lost_zero() && connects(refused_, run_)))) {
+            return lose(reading);
+        }
+        return run_.readings() >= needed_readings() || stands_at_zero ? settle(reading)
+                                                                      : refuse(reading, reason);
+    }
+
+    /// Whether this reading is one too many that does not continue the run: then those are the run. A single
+    /// one that is off does not end a run.
+    constexpr bool changes_over(const EncoderReading& reading) noexcept {
+        constexpr int enough = 2; // and this one
+        if (other_.empty() || !continues(other_, reading)) {
+            other_ = {};
+            other_.extend(reading, tolerance_);
+            return false;
+        }
+        if (other_.readings() + other_.zeros() < enough) {
+            other_.extend(reading, tolerance_);
+            return false;
+        }
+        begin_run(MotionRun(other_), reading);
+        return true;
+    }
+
+    /// Takes over a run, which may be empty, that goes on with this reading.
+    constexpr void begin_run(const MotionRun& run, const EncoderReading& reading) noexcept {
+        const EncoderReading& first = run.empty() ? reading : run.first();
+        const bool recent = near(trusted_.last().stamp_ns, first.stamp_ns);
+        suspected_ = !trusted_.empty() && (recent || trusted_.moves(tolerance_)) && !stood_at(first);
+        run_ = run;
+        other_ = {};
+    }
+
+    /// Trusts the run that ends with this reading.
+    constexpr Verdict settle(const EncoderReading& reading) noexcept {
         believe(MotionRun(run_));
         return settled(reading);
     }
 
-    /// Whether the joint can have come from its last trusted position to where the run begins.
-    [[nodiscard]] constexpr bool connects(const MotionRun& run) const noexcept {
-        if (near(trusted_.last().stamp_ns + (disturbed_ ? config_.max_age_ns : 0), run.first().stamp_ns)) {
-            return meets(run);
+    /// Refuses the run that ends with this reading, and what goes on from it.
+    constexpr Verdict lose(const EncoderReading& reading) noexcept {
+        const bool new_here = !lost() || !connects(refused_, run_);
+        const bool at_zero = begins_at_zero(run_.first(), run_.begin_line(0, config_.period_ns));
+        zero_lost_ = at_zero || (zero_lost_ && !new_here);
+        refused_ = run_;
+        run_ = {};
+        return refuse(reading, Reason::position_lost);
+    }
+
+    /// Whether the joint was at rest at the last trusted reading, and is still there.
+    [[nodiscard]] constexpr bool stood_at(const EncoderReading& reading) const noexcept {
+        return !trusted_.moves(tolerance_) &&
+               magnitude(reading.position_rad - trusted_.last().position_rad) <= 2 * reading.step_rad;
+    }
+
+    /// How many readings of the run are enough to trust it.
+    [[nodiscard]] constexpr int needed_readings() const noexcept {
+        const int least = config_.qualification.readings;
+        if (trusted_.empty()) {
+            return least;
         }
-        return tolerance_.reaches(trusted_.last(), run.first()) && comes_from_motion(run) &&
-               !restarted_at_zero(run);
+        const std::int64_t silence_ns = run_.first().stamp_ns - trusted_.last().stamp_ns;
+        const bool disturbed = (!time_known_ && !stays_close(run_.first())) ||
+                               (disturbed_ && silence_ns > 2 * config_.max_age_ns + 2 * config_.jitter_ns);
+        if (lost() || disturbed || config_.period_ns <= 0) {
+            return lost() || disturbed ? most_readings() : least;
+        }
+        return least;
+    }
+    /// Whether the joint goes there while the frames are left out that a new clock needs.
+    [[nodiscard]] constexpr bool stays_close(const EncoderReading& to) const noexcept {
+        constexpr double left_out_s = 0.05;
+        const MotionLine line = trusted_.end_line(0, config_.period_ns);
+        return magnitude(to.position_rad - line.end_rad) <=
+               magnitude(line.velocity) * left_out_s + 0.5 * config_.limits.stop * left_out_s * left_out_s;
+    }
+    [[nodiscard]] constexpr int most_readings() const noexcept {
+        return times_when_lost * config_.qualification.readings;
+    }
+
+    [[nodiscard]] constexpr bool comes_from_trusted(const MotionRun& run) const noexcept {
+        return (!time_known_ || connects(trusted_, run)) && !restarted_at_zero(run);
+    }
+
+    /// Whether a joint can have come from the end of one run to the begin of the next.
+    [[nodiscard]] constexpr bool connects(const MotionRun& before, const MotionRun& run) const noexcept {
+        const std::int64_t disturbed_ns = disturbed_ || lost() ? config_.max_age_ns : 0;
+        if (near(before.last().stamp_ns + disturbed_ns, run.first().stamp_ns)) {
+            return meets(before, run);
+        }
+        return tolerance_.reaches(before.last(), run.first()) && comes_from_motion(before, run.first());
     }
 
     /// Whether the motions before and after a jump meet in between. Either may have one reading that is off.
-    [[nodiscard]] constexpr bool meets(const MotionRun& run) const noexcept {
+    [[nodiscard]] constexpr bool meets(const MotionRun& before, const MotionRun& run) const noexcept {
         const std::int64_t period_ns = config_.period_ns;
-        const MotionLine from = trusted_.end_line(0, period_ns);
+        const MotionLine from = before.end_line(0, period_ns);
         const MotionLine to = run.begin_line(0, period_ns);
-        return meets(trusted_.end_line(1, period_ns), to, run.first()) ||
+        return meets(before.end_line(1, period_ns), to, run.first()) ||
                meets(from, run.begin_line(1, period_ns), run.first()) || meets(from, to, run.first());
     }
     [[nodiscard]] constexpr bool meets(const MotionLine& from, const MotionLine& to,
@@ -268,15 +391,17 @@ class MotionGate {
         return before * after <= 0 || nearest <= (begins_at_zero(first, to) ? 0.25 : 1) * limit;
     }
 
-    /// Whether the acceleration limit may have taken the joint to the run's begin during a silence.
-    [[nodiscard]] constexpr bool comes_from_motion(const MotionRun& run) const noexcept {
+    /// Whether the acceleration limit may have taken the joint there during a silence.
+    [[nodiscard]] constexpr bool comes_from_motion(const MotionRun& before,
+                                                   const EncoderReading& to) const noexcept {
+        constexpr double share_of_limits = 0.8; // no joint accelerates with all its might for so long
         bool reached = false;
         for (const int skip : {0, 1}) {
-            const MotionLine line = trusted_.end_line(skip, config_.period_ns);
-            const double dt_s = seconds_between(line.end_ns, run.first().stamp_ns);
-            const double off = magnitude(run.first().position_rad - line.at(run.first().stamp_ns));
-            reached =
-                reached || line.span_s <= 0 || off <= tolerance_.error(line, dt_s, run.first().step_rad);
+            const MotionLine line = before.end_line(skip, config_.period_ns);
+            const double dt_s = seconds_between(line.end_ns, to.stamp_ns);
+            const double off = magnitude(to.position_rad - line.at(to.stamp_ns));
+            reached = reached || line.span_s <= 0 ||
+                      off <= share_of_limits * tolerance_.error(line, dt_s, to.step_rad);
         }
         return reached;
     }
@@ -286,7 +411,10 @@ class MotionGate {
     [[nodiscard]] constexpr bool begins_at_zero(const EncoderReading& first,
                                                 const MotionLine& begin) const noexcept {
         constexpr double periods = 1.5;
-        const double moved = magnitude(begin.velocity) * periods * seconds_between(0, config_.period_ns);
+        constexpr double clock_s = 0.025; // in which frames are left out while the clock is set
+        const double hidden_s = time_known_ ? 0 : clock_s;
+        const double moved =
+            magnitude(begin.velocity) * (hidden_s + periods * seconds_between(0, config_.period_ns));
         return magnitude(first.from_zero_rad) <= moved + 3 * first.step_rad;
     }
 
@@ -297,20 +425,24 @@ class MotionGate {
         const double still = 4 * run.first().step_rad;
         const bool stood_there = magnitude(trusted_.last().from_zero_rad) <= still &&
                                  magnitude(run.first().from_zero_rad) <= still;
-        return seconds_between(trusted_.last().stamp_ns, run.first().stamp_ns) >= fastest_boot_s &&
-               begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) && !stood_there;
+        const bool long_enough =
+            !time_known_ || seconds_between(trusted_.last().stamp_ns, run.first().stamp_ns) >= fastest_boot_s;
+        return long_enough && begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) &&
+               !stood_there;
     }
 
     Config config_;
     MotionTolerance tolerance_;
     MotionRun trusted_;
-    MotionRun run_;              ///< of readings that qualify
-    MotionRun refused_;          ///< does not connect; while its readings go on they are refused
-    std::int64_t newest_ns_ = 0; ///< of any reading in the range
-    std::uint8_t off_ = 0;       ///< which of the last eight readings led from no other, a bit each
-    bool suspected_ = false;     ///< the run may be of a frozen encoder: begun where the joint moved
-    bool disturbed_ = false;     ///< a jump has come since the last trusted reading
+    MotionRun run_;          ///< of readings that qualify
+    MotionRun other_;        ///< of readings that do not continue the run
+    MotionRun refused_;      ///< does not connect; while its readings go on they are refused
+    std::uint8_t off_ = 0;   ///< which of the last eight readings led from no other, a bit each
+    bool suspected_ = false; ///< the run may be of a frozen encoder
+    bool disturbed_ = false; ///< a jump has come since the last trusted reading
     bool interrupted_ = false;
+    bool time_known_ = true; ///< since the last trusted reading
+    bool zero_lost_ = false; ///< the refused readings began at the device's zero
     std::uint64_t refusals_ = 0;
     std::uint64_t restarts_ = 0;
     std::uint64_t beyond_ = 0;

@@ -50,18 +50,25 @@ class MotionRun {
 
     /// Takes a reading as the next. Stamps must increase.
     constexpr void extend(const EncoderReading& reading, const MotionTolerance& tolerance) noexcept {
-        changed_ = changed_ || (count_ > 0 && reading.position_rad != last_.position_rad);
         const bool moved = count_ == 0 || reading.position_rad != last_.position_rad;
+        const bool further = count_ == 0 || reading.position_rad > highest_ || reading.position_rad < lowest_;
+        highest_ = count_ == 0 ? reading.position_rad : std::max(highest_, reading.position_rad);
+        lowest_ = count_ == 0 ? reading.position_rad : std::min(lowest_, reading.position_rad);
+        advances_ = std::min(advances_ + (further ? 1 : 0), enough_advances);
         first_ = count_ == 0 ? reading : first_;
+        const double passed_s = count_ == 0 ? 0 : seconds_between(last_.stamp_ns, reading.stamp_ns);
         last_ = reading;
         first_readings_.add_first(reading);
         last_readings_.add_last(reading);
         earlier_ = line_;
         line_ = last_readings_.line(count_ >= ReadingWindow::size - 1 ? 1 : 0, 0, tolerance.period_ns);
+        speed_ = std::max(line_.span_s > 0 ? magnitude(line_.velocity) : 0,
+                          speed_ - tolerance.limits.stop * passed_s);
         if (moved) {
             moving_ = line_;
             moved_ns_ = reading.stamp_ns;
         }
+        changes_ = std::min(changes_ + (moved && count_ > 0 ? 1 : 0), most);
         count_ = std::min(count_ + 1, most);
         zeros_ = reading.zero ? std::min(zeros_ + 1, most) : 0;
         readings_ = std::min(readings_ + (reading.zero ? 0 : 1), most);
@@ -94,9 +101,11 @@ class MotionRun {
                tolerance.must_move(moving_, dt_s, to.step_rad);
     }
 
-    /// Whether the joint is so fast that it cannot have one position twice.
+    /// Whether the joint cannot have come to rest since it was as fast as it was.
     [[nodiscard]] constexpr bool moves(const MotionTolerance& tolerance) const noexcept {
-        return tolerance.must_move(moving_, moving_.span_s, last_.step_rad);
+        MotionLine fastest = moving_;
+        fastest.velocity = speed_;
+        return tolerance.must_move(fastest, fastest.span_s, last_.step_rad);
     }
 
     /// Lines through its first and its last readings, without the outermost `skip`.
@@ -111,8 +120,12 @@ class MotionRun {
     [[nodiscard]] constexpr const EncoderReading& first() const noexcept { return first_; }
     [[nodiscard]] constexpr const EncoderReading& last() const noexcept { return last_; }
 
-    /// Whether any two of its readings differ.
-    [[nodiscard]] constexpr bool changed() const noexcept { return changed_; }
+    /// Whether it shows no motion yet: readings beyond all before them, or readings half of which differ from
+    /// the one before. A few flipped bits make none.
+    [[nodiscard]] constexpr bool still() const noexcept {
+        const bool changes = changes_ >= enough_changes && 2 * changes_ >= count_;
+        return advances_ < enough_advances && !changes;
+    }
 
     /// Readings that were not zero, and the zeros in a row at its end; up to a million.
     [[nodiscard]] constexpr int readings() const noexcept { return readings_; }
@@ -120,6 +133,8 @@ class MotionRun {
 
   private:
     static constexpr int most = 1'000'000;
+    static constexpr int enough_advances = 10;
+    static constexpr int enough_changes = 5;
 
     [[nodiscard]] static constexpr bool is_near(const MotionLine& line, const EncoderReading& to,
                                                 const MotionTolerance& tolerance, double longest_s) noexcept {
@@ -137,10 +152,14 @@ class MotionRun {
         earlier_; ///< that line at the reading before: what one after the other is late adds up in `line_`
     MotionLine moving_;         ///< that line at the last reading that differed from the one before
     std::int64_t moved_ns_ = 0; ///< stamp of that reading
+    double speed_ = 0;          ///< of the fastest line, less what a joint that stops loses
     int count_ = 0;
     int readings_ = 0;
     int zeros_ = 0;
-    bool changed_ = false;
+    int changes_ = 0;  ///< readings that differ from the one before
+    int advances_ = 0; ///< readings beyond all before them
+    double highest_ = 0;
+    double lowest_ = 0;
 };
 
 } // namespace dfdyn::hal

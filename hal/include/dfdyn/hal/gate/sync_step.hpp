@@ -30,10 +30,11 @@ class SyncStep {
         answers_ = 0;
     }
 
-    /// Takes an answer; whether it is in step. Before the first SYNC none is.
-    constexpr bool answer(std::int64_t stamp_ns) noexcept {
+    /// Takes an answer; whether it is in step. Before the first SYNC none is. `repeats`: it has the same
+    /// content as the one before; as a second one since the SYNC it may be a copy, and shows nothing.
+    constexpr bool answer(std::int64_t stamp_ns, bool repeats = false) noexcept {
         answered_ = true;
-        if (!synchronised_) {
+        if (!synchronised_ || (repeats && answers_ > 0)) {
             return false;
         }
         const std::int64_t after_ns = stamp_ns - sync_ns_;
@@ -66,7 +67,7 @@ class SyncStep {
     [[nodiscard]] constexpr std::int64_t sync_ns() const noexcept { return sync_ns_; }
 
   private:
-    static constexpr int great_many = 100;
+    static constexpr int great_many = 200;
     static constexpr int most_missing = 1000;
 
     [[nodiscard]] static constexpr std::int64_t distance(std::int64_t a, std::int64_t b) noexcept {

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// A kind of arm on a bus: what its devices send, and the product that receives it.
+#pragma once
+
+#include "dfdyn/hal/assembly/position_track.hpp"
+#include "dfdyn/hal/assembly/sample_report.hpp"
+#include "dfdyn/hal/bus.hpp"
+#include "tests/hal/campaign/traffic.hpp"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace dfdyn::tests {
+
+enum class Trigger { timer, set, sync };
+
+/// A sample of the product, whatever its type there.
+struct CampaignSample {
+    std::int64_t time_ns = 0;
+    bool valid = false, output_valid = false;
+    std::array<double, 2> position{};
+    std::array<double, 6> output{};
+    std::size_t outputs = 0;
+    hal::SampleReport<2, 6> report;
+};
+
+/// The product's assembly of an arm, as hal::Sampler takes it.
+class ReceivingArm {
+  public:
+    explicit ReceivingArm() = default;
+    ReceivingArm(const ReceivingArm&) = delete;
+    ReceivingArm& operator=(const ReceivingArm&) = delete;
+    virtual ~ReceivingArm() = default;
+    virtual std::optional<std::int64_t> take(const hal::Frame& frame, std::int64_t now_ns) = 0;
+    virtual void update(hal::BusState state, const hal::BusCounters& counters) = 0;
+    [[nodiscard]] virtual bool pending(std::int64_t instant_ns, std::int64_t now_ns) const = 0;
+    virtual CampaignSample assemble(std::int64_t instant_ns, std::int64_t now_ns) = 0;
+};
+
+/// Bits of a frame's data that are 1.
+using Bits = std::array<std::uint8_t, 64>;
+
+/// Two joints on a bus, and their efforts or a wrench.
+struct CampaignArm {
+    std::string name;
+    bool synchronous = false; ///< the joints measure at a SYNC
+    std::size_t boards = 0;
+    std::array<double, 2> step_rad{}; ///< one count of a joint's position
+    std::array<double, 2> zero_rad{}; ///< position of a joint where its device's number is 0
+    double output_step = 0;           ///< one count of an effort or of a wrench
+    double output_range = 0;          ///< of a wrench; 0: efforts
+    std::function<wire::Frames(std::size_t board, const wire::Joints&)> frames;
+    std::function<wire::Frames(const wire::SixWords&)> wrench;
+    std::function<void(hal::Frame&, std::size_t half)> saturate_wrench;
+    std::vector<hal::Frame> status; ///< sent at the start and every 100 ms
+    std::function<std::unique_ptr<ReceivingArm>(Trigger, const hal::MotionLimits&)> receive;
+
+    /// Where a frame of a board has the position and the effort of each joint; none: it has not.
+    struct Fields {
+        std::array<Bits, 2> position{}, effort{};
+    };
+    std::array<std::array<Fields, 3>, 2> fields{}; ///< [board][part]
+
+    [[nodiscard]] bool efforts() const { return output_range == 0; }
+
+    /// Finds the fields by what changes in the frames.
+    void find_fields();
+
+    /// What the devices send for this many periods, by true time.
+    [[nodiscard]] Traffic run(const Scene& scene, int cycles) const;
+
+  private:
+    void send_joints(const Scene& scene, int cycle, Traffic& traffic) const;
+    void send_wrench(const Scene& scene, int cycle, Traffic& traffic) const;
+};
+
+[[nodiscard]] bool any(const Bits& bits);
+
+/// Copies the bits that are 1 in `bits`.
+void copy_bits(const hal::Frame& from, const Bits& bits, hal::Frame& to);
+
+/// Every family of tests/hal/families, with SYNC, wrapping integers and separate efforts where they have
+/// them.
+[[nodiscard]] std::vector<CampaignArm> campaign_arms();
+
+} // namespace dfdyn::tests
