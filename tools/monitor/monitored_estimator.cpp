@@ -7,6 +7,7 @@
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/model/chain_model.hpp"
+#include "tools/model/run_time/estimator_decorator.hpp"
 #include "tools/model/run_time/host_model.hpp"
 #include "tools/monitor/change_words.hpp"
 
@@ -68,11 +69,11 @@ typename HostMonitor<Arm>::Constants monitor_constants(const MonitorSetup& setup
 }
 
 template <class Arm>
-class Monitored final : public MonitoredEstimator {
+class Monitored final : public EstimatorDecorator<MonitoredEstimator> {
   public:
-    Monitored(std::unique_ptr<HostEstimator> estimator, const MonitorSetup& setup)
-        : estimator_(std::move(estimator)), setup_(setup), constants_(monitor_constants<Arm>(setup)),
-          monitor_(constants_), held_(Extent<dynamic>{static_cast<int>(estimator_->weight_count())}),
+    Monitored(std::unique_ptr<HostEstimator> watched, const MonitorSetup& setup)
+        : EstimatorDecorator(std::move(watched)), setup_(setup), constants_(monitor_constants<Arm>(setup)),
+          monitor_(constants_), held_(Extent<dynamic>{static_cast<int>(estimator().weight_count())}),
           held_prediction_(setup.outputs.size()), position_(setup.chain.joints.size()),
           output_(setup.outputs.size()), changes_(kept, monitor_.change()) {
         verdict_.moved.resize(setup.outputs.size());
@@ -80,7 +81,7 @@ class Monitored final : public MonitoredEstimator {
     }
 
     Tick tick(const MeasuredSample& sample, Budget budget) override {
-        const Tick tick = estimator_->tick(sample, budget);
+        const Tick tick = estimator().tick(sample, budget);
         if (tick.status.predicted() && measured(tick.status.learning)) {
             watch(sample, tick);
         } else {
@@ -90,27 +91,18 @@ class Monitored final : public MonitoredEstimator {
         return tick;
     }
     bool advance(Budget budget) override {
-        const bool idle = estimator_->advance(budget);
+        const bool idle = estimator().advance(budget);
         renew();
         return idle;
     }
-    bool predict_with(std::span<const float> weights, std::span<float> prediction) const override {
-        return estimator_->predict_with(weights, prediction);
-    }
-    std::size_t weight_count() const override { return estimator_->weight_count(); }
-    void copy_weights(std::span<float> weights) const override { estimator_->copy_weights(weights); }
-    void relearn() override { estimator_->relearn(); }
     void begin_recording() override {
-        estimator_->begin_recording();
+        estimator().begin_recording();
         monitor_.restart();
         known_ = false;
     }
-    std::vector<std::byte> snapshot() const override { return estimator_->snapshot(); }
-    bool restore(std::span<const std::byte> snapshot) override { return estimator_->restore(snapshot); }
-    std::size_t state_bytes() const override { return estimator_->state_bytes(); }
     /// Includes the prediction with the delayed weights, and the monitor.
     Cost cost() const override {
-        Cost cost = estimator_->cost();
+        Cost cost = estimator().cost();
         cost.predict += cost.predict + HostMonitor<Arm>::cost(constants_.sizes, constants_.lags);
         return cost;
     }
@@ -145,7 +137,7 @@ class Monitored final : public MonitoredEstimator {
         const auto narrow = [](double x) { return static_cast<float>(x); };
         std::ranges::transform(sample.position, position_.begin(), narrow);
         std::ranges::transform(sample.output, output_.begin(), narrow);
-        estimator_->predict_with({held_.older(), weight_count()}, held_prediction_);
+        estimator().predict_with({held_.older(), weight_count()}, held_prediction_);
         if (monitor_.tick({sample.time_ns, position_.data(), output_.data(), tick.prediction.data(),
                            tick.standard_deviation.data(), held_prediction_.data()})) {
             note();
@@ -176,13 +168,12 @@ class Monitored final : public MonitoredEstimator {
 
     /// Refreshes the delayed weights, if they are due and the estimator has nothing left to learn.
     void renew() {
-        while (monitor_.renewal_due() && estimator_->advance(Budget::predict_only())) {
-            estimator_->copy_weights({held_.renew(), weight_count()});
+        while (monitor_.renewal_due() && estimator().advance(Budget::predict_only())) {
+            estimator().copy_weights({held_.renew(), weight_count()});
             monitor_.renewed();
         }
     }
 
-    std::unique_ptr<HostEstimator> estimator_;
     MonitorSetup setup_;
     typename HostMonitor<Arm>::Constants constants_;
     HostMonitor<Arm> monitor_;

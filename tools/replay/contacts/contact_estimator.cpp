@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/replay/contacts/contact_estimator.hpp"
 
+#include "tools/model/run_time/estimator_decorator.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -17,34 +19,24 @@ void set_errors(const MeasuredSample& sample, const Tick& tick, std::span<float>
     }
 }
 
-class Watched final : public ContactEstimator {
+class Watched final : public EstimatorDecorator<ContactEstimator> {
   public:
     Watched(std::unique_ptr<HostEstimator> estimator, const ContactModel& contact)
-        : estimator_(std::move(estimator)), watch_(contact),
+        : EstimatorDecorator(std::move(estimator)), watch_(contact),
           position_(contact.limit.size() / joint_motion_count), error_(position_.size()), contacts_(kept) {}
 
     Tick tick(const MeasuredSample& sample, Budget budget) override {
-        const Tick tick = estimator_->tick(sample, budget);
+        const Tick tick = estimator().tick(sample, budget);
         note(sample.time_ns, watch(sample, tick));
         return tick;
     }
-    bool advance(Budget budget) override { return estimator_->advance(budget); }
-    bool predict_with(std::span<const float> weights, std::span<float> prediction) const override {
-        return estimator_->predict_with(weights, prediction);
-    }
-    std::size_t weight_count() const override { return estimator_->weight_count(); }
-    void copy_weights(std::span<float> weights) const override { estimator_->copy_weights(weights); }
-    void relearn() override { estimator_->relearn(); }
     void begin_recording() override {
-        estimator_->begin_recording();
+        estimator().begin_recording();
         watch_.interrupt();
         during_ = false;
     }
-    std::vector<std::byte> snapshot() const override { return estimator_->snapshot(); }
-    bool restore(std::span<const std::byte> snapshot) override { return estimator_->restore(snapshot); }
-    std::size_t state_bytes() const override { return estimator_->state_bytes(); }
     Cost cost() const override {
-        Cost cost = estimator_->cost();
+        Cost cost = estimator().cost();
         cost.predict += ContactWatch::Detector::cost * watch_.detector().size();
         return cost;
     }
@@ -89,7 +81,6 @@ class Watched final : public ContactEstimator {
         during_ = contact;
     }
 
-    std::unique_ptr<HostEstimator> estimator_;
     ContactWatch watch_;
     std::vector<float> position_, error_;
     std::vector<DetectedContact> contacts_;
@@ -109,9 +100,9 @@ std::vector<ContactLimits<float>> limits_of(const ContactModel& contact) {
 
 } // namespace
 
-ContactWatch::ContactWatch(const ContactModel& contact) : limits_(limits_of(contact)) {
-    detector_ = std::make_unique<Detector>(Extent<dynamic>{static_cast<int>(limits_.size())}, limits_.data());
-}
+ContactWatch::ContactWatch(const ContactModel& contact)
+    : limits_(limits_of(contact)),
+      detector_(Extent<dynamic>{static_cast<int>(limits_.size())}, limits_.data()) {}
 
 ContactModel unlimited_contact(std::size_t joints) {
     return {std::vector<double>(joints * joint_motion_count, unlimited),

@@ -28,17 +28,19 @@ class ContactWatch {
     using Detector = ContactDetector<float, dynamic>;
 
     explicit ContactWatch(const ContactModel& contact);
+    ContactWatch(const ContactWatch&) = delete; // the detector refers to the limits
+    ContactWatch& operator=(const ContactWatch&) = delete;
 
     /// Adds a tick. Returns true during a contact. Allocates nothing.
     bool tick(std::int64_t time_ns, std::span<const float> position, std::span<const float> error) {
-        return detector_->tick(time_ns, position.data(), error.data());
+        return detector_.tick(time_ns, position.data(), error.data());
     }
-    void interrupt() { detector_->interrupt(); }
-    const Detector& detector() const { return *detector_; }
+    void interrupt() { detector_.interrupt(); }
+    const Detector& detector() const { return detector_; }
 
   private:
     std::vector<ContactLimits<float>> limits_;
-    std::unique_ptr<Detector> detector_;
+    Detector detector_;
 };
 
 /// Limits that no deviation reaches.
