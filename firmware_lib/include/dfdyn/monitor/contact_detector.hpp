@@ -48,7 +48,7 @@ struct ContactLimits {
 ///     }
 ///
 /// `joints` positions and errors, in the same order. No heap. Cost: `cost` per joint and tick, and three
-/// exponentials. Memory: 18 numbers per joint.
+/// exponentials. Memory: 14 numbers per joint.
 template <class Scalar, int joints>
 class ContactDetector {
   public:

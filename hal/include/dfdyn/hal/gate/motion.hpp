@@ -335,10 +335,7 @@ class MotionGate {
         const std::int64_t silence_ns = run_.first().stamp_ns - trusted_.last().stamp_ns;
         const bool disturbed = (!time_known_ && !stays_close(run_.first())) ||
                                (disturbed_ && silence_ns > 2 * config_.max_age_ns + 2 * config_.jitter_ns);
-        if (lost() || disturbed || config_.period_ns <= 0) {
-            return lost() || disturbed ? most_readings() : least;
-        }
-        return least;
+        return lost() || disturbed ? most_readings() : least;
     }
     /// Whether the joint goes there while the frames are left out that a new clock needs.
     [[nodiscard]] constexpr bool stays_close(const EncoderReading& to) const noexcept {
