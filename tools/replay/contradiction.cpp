@@ -21,15 +21,12 @@ constexpr double no_limit = 1e30;
 std::vector<double> learn_rows(HostEstimator& estimator, std::span<const Recording> recordings,
                                std::size_t first, std::size_t last) {
     std::vector<double> innovations;
-    for_each_row(recordings, first, last, [&](const Recording& recording, std::size_t row, bool begins) {
-        if (begins) {
-            estimator.begin_recording();
-        }
-        const Tick tick = estimator.tick(sample_at(recording, row));
-        if (tick.status.estimated()) {
-            innovations.push_back(static_cast<double>(tick.normalised_innovation_squared));
-        }
-    });
+    tick_rows(estimator, recordings, first, last, Budget::unlimited(),
+              [&innovations](const MeasuredSample&, const Tick& tick, bool) {
+                  if (tick.status.estimated()) {
+                      innovations.push_back(static_cast<double>(tick.normalised_innovation_squared));
+                  }
+              });
     return innovations;
 }
 
@@ -37,7 +34,7 @@ std::vector<double> learn_rows(HostEstimator& estimator, std::span<const Recordi
 /// estimator that has learned the other half.
 std::array<std::vector<double>, 2>
 innovations_of_halves(const TrainedModel& model, std::span<const Recording> recordings, bool from_prior) {
-    const std::size_t rows = row_count(recordings);
+    const std::size_t rows = total_rows(recordings);
     const auto later = make_estimator(model, from_prior);
     learn_rows(*later, recordings, 0, rows / 2);
     const auto earlier = make_estimator(model, from_prior);

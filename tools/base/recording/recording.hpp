@@ -89,6 +89,15 @@ struct Recording {
     std::size_t joint_count() const noexcept { return position.names.size(); }
 };
 
+/// Returns the number of rows of all recordings.
+inline std::size_t total_rows(std::span<const Recording> recordings) noexcept {
+    std::size_t total = 0;
+    for (const Recording& recording : recordings) {
+        total += recording.row_count();
+    }
+    return total;
+}
+
 struct ReadOptions {
     std::size_t joint_count = 0;                      ///< joints of the chain; 0: the number in the recording
     std::optional<OutputKind> outputs = std::nullopt; ///< required if given

@@ -32,11 +32,7 @@ Recording rows_between(Recording recording, std::size_t first, std::size_t last)
 }
 
 SplitRecordings split_recordings(std::span<const Recording> recordings, double share) {
-    std::size_t total = 0;
-    for (const Recording& recording : recordings) {
-        total += recording.row_count();
-    }
-    auto left = static_cast<std::size_t>(share * static_cast<double>(total));
+    auto left = static_cast<std::size_t>(share * static_cast<double>(total_rows(recordings)));
     SplitRecordings split;
     for (const Recording& recording : recordings) {
         const std::size_t rows = recording.row_count();

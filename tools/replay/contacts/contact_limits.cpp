@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/replay/contacts/contact_limits.hpp"
 
-#include "dfdyn/monitor/contact_detector.hpp"
-#include "tools/base/numerics/dynamic_storage.hpp"
 #include "tools/base/numerics/quantile.hpp"
 #include "tools/replay/contacts/contact_estimator.hpp"
 #include "tools/replay/recorded_rows.hpp"
-#include "tools/replay/replay.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 
 namespace dfdyn::tools {
 
@@ -48,36 +44,28 @@ struct PredictedRow {
 void predict_rows(HostEstimator& estimator, std::span<const Recording> recordings, std::size_t first,
                   std::size_t last, std::vector<PredictedRow>& predicted) {
     bool follows = false;
-    for_each_row(recordings, first, last, [&](const Recording& recording, std::size_t row, bool begins) {
-        if (begins) {
-            estimator.begin_recording();
-        }
-        const MeasuredSample sample = sample_at(recording, row);
-        const Tick tick = estimator.tick(sample, Budget::predict_only());
-        follows = follows && !begins && tick.status.predicted();
-        if (tick.status.predicted()) {
-            predicted.push_back({sample.time_ns,
-                                 !follows,
-                                 {sample.position.begin(), sample.position.end()},
-                                 prediction_errors(sample, tick)});
-            follows = true;
-        }
-    });
+    tick_rows(estimator, recordings, first, last, Budget::predict_only(),
+              [&](const MeasuredSample& sample, const Tick& tick, bool begins) {
+                  follows = follows && !begins && tick.status.predicted();
+                  if (tick.status.predicted()) {
+                      predicted.push_back({sample.time_ns,
+                                           !follows,
+                                           {sample.position.begin(), sample.position.end()},
+                                           prediction_errors(sample, tick)});
+                      follows = true;
+                  }
+              });
 }
 
 void learn_rows_of(HostEstimator& estimator, std::span<const Recording> recordings, std::size_t first,
                    std::size_t last) {
-    for_each_row(recordings, first, last, [&](const Recording& recording, std::size_t row, bool begins) {
-        if (begins) {
-            estimator.begin_recording();
-        }
-        estimator.tick(sample_at(recording, row));
-    });
+    tick_rows(estimator, recordings, first, last, Budget::unlimited(),
+              [](const MeasuredSample&, const Tick&, bool) {});
 }
 
 /// Predicts each block of time by an estimator that has learned all others, and then all rows by the model.
 std::vector<PredictedRow> calibration_rows(const TrainedModel& model, std::span<const Recording> recordings) {
-    const std::size_t rows = row_count(recordings);
+    const std::size_t rows = total_rows(recordings);
     std::vector<PredictedRow> predicted;
     for (std::size_t block = 0; block < block_count; ++block) {
         const std::size_t first = rows * block / block_count;

@@ -102,10 +102,7 @@ struct ReducedRows {
 };
 
 ReducedRows reduce_rows(MotionColumns& columns, std::span<const Recording> recordings) {
-    std::size_t total = 0;
-    for (const Recording& recording : recordings) {
-        total += recording.row_count();
-    }
+    const std::size_t total = total_rows(recordings);
     const Index width = columns.inertial() + friction_terms;
     std::vector<TriangularFactor> factors(static_cast<std::size_t>(columns.outputs()),
                                           TriangularFactor(width + 1));

@@ -15,14 +15,6 @@ namespace {
 
 Eigen::Index index(std::size_t value) { return static_cast<Eigen::Index>(value); }
 
-std::size_t total_rows(std::span<const Recording> recordings) {
-    std::size_t total = 0;
-    for (const Recording& recording : recordings) {
-        total += recording.row_count();
-    }
-    return total;
-}
-
 void copy_row(std::span<const double> from, Eigen::MatrixXd& to, Eigen::Index row) {
     to.row(row) = Eigen::Map<const Eigen::RowVectorXd>(from.data(), index(from.size()));
 }
