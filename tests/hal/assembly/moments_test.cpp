@@ -81,6 +81,17 @@ TEST_CASE("after an incomplete set was dropped the next one begins with the next
     CHECK(moment.instant_ns == 6);
 }
 
+TEST_CASE("an output that is known only after its set was dropped does not complete the next set") {
+    MomentWatch<1> moments{{}};
+    moments.measured(0);
+    CHECK(moments.completed(10).kind == SampleMoment::Kind::set);
+    moments.measured(0);
+    CHECK(moments.drop_set(21));
+    moments.measured(0);
+    CHECK(moments.completed(20).kind == SampleMoment::Kind::none); // half of it was lost
+    CHECK(moments.completed(30).instant_ns == 30);
+}
+
 TEST_CASE("a drive that does not answer a SYNC has no new sample") {
     Arm arm = make_drives();
     const std::array<Cia402Drive, 2> drives = two_drives();

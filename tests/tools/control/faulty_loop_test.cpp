@@ -2,6 +2,7 @@
 // A loop whose devices' frames are lost, late or wrongly stamped, and its behaviour when it stops.
 #include "tests/tools/control/faulty_loop.hpp"
 
+#include "dfdyn/hal/device/icub_two_joint_board.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -111,6 +113,59 @@ TEST_CASE(
             return fault;
         });
         CHECK(static_cast<double>(loop.loop().counters().coasted) > 3000 * share);
+        CHECK(loop.peak_step() < 0.1);
+        CHECK(loop.loop().state() == LoopState::running);
+    }
+}
+
+/// Returns whether a device of the iCub's bus sends this frame with joint positions.
+bool has_positions(const hal::Frame& frame) {
+    const hal::icub::TwoJointBoard first(1, {0}, {1}), second(2, {2}, {3});
+    return first.claims(frame.id) || second.claims(frame.id);
+}
+
+TEST_CASE("a lost frame of the F/T sensor costs no reading of a joint") {
+    const Arm parts = icub();
+    for (const int lost : {0, 1}) {
+        FaultyLoop loop(parts.robot, parts.scenario, bus_of("icub_loop.json"));
+        loop.run_to(0.2);
+        const int begin = loop.moving_tick();
+        const std::uint64_t invalid = loop.port().invalid;
+        loop.run_to(0.3, [&](int tick) {
+            LoopFault fault;
+            fault.drops = [&, part = 0, tick](const hal::Frame& frame) mutable {
+                return tick == begin && !has_positions(frame) && part++ == lost;
+            };
+            return fault;
+        });
+        CAPTURE(lost);
+        CHECK(loop.loop().counters().coasted == 0);
+        CHECK(loop.port().invalid == invalid);
+    }
+}
+
+TEST_CASE("the iCub's loop coasts only in ticks that lost positions") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Arm parts = icub();
+    for (const double share : {0.01, 0.05}) {
+        CAPTURE(share);
+        FaultyLoop loop(parts.robot, parts.scenario, bus_of("icub_loop.json"));
+        loop.run_to(0.2);
+        loop.forget_peaks();
+        std::set<int> incomplete;
+        loop.run_to(8, [&](int tick) {
+            LoopFault fault;
+            fault.drops = [&, tick](const hal::Frame& frame) {
+                const bool drop = std::uniform_real_distribution<double>(0, 1)(engine) < share;
+                if (drop && has_positions(frame)) {
+                    incomplete.insert(tick);
+                }
+                return drop;
+            };
+            return fault;
+        });
+        CHECK(static_cast<double>(incomplete.size()) > 7000 * share);
+        CHECK(loop.loop().counters().coasted <= incomplete.size());
         CHECK(loop.peak_step() < 0.1);
         CHECK(loop.loop().state() == LoopState::running);
     }

@@ -67,6 +67,7 @@ LoopPort::LoopPort(const BusDescription& description, double loop_period_s)
 
 void LoopPort::count(std::size_t frames) noexcept {
     arrived_ = frames > 0;
+    drained_ = frames < frames_per_tick;
     counters_.received += frames;
     counters_.most_in_tick = std::max(counters_.most_in_tick, frames);
     counters_.overfull_ticks += frames == frames_per_tick ? 1 : 0;
@@ -131,10 +132,12 @@ bool LoopPort::find_missing(const BusSample& sample, std::int64_t now_ns) {
     return any;
 }
 
-/// Returns the time of the sample for a tick whose measurement is due at `due_ns`; none without a sample.
-std::optional<std::int64_t> LoopPort::sample_time(std::int64_t due_ns) noexcept {
+/// Returns the time of the sample for a tick at `now_ns` whose measurement is due at `due_ns`; none without a
+/// sample.
+std::optional<std::int64_t> LoopPort::sample_time(std::int64_t due_ns, std::int64_t now_ns) noexcept {
     const bool timer = trigger_ == BusTrigger::timer;
-    const bool incomplete = trigger_ == BusTrigger::set && !moment_ && sampled_ && arm_.drop_set();
+    const bool incomplete =
+        trigger_ == BusTrigger::set && !moment_ && sampled_ && drained_ && arm_.drop_set(now_ns);
     return timer || incomplete ? std::optional(due_ns - clock_.correction_ns()) : moment_;
 }
 
@@ -144,7 +147,7 @@ LoopInput LoopPort::sense(std::int64_t now_ns) {
     const std::int64_t due_ns = next_tick_ns_.value_or(0) - set_ns_ - (delay_ticks_ + 1) * period_ns_;
     input.time_ns = due_ns;
     input.bus_lost = bus_lost_;
-    const std::optional<std::int64_t> instant = sample_time(due_ns);
+    const std::optional<std::int64_t> instant = sample_time(due_ns, now_ns);
     if (!instant) {
         ++counters_.incomplete;
         clock_.drained(now_ns);

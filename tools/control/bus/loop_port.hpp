@@ -93,7 +93,7 @@ class LoopPort {
     ///
     /// With the trigger `set`, a tick with a reading of at least one joint does not wait for lost frames: it
     /// receives a sample of its own time without the joints that have no reading, and the next tick's set
-    /// begins with the next frame.
+    /// begins with the next frame. It waits for frames that have arrived and were not read yet.
     LoopInput sense(std::int64_t now_ns);
 
     /// Sends a command. It also serves as the torque of the next tick if the bus does not measure torques.
@@ -114,7 +114,7 @@ class LoopPort {
     void follow_ticks(std::int64_t tick_ns) noexcept;
     std::int64_t continued(std::int64_t stamp_ns, std::int64_t now_ns) const noexcept;
     void follow_clock(const BusSample& sample, std::int64_t now_ns) noexcept;
-    std::optional<std::int64_t> sample_time(std::int64_t due_ns) noexcept;
+    std::optional<std::int64_t> sample_time(std::int64_t due_ns, std::int64_t now_ns) noexcept;
     bool find_missing(const BusSample& sample, std::int64_t now_ns);
 
     template <hal::Bus B>
@@ -137,6 +137,7 @@ class LoopPort {
     std::array<hal::Frame, frames_per_tick> room_{};
     std::optional<std::int64_t> moment_;
     bool arrived_ = false; ///< whether the last drain received frames
+    bool drained_ = false; ///< whether it received all that had arrived
     bool sampled_ = false; ///< whether there has been a sample with positions
     bool bus_lost_ = false;
     JointVector position_, torque_, command_;

@@ -125,12 +125,9 @@ class SampleAssembly {
         }
     }
 
-    /// Drops a set that is not complete. The next set begins with the next frame. Returns whether the dropped
-    /// set contained a joint.
-    constexpr bool drop_set() noexcept {
-        constexpr std::int64_t never = std::numeric_limits<std::int64_t>::min();
-        return moments_.drop_set(output_.heard() ? output_.newest_ns() : never);
-    }
+    /// Drops a set that is not complete at `now_ns`. The next set consists of what is measured later. Returns
+    /// whether the dropped set contained a joint.
+    constexpr bool drop_set(std::int64_t now_ns) noexcept { return moments_.drop_set(now_ns); }
 
     /// Whether a value of this instant is missing that may yet be interpolated: `assemble` gives more after
     /// the next frames. Never for longer than the sources' `max_age` and a period after the last value.

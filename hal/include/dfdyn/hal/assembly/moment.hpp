@@ -44,12 +44,13 @@ class MomentWatch {
     /// A new position of a joint.
     constexpr void measured(std::size_t joint) noexcept { seen_[joint] = true; }
 
-    /// Drops a set that is not complete, for a caller that does not wait for lost frames: its joints and the
-    /// output measured at `output_ns`. Returns whether it contained a joint.
-    constexpr bool drop_set(std::int64_t output_ns) noexcept {
+    /// Drops a set that is not complete at `now_ns`, for a caller that does not wait for lost frames: its
+    /// joints, and any output measured until then. Half an output that was lost is known only from the next
+    /// one's frames, and does not complete their set. Returns whether the dropped set contained a joint.
+    constexpr bool drop_set(std::int64_t now_ns) noexcept {
         const bool any = std::any_of(seen_.begin(), seen_.begin() + joints_, [](bool seen) { return seen; });
         seen_ = {};
-        set_ns_ = std::max(set_ns_, output_ns);
+        set_ns_ = std::max(set_ns_, now_ns);
         return any;
     }
 
