@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/base/system/quiet.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/build_flags.hpp"
 #include "tools/commands/command.hpp"
@@ -13,12 +14,8 @@
 
 namespace {
 
-int run(int argc, char** argv) {
-    CLI::App app("Learns a robot arm's inverse dynamics from joint positions, tick by tick, in fixed memory.",
-                 "dfdyn");
-    app.require_subcommand(1);
-    app.set_version_flag("--version", dfdyn::tools::build_flags());
-    dfdyn::tools::Command command;
+/// Adds all subcommands, each with the option --quiet.
+void add_commands(CLI::App& app, dfdyn::tools::Command& command) {
     dfdyn::tools::add_start_command(app, command);
     dfdyn::tools::add_train_command(app, command);
     dfdyn::tools::add_footprint_command(app, command);
@@ -33,6 +30,22 @@ int run(int argc, char** argv) {
     dfdyn::tools::add_buscheck_command(app, command);
     dfdyn::tools::add_diagnose_command(app, command);
     dfdyn::tools::add_bench_command(app, command);
+    dfdyn::tools::add_man_command(app, command);
+    dfdyn::tools::add_completion_command(app, command);
+    for (CLI::App* const subcommand : app.get_subcommands([](const CLI::App*) { return true; })) {
+        subcommand->add_flag_callback(
+            "--quiet", dfdyn::tools::be_quiet,
+            "No progress and no notes on standard error; warnings and errors remain");
+    }
+}
+
+int run(int argc, char** argv) {
+    CLI::App app("Learns a robot arm's inverse dynamics from joint positions, tick by tick, in fixed memory.",
+                 "dfdyn");
+    app.require_subcommand(1);
+    app.set_version_flag("--version", dfdyn::tools::build_flags());
+    dfdyn::tools::Command command;
+    add_commands(app, command);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
@@ -40,6 +53,7 @@ int run(int argc, char** argv) {
     } catch (const CLI::ParseError& failure) {
         throw dfdyn::tools::InputError(dfdyn::tools::usage_message(app, failure));
     }
+    dfdyn::tools::refuse_empty_values(app);
     const int status = command();
     if (!std::cout.flush()) {
         throw dfdyn::tools::InputError(

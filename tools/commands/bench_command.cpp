@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/base/system/atomic_file.hpp"
 #include "tools/base/system/progress.hpp"
 #include "tools/bench/bench_report.hpp"
 #include "tools/commands/command.hpp"
+#include "tools/commands/options/json_output.hpp"
+#include "tools/commands/options/value_checks.hpp"
 
 #include <algorithm>
 #include <iostream>
@@ -18,6 +21,7 @@ struct BenchCommandOptions {
     std::filesystem::path folder;
     bool hour = false;
     bool quick = false;
+    bool json = false;
 };
 
 /// Runs every part briefly, as a functional test without meaningful times.
@@ -37,12 +41,16 @@ bool all_of_ours_right(const TickBench& bench) {
 }
 
 int run(const BenchCommandOptions& options) {
+    const JsonOutput output(options.json);
     BenchOptions bench = options.quick ? quick_options(options.bench) : options.bench;
     if (options.hour) {
         bench.replay_rows = options.quick ? 2000 : rows_of_an_hour;
     }
     if (!is_optimised()) {
         std::cerr << "dfdyn bench: this program was built without optimisation: its times mean nothing\n";
+    }
+    if (!options.folder.empty()) {
+        check_folder(options.folder);
     }
     BenchResults results;
     {
@@ -52,6 +60,7 @@ int run(const BenchCommandOptions& options) {
     if (!options.folder.empty()) {
         write_bench(options.folder, results);
     }
+    output.print(bench_json(results));
     std::cout << figure_page_markdown(bench_page(results));
     return all_of_ours_right(results.ticks) ? 0 : 1;
 }
@@ -69,12 +78,12 @@ void add_bench_command(CLI::App& app, Command& chosen) {
     command
         ->add_option("--passes", options->bench.repetitions.passes,
                      "Repetitions of each learner, all in turn; more on a busy machine")
-        ->check(CLI::Range(1, 100'000))
+        ->check(whole_number_in(1, 100'000))
         ->capture_default_str();
     command
         ->add_option("--stretch", options->bench.stretch_ticks,
                      "Ticks of a tenth of the long run; an hour at 1 kHz is 3600000")
-        ->check(CLI::Range(1, 100'000'000))
+        ->check(whole_number_in(1, 100'000'000))
         ->capture_default_str();
     command->add_flag(
         "--hour", options->hour,
@@ -83,8 +92,9 @@ void add_bench_command(CLI::App& app, Command& chosen) {
     command
         ->add_option("--loop", options->bench.loop_s,
                      "Also tick once per millisecond for this many seconds beside a load on another core")
-        ->check(CLI::Range(1.0, 3600.0));
+        ->check(number_in(1.0, 3600.0));
     command->add_flag("--quick", options->quick, "Few and small: shows that it runs, not how fast it is");
+    add_json_option(*command, options->json);
     command->footer("Example:\n  dfdyn bench --output bench --hour\n"
                     "Learners whose predictions are wrong are named, without a time.\n"
                     "Exit status: 0 done, whether or not targets are met, 1 dfdyn's own predictions are "

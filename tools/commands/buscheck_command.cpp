@@ -9,7 +9,9 @@
 #include "tools/can/log/candump_log.hpp"
 #include "tools/can/recognition/recognised_bus.hpp"
 #include "tools/commands/command.hpp"
+#include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/stop_signal.hpp"
+#include "tools/commands/options/value_checks.hpp"
 
 #include <algorithm>
 #include <array>
@@ -27,6 +29,7 @@ struct BusCheckOptions {
     std::string interface, log_interface;
     double duration_s = 10;
     bool devices = false;
+    bool json = false;
 };
 
 /// Checks all frames of a log, with the log's time stamps.
@@ -75,7 +78,31 @@ void write_draft(const std::filesystem::path& path, const RecognisedBus& recogni
     std::cout << "  draft written to " << shown(path) << '\n';
 }
 
+nlohmann::ordered_json json_of(const std::vector<BusFinding>& findings,
+                               const std::optional<RecognisedBus>& recognised) {
+    nlohmann::ordered_json json{{"schema", "dfdyn.buscheck/1"},
+                                {"findings", nlohmann::ordered_json::array()},
+                                {"families", nlohmann::ordered_json::array()}};
+    for (const BusFinding& one : findings) {
+        json["findings"].push_back({{"rule", one.rule},
+                                    {"what", one.what},
+                                    {"evidence", one.evidence},
+                                    {"confirm", one.confirm},
+                                    {"fix", one.fix}});
+    }
+    if (recognised) {
+        for (const RecognisedFamily& family : recognised->families) {
+            json["families"].push_back(family.name);
+        }
+    }
+    return json;
+}
+
 int run(const BusCheckOptions& options) {
+    const JsonOutput output(options.json);
+    if (options.devices && !(options.log.empty() && options.interface.empty())) {
+        throw InputError("buscheck: expected --devices alone, found --log or --can");
+    }
     if (options.devices) {
         std::cout << device_page();
         return 0;
@@ -97,6 +124,7 @@ int run(const BusCheckOptions& options) {
         recognised = recognise_bus(recorder.frames());
         std::ranges::copy(recognised->findings, std::back_inserter(findings));
     }
+    output.print(json_of(findings, recognised));
     print_bus_check(std::cout, check, findings);
     if (recognised) {
         print_recognised_bus(std::cout, *recognised);
@@ -123,11 +151,12 @@ void add_buscheck_command(CLI::App& app, Command& chosen) {
     command->add_option("--from", options->log_interface, "The interface in the log, where there are several")
         ->type_name("IFACE");
     command->add_option("--duration", options->duration_s, "With --can: for how long; Ctrl-C ends it before")
-        ->check(CLI::Range(0.1, 1e6))
+        ->check(number_in(0.1, 1e6))
         ->capture_default_str()
         ->type_name("S");
     command->add_flag("--devices", options->devices,
                       "Prints what devices there are: docs/reference/devices.md");
+    add_json_option(*command, options->json);
     command->footer("Example:\n  dfdyn buscheck --can can0 --bus bus.json --duration 5\n"
                     "  dfdyn buscheck --log run.log -o bus.json\n"
                     "Exit status: 0 nothing is wrong, 1 there are findings, 2 bad usage or input.");

@@ -25,5 +25,7 @@ void add_loop_command(CLI::App& app, Command& chosen);
 void add_plant_command(CLI::App& app, Command& chosen);
 void add_buscheck_command(CLI::App& app, Command& chosen);
 void add_bench_command(CLI::App& app, Command& chosen);
+void add_man_command(CLI::App& app, Command& chosen);
+void add_completion_command(CLI::App& app, Command& chosen);
 
 } // namespace dfdyn::tools

@@ -2,7 +2,9 @@
 #include "tools/base/text/error.hpp"
 #include "tools/can/log/bus_traffic.hpp"
 #include "tools/commands/command.hpp"
+#include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/options.hpp"
+#include "tools/commands/options/value_checks.hpp"
 
 #include <cmath>
 #include <iostream>
@@ -17,9 +19,11 @@ struct ConvertOptions {
     std::filesystem::path bus;
     std::filesystem::path log;
     TrafficOptions traffic;
+    bool json = false;
 };
 
 int run(const ConvertOptions& options) {
+    const JsonOutput output(options.json);
     const std::vector<std::filesystem::path>& logs = options.recordings.logs;
     if (logs.size() != 1) {
         throw InputError("--log: expected one recording, found " + std::to_string(logs.size()));
@@ -31,6 +35,7 @@ int run(const ConvertOptions& options) {
     columns.outputs = description.outputs;
     const std::vector<Recording> recordings = options.recordings.read(columns);
     const double load = write_bus_log(recordings.front(), description, options.traffic, options.log);
+    output.print({{"schema", "dfdyn.conversion/1"}, {"bus_load", load}});
     std::cout << "bus load: " << std::round(1000 * load) / 10 << " %\n";
     return 0;
 }
@@ -51,12 +56,14 @@ void add_convert_command(CLI::App& app, Command& chosen) {
     command
         ->add_option("--jitter-us", options->traffic.jitter_us,
                      "How late frames are at most, evenly distributed")
-        ->check(CLI::Range(0.0, 1e6))
+        ->check(number_in(0.0, 1e6))
         ->type_name("US")
         ->capture_default_str();
     command->add_option("--seed", options->traffic.seed, "Of the jitter")
+        ->check(seed_number())
         ->type_name("N")
         ->capture_default_str();
+    add_json_option(*command, options->json);
     command->footer(
         "Example:\n  dfdyn convert --log run.csv --bus bus.json -o run.log\n"
         "The same recording, bus and seed give the same bytes. A bus that cannot carry the frames is "

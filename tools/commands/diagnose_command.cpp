@@ -4,8 +4,10 @@
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/commands/command.hpp"
+#include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/robot_options.hpp"
+#include "tools/commands/options/value_checks.hpp"
 #include "tools/diagnosis/extension/extended_model.hpp"
 #include "tools/diagnosis/extension/joined_recording.hpp"
 #include "tools/diagnosis/extension/online_view.hpp"
@@ -33,8 +35,9 @@ struct DiagnoseOptions {
     std::filesystem::path header;
     bool quick = false;
     bool no_setup_check = false;
+    bool json = false;
 
-    std::filesystem::path json() const { return folder / "diagnosis.json"; }
+    std::filesystem::path findings() const { return folder / "diagnosis.json"; }
     std::filesystem::path page() const { return folder / "report.html"; }
     std::filesystem::path model() const { return folder / "extended_model.json"; }
 };
@@ -51,9 +54,6 @@ void check_torque_constants(const DiagnoseOptions& options, OutputKind outputs, 
     if (constants.size() != joints) {
         throw InputError("--torque-constants: expected " + std::to_string(joints) +
                          ", one per joint, found " + std::to_string(constants.size()));
-    }
-    if (!std::ranges::all_of(constants, [](double constant) { return constant > 0; })) {
-        throw InputError("--torque-constants: expected positive numbers, found another");
     }
 }
 
@@ -97,32 +97,43 @@ void remove_model(const DiagnoseOptions& options) {
     std::filesystem::remove(options.model(), ignored);
 }
 
+/// Throws InputError unless all results can be written.
+void check_folders(const DiagnoseOptions& options) {
+    check_folder(options.folder);
+    if (std::filesystem::exists(options.folder)) {
+        for (const std::filesystem::path& output : {options.findings(), options.page(), options.model()}) {
+            check_writable(output);
+        }
+    }
+    if (!options.header.empty() && std::filesystem::weakly_canonical(options.header.parent_path()) !=
+                                       std::filesystem::weakly_canonical(options.folder)) {
+        check_writable(options.header);
+    }
+}
+
 int run(const DiagnoseOptions& options) {
+    const JsonOutput output(options.json);
     std::vector<std::filesystem::path> inputs = options.recordings.logs;
     inputs.push_back(options.robot.urdf);
-    check_distinct({options.json(), options.page(), options.model(), options.header}, std::move(inputs));
+    check_distinct({options.findings(), options.page(), options.model(), options.header}, std::move(inputs));
     const OutputKind outputs = parse_output_kind(options.outputs);
     const Robot robot = options.robot.read(outputs);
     check_torque_constants(options, outputs, robot.joints.size());
     const std::vector<Recording> recordings = options.recordings.read(columns_for(robot, outputs));
-    make_folder(options.folder);
-    for (const std::filesystem::path& output : {options.json(), options.page(), options.model()}) {
-        check_writable(output);
-    }
-    if (!options.header.empty()) { // may be in the folder
-        check_writable(options.header);
-    }
+    check_folders(options);
     const DiagnosisWork work = run_diagnosis(robot, recordings, options, outputs);
     const Extension extension = answered(work) ? extension_of(work) : Extension{};
     const std::optional<TrainedModel> model = make_model(work, extension, recordings);
+    make_folder(options.folder);
     const OnlineView online = model ? online_view(work, extension, *model, recordings) : OnlineView{};
-    write_file(options.json(), diagnosis_to_json(work.diagnosis));
+    write_file(options.findings(), diagnosis_to_json(work.diagnosis));
     write_file(options.page(), diagnosis_page({robot, recordings, work, extension, online}));
     if (model) {
         write_model(options, *model);
     } else {
         remove_model(options);
     }
+    output.print(nlohmann::ordered_json::parse(diagnosis_to_json(work.diagnosis)));
     print_diagnosis(std::cout, work.diagnosis, extension.carried);
     std::cout << "report: " << options.page().string() << '\n';
     return refused(work.diagnosis) ? 1 : 0;
@@ -145,6 +156,7 @@ void add_diagnose_command(CLI::App& app, Command& chosen) {
         ->add_option("--torque-constants", options->torque_constants,
                      "N m/A at each joint, for --outputs i; else each joint has an unknown factor")
         ->delimiter(',')
+        ->check(positive_number())
         ->type_name("K1,K2...");
     command
         ->add_option("-o,--output", options->folder,
@@ -157,6 +169,7 @@ void add_diagnose_command(CLI::App& app, Command& chosen) {
                       "Leave out the error on held-out time, which takes half of the run");
     command->add_flag("--no-setup-check", options->no_setup_check,
                       "Go on although units, clock, columns or signs of a recording look wrong");
+    add_json_option(*command, options->json);
     command->footer(
         "Example:\n  dfdyn diagnose --robot arm.urdf --tip tool0 --log run.csv --outputs tau -o diagnosis\n"
         "  dfdyn replay --model diagnosis/extended_model.json --log other.csv\n"

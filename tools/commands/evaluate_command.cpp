@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/system/progress.hpp"
 #include "tools/commands/command.hpp"
+#include "tools/commands/options/json_output.hpp"
+#include "tools/commands/options/value_checks.hpp"
 #include "tools/experiment/plan/plan.hpp"
 #include "tools/experiment/plan/plan_data.hpp"
 #include "tools/experiment/result/evaluation_page.hpp"
@@ -18,6 +20,7 @@ struct EvaluateOptions {
     std::filesystem::path plan;
     RunOptions run;
     bool quick = false;
+    bool json = false;
 };
 
 EvaluationResults run_with_progress(const Plan& plan, const PlanData& data, const RunOptions& options) {
@@ -27,6 +30,7 @@ EvaluationResults run_with_progress(const Plan& plan, const PlanData& data, cons
 }
 
 int run(const EvaluateOptions& options) {
+    const JsonOutput output(options.json);
     const Plan plan = options.quick ? quick_plan(read_plan(options.plan)) : read_plan(options.plan);
     const PlanData data = load_plan_data(plan);
     EvaluationResults results = run_with_progress(plan, data, options.run);
@@ -35,6 +39,11 @@ int run(const EvaluateOptions& options) {
     for (const FailedUnit& unit : results.failed) {
         std::cerr << unit.case_name << ", draw " << unit.seed << ": " << unit.reason << '\n';
     }
+    output.print({{"schema", "dfdyn.evaluation/1"},
+                  {"done", results.units.size()},
+                  {"failed", results.failed.size()},
+                  {"reused", results.reused},
+                  {"folder", options.run.folder.string()}});
     std::cout << results.units.size() << " of " << results.units.size() + results.failed.size()
               << " cases x draws done (" << results.reused
               << " found from an earlier run): " << (options.run.folder / "report.html").string() << '\n';
@@ -56,12 +65,13 @@ void add_evaluate_command(CLI::App& app, Command& chosen) {
         ->required()
         ->type_name("DIR");
     command->add_option("--jobs", options->run.jobs, "Cases x draws at a time")
-        ->check(CLI::Range(1, 256))
+        ->check(whole_number_in(1, 256))
         ->capture_default_str();
     command->add_flag("--fresh", options->run.fresh, "Do again what an earlier run has left in DIR");
     command->add_flag("--quick", options->quick,
                       "One draw, few features and rows: shows that every case runs, not how good it is. Give "
                       "it a DIR of its own");
+    add_json_option(*command, options->json);
     command->footer(
         "Example:\n  dfdyn evaluate --plan plan.json -o evaluation --jobs 2\n"
         "A run that was ended goes on where it was: cases x draws whose inputs did not change are not done "

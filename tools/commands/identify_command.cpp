@@ -2,8 +2,10 @@
 #include "tools/base/system/atomic_file.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/commands/command.hpp"
+#include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/robot_options.hpp"
+#include "tools/commands/options/value_checks.hpp"
 #include "tools/robot/firmware_chain.hpp"
 #include "tools/robot/identification/identify.hpp"
 
@@ -23,7 +25,8 @@ struct IdentifyOptions {
     std::string outputs;
     bool consistent = false;
     ZeroPhaseWindow window;
-    std::filesystem::path json;
+    std::filesystem::path parameters;
+    bool json = false;
 };
 
 std::vector<Recording> read_all(const IdentifyOptions& options, const Robot& robot, OutputKind outputs) {
@@ -90,18 +93,20 @@ void check_window(const ZeroPhaseWindow& window) {
 
 int run(const IdentifyOptions& options) {
     check_window(options.window);
+    const JsonOutput output(options.json);
     std::vector<std::filesystem::path> inputs = options.recordings.logs;
     inputs.push_back(options.robot.urdf);
-    check_outputs({options.json}, std::move(inputs));
+    check_outputs({options.parameters}, std::move(inputs));
     const OutputKind outputs = parse_output_kind(options.outputs);
     const Robot robot = options.robot.read(outputs);
     const std::vector<Recording> recordings = read_all(options, robot, outputs);
     const RecordedMotion recorded = recorded_motion(recordings, options.window);
     const Identification found =
         identify(robot, outputs, recorded, recordings.front().output.names, options.consistent);
-    if (!options.json.empty()) {
-        write_file(options.json, identification_to_json(robot, found));
+    if (!options.parameters.empty()) {
+        write_file(options.parameters, identification_to_json(robot, found));
     }
+    output.print(nlohmann::ordered_json::parse(identification_to_json(robot, found)));
     print_chain(robot);
     print_base_parameters(found);
     print_errors(found);
@@ -114,10 +119,10 @@ void add_window_options(CLI::App& command, ZeroPhaseWindow& window) {
             "--half-width", window.half_width,
             "Samples before and after each one that its derivatives are taken from, where the recording "
             "has no qd, qdd")
-        ->check(CLI::Range(1, 1000))
+        ->check(whole_number_in(1, 1000))
         ->capture_default_str();
     command.add_option("--degree", window.degree, "Degree of the polynomial that they are taken of")
-        ->check(CLI::Range(2, 8))
+        ->check(whole_number_in(2, 8))
         ->capture_default_str();
 }
 
@@ -132,12 +137,13 @@ void add_identify_command(CLI::App& app, Command& chosen) {
     options->recordings.add_to(*command);
     command->add_option("--outputs", options->outputs, "What was measured: tau (torques), wrench")
         ->required()
-        ->check(CLI::IsMember({"tau", "wrench"}))
+        ->check(one_of({"tau", "wrench"}))
         ->type_name("tau|wrench");
     command->add_flag("--consistent", options->consistent,
                       "Also parameters of bodies that can be: positive masses, inertias of real bodies");
     add_window_options(*command, options->window);
-    command->add_option("-o,--output", options->json, "The parameters")->type_name("P.json");
+    command->add_option("-o,--output", options->parameters, "The parameters")->type_name("P.json");
+    add_json_option(*command, options->json);
     command->footer("Example:\n  dfdyn identify --robot arm.urdf --tip tool0 --log run.csv --outputs tau "
                     "--consistent -o parameters.json\n"
                     "Exit status: 0 done, 2 bad usage or input.");

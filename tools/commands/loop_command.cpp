@@ -6,9 +6,11 @@
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/commands/command.hpp"
+#include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/robot_options.hpp"
 #include "tools/commands/options/stop_signal.hpp"
+#include "tools/commands/options/value_checks.hpp"
 #include "tools/control/closed_loop.hpp"
 #include "tools/control/report/loop_peaks.hpp"
 #include "tools/control/report/loop_recording.hpp"
@@ -34,6 +36,7 @@ struct LoopOptions {
     std::string interface;
     bool simulate = false;
     bool from_prior = false;
+    bool json = false;
     double duration_s = 0;
     double window_s = 5;
     LoopLimits limits;
@@ -69,7 +72,7 @@ LoopParts read_parts(const LoopOptions& options) {
         check_bus(*parts.bus, parts.robot, parts.scenario);
     }
     if (!options.folder.empty()) {
-        make_folder(options.folder);
+        check_folder(options.folder);
     }
     return parts;
 }
@@ -167,6 +170,7 @@ std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOption
         progress.update(static_cast<std::size_t>(instant.time_s * 1000));
     });
     if (!options.folder.empty()) {
+        make_folder(options.folder);
         recording.write(options.folder / (name + ".csv"));
     }
     std::cout << name << ' ';
@@ -181,6 +185,7 @@ std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOption
 }
 
 int simulate(const LoopOptions& options) {
+    const JsonOutput output(options.json);
     const LoopParts parts = read_parts(options);
     std::vector<TrackingRun> runs;
     bool stopped = false;
@@ -191,6 +196,7 @@ int simulate(const LoopOptions& options) {
             runs.push_back(*run);
         }
     }
+    output.print(tracking_json(runs, stopped));
     if (!runs.empty()) {
         show_tracking(parts, options, runs);
     }
@@ -198,6 +204,7 @@ int simulate(const LoopOptions& options) {
 }
 
 int run_on_bus(const LoopOptions& options) {
+    const JsonOutput output(options.json);
     const LoopParts parts = read_parts(options);
     const double period_s = 1 / parts.scenario.controller.rate_hz;
     LoopPort port(*parts.bus, period_s);
@@ -212,14 +219,20 @@ int run_on_bus(const LoopOptions& options) {
     print_peaks(std::cout, log.peaks);
     print_port(std::cout, port.counters());
     print_pace(std::cout, pace);
+    if (!options.folder.empty()) {
+        make_folder(options.folder);
+    }
     show_changes(options, *loop);
     save_learned(options, *loop);
     const std::string name = contenders(options).back().name;
     if (!options.folder.empty()) {
         log.recording.write(options.folder / (name + ".csv"));
     }
-    show_tracking(parts, options, {{name, log.tracking.windows()}});
-    return loop->cause() == StopCause::requested ? 0 : 1;
+    const std::vector<TrackingRun> runs{{name, log.tracking.windows()}};
+    const bool stopped = loop->cause() != StopCause::requested;
+    output.print(tracking_json(runs, stopped));
+    show_tracking(parts, options, runs);
+    return stopped ? 1 : 0;
 }
 
 int run(LoopOptions& options) {
@@ -273,13 +286,13 @@ void add_limits(CLI::App& command, LoopLimits& limits) {
             "Largest distance from the reference, rad (m); one value, or one per joint. None: that of "
             "0.8 of the torque limit by the position gain")
         ->delimiter(',')
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->type_name("E");
     command
         .add_option("--speed-limit", limits.speed,
                     "Largest speed, rad/s (m/s); one value, or one per joint. None: the robot's")
         ->delimiter(',')
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->type_name("V");
     command
         .add_option(
@@ -287,7 +300,7 @@ void add_limits(CLI::App& command, LoopLimits& limits) {
             "Of the disturbance observer, rad/s; one value, or one per joint; 0: no observer. None: as "
             "docs/guide/control.md says, at most 40")
         ->delimiter(',')
-        ->check(CLI::NonNegativeNumber)
+        ->check(number_from_zero())
         ->type_name("B");
     command
         .add_option(
@@ -295,14 +308,17 @@ void add_limits(CLI::App& command, LoopLimits& limits) {
             "What is learned adds at most this share of the torque limit to the rigid body's torque; one "
             "value, or one per joint; 0: it is learned, not used. None: 0.5")
         ->delimiter(',')
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(number_in(0.0, 1.0))
         ->type_name("F");
     command
-        .add_option("--stop", limits.mode,
-                    "After a stop: hold the arm until told to end, or go limp 0.2 s after the brakes were "
-                    "requested")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, StopMode>{{"hold", StopMode::hold}, {"limp", StopMode::limp}}))
+        .add_option_function<std::string>(
+            "--stop",
+            [&limits](const std::string& mode) {
+                limits.mode = mode == "limp" ? StopMode::limp : StopMode::hold;
+            },
+            "After a stop: hold the arm until told to end, or go limp 0.2 s after the brakes were "
+            "requested")
+        ->check(one_of({"hold", "limp"}))
         ->default_str("hold")
         ->type_name("hold|limp");
 }
@@ -328,10 +344,10 @@ void add_loop_command(CLI::App& app, Command& chosen) {
     command->add_option("--can", options->interface, "The arm is here")->type_name("IFACE");
     command->add_flag("--simulate", options->simulate, "The arm is simulated, in simulated time");
     command->add_option("--duration", options->duration_s, "Seconds; with --can none: until Ctrl-C")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->type_name("S");
     command->add_option("--window", options->window_s, "Of the tracking table, seconds")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->capture_default_str()
         ->type_name("S");
     add_limits(*command, options->limits);
@@ -341,6 +357,7 @@ void add_loop_command(CLI::App& app, Command& chosen) {
             "Tracking error as tracking.csv, .svg and .html, a recording of each run (at most 10 minutes "
             "without --duration), and changes.json: changes of the arm that the learner's monitor found")
         ->type_name("DIR");
+    add_json_option(*command, options->json);
     command->footer(
         "Examples:\n"
         "  dfdyn loop --simulate --robot arm.urdf --scenario s.json --model m.json --duration 90 -o out\n"

@@ -2,6 +2,7 @@
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/robot_options.hpp"
 #include "tools/commands/options/stop_signal.hpp"
+#include "tools/commands/options/value_checks.hpp"
 #include "tools/control/loop_setup.hpp"
 #include "tools/control/report/loop_summary.hpp"
 
@@ -52,7 +53,7 @@ void add_plant_command(CLI::App& app, Command& chosen) {
         ->type_name("bus.json");
     command->add_option("--can", options->interface, "Where")->required()->type_name("IFACE");
     command->add_option("--duration", options->duration_s, "Seconds; none: until Ctrl-C")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->type_name("S");
     command->footer("Example:\n  dfdyn plant --robot arm.urdf --scenario s.json --bus bus.json --can vcan0\n"
                     "Exit status: 0 done, 2 bad usage or input.");

@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/can/log/play.hpp"
 #include "tools/commands/command.hpp"
+#include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/stop_signal.hpp"
+#include "tools/commands/options/value_checks.hpp"
 
 #include <iostream>
 #include <memory>
 
 namespace dfdyn::tools {
 namespace {
+
+struct PlayCommandOptions {
+    PlayOptions play;
+    bool json = false;
+};
 
 void print(const PlayOutcome& outcome) {
     std::cout << outcome.sent << " frames sent, " << outcome.refused << " refused; lateness median "
@@ -23,11 +30,24 @@ void print(const PlayOutcome& outcome) {
     }
 }
 
-int run(const PlayOptions& options) {
-    const PlayOutcome outcome = play(options, stop_on_signals());
+nlohmann::ordered_json json_of(const PlayOutcome& outcome) {
+    return {{"schema", "dfdyn.playback/1"},
+            {"sent", outcome.sent},
+            {"refused", outcome.refused},
+            {"error_frames", outcome.error_frames},
+            {"backward_stamps", outcome.backward_stamps},
+            {"median_lateness_us", outcome.median_lateness_us},
+            {"worst_lateness_us", outcome.worst_lateness_us},
+            {"stopped", outcome.stopped}};
+}
+
+int run(const PlayCommandOptions& options) {
+    const JsonOutput output(options.json);
+    const PlayOutcome outcome = play(options.play, stop_on_signals());
     if (!outcome.not_real_time.empty()) {
         std::cerr << "note: the timing is that of an ordinary program (" << outcome.not_real_time << ")\n";
     }
+    output.print(json_of(outcome));
     print(outcome);
     return outcome.stopped || outcome.refused > 0 ? 1 : 0;
 }
@@ -35,21 +55,22 @@ int run(const PlayOptions& options) {
 } // namespace
 
 void add_play_command(CLI::App& app, Command& chosen) {
-    const auto options = std::make_shared<PlayOptions>();
+    const auto options = std::make_shared<PlayCommandOptions>();
     CLI::App* command =
         app.add_subcommand("play", "Puts a recorded candump log on a CAN interface with its own timing");
-    command->add_option("--log", options->log, "The recording, as of candump -L")
+    command->add_option("--log", options->play.log, "The recording, as of candump -L")
         ->required()
         ->type_name("L.log");
-    command->add_option("--can", options->interface, "Where to")->required()->type_name("IFACE");
+    command->add_option("--can", options->play.interface, "Where to")->required()->type_name("IFACE");
     command
-        ->add_option("--from", options->log_interface,
+        ->add_option("--from", options->play.log_interface,
                      "The interface in the log whose frames to play, where there are several")
         ->type_name("IFACE");
-    command->add_option("--rate", options->rate, "Times the log's own speed")
+    command->add_option("--rate", options->play.rate, "Times the log's own speed")
         ->type_name("X")
-        ->check(CLI::Range(0.001, 1000.0))
+        ->check(number_in(0.001, 1000.0))
         ->capture_default_str();
+    add_json_option(*command, options->json);
     command->footer("Example:\n  dfdyn play --log run.log --can vcan0\n"
                     "Exit status: 0 done, 1 stopped by Ctrl-C or frames were refused, 2 bad usage or input.");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });

@@ -7,15 +7,18 @@
 #include "tools/build_flags.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/contact_options.hpp"
+#include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/monitor_options.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/stop_signal.hpp"
+#include "tools/commands/options/value_checks.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/model/run_time/frozen_estimator.hpp"
 #include "tools/replay/opponents/rigid_body.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/replay/replay_csv.hpp"
 #include "tools/replay/replay_interface.hpp"
+#include "tools/replay/replay_json.hpp"
 #include "tools/replay/replay_report.hpp"
 #include "tools/replay/replay_summary.hpp"
 #include "tools/report/report.hpp"
@@ -42,6 +45,7 @@ struct ReplayOptions {
     bool frozen = false;
     MonitorOptions monitor;
     ContactOptions contacts;
+    bool json = false;
 
     std::filesystem::path bus; ///< if given, the recordings are candump logs, or the source is an interface
     std::string log_interface;
@@ -67,6 +71,8 @@ void check_usage(const ReplayOptions& options) {
     refuse(!bus && !options.log_interface.empty(), "--from: expected --bus, found a CSV recording");
     refuse(!options.live() && (options.can.duration_s > 0 || !options.can.record.empty()),
            "--duration, --record: expected --can, found a recording");
+    refuse(!options.monitor.wanted() && options.monitor.has_choice(),
+           "--false-alarms, --robot: expected --monitor or --changes, found neither");
 }
 
 /// The estimator of the replay, with its contact detector and its monitor if there are any.
@@ -179,7 +185,8 @@ std::vector<ReplayedBus> replay_bus(const ReplayOptions& options, std::span<cons
 }
 
 void write_results(const ReplayOptions& options, std::span<const TrainedModel> models,
-                   const Replaying& replaying, std::span<const ReplayedRecording> replayed) {
+                   const Replaying& replaying, std::span<const ReplayedRecording> replayed,
+                   const JsonOutput& output) {
     const ReplaySummary summary = summarise(models, *replaying.estimator, replayed, options.chosen_horizon());
     if (!options.csv.empty() && !options.live()) {
         AtomicFile file(options.csv);
@@ -189,6 +196,14 @@ void write_results(const ReplayOptions& options, std::span<const TrainedModel> m
     if (!options.report.empty()) {
         write_file(options.report, render_report(make_replay_report(models.front(), replayed, summary)));
     }
+    nlohmann::ordered_json json = replay_json(summary);
+    if (replaying.monitor != nullptr) {
+        json["monitor"] = options.monitor.json(replaying.changes);
+    }
+    if (replaying.detector != nullptr) {
+        json["contacts"] = options.contacts.json(replaying.contacts, models.front().outputs.names);
+    }
+    output.print(json);
     print_summary(std::cout, summary);
     if (replaying.monitor != nullptr) {
         options.monitor.show(replaying.changes);
@@ -228,6 +243,7 @@ int exit_status(std::span<const ReplayedRecording> replayed, bool bus) {
 
 int run(const ReplayOptions& options) {
     check_usage(options);
+    const JsonOutput output(options.json);
     std::vector<std::filesystem::path> inputs = options.recordings.logs;
     inputs.insert(inputs.end(), options.models.begin(), options.models.end());
     inputs.push_back(options.bus);
@@ -238,7 +254,7 @@ int run(const ReplayOptions& options) {
     Replaying replaying = make_replaying(options, models);
     if (options.bus.empty()) {
         const std::vector<ReplayedRecording> replayed = replay_all(options, models, replaying);
-        write_results(options, models, replaying, replayed);
+        write_results(options, models, replaying, replayed, output);
         return exit_status(replayed, false);
     }
     std::vector<ReplayedBus> buses = replay_bus(options, models, replaying);
@@ -246,7 +262,7 @@ int run(const ReplayOptions& options) {
     for (ReplayedBus& one : buses) {
         replayed.push_back(std::move(one.replayed));
     }
-    write_results(options, models, replaying, replayed);
+    write_results(options, models, replaying, replayed, output);
     for (const ReplayedBus& one : buses) {
         print_bus(std::cout, one.bus);
     }
@@ -281,7 +297,7 @@ void add_replay_command(CLI::App& app, Command& chosen) {
     command->add_option("--can", options->can.interface, "Instead of --log: this CAN interface, in real time")
         ->type_name("IFACE");
     command->add_option("--duration", options->can.duration_s, "Of --can, seconds; else until Ctrl-C")
-        ->check(CLI::Range(0.0, 1e9))
+        ->check(number_in(0.0, 1e9))
         ->type_name("S");
     command->add_option("--record", options->can.record, "Log of what --can receives")->type_name("L.log");
     command
@@ -295,7 +311,7 @@ void add_replay_command(CLI::App& app, Command& chosen) {
     command
         ->add_option("--horizon", options->horizon,
                      "Samples T of the paper's index epsilon; 0: none; without: 25, with --can none")
-        ->check(CLI::Range(0, 10000));
+        ->check(whole_number_in(0, 10000));
     command->add_flag("--from-prior", options->from_prior,
                       "Start with nothing learned: keep the hyperparameters, drop the trained start");
     command->add_flag(
@@ -304,6 +320,7 @@ void add_replay_command(CLI::App& app, Command& chosen) {
         "and innovations are reported as always");
     options->contacts.add_to(*command);
     options->monitor.add_to(*command);
+    add_json_option(*command, options->json);
     command->footer(
         "Example:\n  dfdyn replay --model model.json --log run.csv -o out.csv --report report.html\n"
         "  dfdyn replay --model model.json --log unseen.csv --frozen\n"

@@ -7,6 +7,7 @@
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/robot_options.hpp"
+#include "tools/commands/options/value_checks.hpp"
 #include "tools/simulation/simulation_csv.hpp"
 
 #include <cmath>
@@ -157,7 +158,9 @@ void add_simulate_command(CLI::App& app, Command& chosen) {
     command->add_option("--candump", options->candump, "The frames of the devices in --bus, as of candump -L")
         ->type_name("L.log");
     command->add_option("--bus", options->bus, "The devices: docs/reference/can.md")->type_name("B.json");
-    command->add_option("--seed", options->seed, "Instead of the scenario's own")->type_name("N");
+    command->add_option("--seed", options->seed, "Instead of the scenario's own")
+        ->check(seed_number())
+        ->type_name("N");
     command->footer("Example:\n  dfdyn simulate --robot arm.urdf --scenario circles.json -o run.csv\n"
                     "The same robot, scenario and seed give the same bytes.\n"
                     "Exit status: 0 done, 2 bad usage or input.");

@@ -7,6 +7,7 @@
 #include "tools/base/text/text.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/clock_options.hpp"
+#include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/robot_options.hpp"
 #include "tools/commands/options/setup_options.hpp"
@@ -44,6 +45,7 @@ struct StartOptions {
     std::string outputs;
     std::filesystem::path folder;
     bool quick = false;
+    bool json = false;
 };
 
 /// What is known of the arm before training.
@@ -87,14 +89,20 @@ Arm read_arm(const StartOptions& options) {
         try {
             arm.recordings = read_as(options, arm.robot, kind);
             arm.outputs = kind;
-            std::cout << "outputs: " << listed(arm.recordings.front().output.names)
-                      << ", which the recording has (--outputs chooses others)\n";
             return arm;
         } catch (const InputError& failure) {
             first_failure = first_failure.empty() ? failure.what() : first_failure;
         }
     }
     throw InputError(first_failure);
+}
+
+void print_recordings(const Arm& arm, bool chosen_here) {
+    if (chosen_here) {
+        std::cout << "outputs: " << listed(arm.recordings.front().output.names)
+                  << ", which the recording has (--outputs chooses others)\n";
+    }
+    print_overview(std::cout, arm.recordings);
 }
 
 /// Diagnoses the robot on the training rows. Adds pages to `files`, and the extended model to `candidates`.
@@ -171,6 +179,11 @@ const Candidate& choose(std::vector<Candidate>& candidates, const SplitRecording
     }
     std::cout << "chosen: " << best->name << ": "
               << (candidates.size() > 1 ? "the least error; within 2 % the least flash\n" : "the only one\n");
+    if (!(best->error < 1)) { // the error of predicting the mean
+        std::cerr
+            << "warning: on rows that trained nothing the model predicts no better than the mean (nRMSE "
+            << rounded_text(best->error) << "): record longer, with more varied motion\n";
+    }
     return *best;
 }
 
@@ -211,13 +224,31 @@ std::string next_steps(const StartOptions& options) {
            "/model.json --log another.csv --report another.html\n";
 }
 
+nlohmann::ordered_json json_of(const std::vector<Candidate>& candidates, const Candidate& chosen,
+                               const StartOptions& options) {
+    nlohmann::ordered_json json{{"schema", "dfdyn.start/1"},
+                                {"folder", options.folder.string()},
+                                {"candidates", nlohmann::ordered_json::array()},
+                                {"chosen", chosen.name},
+                                {"footprint", nlohmann::ordered_json::parse(footprint_to_json(
+                                                  chosen.model, find_target(options.sizes.target)))}};
+    for (const Candidate& one : candidates) {
+        json["candidates"].push_back({{"name", one.name},
+                                      {"held_out_nrmse", one.error},
+                                      {"flash_bytes", one.needs.flash_bytes},
+                                      {"ram_bytes", one.needs.ram_bytes}});
+    }
+    return json;
+}
+
 int run(StartOptions options) {
+    const JsonOutput output(options.json);
     require_new_folder(options.folder);
     options.sizes.flash_bytes = options.sizes.flash_bytes.value_or(512 * 1024);
     options.sizes.ram_bytes = options.sizes.ram_bytes.value_or(256 * 1024);
-    say("the recording");
     const Arm arm = read_arm(options);
-    print_overview(std::cout, arm.recordings);
+    say("the recording");
+    print_recordings(arm, options.outputs.empty());
     if (!options.setup.accept(arm.recordings, {arm.outputs, arm.robot_or_null()})) {
         return 1;
     }
@@ -229,7 +260,8 @@ int run(StartOptions options) {
         diagnose_robot(arm, split, options, files, candidates);
     }
     candidates.push_back(train_network(arm, split, options));
-    TrainedModel model = choose(candidates, split, options.sizes.budget()).model;
+    const Candidate& chosen = choose(candidates, split, options.sizes.budget());
+    TrainedModel model = chosen.model;
     describe_training(model, arm, options);
     replay_held_out(model, split, files);
     files.merge(project_files(model, split.judging.front()));
@@ -237,6 +269,7 @@ int run(StartOptions options) {
     files["README.txt"] =
         "Written by dfdyn start. Next, in the folder above this one:\n" + next_steps(options);
     write_folder(options.folder, files);
+    output.print(json_of(candidates, chosen, options));
     say("result");
     print_footprint(std::cout, model, find_target(options.sizes.target));
     std::cout << options.folder.string() << " has report.html, model.json"
@@ -266,6 +299,7 @@ void add_start_command(CLI::App& app, Command& chosen) {
     command->add_flag("--quick", options->quick, "A first look: one short search for the hyperparameters");
     options->sizes.add_to(*command);
     options->setup.add_to(*command);
+    add_json_option(*command, options->json);
     command->footer(
         "Example:\n  dfdyn start --log run.csv -o controller\n"
         "  dfdyn start --log run.csv --robot arm.urdf --tip tool0 --flash 512K --ram 256K -o controller\n"

@@ -6,10 +6,12 @@
 #include "tools/base/text/text.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/clock_options.hpp"
+#include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/robot_options.hpp"
 #include "tools/commands/options/setup_options.hpp"
 #include "tools/commands/options/size_options.hpp"
+#include "tools/commands/options/value_checks.hpp"
 #include "tools/commands/train_outcome.hpp"
 #include "tools/model/effects.hpp"
 #include "tools/model/file/model_file.hpp"
@@ -50,6 +52,7 @@ struct TrainOptions {
     ClockOptions clock;
     SizeOptions sizes;
     SetupOptions setup;
+    bool json = false;
     TrainingOptions training;
 };
 
@@ -64,31 +67,33 @@ void add_physics_options(CLI::App& command, TrainOptions& options) {
                     "Named effects that the physics learns beside the rigid body, of " +
                         trainable_effect_names())
         ->delimiter(',')
+        ->check(one_of(words_of(trainable_effect_names())))
         ->type_name("NAME[,NAME...]");
     command
         .add_option("--sign-velocity", options.sign_velocity,
                     "Coulomb friction is tanh(qd / this): rad/s at which the sign is at three quarters")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->capture_default_str();
     command
         .add_option("--torque-constants", options.torque_constants,
                     "N m/A at each joint, for --outputs i; else estimated from the nominal robot")
         ->delimiter(',')
+        ->check(positive_number())
         ->type_name("K1,K2...");
     command.add_flag("--own-motion", options.training.physics.own_motion,
                      "The physics sees positions filtered to velocity and acceleration by poles of its own, "
                      "whatever the input");
     command.add_option("--prior", options.prior, "Of the physical parameters: what gamma^2 is the same for")
-        ->check(CLI::IsMember({"scaled", "unit", "diagonal"}))
+        ->check(one_of({"scaled", "unit", "diagonal"}))
         ->capture_default_str();
 }
 
 void add_training_options(CLI::App& command, TrainingOptions& training) {
     command.add_option("--features-per-joint", training.rows_per_joint, "k: rows of R (DFR)")
-        ->check(CLI::Range(1, 1001))
+        ->check(whole_number_in(1, 1001))
         ->capture_default_str();
     command.add_option("--features", training.feature_count, "d random features: 2d columns")
-        ->check(CLI::Range(1, 5000))
+        ->check(whole_number_in(1, 5000))
         ->capture_default_str();
     command.add_flag("--orthogonal,!--independent", training.orthogonal,
                      "Orthogonal (default) or independent random features");
@@ -104,19 +109,19 @@ void add_training_options(CLI::App& command, TrainingOptions& training) {
         "mean (NP), the physics (SP, SP2, SPK) or zero (P), and standard deviations grow to what the "
         "outputs span (default), or, as in the paper, none of it");
     command.add_option("--likelihood-rows", training.likelihood_rows, "Samples in the exact kernel, at most")
-        ->check(CLI::Range(20, 20000))
+        ->check(whole_number_in(20, 20000))
         ->capture_default_str();
     command
         .add_option("--refinement", training.refinement_evaluations,
                     "Evaluations, at most, of the likelihood of the random features on all rows; 0: exact "
                     "kernel only")
-        ->check(CLI::Range(0, 100000))
+        ->check(whole_number_in(0, 100000))
         ->capture_default_str();
     command.add_option("--starts", training.starts, "Local searches from different starts")
-        ->check(CLI::Range(1, 1000))
+        ->check(whole_number_in(1, 1000))
         ->capture_default_str();
     command.add_option("--seed", training.seed, "Of the starts and of the random features")
-        ->check(CLI::NonNegativeNumber)
+        ->check(seed_number())
         ->capture_default_str();
 }
 
@@ -241,7 +246,17 @@ void fit_rigid_body_of(TrainedModel& model, const ModelTraining& training,
     }
 }
 
+void write_model(const TrainOptions& options, const TrainedModel& model) {
+    const std::string json = model_to_json(model);
+    model_from_json(json, shown(options.model)); // nothing is written that `replay` would reject
+    write_file(options.model, json);
+    if (!options.header.empty()) {
+        write_file(options.header, model_to_header(model, to_identifier(options.header.stem().string())));
+    }
+}
+
 int run(const TrainOptions& options) {
+    const JsonOutput output(options.json);
     check_outputs({options.model, options.header}, options.recordings.logs);
     const OutputKind outputs = parse_output_kind(options.outputs);
     ModelTraining training = model_training(options, outputs);
@@ -269,12 +284,8 @@ int run(const TrainOptions& options) {
         }
     }
     fit_rigid_body_of(model, training, recordings);
-    const std::string json = model_to_json(model);
-    model_from_json(json, shown(options.model)); // nothing is written that `replay` would reject
-    write_file(options.model, json);
-    if (!options.header.empty()) {
-        write_file(options.header, model_to_header(model, to_identifier(options.header.stem().string())));
-    }
+    write_model(options, model);
+    output.print(outcome_json(result, find_target(options.sizes.target)));
     print_outcome(result, trained_on);
     std::cout << describe_clock(training.options, period_s) << '\n';
     print_footprint(std::cout, model, find_target(options.sizes.target));
@@ -297,15 +308,15 @@ void add_train_command(CLI::App& app, Command& chosen) {
     command
         ->add_option("--model", options->structure,
                      "Structure of the model: features (NP), the robot (P), or both")
-        ->check(CLI::IsMember(structure_names()))
+        ->check(one_of(structure_names()))
         ->capture_default_str();
     command->add_option("--input", options->input, "What the features see of the positions")
-        ->type_name(input_names("|"))
+        ->check(one_of(words_of(input_names(","))))
         ->capture_default_str();
     command
         ->add_option("--hyper", options->hyper,
                      "How hyperparameters are found: marginal likelihood, or cross validation over a grid")
-        ->check(CLI::IsMember({"ML", "CV"}))
+        ->check(one_of({"ML", "CV"}))
         ->capture_default_str();
     command->add_option("-o,--output", options->model, "The model")->required()->type_name("M.json");
     command->add_option("--header", options->header, "The same model as C++ constants for flash")
@@ -313,7 +324,7 @@ void add_train_command(CLI::App& app, Command& chosen) {
     command
         ->add_option("--derivatives", options->derivatives,
                      "Input STD: columns qd and qdd of the recording, or estimated from the positions")
-        ->check(CLI::IsMember(sources))
+        ->check(one_of({"auto", "estimated", "measured"}))
         ->capture_default_str();
     options->clock.add_to(*command);
     options->sizes.add_to(*command);
@@ -322,6 +333,7 @@ void add_train_command(CLI::App& app, Command& chosen) {
     add_physics_options(*command, *options);
     const std::string friction =
         std::string(effect_kinds::viscous_friction.name) + ',' + effect_kinds::coulomb_friction.name;
+    add_json_option(*command, options->json);
     command->footer(
         "Example:\n  dfdyn train --log run.csv --rows :3400 --outputs i --input DFR -o model.json\n"
         "  dfdyn train --log run.csv --outputs tau --model SPK --robot arm.urdf --tip tool0 --own-motion"

@@ -86,4 +86,31 @@ void print_outcome(const ModelTrainingResult& result, const std::string& trained
     std::cout << '\n';
 }
 
+nlohmann::ordered_json outcome_json(const ModelTrainingResult& result, const Target& target) {
+    const TrainedModel& model = result.model;
+    nlohmann::ordered_json json{
+        {"schema", "dfdyn.training/1"},
+        {"model", model.structure},
+        {"input", input_description(model.input.kind).name},
+        {"recordings", model.training.recordings},
+        {"rows", model.training.rows},
+        {"likelihood_rows", model.training.likelihood_rows},
+        {"log_likelihoods", model.training.all_starts},
+        {"physics", nlohmann::ordered_json::array()},
+        {"noise_std", nlohmann::ordered_json::object()},
+        {"footprint", nlohmann::ordered_json::parse(footprint_to_json(model, target))}};
+    if (!result.hold_out.empty()) {
+        json["held_out_error"] = best_point(result.hold_out).error;
+    }
+    for (std::size_t i = 0; model.physics && i < model.physics->selected.size(); ++i) {
+        json["physics"].push_back(
+            {{"parameter", model.physics->parameter_names[i]},
+             {"value", model.physics->column_scale[i] * model.physics->start.weights[i]}});
+    }
+    for (std::size_t k = 0; k < model.outputs.names.size(); ++k) {
+        json["noise_std"][model.outputs.names[k]] = model.outputs.noise_std[k];
+    }
+    return json;
+}
+
 } // namespace dfdyn::tools

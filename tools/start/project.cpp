@@ -142,13 +142,18 @@ FolderContent project_files(const TrainedModel& model, const Recording& recordin
 
 void require_new_folder(const std::filesystem::path& folder) {
     std::error_code ignored;
+    if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_directory(folder, ignored)) {
+        throw InputError(shown(folder) + ": expected a new or empty folder, found a file");
+    }
     if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_empty(folder, ignored)) {
         throw InputError(shown(folder) + ": expected a new or empty folder, found files in it");
     }
-    const std::filesystem::path parent = std::filesystem::absolute(folder).lexically_normal().parent_path();
-    if (::access(parent.c_str(), W_OK) != 0) {
-        throw system_error(folder, "cannot create the folder", errno);
+    const std::filesystem::path parent =
+        std::filesystem::absolute(folder / "").lexically_normal().parent_path().parent_path();
+    if (!std::filesystem::is_directory(parent, ignored)) {
+        throw InputError(shown(folder) + ": expected an existing folder around the new one, found none");
     }
+    check_folder(folder);
 }
 
 void write_folder(const std::filesystem::path& folder, const FolderContent& content) {

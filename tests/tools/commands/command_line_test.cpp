@@ -36,8 +36,8 @@ TEST_CASE("help and version end with status 0 and every subcommand shows an exam
     const TemporaryDirectory directory;
     CHECK(run_program(directory, "--help").status == 0);
     CHECK_THAT(run_program(directory, "--version").out, Catch::Matchers::StartsWith("dfdyn "));
-    for (const std::string command :
-         {"start", "train", "footprint", "replay", "identify", "simulate", "evaluate", "play"}) {
+    for (const std::string command : {"start", "train", "footprint", "replay", "identify", "simulate",
+                                      "evaluate", "play", "man", "completion"}) {
         const Outcome outcome = run_program(directory, command + " --help");
         CHECK(outcome.status == 0);
         CHECK_THAT(outcome.out, Catch::Matchers::ContainsSubstring("Example:"));

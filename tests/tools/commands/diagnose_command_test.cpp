@@ -234,7 +234,7 @@ TEST_CASE("diagnose rejects unusable input with one line") {
     CHECK_THAT(refusal(rest + "--outputs tau --torque-constants 1,2"),
                ContainsSubstring("--torque-constants"));
     CHECK_THAT(refusal(rest + "--outputs i --torque-constants 1,2,3"), ContainsSubstring("expected 2"));
-    CHECK_THAT(refusal(rest + "--outputs i --torque-constants 1,-2"), ContainsSubstring("positive"));
+    CHECK_THAT(refusal(rest + "--outputs i --torque-constants 1,-2"), ContainsSubstring("above 0"));
     CHECK_THAT(refusal("--log nowhere.csv --outputs tau -o out"), ContainsSubstring("nowhere.csv"));
     CHECK_THAT(refusal("--log " + log + " --outputs tau -o " + log), ContainsSubstring(log));
     CHECK_THAT(run_program(directory, "diagnose --help").out, ContainsSubstring("Example:"));

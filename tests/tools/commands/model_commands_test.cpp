@@ -197,7 +197,8 @@ TEST_CASE("unusable training options for a robot are rejected with one line") {
         {robot + tau + "SP --input DFR --features-per-joint 2", "expected at least 3 rows per joint"},
         {robot + tau + "P --lags 1", "expected at least 2 lags, found 1"},
         {robot + "--outputs i --model P --torque-constants 5", "expected 2, one per joint, found 1"},
-        {robot + "--outputs i --model P --torque-constants 5,-3", "expected positive numbers, found -3"},
+        {robot + "--outputs i --model P --torque-constants 5,-3",
+         "expected a finite number above 0, found \"-3\""},
     };
     for (const auto& one : cases) {
         CAPTURE(one.arguments);

@@ -14,7 +14,9 @@ struct Outcome {
     std::string error;
 };
 
-/// Runs `dfdyn ARGUMENTS` as a script would, with standard output and error in files of `directory`.
-Outcome run_program(const TemporaryDirectory& directory, const std::string& arguments);
+/// Runs `dfdyn ARGUMENTS` as a script would, with standard output and error in files of `directory`, in the
+/// folder `working`; empty: the current one.
+Outcome run_program(const TemporaryDirectory& directory, const std::string& arguments,
+                    const std::filesystem::path& working = {});
 
 } // namespace dfdyn::tests

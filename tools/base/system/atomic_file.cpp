@@ -75,6 +75,24 @@ void ignore_file_size_signal() {
     }
 }
 
+/// Recordings are read from `-`, but nothing is written to it.
+void refuse_dash(const fs::path& target) {
+    if (target == "-") {
+        throw InputError("-: expected a name, found -; standard output is /dev/stdout");
+    }
+}
+
+/// Throws InputError if there is no folder for the file `target`.
+void require_parent(const fs::path& target) {
+    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    std::error_code ignored;
+    const fs::file_type found = fs::status(folder, ignored).type();
+    if (found != fs::file_type::directory && found != fs::file_type::none) { // none: the system cannot tell
+        throw InputError(shown(target) + ": expected an existing folder " + shown(folder) + ", found " +
+                         (found == fs::file_type::not_found ? "none" : "a file"));
+    }
+}
+
 /// Returns the final target of `path`, following symbolic links.
 fs::path link_target(fs::path path) {
     constexpr int most_links = 40; // the kernel's own limit
@@ -91,6 +109,8 @@ class AtomicFile::Implementation {
   public:
     explicit Implementation(const fs::path& target)
         : shown_target_(target), buffer_(target), stream_(&buffer_) {
+        refuse_dash(target);
+        require_parent(target);
         ignore_file_size_signal();
         struct stat status {};
         const bool exists = ::stat(target.c_str(), &status) == 0;
@@ -190,6 +210,8 @@ void AtomicFile::commit() { implementation_->commit(); }
 class GrowingFile::Implementation {
   public:
     explicit Implementation(const fs::path& target) : buffer_(target), stream_(&buffer_) {
+        refuse_dash(target);
+        require_parent(target);
         ignore_file_size_signal();
         descriptor_ = ::open(target.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
         if (descriptor_ < 0) {
@@ -239,7 +261,25 @@ void check_writable(const fs::path& target) {
     }
 }
 
+void check_folder(const fs::path& folder) {
+    refuse_dash(folder);
+    fs::path existing = folder;
+    std::error_code ignored;
+    while (!fs::exists(existing, ignored)) {
+        existing = existing.has_parent_path() ? existing.parent_path() : ".";
+    }
+    if (!fs::is_directory(existing, ignored)) {
+        throw InputError(shown(folder) + ": expected a folder, found the file " + shown(existing));
+    }
+    try {
+        check_writable(existing / "dfdyn");
+    } catch (const InputError& error) {
+        throw InputError(shown(folder) + ": expected a folder to write in: " + error.what());
+    }
+}
+
 void make_folder(const fs::path& folder) {
+    refuse_dash(folder);
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) {

@@ -57,6 +57,10 @@ class GrowingFile {
 /// work fails before it begins. Leaves no file behind, and does not open pipes and devices.
 void check_writable(const std::filesystem::path& target);
 
+/// Throws InputError unless `folder` is a folder in which files can be written, or can be created as one.
+/// Leaves nothing behind.
+void check_folder(const std::filesystem::path& folder);
+
 /// Creates `folder` and its parents if they do not exist. Throws InputError with path and reason.
 void make_folder(const std::filesystem::path& folder);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/system/byte_source.hpp"
 
+#include "tools/base/system/read_file.hpp"
 #include "tools/base/text/text.hpp"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ int open_input(const std::filesystem::path& path) {
     const int descriptor =
         path == "-" ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor < 0) {
-        throw system_error(input_name(path), "cannot open", errno);
+        throw input_error(input_name(path), "cannot open", errno);
     }
     return descriptor;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/system/progress.hpp"
 
+#include "tools/base/system/quiet.hpp"
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -64,7 +66,7 @@ void Progress::update_text(const std::string& text) {
 
 bool Progress::due() const {
     const auto now = Clock::now();
-    return now >= next_ && (terminal_ || now >= last_plain_line().load() + plain_);
+    return !quiet() && now >= next_ && (terminal_ || now >= last_plain_line().load() + plain_);
 }
 
 void Progress::show(const std::string& shown, double done) {

@@ -3,6 +3,7 @@
 
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/number.hpp"
+#include "tools/commands/options/value_checks.hpp"
 #include "tools/model/inputs/input_description.hpp"
 #include "tools/training/data/lag_spacing.hpp"
 
@@ -43,28 +44,29 @@ void ClockOptions::add_to(CLI::App& command) {
             .add_option("--window", window_s,
                         "Time that the last positions cover (s); lags follow from the recording's sample "
                         "period. Without --window and --lags: 0.08")
-            ->check(CLI::PositiveNumber)
+            ->check(positive_number())
             ->type_name("S");
     command.add_option("--lags", lags, "M: the window holds M+1 positions per joint, instead of --window")
-        ->check(CLI::Range(1, largest_lag_count))
+        ->check(whole_number_in(1, largest_lag_count))
         ->excludes(window);
     command
         .add_option("--every", every,
                     "Lags are N samples apart, each the mean of N positions; every sample is still "
                     "predicted and learned. Default: as many as leave at most 20 lags, 1 with --lags, input "
                     "STD and --hyper CV")
-        ->check(CLI::Range(1, largest_lag_count))
+        ->check(whole_number_in(1, largest_lag_count))
         ->type_name("N");
     CLI::Option* const memory =
         command
             .add_option("--memory", memory_s,
                         "Time after which a sample weighs 1/e of a new one (s): the forgetting factor is "
                         "exp(-period / S). Without --memory and --forgetting nothing is forgotten")
-            ->check(CLI::PositiveNumber)
+            ->check(positive_number())
             ->type_name("S");
     command
         .add_option("--forgetting", forgetting_factor,
                     "Forgetting factor of the learner per sample, instead of --memory; 1: none")
+        ->check(number_in(0, 1))
         ->excludes(memory);
 }
 

@@ -24,6 +24,11 @@ const ContactModel& ContactOptions::limits(const TrainedModel& model, const std:
     return model.contact;
 }
 
+nlohmann::ordered_json ContactOptions::json(std::span<const RecordedContacts> contacts,
+                                            std::span<const std::string> outputs) {
+    return nlohmann::ordered_json::parse(contacts_json(contacts, outputs));
+}
+
 void ContactOptions::show(std::span<const RecordedContacts> contacts,
                           std::span<const std::string> outputs) const {
     std::size_t count = 0;

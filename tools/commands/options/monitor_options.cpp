@@ -3,6 +3,7 @@
 
 #include "tools/base/system/atomic_file.hpp"
 #include "tools/commands/options/options.hpp"
+#include "tools/commands/options/value_checks.hpp"
 
 #include <algorithm>
 #include <iostream>
@@ -19,7 +20,7 @@ void MonitorOptions::add_to(CLI::App& command) {
         .add_option("--false-alarms", false_alarm_hours,
                     "Of --monitor: hours between two false alarms, on average; default: 5, the rate that was "
                     "measured")
-        ->check(CLI::Range(0.01, 1e5))
+        ->check(number_in(0.01, 1e5))
         ->type_name("HOURS");
     robot.add_to(command, false);
     command.get_option("--robot")->description("Of --monitor: the arm, for models without physics");
@@ -34,8 +35,13 @@ MonitorSetup MonitorOptions::setup(std::span<const TrainedModel> models, const s
         arm = robot.read(kind_of_outputs(model.outputs.names, static_cast<std::size_t>(model.joints)));
     }
     MonitorSetup setup = monitor_setup(model, arm ? &*arm : nullptr, source);
-    setup.false_alarm_hours = false_alarm_hours;
+    setup.false_alarm_hours = false_alarm_hours.value_or(default_false_alarm_hours);
     return setup;
+}
+
+nlohmann::ordered_json MonitorOptions::json(std::span<const RecordedChanges> changes) const {
+    return nlohmann::ordered_json::parse(
+        changes_json(changes, false_alarm_hours.value_or(default_false_alarm_hours)));
 }
 
 void MonitorOptions::show(std::span<const RecordedChanges> changes) const {
@@ -46,7 +52,7 @@ void MonitorOptions::show(std::span<const RecordedChanges> changes) const {
     }
     std::cout << "changes: " << count << '\n';
     if (!file.empty()) {
-        write_file(file, changes_json(changes, false_alarm_hours));
+        write_file(file, changes_json(changes, false_alarm_hours.value_or(default_false_alarm_hours)));
     }
 }
 

@@ -2,6 +2,7 @@
 #include "tools/commands/options/options.hpp"
 
 #include "tools/base/system/atomic_file.hpp"
+#include "tools/base/system/quiet.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/text.hpp"
 
@@ -54,6 +55,9 @@ std::vector<Recording> RecordingOptions::read(ReadOptions options) const {
     options.topics = topics;
     std::vector<Recording> recordings = read_recordings(logs, options);
     for (const Recording& recording : recordings) {
+        if (quiet()) {
+            break;
+        }
         if (&recording == &recordings.front() && !recording.ignored_columns.empty()) {
             std::cerr << recording.source << ": columns not used: " << listed(recording.ignored_columns)
                       << '\n';

@@ -3,6 +3,7 @@
 
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/text.hpp"
+#include "tools/commands/options/value_checks.hpp"
 #include "tools/robot/urdf/read_robot.hpp"
 #include "tools/simulation/scenario/scenario.hpp"
 
@@ -14,10 +15,11 @@ namespace dfdyn::tools {
 void RobotOptions::add_to(CLI::App& command, bool required) {
     CLI::Option* const robot =
         command.add_option("--robot", urdf, "Robot")->required(required)->type_name("R.urdf");
-    command.add_option("--tip", tip, "Last link of the chain")
-        ->required(required)
-        ->needs(robot)
-        ->type_name("LINK");
+    CLI::Option* const last = command.add_option("--tip", tip, "Last link of the chain")
+                                  ->required(required)
+                                  ->needs(robot)
+                                  ->type_name("LINK");
+    robot->needs(last);
     command.add_option("--base", base, "First link of the chain; default: the root")
         ->needs(robot)
         ->type_name("LINK");
@@ -31,13 +33,14 @@ void RobotOptions::add_to(CLI::App& command, bool required) {
             "--wrench-direction", wrench_direction,
             "Which side the measured wrench acts from and on; default: as the robot's file says, else "
             "child_to_parent")
-        ->check(CLI::IsMember({"child_to_parent", "parent_to_child"}))
+        ->check(one_of({"child_to_parent", "parent_to_child"}))
         ->needs(robot);
     command
         .add_option("--gravity", gravity,
                     "Gravity in the frame of the robot's root, m/s^2; default: 0,0,-9.81")
         ->expected(3)
         ->delimiter(',')
+        ->check(finite_number())
         ->needs(robot)
         ->type_name("X,Y,Z");
 }
@@ -52,9 +55,6 @@ Robot RobotOptions::read(OutputKind outputs) const {
     }
     if (!gravity.empty()) {
         options.gravity = Eigen::Vector3d(gravity.data());
-        if (!options.gravity.allFinite()) {
-            throw InputError("--gravity: expected three finite numbers");
-        }
     }
     Robot robot = read_robot(urdf, options);
     for (const std::string& note : robot.notes) {

@@ -3,6 +3,7 @@
 
 #include "tools/base/system/progress.hpp"
 #include "tools/base/text/error.hpp"
+#include "tools/commands/options/value_checks.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/model/structure.hpp"
 
@@ -31,15 +32,15 @@ void SizeOptions::add_to(CLI::App& command) {
                     "Bytes of flash for code, constants and the start of learning. With --flash, --ram or "
                     "--tick-operations the window, k, d and the memory are chosen by held-out error within "
                     "the budget, unless other options give them")
-        ->transform(CLI::AsSizeValue(false))
+        ->transform(byte_count())
         ->type_name("BYTES[K|M]")
         ->group(group);
     command.add_option("--ram", ram_bytes, "Bytes of RAM for the estimator and the stack of a tick")
-        ->transform(CLI::AsSizeValue(false))
+        ->transform(byte_count())
         ->type_name("BYTES[K|M]")
         ->group(group);
     command.add_option("--target", target, "Core whose instructions per tick are printed")
-        ->check(CLI::IsMember(target_names()))
+        ->check(one_of(target_names()))
         ->capture_default_str()
         ->group(group);
     command
@@ -47,7 +48,7 @@ void SizeOptions::add_to(CLI::App& command) {
                     "Multiply-adds of a tick that predicts and learns (docs/reference/performance.md has "
                     "instructions "
                     "and times of them)")
-        ->check(CLI::PositiveNumber)
+        ->check(whole_number_in(1, std::numeric_limits<std::int64_t>::max()))
         ->type_name("N")
         ->group(group);
 }

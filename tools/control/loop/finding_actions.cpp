@@ -2,6 +2,7 @@
 #include "tools/control/loop/finding_actions.hpp"
 
 #include "tools/base/text/error.hpp"
+#include "tools/base/text/nearest_name.hpp"
 #include "tools/base/text/text.hpp"
 
 #include <algorithm>
@@ -24,12 +25,12 @@ bool makes_sense(Cause cause, FindingAction action) {
     }
 }
 
-std::string causes() {
+std::vector<std::string> causes() {
     std::vector<std::string> names;
     for (int cause = 0; cause < cause_count; ++cause) {
         names.emplace_back(dfdyn::name(static_cast<Cause>(cause)));
     }
-    return listed(names);
+    return names;
 }
 
 std::string actions_of(Cause cause) {
@@ -48,8 +49,8 @@ Cause cause_named(const std::string& text, const std::string& option) {
             return static_cast<Cause>(cause);
         }
     }
-    throw InputError(option + ": expected CAUSE=ACTION with one of the causes " + causes() + ", found \"" +
-                     text + "\"");
+    throw InputError(option + ": expected CAUSE=ACTION with one of the causes " + listed(causes()) +
+                     ", found " + in_quotes(text) + suggestion(text, causes()));
 }
 
 InputError no_such_action(Cause cause, const std::string& text, const std::string& option) {

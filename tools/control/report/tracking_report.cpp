@@ -112,6 +112,22 @@ void print_tracking(std::ostream& out, const std::vector<TrackingRun>& runs) {
     }
 }
 
+nlohmann::ordered_json tracking_json(const std::vector<TrackingRun>& runs, bool stopped) {
+    nlohmann::ordered_json json{
+        {"schema", "dfdyn.loop/1"}, {"stopped", stopped}, {"runs", nlohmann::ordered_json::array()}};
+    for (const TrackingRun& run : runs) {
+        nlohmann::ordered_json windows = nlohmann::ordered_json::array();
+        for (const TrackingWindow& window : run.windows) {
+            windows.push_back({{"start_s", window.start_s},
+                               {"end_s", window.end_s},
+                               {"rms_rad", std::vector<double>(window.rms.begin(), window.rms.end())},
+                               {"rms_all_rad", window.all}});
+        }
+        json["runs"].push_back({{"name", run.name}, {"windows", std::move(windows)}});
+    }
+    return json;
+}
+
 void write_tracking(const std::filesystem::path& folder, const std::string& title,
                     const std::vector<TrackingRun>& runs) {
     make_folder(folder);

@@ -3,6 +3,8 @@
 
 #include "tools/control/report/tracking.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <filesystem>
 #include <ostream>
 #include <string>
@@ -20,6 +22,9 @@ struct TrackingRun {
 /// last run's. Prints nothing for runs without a complete window. `runs`: at least one, all with the same
 /// number of windows.
 void print_tracking(std::ostream& out, const std::vector<TrackingRun>& runs);
+
+/// Returns the windows of all runs, schema `dfdyn.loop/1`; `stopped`: whether a loop stopped by itself.
+nlohmann::ordered_json tracking_json(const std::vector<TrackingRun>& runs, bool stopped);
 
 /// Writes tracking.csv (per run and window: error over all joints and of each joint, mrad; share of the
 /// learned model), tracking.svg, and tracking.html with both into `folder`. Writes nothing for runs without a

@@ -2,6 +2,7 @@
 #include "tools/robot/urdf/urdf_chain.hpp"
 
 #include "tools/base/text/error.hpp"
+#include "tools/base/text/nearest_name.hpp"
 #include "tools/base/text/text.hpp"
 
 #include <algorithm>
@@ -42,7 +43,8 @@ urdf::LinkConstSharedPtr find_link(const urdf::ModelInterface& model, const std:
         for (const auto& [key, value] : model.links_) {
             names.push_back(key);
         }
-        throw InputError(file + ": expected a link " + in_quotes(name) + ", found " + listed(names));
+        throw InputError(file + ": expected a link " + in_quotes(name) + ", found " + listed(names) +
+                         suggestion(name, names));
     }
     return link;
 }

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/base/system/quiet.hpp"
+
+#include <atomic>
+
+namespace dfdyn::tools {
+namespace {
+
+std::atomic<bool> without_notes = false;
+
+} // namespace
+
+void be_quiet() noexcept { without_notes = true; }
+
+bool quiet() noexcept { return without_notes; }
+
+} // namespace dfdyn::tools
