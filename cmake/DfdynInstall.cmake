@@ -5,6 +5,7 @@ include(CMakePackageConfigHelpers)
 
 set(dfdyn_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/dfdyn")
 
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME library)
 install(TARGETS dfdyn_firmware EXPORT dfdynFirmwareTargets)
 install(EXPORT dfdynFirmwareTargets NAMESPACE dfdyn:: DESTINATION "${dfdyn_package_dir}")
 install(TARGETS dfdyn_hal EXPORT dfdynHalTargets)
@@ -14,7 +15,17 @@ install(
     DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(DIRECTORY hal/dbc DESTINATION "${CMAKE_INSTALL_DATADIR}/dfdyn")
 if(DFDYN_BUILD_TOOLS)
-    install(TARGETS dfdyn)
+    install(TARGETS dfdyn COMPONENT program)
+    # Manual pages and completion come from the help texts: the program prints them.
+    install(CODE "
+        set(root \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\")
+        file(MAKE_DIRECTORY \"\${root}/bash-completion/completions\")
+        execute_process(COMMAND \"$<TARGET_FILE:dfdyn>\" man -o \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1\"
+            COMMAND_ERROR_IS_FATAL ANY)
+        execute_process(COMMAND \"$<TARGET_FILE:dfdyn>\" completion bash
+            OUTPUT_FILE \"\${root}/bash-completion/completions/dfdyn\" COMMAND_ERROR_IS_FATAL ANY)"
+        COMPONENT program)
+    install(FILES LICENSE CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/dfdyn" COMPONENT program)
 endif()
 
 # For other build systems: pkg-config dfdyn (headers), dfdyn-hal (with the backend for Linux). The files can be moved with the prefix.

@@ -29,8 +29,11 @@ function(dfdyn_compile_strictly target)
         # GCC 12 blames its own AVX-512 header wherever Eigen uses it (GCC bug 105593).
         target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized -Wno-uninitialized)
     endif()
+    # Not for users of an installed library: they may run on another machine.
     if(DFDYN_NATIVE)
-        target_compile_options(${target} PUBLIC -march=native)
+        target_compile_options(${target} PUBLIC $<BUILD_INTERFACE:-march=native>)
+    elseif(DFDYN_MARCH)
+        target_compile_options(${target} PUBLIC "$<BUILD_INTERFACE:-march=${DFDYN_MARCH}>")
     endif()
 endfunction()
 

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: Apache-2.0
+# Debian packages: `cmake --preset package`, build, then `cpack` in the build folder. dfdyn has the program, libdfdyn-dev the library.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "the dfdyn developers")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL library)
+if(DFDYN_BUILD_TOOLS)
+    list(APPEND CPACK_COMPONENTS_ALL program)
+endif()
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libdfdyn-dev)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "${PROJECT_DESCRIPTION} (library)")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME dfdyn)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "${PROJECT_DESCRIPTION} (program)")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+# The project that `dfdyn start` writes is built with these.
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "cmake, g++")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "gcc-arm-none-eabi, libstdc++-arm-none-eabi-newlib, qemu-system-arm")
+include(CPack)

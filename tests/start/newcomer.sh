@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# newcomer.sh DFDYN: goes from three recordings, which the demo and the tutorial do not use, to a controller that runs under QEMU. Prints
+# the time and the number of commands for each; both are limited to ten minutes and four commands.
+set -euo pipefail
+dfdyn=$1
+data=$(cd "$(dirname "${BASH_SOURCE[0]}")/../data" && pwd)
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch"
+
+# The recordings have three arms, sample rates and kinds of robot file; the second has none.
+declare -A options=(
+    [ur5_nist]="--log $data/ur5_nist/halfspeed_payload_0p726kg.csv --robot $data/robots/ur5/ur5_robot.urdf --tip ee_link"
+    [xl330]="--log $data/xl330_bam/07_sin_time_square_kp200.csv"
+    [ur5_singularity_free]="--log $data/ur5_kufieta/Movement_No9_Singularity_Free_NoDist.csv --robot $data/robots/ur5/ur5_robot.urdf --tip ee_link"
+)
+
+for name in "${!options[@]}"; do
+    commands=0 begin=$SECONDS
+    run() {
+        commands=$((commands + 1))
+        "$@" >>"$name.txt" 2>&1 || {
+            tail -n 30 "$name.txt"
+            echo "$name: failed: $*"
+            exit 1
+        }
+    }
+    read -ra words <<<"${options[$name]}"
+    run "$dfdyn" start "${words[@]}" --quick -o "$name"
+    run cmake -S "$name" -B "$name/build" -DCMAKE_TOOLCHAIN_FILE=cmake/cortex-m.cmake -DDFDYN_CORE=cortex-m7
+    run cmake --build "$name/build" --target run
+    grep -q '^predictions as of dfdyn replay' "$name.txt"
+    if [[ ${options[$name]} == *--robot* ]]; then
+        test -s "$name/diagnosis.html"
+        grep -q 'the robot with the causes found: nRMSE' "$name.txt" # the diagnosis answered
+    fi
+    seconds=$((SECONDS - begin))
+    echo "$name: $commands commands, $((seconds / 60)) min $((seconds % 60)) s"
+    [[ $commands -le 4 && $seconds -le 600 ]]
+done
