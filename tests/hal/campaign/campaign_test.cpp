@@ -25,7 +25,8 @@ void fight_all(std::uint64_t frames, double most_wrong, double most_refused) {
 
 } // namespace
 
-// One mixture in seven has wrong values, up to 1.8 in a thousand accepted (docs/reference/faults.md).
+// Up to 2.3 in a thousand accepted values are wrong in the worst of 27 seeds of five million frames; none is
+// wanted (docs/reference/faults.md).
 TEST_CASE("all faults mixed at random make at most 2.5 of a thousand accepted values wrong") {
     fight_all(200'000, 0.0025, 0.08);
 }
@@ -51,6 +52,7 @@ TEST_CASE("the legend and the campaign have the same faults") {
     CHECK(found == campaign_faults().size());
 }
 
+// Passes with seed 1 and 23 of the other 26 seeds that were tried (2, 3, 101 to 112, 201 to 212).
 TEST_CASE("all faults mixed over five million frames make at most one of a thousand accepted values wrong",
           "[.long]") {
     fight_all(5'000'000, 0.001, 0.03);

@@ -67,6 +67,7 @@ void freeze_encoder(FaultSite& site) {
     if (site.wait_for_motion(joint, least_rad_s)) {
         site.change([&](Sent& sent) {
             if (site.has_position(sent, joint)) {
+                sent.frozen = kept_rad.has_value();
                 kept_rad = kept_rad.value_or(sent.shown[joint].position_rad);
                 site.show_position(sent, joint, *kept_rad);
             }

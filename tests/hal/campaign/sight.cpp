@@ -15,6 +15,10 @@ constexpr std::int64_t stray_ns = 5'000'000;
 /// More than a frame that comes late by as much as a period is off.
 double jump_rad(double velocity) { return 1e-3 + 3e-3 * std::abs(velocity); }
 
+bool is_between(double value, double one, double other, double tolerance) {
+    return value >= std::min(one, other) - tolerance && value <= std::max(one, other) + tolerance;
+}
+
 } // namespace
 
 JointSight::JointSight(const FaultSite& site, std::size_t joint) {
@@ -45,7 +49,8 @@ JointSight::JointSight(const FaultSite& site, std::size_t joint) {
               .stamp_ns = sent.frame.stamp_ns,
               .time_ns = time_ns,
               .error_rad = error,
-              .right = std::abs(error) <= late_s * std::abs(velocity) + 1e-5});
+              .right = !sent.frozen && is_between(shown, site.truth.position(joint, t - late_s),
+                                                  site.truth.position(joint, t), 1e-7)});
     }
     std::ranges::stable_sort(blind_, {}, &Blind::time_ns);
 }

@@ -34,6 +34,7 @@ struct Sent {
     wire::Joints shown{};      ///< by a frame of joints
     std::int64_t clock_ns = 0; ///< by which the clock of the stamps had been set
     bool corrupted = false;    ///< a bit of its data is flipped
+    bool frozen = false;       ///< it repeats a position, which says nothing of the joint
 };
 using Traffic = std::vector<Sent>;
 
