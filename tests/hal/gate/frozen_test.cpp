@@ -39,6 +39,16 @@ TEST_CASE("a sensor that now and then repeats a reading is not frozen") {
     CHECK(gate.count() == 0);
 }
 
+TEST_CASE("three equal readings over the periods of the limit are frozen, whatever came between") {
+    dfdyn::hal::FrozenGate<3> gate(5, 2'000'000);
+    const Gate::Raw stuck{7, -3, 0};
+    CHECK_FALSE(gate.frozen(stuck, 0));
+    CHECK_FALSE(gate.frozen(stuck, 2'000'000));
+    CHECK_FALSE(gate.frozen({7, -3, 1}, 4'000'000));
+    CHECK(gate.frozen(stuck, 8'000'000)); // one was lost
+    CHECK(gate.count() == 1);
+}
+
 TEST_CASE("zeros freeze as any other value does") {
     Gate gate(2);
     CHECK_FALSE(gate.frozen({0, 0, 0}));

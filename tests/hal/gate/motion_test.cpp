@@ -201,4 +201,61 @@ TEST_CASE("a clock that was set does not explain where a joint is after a silenc
     CHECK(gate.lost());
 }
 
+TEST_CASE("a joint that moved past its encoder's zero before a silence is not one that stood there") {
+    MotionGate gate = make_gate();
+    for (int tick = 0; tick < 20; ++tick) {
+        gate.take(reading(tick, -1 + 6e-4 * (tick - 19) + count_rad));
+    }
+    for (int tick = 220; tick < 260; ++tick) { // it restarts at zero, wherever the joint is
+        CHECK(gate.take(reading(tick, -1 + 6e-4 * (tick - 220) + count_rad)).reason != Reason::ok);
+    }
+}
+
+TEST_CASE("a restart is recognised by a zero that was seen shortly before its readings") {
+    MotionGate gate = ready_gate();
+    gate.take(reading(270, -1));
+    for (int tick = 281; tick < 600; ++tick) {
+        CHECK(gate.take(reading(tick, -1 + 2.4e-3 * (tick - 270))).reason != Reason::ok);
+    }
+}
+
+TEST_CASE("an encoder with coarse counts is refused while it is frozen") {
+    constexpr double coarse_rad = 1.745e-3;
+    MotionGate gate({.limits = {},
+                     .range = {-3, 3},
+                     .max_age_ns = 3 * period,
+                     .period_ns = period,
+                     .jitter_ns = 250'000,
+                     .qualification = {.readings = 10, .zero_readings = 1000}});
+    const auto coarse = [](int tick) {
+        EncoderReading one = reading(tick, coarse_rad * std::round(2.4e-3 * tick / coarse_rad));
+        one.step_rad = coarse_rad;
+        return one;
+    };
+    for (int tick = 0; tick < 40; ++tick) {
+        gate.take(coarse(tick));
+    }
+    for (int tick = 40; tick < 400; ++tick) {
+        EncoderReading frozen = coarse(39);
+        frozen.stamp_ns = tick * period;
+        const Reason reason = gate.take(frozen).reason;
+        CHECK((tick < 46 || reason != Reason::ok));
+    }
+}
+
+TEST_CASE("while the clock is set a joint goes on from its motion; another position takes longer") {
+    for (const double offset_rad : {0.0, -0.06}) {
+        MotionGate gate = ready_gate();
+        gate.forget_time();
+        CAPTURE(offset_rad);
+        CHECK((follow(gate, 31, 42, offset_rad) == Reason::ok) == (offset_rad == 0));
+    }
+}
+
+TEST_CASE("a small jump does not bring a lost zero back") {
+    MotionGate gate = ready_gate();
+    CHECK(follow(gate, 20, 600, 0.5) == Reason::position_lost);
+    CHECK(follow(gate, 600, 1200, 0.506) == Reason::position_lost);
+}
+
 } // namespace motion_test

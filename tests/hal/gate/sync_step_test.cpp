@@ -28,6 +28,16 @@ TEST_CASE("a lost answer does not refuse later answers at the usual time") {
     CHECK(step.answer(51 * period + 420 * us));
 }
 
+TEST_CASE("an answer stamped before its SYNC is not in step, and teaches no time") {
+    SyncStep step = running(50);
+    step.sync(50 * period + 3000 * us); // a stamp ahead
+    CHECK_FALSE(step.answer(50 * period + 400 * us));
+    for (int cycle = 51; cycle < 60; ++cycle) {
+        step.sync(cycle * period);
+        CHECK(step.answer(cycle * period + 400 * us));
+    }
+}
+
 TEST_CASE("an answer after the next SYNC is not assigned to that SYNC") {
     SyncStep step = running(50);
     step.sync(50 * period);

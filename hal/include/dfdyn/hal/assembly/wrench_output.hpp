@@ -28,7 +28,7 @@ class WrenchOutput {
 
     // A small stack has no room for a copy: NOLINTNEXTLINE(modernize-pass-by-value)
     constexpr WrenchOutput(const Source& source, const Config& config) noexcept
-        : source_(source), pairing_(config.pairing), frozen_(config.frozen_limit),
+        : source_(source), pairing_(config.pairing), frozen_(config.frozen_limit, config.track.period_ns),
           jump_(config.track.max_age_ns), track_(config.track, config.range, output_reasons) {}
 
     [[nodiscard]] static constexpr Extent<outputs> size() noexcept { return {}; }
@@ -93,7 +93,7 @@ class WrenchOutput {
         const bool zero = std::ranges::all_of(reading.raw, [](std::int32_t raw) { return raw == 0; });
         const bool flagged = reading.reason == Reason::output_saturated;
         const bool saturated = saturation_.saturated(flagged, reading.raw);
-        const bool frozen = frozen_.frozen(reading.raw);
+        const bool frozen = frozen_.frozen(reading.raw, pairing_.first().stamp_ns);
         Reason reason = reading.reason;
         if (reason == Reason::ok && saturated) {
             reason = Reason::output_saturated;

@@ -22,7 +22,7 @@ namespace dfdyn::hal {
 ///   one to the next. They also must connect with the last trusted position. After a jump between two
 ///   readings: velocity may change at once (an impact), position may not. After a silence: no further than
 ///   the limits allow, and not beginning at the device's own zero, unless the joint stood there. Where the
-///   clock was set, it takes twenty times as many readings, unless the joint is still close.
+///   clock was set, it takes twenty times as many readings, unless the joint's motion leads there.
 /// - A run that begins at the device's zero, away from the joint, is of an encoder that counts from where it
 ///   was switched on. It does not get its zero back by itself: no position is trusted any more
 ///   (`position_lost`) until the program starts again.
@@ -92,9 +92,13 @@ class MotionGate {
         unwrap_near(reading, trusted_.last().position_rad);
         const bool far = magnitude(reading.position_rad - trusted_.last().position_rad) >
                          tolerance_.reach(seconds_between(0, config_.max_age_ns), reading.step_rad);
-        const bool counts = !trusted_.empty() && !reading.zero;
-        zero_lost_ =
-            zero_lost_ || (counts && far && begins_at_zero(reading, trusted_.end_line(0, config_.period_ns)));
+        MotionLine motion = trusted_.end_line(0, config_.period_ns);
+        motion.velocity = zero_seen_ ? config_.limits.velocity : motion.velocity;
+        if (!trusted_.empty() && far && begins_at_zero(reading, motion)) {
+            zero_lost_ = zero_lost_ || !reading.zero;
+            zero_seen_ = true;
+            zero_ns_ = reading.stamp_ns;
+        }
     }
 
     /// The device was not itself: it must qualify again.
@@ -226,6 +230,7 @@ class MotionGate {
         trusted_.extend(reading, tolerance_);
         refused_ = {};
         disturbed_ = false;
+        zero_seen_ = false;
         return settled(reading);
     }
 
@@ -244,6 +249,7 @@ class MotionGate {
         refused_ = {};
         interrupted_ = false;
         disturbed_ = false;
+        zero_seen_ = false;
         time_known_ = true;
     }
 
@@ -263,15 +269,19 @@ class MotionGate {
         }
         const bool repeats = !run_.empty() && reading.position_rad == run_.last().position_rad;
         run_.extend(reading, tolerance_);
+        const bool enough = run_.readings() >= config_.qualification.readings;
+        if (enough && !trusted_.empty() && restarted_at_zero(run_)) {
+            return lose(reading);
+        }
         if (suspected_ && run_.still()) {
             return refuse(reading, repeats ? Reason::position_frozen : reason);
         }
         const bool stands_at_zero = run_.zeros() >= config_.qualification.zero_readings;
-        if (run_.readings() < config_.qualification.readings && !stands_at_zero) {
+        if (!enough && !stands_at_zero) {
             return refuse(reading, reason);
         }
         if (!trusted_.empty() &&
-            (!comes_from_trusted(run_) || (has_lost_zero() && connects(refused_, run_)))) {
+            (!comes_from_trusted(run_) || (has_lost_zero() && goes_on_from_refused(run_)))) {
             return lose(reading);
         }
         return run_.readings() >= needed_readings() || stands_at_zero ? settle(reading)
@@ -299,7 +309,9 @@ class MotionGate {
     constexpr void begin_run(const MotionRun& run, const EncoderReading& reading) noexcept {
         const EncoderReading& first = run.empty() ? reading : run.first();
         const bool recent = near(trusted_.last().stamp_ns, first.stamp_ns);
-        suspected_ = !trusted_.empty() && (recent || trusted_.moves(tolerance_)) && !stood_at(first);
+        suspected_ = !trusted_.empty() && (recent || trusted_.moves(tolerance_)) &&
+                     (!stood_at(first) || trusted_.repeats(first, tolerance_));
+        note_zero(first);
         run_ = run;
         other_ = {};
     }
@@ -333,16 +345,9 @@ class MotionGate {
             return least;
         }
         const std::int64_t silence_ns = run_.first().stamp_ns - trusted_.last().stamp_ns;
-        const bool disturbed = (!time_known_ && !stays_close(run_.first())) ||
+        const bool disturbed = (!time_known_ && !comes_from_motion(trusted_, run_.first())) ||
                                (disturbed_ && silence_ns > 2 * config_.max_age_ns + 2 * config_.jitter_ns);
         return lost() || disturbed ? most_readings() : least;
-    }
-    /// Whether the joint goes there while the frames are left out that a new clock needs.
-    [[nodiscard]] constexpr bool stays_close(const EncoderReading& to) const noexcept {
-        constexpr double left_out_s = 0.05;
-        const MotionLine line = trusted_.end_line(0, config_.period_ns);
-        return magnitude(to.position_rad - line.end_rad) <=
-               magnitude(line.velocity) * left_out_s + 0.5 * config_.limits.stop * left_out_s * left_out_s;
     }
     [[nodiscard]] constexpr int most_readings() const noexcept {
         return times_when_lost * config_.qualification.readings;
@@ -359,6 +364,14 @@ class MotionGate {
             return meets(before, run);
         }
         return tolerance_.reaches(before.last(), run.first()) && comes_from_motion(before, run.first());
+    }
+
+    /// Whether a run is still of the encoder whose readings are refused: a small jump, or a clock that was
+    /// set by a few milliseconds, does not bring its zero back.
+    [[nodiscard]] constexpr bool goes_on_from_refused(const MotionRun& run) const noexcept {
+        const bool small_jump = near(refused_.last().stamp_ns, run.first().stamp_ns) &&
+                                tolerance_.reaches(refused_.last(), run.first());
+        return small_jump || connects(refused_, run);
     }
 
     /// Whether the motions before and after a jump meet in between. Either may have one reading that is off.
@@ -408,24 +421,39 @@ class MotionGate {
     [[nodiscard]] constexpr bool begins_at_zero(const EncoderReading& first,
                                                 const MotionLine& begin) const noexcept {
         constexpr double periods = 1.5;
-        constexpr double clock_s = 0.025; // in which frames are left out while the clock is set
-        const double hidden_s = time_known_ ? 0 : clock_s;
-        const double moved =
-            magnitude(begin.velocity) * (hidden_s + periods * seconds_between(0, config_.period_ns));
+        constexpr double clock_s = 0.05; // in which frames are left out while the clock is set
+        const bool hidden = !time_known_ && !comes_from_motion(trusted_, first);
+        const double since_s = (hidden ? clock_s : 0) + since_zero_s(first.stamp_ns);
+        const double velocity =
+            std::max(magnitude(begin.velocity),
+                     since_s > 0 ? magnitude(trusted_.end_line(0, config_.period_ns).velocity) : 0);
+        const double moved = velocity * (since_s + periods * seconds_between(0, config_.period_ns));
         return magnitude(first.from_zero_rad) <= moved + 3 * first.step_rad;
+    }
+
+    /// Time (s) since a reading at the device's zero that did not come from the motion; 0: there was none.
+    [[nodiscard]] constexpr double since_zero_s(std::int64_t now_ns) const noexcept {
+        constexpr double memory_s = 0.05; // a board shows its zero at the end of its start
+        const double since_s = seconds_between(zero_ns_, now_ns);
+        return zero_seen_ && since_s <= memory_s ? since_s : 0;
+    }
+    /// A run begins with this reading.
+    constexpr void note_zero(const EncoderReading& first) noexcept {
+        const double moved = config_.limits.velocity * seconds_between(0, config_.period_ns);
+        if (magnitude(first.from_zero_rad) <= moved + 3 * first.step_rad) {
+            zero_seen_ = true;
+            zero_ns_ = first.stamp_ns;
+        }
     }
 
     /// Whether a run after a silence begins at the device's zero; a joint that stood there before may stand
     /// there still.
     [[nodiscard]] constexpr bool restarted_at_zero(const MotionRun& run) const noexcept {
         constexpr double fastest_boot_s = 0.02;
-        const double still = 4 * run.first().step_rad;
-        const bool stood_there = magnitude(trusted_.last().from_zero_rad) <= still &&
-                                 magnitude(run.first().from_zero_rad) <= still;
         const bool long_enough =
             !time_known_ || seconds_between(trusted_.last().stamp_ns, run.first().stamp_ns) >= fastest_boot_s;
         return long_enough && begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) &&
-               !stood_there;
+               !stood_at(run.first());
     }
 
     Config config_;
@@ -438,8 +466,10 @@ class MotionGate {
     bool suspected_ = false; ///< the run may be of a frozen encoder
     bool disturbed_ = false; ///< a jump has come since the last trusted reading
     bool interrupted_ = false;
-    bool time_known_ = true; ///< since the last trusted reading
-    bool zero_lost_ = false; ///< the refused readings began at the device's zero
+    bool time_known_ = true;   ///< since the last trusted reading
+    bool zero_lost_ = false;   ///< the refused readings began at the device's zero
+    bool zero_seen_ = false;   ///< since the last trusted reading one was at the device's zero
+    std::int64_t zero_ns_ = 0; ///< stamp of that one
     std::uint64_t refusals_ = 0;
     std::uint64_t restarts_ = 0;
     std::uint64_t beyond_ = 0;

@@ -41,6 +41,9 @@ class SyncStep {
         const bool usual = usual_ns_ >= 0 && distance(after_ns, usual_ns_) <= period_ns_ / 8 &&
                            distance(after_ns + period_ns_, usual_ns_) > period_ns_ / 4;
         late_ = period_ns_ > 0 && !usual && after_ns - earliest_ns_ > period_ns_ - period_ns_ / 4;
+        if (after_ns < 0) { // one of the two stamps is wrong
+            return false;
+        }
         ++answers_;
         if (answers_ > 1) {
             missing_ -= missing_ > 0 ? 1 : 0;
