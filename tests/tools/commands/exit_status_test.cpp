@@ -72,7 +72,7 @@ TEST_CASE("commands that print figures have --json") {
     }
 }
 
-TEST_CASE("--json prints one object and no text") {
+TEST_CASE("with --json a command prints one object and no text") {
     const TemporaryDirectory directory;
     const std::string in = directory.path().string();
     const Outcome trained = run_program(directory, train + "--json --quiet -o " + in + "/m.json");
@@ -96,7 +96,7 @@ TEST_CASE("--json prints one object and no text") {
           training.at("footprint").at("flash_bytes"));
 }
 
-TEST_CASE("--quiet leaves warnings and errors, and drops notes") {
+TEST_CASE("with --quiet a command keeps warnings and errors, and drops notes") {
     const TemporaryDirectory directory;
     const std::string in = directory.path().string();
     CHECK_THAT(run_program(directory, train + "-o " + in + "/m.json").error, ContainsSubstring("not used"));
