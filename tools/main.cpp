@@ -3,6 +3,7 @@
 #include "tools/base/text/error.hpp"
 #include "tools/build_flags.hpp"
 #include "tools/commands/command.hpp"
+#include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/usage_error.hpp"
 
 #include <exception>
@@ -55,10 +56,7 @@ int run(int argc, char** argv) {
     }
     dfdyn::tools::refuse_empty_values(app);
     const int status = command();
-    if (!std::cout.flush()) {
-        throw dfdyn::tools::InputError(
-            "standard output: expected to write all of it, found that the system refused");
-    }
+    dfdyn::tools::flush_standard_output(std::cout);
     return status;
 }
 

@@ -32,7 +32,9 @@ PKG_CONFIG_PATH=$(dirname "$(find "$root" -name dfdyn.pc)")
 export PKG_CONFIG_PATH
 read -ra flags <<<"$(pkg-config --cflags dfdyn)"
 c++ -std=c++20 "${flags[@]}" -fsyntax-only "$here/consumer.cpp"
-if grep -r march "$root/usr/lib"/*/cmake/dfdyn; then
+config=$(find "$root" -path "*/cmake/dfdyn" -type d)
+[[ -n $config ]]
+if grep -r march "$config"; then
     echo "the installed library hands on -march"
     exit 1
 fi

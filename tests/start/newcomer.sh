@@ -10,7 +10,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 
-# The recordings have three arms, sample rates and kinds of robot file; the second has none.
+# Two arms and three sample rates; the second arm has no robot file.
 declare -A options=(
     [ur5_nist]="--log $data/ur5_nist/halfspeed_payload_0p726kg.csv --robot $data/robots/ur5/ur5_robot.urdf --tip ee_link"
     [xl330]="--log $data/xl330_bam/07_sin_time_square_kp200.csv"

@@ -100,8 +100,8 @@ nlohmann::ordered_json json_of(const std::vector<BusFinding>& findings,
 
 int run(const BusCheckOptions& options) {
     const JsonOutput output(options.json);
-    if (options.devices && !(options.log.empty() && options.interface.empty())) {
-        throw InputError("buscheck: expected --devices alone, found --log or --can");
+    if (options.devices && !(options.log.empty() && options.interface.empty() && !options.json)) {
+        throw InputError("buscheck: expected --devices alone, found --log, --can or --json");
     }
     if (options.devices) {
         std::cout << device_page();

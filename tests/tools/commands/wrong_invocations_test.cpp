@@ -48,6 +48,7 @@ std::vector<Invocation> invocations() {
         if (line.starts_with("$")) {
             all.push_back({with_places(line.substr(1)), ""});
         } else if (!line.empty() && !line.starts_with('#')) {
+            REQUIRE((!all.empty() && all.back().message.empty()));
             all.back().message = with_places(line);
         }
     }

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/commands/options/json_output.hpp"
 
+#include "tools/base/text/error.hpp"
+
 #include <iostream>
 
 namespace dfdyn::tools {
 
 void add_json_option(CLI::App& command, bool& chosen) {
     command.add_flag("--json", chosen, "Print the figures as JSON instead of text");
+}
+
+void flush_standard_output(std::ostream& output) {
+    if (!output.flush()) {
+        throw InputError("standard output: expected to write all of it, found that the system refused");
+    }
 }
 
 JsonOutput::JsonOutput(bool chosen) : output_(chosen ? std::cout.rdbuf(&sink_) : nullptr) {}
@@ -19,7 +27,10 @@ JsonOutput::~JsonOutput() {
 
 void JsonOutput::print(const nlohmann::ordered_json& figures) const {
     if (output_ != nullptr) {
-        std::ostream(output_) << figures.dump(2) << '\n' << std::flush;
+        std::ostream output(output_);
+        // names of files may have any bytes
+        output << figures.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+        flush_standard_output(output);
     }
 }
 

@@ -12,6 +12,9 @@ namespace dfdyn::tools {
 /// Adds the option --json to a command that prints figures.
 void add_json_option(CLI::App& command, bool& chosen);
 
+/// Writes what is buffered of standard output. Throws InputError if the system refuses.
+void flush_standard_output(std::ostream& output);
+
 /// With --json, keeps text off standard output during the object's lifetime, and prints one JSON object.
 class JsonOutput {
   public:
@@ -20,7 +23,7 @@ class JsonOutput {
     JsonOutput(const JsonOutput&) = delete;
     JsonOutput& operator=(const JsonOutput&) = delete;
 
-    /// Prints `figures` (NaN as null) if --json was chosen.
+    /// Prints `figures` (NaN as null) if --json was chosen. Throws InputError if the system refuses.
     void print(const nlohmann::ordered_json& figures) const;
 
   private:

@@ -55,14 +55,12 @@ std::vector<Recording> RecordingOptions::read(ReadOptions options) const {
     options.topics = topics;
     std::vector<Recording> recordings = read_recordings(logs, options);
     for (const Recording& recording : recordings) {
-        if (quiet()) {
-            break;
-        }
-        if (&recording == &recordings.front() && !recording.ignored_columns.empty()) {
+        const bool notes = !quiet();
+        if (notes && &recording == &recordings.front() && !recording.ignored_columns.empty()) {
             std::cerr << recording.source << ": columns not used: " << listed(recording.ignored_columns)
                       << '\n';
         }
-        for (const std::string& note : recording.notes) {
+        for (const std::string& note : notes ? recording.notes : std::vector<std::string>{}) {
             std::cerr << recording.source << ": " << note << '\n';
         }
         if (recording.skipped.total() > 0) {

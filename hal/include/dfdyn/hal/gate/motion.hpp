@@ -435,7 +435,7 @@ class MotionGate {
     [[nodiscard]] constexpr double since_zero_s(std::int64_t now_ns) const noexcept {
         constexpr double memory_s = 0.05; // a board shows its zero at the end of its start
         const double since_s = seconds_between(zero_ns_, now_ns);
-        return zero_seen_ && since_s <= memory_s ? since_s : 0;
+        return zero_seen_ && since_s >= 0 && since_s <= memory_s ? since_s : 0; // < 0: the clock was set
     }
     /// A run begins with this reading.
     constexpr void note_zero(const EncoderReading& first) noexcept {
