@@ -126,14 +126,15 @@ int run(const DiagnoseOptions& options) {
     const std::optional<TrainedModel> model = make_model(work, extension, recordings);
     make_folder(options.folder);
     const OnlineView online = model ? online_view(work, extension, *model, recordings) : OnlineView{};
-    write_file(options.findings(), diagnosis_to_json(work.diagnosis));
+    const nlohmann::ordered_json findings = diagnosis_json(work.diagnosis);
+    write_file(options.findings(), findings.dump(2) + '\n');
     write_file(options.page(), diagnosis_page({robot, recordings, work, extension, online}));
     if (model) {
         write_model(options, *model);
     } else {
         remove_model(options);
     }
-    output.print(nlohmann::ordered_json::parse(diagnosis_to_json(work.diagnosis)));
+    output.print(findings);
     print_diagnosis(std::cout, work.diagnosis, extension.carried);
     std::cout << "report: " << options.page().string() << '\n';
     return refused(work.diagnosis) ? 1 : 0;

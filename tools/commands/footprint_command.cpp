@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/commands/command.hpp"
+#include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/size_options.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/sizing/target.hpp"
@@ -20,11 +21,9 @@ struct FootprintOptions {
 int run(const FootprintOptions& options) {
     const TrainedModel model = read_model(options.model);
     const Target& target = find_target(options.sizes.target);
-    if (options.json) {
-        std::cout << footprint_to_json(model, target);
-    } else {
-        print_footprint(std::cout, model, target);
-    }
+    const JsonOutput output(options.json);
+    output.print(footprint_json(model, target));
+    print_footprint(std::cout, model, target);
     const TargetBudget budget = options.sizes.budget();
     if (fits(needs_of(model), budget)) {
         return 0;
@@ -41,7 +40,7 @@ void add_footprint_command(CLI::App& app, Command& chosen) {
         "footprint", "Prints flash, RAM, stack and instructions per tick of a model on a controller");
     command->add_option("--model", options->model, "The model")->required()->type_name("M.json");
     options->sizes.add_to(*command);
-    command->add_flag("--json", options->json, "Print JSON");
+    add_json_option(*command, options->json);
     command->footer(
         "Example:\n  dfdyn footprint --model model.json --target cortex-m7 --flash 512K --ram 256K\n"
         "A model of train --flash, --ram or --tick-operations also shows which smaller model would lose how "

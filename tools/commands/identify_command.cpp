@@ -103,10 +103,11 @@ int run(const IdentifyOptions& options) {
     const RecordedMotion recorded = recorded_motion(recordings, options.window);
     const Identification found =
         identify(robot, outputs, recorded, recordings.front().output.names, options.consistent);
+    const nlohmann::ordered_json parameters = identification_json(robot, found);
     if (!options.parameters.empty()) {
-        write_file(options.parameters, identification_to_json(robot, found));
+        write_file(options.parameters, parameters.dump(2) + '\n');
     }
-    output.print(nlohmann::ordered_json::parse(identification_to_json(robot, found)));
+    output.print(parameters);
     print_chain(robot);
     print_base_parameters(found);
     print_errors(found);

@@ -91,6 +91,14 @@ LoopRecording make_recording(const LoopParts& parts, const LoopOptions& options)
             options.duration_s > 0 ? options.duration_s : without_end_s};
 }
 
+/// Writes the recording of the run `name` if there is a folder for results.
+void write_recording(const LoopOptions& options, const std::string& name, const LoopRecording& recording) {
+    if (!options.folder.empty()) {
+        make_folder(options.folder);
+        recording.write(options.folder / (name + ".csv"));
+    }
+}
+
 void show_tracking(const LoopParts& parts, const LoopOptions& options, const std::vector<TrackingRun>& runs) {
     print_tracking(std::cout, runs);
     if (!options.folder.empty()) {
@@ -105,7 +113,7 @@ void show_changes(const LoopOptions& options, const ControlLoop& loop) {
         print_changes(std::cout, changes);
         if (!options.folder.empty()) {
             write_file(options.folder / "changes.json",
-                       changes_json(std::span(&changes, 1), MonitorSetup().false_alarm_hours));
+                       changes_json(std::span(&changes, 1), MonitorSetup().false_alarm_hours).dump(2) + '\n');
         }
     }
 }
@@ -169,10 +177,7 @@ std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOption
         recording.add(instant.measured);
         progress.update(static_cast<std::size_t>(instant.time_s * 1000));
     });
-    if (!options.folder.empty()) {
-        make_folder(options.folder);
-        recording.write(options.folder / (name + ".csv"));
-    }
+    write_recording(options, name, recording);
     std::cout << name << ' ';
     print_loop(std::cout, loop.loop());
     print_peaks(std::cout, peaks);
@@ -219,15 +224,10 @@ int run_on_bus(const LoopOptions& options) {
     print_peaks(std::cout, log.peaks);
     print_port(std::cout, port.counters());
     print_pace(std::cout, pace);
-    if (!options.folder.empty()) {
-        make_folder(options.folder);
-    }
-    show_changes(options, *loop);
-    save_learned(options, *loop);
     const std::string name = contenders(options).back().name;
-    if (!options.folder.empty()) {
-        log.recording.write(options.folder / (name + ".csv"));
-    }
+    save_learned(options, *loop);
+    write_recording(options, name, log.recording);
+    show_changes(options, *loop);
     const std::vector<TrackingRun> runs{{name, log.tracking.windows()}};
     const bool stopped = loop->cause() != StopCause::requested;
     output.print(tracking_json(runs, stopped));

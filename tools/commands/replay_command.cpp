@@ -201,7 +201,7 @@ void write_results(const ReplayOptions& options, std::span<const TrainedModel> m
         json["monitor"] = options.monitor.json(replaying.changes);
     }
     if (replaying.detector != nullptr) {
-        json["contacts"] = options.contacts.json(replaying.contacts, models.front().outputs.names);
+        json["contacts"] = contacts_json(replaying.contacts, models.front().outputs.names);
     }
     output.print(json);
     print_summary(std::cout, summary);

@@ -120,7 +120,7 @@ void diagnose_robot(const Arm& arm, const SplitRecordings& split, const StartOpt
     progress.reset();
     const bool answered = work.signals != nullptr && !work.explanation.candidates.empty();
     const Extension extension = answered ? extension_of(work) : Extension{};
-    files["diagnosis.json"] = diagnosis_to_json(work.diagnosis);
+    files["diagnosis.json"] = diagnosis_json(work.diagnosis).dump(2) + '\n';
     files["diagnosis.html"] = diagnosis_page({*arm.robot, split.training, work, extension, OnlineView{}});
     print_diagnosis(std::cout, work.diagnosis, extension.carried);
     if (answered) {
@@ -226,12 +226,12 @@ std::string next_steps(const StartOptions& options) {
 
 nlohmann::ordered_json json_of(const std::vector<Candidate>& candidates, const Candidate& chosen,
                                const StartOptions& options) {
-    nlohmann::ordered_json json{{"schema", "dfdyn.start/1"},
-                                {"folder", options.folder.string()},
-                                {"candidates", nlohmann::ordered_json::array()},
-                                {"chosen", chosen.name},
-                                {"footprint", nlohmann::ordered_json::parse(footprint_to_json(
-                                                  chosen.model, find_target(options.sizes.target)))}};
+    nlohmann::ordered_json json{
+        {"schema", "dfdyn.start/1"},
+        {"folder", options.folder.string()},
+        {"candidates", nlohmann::ordered_json::array()},
+        {"chosen", chosen.name},
+        {"footprint", footprint_json(chosen.model, find_target(options.sizes.target))}};
     for (const Candidate& one : candidates) {
         json["candidates"].push_back({{"name", one.name},
                                       {"held_out_nrmse", one.error},

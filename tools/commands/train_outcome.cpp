@@ -88,17 +88,16 @@ void print_outcome(const ModelTrainingResult& result, const std::string& trained
 
 nlohmann::ordered_json outcome_json(const ModelTrainingResult& result, const Target& target) {
     const TrainedModel& model = result.model;
-    nlohmann::ordered_json json{
-        {"schema", "dfdyn.training/1"},
-        {"model", model.structure},
-        {"input", input_description(model.input.kind).name},
-        {"recordings", model.training.recordings},
-        {"rows", model.training.rows},
-        {"likelihood_rows", model.training.likelihood_rows},
-        {"log_likelihoods", model.training.all_starts},
-        {"physics", nlohmann::ordered_json::array()},
-        {"noise_std", nlohmann::ordered_json::object()},
-        {"footprint", nlohmann::ordered_json::parse(footprint_to_json(model, target))}};
+    nlohmann::ordered_json json{{"schema", "dfdyn.training/1"},
+                                {"model", model.structure},
+                                {"input", input_description(model.input.kind).name},
+                                {"recordings", model.training.recordings},
+                                {"rows", model.training.rows},
+                                {"likelihood_rows", model.training.likelihood_rows},
+                                {"log_likelihoods", model.training.all_starts},
+                                {"physics", nlohmann::ordered_json::array()},
+                                {"noise_std", nlohmann::ordered_json::object()},
+                                {"footprint", footprint_json(model, target)}};
     if (!result.hold_out.empty()) {
         json["held_out_error"] = best_point(result.hold_out).error;
     }

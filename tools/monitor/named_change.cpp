@@ -60,7 +60,7 @@ void print_changes(std::ostream& out, const RecordedChanges& recorded) {
     }
 }
 
-std::string changes_json(std::span<const RecordedChanges> recordings, double false_alarm_hours) {
+ordered_json changes_json(std::span<const RecordedChanges> recordings, double false_alarm_hours) {
     ordered_json list = ordered_json::array();
     for (const RecordedChanges& recorded : recordings) {
         ordered_json changes = ordered_json::array();
@@ -69,10 +69,9 @@ std::string changes_json(std::span<const RecordedChanges> recordings, double fal
         }
         list.push_back({{"recording", recorded.recording}, {"changes", changes}});
     }
-    const ordered_json document{{"schema", "dfdyn.changes/1"},
-                                {"hours_between_false_alarms", false_alarm_hours},
-                                {"recordings", list}};
-    return document.dump(2) + '\n';
+    return {{"schema", "dfdyn.changes/1"},
+            {"hours_between_false_alarms", false_alarm_hours},
+            {"recordings", list}};
 }
 
 } // namespace dfdyn::tools

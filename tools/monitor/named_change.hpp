@@ -3,6 +3,8 @@
 
 #include "dfdyn/monitor/cause.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <cstdint>
 #include <iosfwd>
 #include <span>
@@ -38,8 +40,8 @@ struct RecordedChanges {
 /// Prints a line for each change.
 void print_changes(std::ostream& out, const RecordedChanges& recorded);
 
-/// Returns the text of changes.json (schema dfdyn.changes/1, docs/guide/monitor.md). `false_alarm_hours`:
+/// Returns the content of changes.json (schema dfdyn.changes/1, docs/guide/monitor.md). `false_alarm_hours`:
 /// mean time between false alarms that the threshold is for.
-std::string changes_json(std::span<const RecordedChanges> recordings, double false_alarm_hours);
+nlohmann::ordered_json changes_json(std::span<const RecordedChanges> recordings, double false_alarm_hours);
 
 } // namespace dfdyn::tools

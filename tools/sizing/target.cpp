@@ -108,7 +108,7 @@ void print_footprint(std::ostream& out, const TrainedModel& model, const Target&
     print_smaller(out, model);
 }
 
-std::string footprint_to_json(const TrainedModel& model, const Target& target) {
+nlohmann::ordered_json footprint_json(const TrainedModel& model, const Target& target) {
     const ModelNeeds needs = needs_of(model);
     const TickInstructions instructions = instructions_of(model, target);
     nlohmann::ordered_json json{{"schema", "dfdyn.footprint/1"},
@@ -132,7 +132,7 @@ std::string footprint_to_json(const TrainedModel& model, const Target& target) {
                                        {"held_out_nrmse", size.error}});
         }
     }
-    return json.dump(2) + '\n';
+    return json;
 }
 
 } // namespace dfdyn::tools

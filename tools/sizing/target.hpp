@@ -3,6 +3,8 @@
 
 #include "tools/sizing/model_needs.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <cstdint>
 #include <ostream>
 #include <string>
@@ -44,6 +46,6 @@ TickInstructions instructions_of(const TrainedModel& model, const Target& target
 void print_footprint(std::ostream& out, const TrainedModel& model, const Target& target);
 
 /// Returns the same figures as JSON, schema `dfdyn.footprint/1`.
-std::string footprint_to_json(const TrainedModel& model, const Target& target);
+nlohmann::ordered_json footprint_json(const TrainedModel& model, const Target& target);
 
 } // namespace dfdyn::tools

@@ -70,7 +70,7 @@ TEST_CASE("smaller models are listed with what they lose, in text and in JSON") 
                               "this model: 0.400):\n"
                               "  25 features: flash 20.0 KiB, RAM 8.0 KiB, nRMSE 0.440 (+10.0 %)\n"));
 
-    const auto json = nlohmann::json::parse(footprint_to_json(model, targets().front()));
+    const auto json = footprint_json(model, targets().front());
     const ModelNeeds needs = needs_of(model);
     CHECK(json.at("flash_bytes") == needs.flash_bytes);
     CHECK(json.at("ram_bytes") == needs.ram_bytes);

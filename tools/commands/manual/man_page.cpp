@@ -17,7 +17,7 @@ std::string escaped(const std::string& text) {
 }
 
 std::string title(const std::string& name, const std::string& version) {
-    return ".TH " + CLI::detail::to_lower(name) + " 1 \"\" \"" + version + "\" \"dfdyn manual\"\n";
+    return ".TH " + name + " 1 \"\" \"" + version + "\" \"dfdyn manual\"\n";
 }
 
 /// Returns the names of an option with its value, such as `-o, --output M.json`.

@@ -24,11 +24,6 @@ const ContactModel& ContactOptions::limits(const TrainedModel& model, const std:
     return model.contact;
 }
 
-nlohmann::ordered_json ContactOptions::json(std::span<const RecordedContacts> contacts,
-                                            std::span<const std::string> outputs) {
-    return nlohmann::ordered_json::parse(contacts_json(contacts, outputs));
-}
-
 void ContactOptions::show(std::span<const RecordedContacts> contacts,
                           std::span<const std::string> outputs) const {
     std::size_t count = 0;
@@ -38,7 +33,7 @@ void ContactOptions::show(std::span<const RecordedContacts> contacts,
     }
     std::cout << "contacts: " << count << '\n';
     if (!file.empty()) {
-        write_file(file, contacts_json(contacts, outputs));
+        write_file(file, contacts_json(contacts, outputs).dump(2) + '\n');
     }
 }
 

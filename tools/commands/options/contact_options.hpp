@@ -5,7 +5,6 @@
 #include "tools/replay/contacts/contact_list.hpp"
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <span>
@@ -24,10 +23,6 @@ struct ContactOptions {
 
     /// Returns the limits of the first model. Throws InputError, naming `source`, if it has none.
     static const ContactModel& limits(const TrainedModel& model, const std::string& source);
-
-    /// Returns the contacts, as in the file.
-    static nlohmann::ordered_json json(std::span<const RecordedContacts> contacts,
-                                       std::span<const std::string> outputs);
 
     /// Prints the contacts, and writes the file if one was requested.
     void show(std::span<const RecordedContacts> contacts, std::span<const std::string> outputs) const;

@@ -40,8 +40,7 @@ MonitorSetup MonitorOptions::setup(std::span<const TrainedModel> models, const s
 }
 
 nlohmann::ordered_json MonitorOptions::json(std::span<const RecordedChanges> changes) const {
-    return nlohmann::ordered_json::parse(
-        changes_json(changes, false_alarm_hours.value_or(default_false_alarm_hours)));
+    return changes_json(changes, false_alarm_hours.value_or(default_false_alarm_hours));
 }
 
 void MonitorOptions::show(std::span<const RecordedChanges> changes) const {
@@ -52,7 +51,7 @@ void MonitorOptions::show(std::span<const RecordedChanges> changes) const {
     }
     std::cout << "changes: " << count << '\n';
     if (!file.empty()) {
-        write_file(file, changes_json(changes, false_alarm_hours.value_or(default_false_alarm_hours)));
+        write_file(file, json(changes).dump(2) + '\n');
     }
 }
 

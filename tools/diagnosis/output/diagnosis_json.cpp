@@ -97,7 +97,7 @@ ordered_json refusals(const std::vector<Suspicion>& suspicions) {
 
 } // namespace
 
-std::string diagnosis_to_json(const Diagnosis& diagnosis) {
+ordered_json diagnosis_json(const Diagnosis& diagnosis) {
     ordered_json json{{"schema", "dfdyn.diagnosis/1"},
                       {"outputs", diagnosis.output_names},
                       {"suspicions", texts(diagnosis.suspicions)},
@@ -130,7 +130,7 @@ std::string diagnosis_to_json(const Diagnosis& diagnosis) {
                                {"note", entry.note}});
     }
     json["unexplained"] = std::move(unexplained);
-    return json.dump(2) + "\n";
+    return json;
 }
 
 } // namespace dfdyn::tools

@@ -3,11 +3,11 @@
 
 #include "tools/diagnosis/diagnosis.hpp"
 
-#include <string>
+#include <nlohmann/json.hpp>
 
 namespace dfdyn::tools {
 
 /// Schema `dfdyn.diagnosis/1`.
-std::string diagnosis_to_json(const Diagnosis& diagnosis);
+nlohmann::ordered_json diagnosis_json(const Diagnosis& diagnosis);
 
 } // namespace dfdyn::tools

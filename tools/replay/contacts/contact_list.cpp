@@ -50,8 +50,8 @@ void print_contacts(std::ostream& out, const RecordedContacts& recorded,
     }
 }
 
-std::string contacts_json(std::span<const RecordedContacts> recordings,
-                          std::span<const std::string> outputs) {
+ordered_json contacts_json(std::span<const RecordedContacts> recordings,
+                           std::span<const std::string> outputs) {
     ordered_json list = ordered_json::array();
     for (const RecordedContacts& recorded : recordings) {
         ordered_json contacts = ordered_json::array();
@@ -60,8 +60,7 @@ std::string contacts_json(std::span<const RecordedContacts> recordings,
         }
         list.push_back({{"recording", recorded.recording}, {"contacts", contacts}});
     }
-    const ordered_json document{{"schema", "dfdyn.contacts/1"}, {"recordings", list}};
-    return document.dump(2) + '\n';
+    return {{"schema", "dfdyn.contacts/1"}, {"recordings", list}};
 }
 
 } // namespace dfdyn::tools

@@ -3,6 +3,8 @@
 
 #include "tools/replay/contacts/contact_estimator.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <iosfwd>
 #include <span>
 #include <string>
@@ -21,7 +23,8 @@ struct RecordedContacts {
 void print_contacts(std::ostream& out, const RecordedContacts& recorded,
                     std::span<const std::string> outputs);
 
-/// Returns the text of contacts.json (schema dfdyn.contacts/1, docs/guide/contacts.md).
-std::string contacts_json(std::span<const RecordedContacts> recordings, std::span<const std::string> outputs);
+/// Returns the content of contacts.json (schema dfdyn.contacts/1, docs/guide/contacts.md).
+nlohmann::ordered_json contacts_json(std::span<const RecordedContacts> recordings,
+                                     std::span<const std::string> outputs);
 
 } // namespace dfdyn::tools

@@ -80,7 +80,7 @@ Identification identify(const Robot& robot, OutputKind outputs, const RecordedMo
     return result;
 }
 
-std::string identification_to_json(const Robot& robot, const Identification& identification) {
+ordered_json identification_json(const Robot& robot, const Identification& identification) {
     ordered_json json{{"schema", "dfdyn.parameters/1"},
                       {"robot", robot.name},
                       {"base", robot.base},
@@ -95,7 +95,7 @@ std::string identification_to_json(const Robot& robot, const Identification& ide
         json["rms_consistent"] = numbers(identification.rms_consistent);
         json["bodies"] = bodies_to_json(robot, *identification.consistent);
     }
-    return json.dump(2) + "\n";
+    return json;
 }
 
 } // namespace dfdyn::tools

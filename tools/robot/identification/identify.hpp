@@ -6,6 +6,8 @@
 #include "tools/robot/motion.hpp"
 #include "tools/robot/robot.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +32,6 @@ Identification identify(const Robot& robot, OutputKind outputs, const RecordedMo
                         std::vector<std::string> output_names, bool consistent);
 
 /// Returns the identification as JSON, schema `dfdyn.parameters/1`.
-std::string identification_to_json(const Robot& robot, const Identification& identification);
+nlohmann::ordered_json identification_json(const Robot& robot, const Identification& identification);
 
 } // namespace dfdyn::tools
