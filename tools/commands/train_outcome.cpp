@@ -6,6 +6,8 @@
 #include "tools/model/structure.hpp"
 #include "tools/training/search/hold_out.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <iostream>
 #include <map>
 #include <vector>

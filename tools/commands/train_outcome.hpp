@@ -4,7 +4,7 @@
 #include "tools/sizing/target.hpp"
 #include "tools/training/model_training.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <string>
 

@@ -3,7 +3,7 @@
 
 #include "dfdyn/monitor/cause.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <cstdint>
 #include <iosfwd>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/replay/replay_json.hpp"
 
+#include <nlohmann/json.hpp>
+
 namespace dfdyn::tools {
 namespace {
 

@@ -3,7 +3,7 @@
 
 #include "tools/replay/replay_summary.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace dfdyn::tools {
 

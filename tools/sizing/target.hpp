@@ -3,7 +3,7 @@
 
 #include "tools/sizing/model_needs.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <cstdint>
 #include <ostream>

@@ -4,6 +4,8 @@
 #include "tools/base/system/atomic_file.hpp"
 #include "tools/base/text/error.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <iostream>
 
 namespace dfdyn::tools {

@@ -5,6 +5,8 @@
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/value_checks.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <iostream>
 #include <optional>

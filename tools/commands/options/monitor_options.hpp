@@ -4,7 +4,7 @@
 #include "tools/commands/options/robot_options.hpp"
 #include "tools/monitor/monitored_estimator.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <optional>
 #include <span>

@@ -9,6 +9,8 @@
 #include "tools/report/chart.hpp"
 #include "tools/report/figure_page.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cstdio>

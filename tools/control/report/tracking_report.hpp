@@ -3,7 +3,7 @@
 
 #include "tools/control/report/tracking.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
 #include <ostream>

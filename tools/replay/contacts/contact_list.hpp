@@ -3,7 +3,7 @@
 
 #include "tools/replay/contacts/contact_estimator.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <iosfwd>
 #include <span>

@@ -6,7 +6,7 @@
 #include "tools/robot/motion.hpp"
 #include "tools/robot/robot.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <optional>
 #include <string>
