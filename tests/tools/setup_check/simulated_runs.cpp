@@ -51,6 +51,33 @@ RobotMotion multisine(Index joints, const RunKind& kind, std::mt19937_64& engine
     return motion;
 }
 
+/// Moves of about `speed` by polynomials of fifth order from posture to posture, with a rest after each.
+RobotMotion moves_and_rests(Index joints, const RunKind& kind, std::mt19937_64& engine) {
+    const auto rows = static_cast<Index>(kind.duration_s * kind.rate_hz);
+    const double move_s = 1 / kind.speed;
+    RobotMotion motion;
+    motion.position = motion.velocity = motion.acceleration = MatrixXd::Zero(rows, joints);
+    for (Index joint = 0; joint < joints; ++joint) {
+        const bool moves = kind.moving.empty() || kind.moving[static_cast<std::size_t>(joint)];
+        double from = uniform(engine, -1.5, 1.5);
+        double step = 0;
+        double start_s = 0;
+        for (Index row = 0; row < rows; ++row) {
+            const double time_s = static_cast<double>(row) / kind.rate_hz;
+            if (row == 0 || time_s >= start_s + move_s + kind.rest_s) {
+                start_s = time_s;
+                from += step;
+                step = moves ? uniform(engine, -1.5, 1.5) - from : 0;
+            }
+            const double x = std::min(1.0, (time_s - start_s) / move_s);
+            motion.position(row, joint) = from + step * x * x * x * (10 + x * (6 * x - 15));
+            motion.velocity(row, joint) = step / move_s * 30 * x * x * (1 - x) * (1 - x);
+            motion.acceleration(row, joint) = step / (move_s * move_s) * 60 * x * (1 - x) * (1 - 2 * x);
+        }
+    }
+    return motion;
+}
+
 Robot loaded(Robot robot, double payload_kg, std::mt19937_64& engine) {
     const Eigen::Vector3d centre =
         robot.tip_placement *
@@ -60,12 +87,19 @@ Robot loaded(Robot robot, double payload_kg, std::mt19937_64& engine) {
     return robot;
 }
 
-void add_friction(MatrixXd& torque, const RobotMotion& motion, double share, std::mt19937_64& engine) {
+void add_friction(MatrixXd& torque, const RobotMotion& motion, const RunKind& kind, std::mt19937_64& engine) {
     for (Index joint = 0; joint < torque.cols(); ++joint) {
-        const double level =
-            share * std::max(0.1, torque.col(joint).cwiseAbs().maxCoeff()) * uniform(engine, 0.5, 1.5);
-        const auto velocity = motion.velocity.col(joint).array();
-        torque.col(joint).array() += level * (velocity / 0.01).tanh() + 0.3 * level * velocity;
+        const double level = kind.friction * std::max(0.1, torque.col(joint).cwiseAbs().maxCoeff()) *
+                             uniform(engine, 0.5, 1.5);
+        double held = 0;
+        for (Index row = 0; row < torque.rows(); ++row) {
+            const double velocity = motion.velocity(row, joint);
+            const bool rests = kind.rest_s > 0 && velocity == 0;
+            if (rests && (row == 0 || motion.velocity(row - 1, joint) != 0)) {
+                held = level * uniform(engine, -1.3, 1.3);
+            }
+            torque(row, joint) += rests ? held : level * (std::tanh(velocity / 0.01) + 0.3 * velocity);
+        }
     }
 }
 
@@ -100,7 +134,7 @@ std::string RunKind::describe() const {
              : outputs == OutputKind::joint_torque ? "torques"
                                                    : "currents")
          << ", speed " << speed << ", " << rate_hz << " Hz, " << duration_s << " s, payload " << payload_kg
-         << " kg, friction " << friction << ", noise " << noise << ", moving";
+         << " kg, friction " << friction << ", noise " << noise << ", rests of " << rest_s << " s, moving";
     for (const bool moves : moving) {
         text << ' ' << moves;
     }
@@ -109,13 +143,14 @@ std::string RunKind::describe() const {
 
 Recording simulated_run(const Robot& robot, const RunKind& kind, std::mt19937_64& engine) {
     const auto joints = static_cast<Index>(robot.joints.size());
-    const RobotMotion motion = multisine(joints, kind, engine);
+    const RobotMotion motion =
+        kind.rest_s > 0 ? moves_and_rests(joints, kind, engine) : multisine(joints, kind, engine);
     const Robot truth = loaded(robot, kind.payload_kg, engine);
     const VectorXd stacked = tools::stacked_regressor(truth, kind.outputs, motion) *
                              tools::nominal_parameters(truth, kind.outputs);
     MatrixXd outputs = tools::unstacked(stacked, stacked.size() / motion.rows());
     if (kind.outputs != OutputKind::wrench) {
-        add_friction(outputs, motion, kind.friction, engine);
+        add_friction(outputs, motion, kind, engine);
     }
     if (kind.outputs == OutputKind::motor_current) {
         for (Index joint = 0; joint < joints; ++joint) {
@@ -153,6 +188,7 @@ RunKind random_kind(const Robot& robot, OutputKind outputs, std::mt19937_64& eng
     kind.friction = chance(engine, 0.5) ? uniform(engine, 0, 1) : 0;
     kind.noise = chance(engine, 0.5) ? uniform(engine, 0, 0.3) : 0;
     kind.position_noise = chance(engine, 0.5) ? 0 : 1e-4 * uniform(engine, 0, 1);
+    kind.rest_s = chance(engine, 0.3) ? uniform(engine, 0.5, 3) : 0;
     if (chance(engine, 0.5)) {
         for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
             kind.moving.push_back(chance(engine, 0.5));
