@@ -66,6 +66,18 @@ TEST_CASE("a push of twice the limit is a contact within a tenth of a second and
     CHECK_FALSE(arm.detector.persistent());
 }
 
+TEST_CASE("a push of up to 2.8 seconds is one contact and its end is no second one", "[contacts]") {
+    const double size = GENERATE(1.3, 1.5, 2.0, 4.0);
+    const double lasting_s = GENERATE(0.3, 1.0, 2.0, 2.8);
+    const Signal position = GENERATE(Signal(still), Signal(moving));
+    CAPTURE(size, lasting_s);
+    Arm arm;
+    arm.run(8, position, push(size, 2 + lasting_s));
+    CHECK(arm.contacts == 1);
+    CHECK(arm.last_s == Approx(2 + lasting_s + 0.2).margin(0.1));
+    CHECK_FALSE(arm.detector.persistent());
+}
+
 TEST_CASE("deviations of several joints add to one contact", "[contacts]") {
     const auto contact = [](double first, double second) {
         Detector detector({}, limits);

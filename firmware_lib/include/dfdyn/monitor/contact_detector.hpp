@@ -30,15 +30,17 @@ struct ContactLimits {
 /// of an accurate model in motion.
 ///
 /// A contact begins when the root of the sum of squares of all deviations, each in units of the limit for the
-/// joint's motion, reaches 1. The baseline follows at most `clip` limits. A contact ends when the root has
-/// been below `release` for `release_s`. After `longest_s` it ends as a change of the arm: the errors at that
-/// time become the baseline. On a motion where deviations are larger than in training, limits grow in
-/// proportion to their median, at most by `most_growth`; contacts do not change a median much, unless they
-/// fill half of the time. The first `settling_s` after an interruption or a gap of `longest_gap_s` have no
-/// contact.
+/// joint's motion, reaches 1. The baseline follows at most `clip` limits. During a contact it is the whole
+/// interval between its value before and the value that it has followed to, so that the return of the error
+/// is no second contact. A contact ends when the root has been below `release` for `release_s`. After
+/// `longest_s` it ends as a change of the arm: the errors at that time become the baseline. On a motion where
+/// deviations are larger than in training, limits grow in proportion to their median, at most by
+/// `most_growth`; contacts do not change a median much, unless they fill half of the time. The first
+/// `settling_s` after an interruption or a gap of `longest_gap_s` have no contact.
 ///
 /// It is a detector, not a safety function: contacts below the limits or slower than the baseline are not
-/// detected. The constants were chosen on the UR5 recordings No5 to No9. Use in each tick:
+/// detected. The constants were chosen on the UR5 recordings No5 to No9, `contact_clip` on
+/// pushes of a simulated UR5. Use in each tick:
 ///
 ///     const auto estimate = estimator.tick(sample);
 ///     if (estimate.status.predicted() && measured) {
@@ -58,6 +60,7 @@ class ContactDetector {
     static constexpr Scalar stop_s = Scalar(0.1);
     static constexpr Scalar change_s = Scalar(0.2);
     static constexpr Scalar clip = Scalar(0.4);
+    static constexpr Scalar contact_clip = Scalar(0.1);
     static constexpr Scalar release = Scalar(0.75);
     static constexpr Scalar release_s = Scalar(0.1);
     static constexpr Scalar longest_s = 3;
@@ -187,7 +190,7 @@ class ContactDetector {
         return std::min(std::abs(state.deviation) / limit, largest_share);
     }
 
-    static void classify(State& state, Scalar dt) noexcept {
+    void classify(State& state, Scalar dt) const noexcept {
         const int direction = std::abs(state.velocity) < still ? 0 : (state.velocity > 0 ? 1 : -1);
         state.since_change_s = std::min(state.since_change_s + dt, change_s);
         if (direction != state.direction || (direction != 0 && stops_soon(state))) {
@@ -200,8 +203,8 @@ class ContactDetector {
             state.motion = JointMotion::changing;
             return;
         }
-        if (state.motion == JointMotion::changing) {
-            state.low = state.high = std::clamp(state.second_pole, state.low, state.high);
+        if (state.motion == JointMotion::changing && !contact_) {
+            settle(state);
         }
         state.motion = direction == 0 ? JointMotion::standing : JointMotion::moving;
     }
@@ -212,9 +215,15 @@ class ContactDetector {
         return state.velocity * (deceleration * stop_s - state.velocity) > 0;
     }
 
-    static void follow_baseline(State& state, Scalar limit, const Steps& steps) noexcept {
-        const Scalar step = steps.baseline * std::clamp(state.deviation, -clip * limit, clip * limit);
-        if (state.motion == JointMotion::changing) {
+    /// Reduces the baseline to its value nearest to the error.
+    static void settle(State& state) noexcept {
+        state.low = state.high = std::clamp(state.second_pole, state.low, state.high);
+    }
+
+    void follow_baseline(State& state, Scalar limit, const Steps& steps) const noexcept {
+        const Scalar most = (contact_ ? contact_clip : clip) * limit;
+        const Scalar step = steps.baseline * std::clamp(state.deviation, -most, most);
+        if (state.motion == JointMotion::changing || contact_) {
             state.low += std::min(step, Scalar(0));
             state.high += std::max(step, Scalar(0));
         } else {
@@ -248,10 +257,19 @@ class ContactDetector {
         lasted_s_ += dt;
         quiet_s_ = excess_ < release ? quiet_s_ + dt : Scalar(0);
         if (quiet_s_ >= release_s) {
-            contact_ = false;
+            end();
         } else if (lasted_s_ >= longest_s) {
             accept();
         }
+    }
+
+    void end() noexcept {
+        for (State& state : states_) {
+            if (state.motion != JointMotion::changing) {
+                settle(state);
+            }
+        }
+        contact_ = false;
     }
 
     /// Takes the present errors as the baseline.
