@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/system/quiet.hpp"
 #include "tools/base/text/error.hpp"
+#include "tools/base/text/text.hpp"
 #include "tools/build_flags.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/usage_error.hpp"
 
 #include <exception>
+#include <filesystem>
 #include <iostream>
 
 #ifdef __GLIBC__
@@ -82,6 +84,10 @@ int main(int argc, char** argv) {
         return run(argc, argv);
     } catch (const dfdyn::tools::InputError& error) {
         std::cerr << "dfdyn: " << error.what() << '\n';
+        return 2;
+    } catch (const std::filesystem::filesystem_error& error) { // a name that the system refuses
+        std::cerr << "dfdyn: " << dfdyn::tools::shown(error.path1())
+                  << ": cannot be used: " << error.code().message() << '\n';
         return 2;
     } catch (const std::exception& error) {
         std::cerr << "dfdyn: internal error: " << error.what() << '\n';

@@ -78,22 +78,13 @@ void write_draft(const std::filesystem::path& path, const RecognisedBus& recogni
     std::cout << "  draft written to " << shown(path) << '\n';
 }
 
-nlohmann::ordered_json json_of(const std::vector<BusFinding>& findings,
+/// Returns the figures of both texts. `families`: names; `recognised`: the same with their boards.
+nlohmann::ordered_json json_of(const BusCheck& check, const std::vector<BusFinding>& findings,
                                const std::optional<RecognisedBus>& recognised) {
-    nlohmann::ordered_json json{{"schema", "dfdyn.buscheck/1"},
-                                {"findings", nlohmann::ordered_json::array()},
-                                {"families", nlohmann::ordered_json::array()}};
-    for (const BusFinding& one : findings) {
-        json["findings"].push_back({{"rule", one.rule},
-                                    {"what", one.what},
-                                    {"evidence", one.evidence},
-                                    {"confirm", one.confirm},
-                                    {"fix", one.fix}});
-    }
+    nlohmann::ordered_json json = bus_check_json(check, findings);
+    json["families"] = nlohmann::ordered_json::array();
     if (recognised) {
-        for (const RecognisedFamily& family : recognised->families) {
-            json["families"].push_back(family.name);
-        }
+        json.update(recognised_json(*recognised));
     }
     return json;
 }
@@ -124,7 +115,7 @@ int run(const BusCheckOptions& options) {
         recognised = recognise_bus(recorder.frames());
         std::ranges::copy(recognised->findings, std::back_inserter(findings));
     }
-    output.print(json_of(findings, recognised));
+    output.print(json_of(check, findings, recognised));
     print_bus_check(std::cout, check, findings);
     if (recognised) {
         print_recognised_bus(std::cout, *recognised);

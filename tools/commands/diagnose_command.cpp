@@ -105,8 +105,10 @@ void check_folders(const DiagnoseOptions& options) {
             check_writable(output);
         }
     }
-    if (!options.header.empty() && std::filesystem::weakly_canonical(options.header.parent_path()) !=
-                                       std::filesystem::weakly_canonical(options.folder)) {
+    const auto place_of = [](const std::filesystem::path& path) {
+        return std::filesystem::weakly_canonical(std::filesystem::absolute(path) / "");
+    };
+    if (!options.header.empty() && place_of(options.header.parent_path()) != place_of(options.folder)) {
         check_writable(options.header);
     }
 }

@@ -157,9 +157,13 @@ std::vector<Contender> contenders(const LoopOptions& options) {
     return all;
 }
 
-/// Returns nothing if the loop stopped by itself.
-std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOptions& options,
-                                        const Contender& contender) {
+/// Results of one simulated run. `tracking`: nothing if the loop stopped by itself.
+struct SimulatedRun {
+    std::optional<TrackingRun> tracking;
+    nlohmann::ordered_json loop;
+};
+
+SimulatedRun simulate_run(const LoopParts& parts, const LoopOptions& options, const Contender& contender) {
     LoopLimits limits = options.limits;
     if (!contender.observer) {
         limits.observer_bandwidth = {0};
@@ -185,23 +189,30 @@ std::optional<TrackingRun> simulate_run(const LoopParts& parts, const LoopOption
     if (contender.name == contenders(options).back().name) {
         save_learned(options, loop.loop());
     }
-    return loop.loop().state() == LoopState::running ? std::optional(TrackingRun{name, tracking.windows()})
-                                                     : std::nullopt;
+    SimulatedRun result{std::nullopt, loop_json(name, loop.loop(), peaks)};
+    if (loop.loop().state() == LoopState::running) {
+        result.tracking = TrackingRun{name, tracking.windows()};
+    }
+    return result;
 }
 
 int simulate(const LoopOptions& options) {
     const JsonOutput output(options.json);
     const LoopParts parts = read_parts(options);
     std::vector<TrackingRun> runs;
+    nlohmann::ordered_json loops = nlohmann::ordered_json::array();
     bool stopped = false;
     for (const Contender& contender : contenders(options)) {
-        const std::optional<TrackingRun> run = simulate_run(parts, options, contender);
-        stopped = stopped || !run;
-        if (run) {
-            runs.push_back(*run);
+        SimulatedRun run = simulate_run(parts, options, contender);
+        stopped = stopped || !run.tracking;
+        if (run.tracking) {
+            runs.push_back(*run.tracking);
         }
+        loops.push_back(std::move(run.loop));
     }
-    output.print(tracking_json(runs, stopped));
+    nlohmann::ordered_json figures = tracking_json(runs, stopped);
+    figures["loops"] = std::move(loops);
+    output.print(figures);
     if (!runs.empty()) {
         show_tracking(parts, options, runs);
     }
@@ -230,7 +241,11 @@ int run_on_bus(const LoopOptions& options) {
     show_changes(options, *loop);
     const std::vector<TrackingRun> runs{{name, log.tracking.windows()}};
     const bool stopped = loop->cause() != StopCause::requested;
-    output.print(tracking_json(runs, stopped));
+    nlohmann::ordered_json figures = tracking_json(runs, stopped);
+    figures["loops"] = nlohmann::ordered_json::array({loop_json(name, *loop, log.peaks)});
+    figures["bus"] = port_json(port.counters());
+    figures["pace"] = pace_json(pace);
+    output.print(figures);
     show_tracking(parts, options, runs);
     return stopped ? 1 : 0;
 }

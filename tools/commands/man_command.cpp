@@ -17,6 +17,7 @@ namespace {
 struct ManOptions {
     std::string page;
     std::filesystem::path folder;
+    bool reference = false;
 };
 
 /// Returns the name and version of the program, without the compiler's flags.
@@ -34,7 +35,26 @@ void write_pages(const CLI::App& program, const std::filesystem::path& folder) {
     }
 }
 
+/// Prints the help texts of all commands as docs/reference/commands.md.
+void print_reference(const CLI::App& program) {
+    std::cout << "# Commands\n\nThe help text of every command, printed by `dfdyn man --reference`. A test "
+                 "compares them.\n"
+                 "Examples of each: [the program](../guide/program.md). Exit status: "
+                 "[exit-status.md](exit-status.md).\n";
+    for (const CLI::App* const command : subcommands(program)) {
+        std::cout << "\n## " << command->get_name() << "\n```\n" << command->help("dfdyn") << "```\n";
+    }
+}
+
 int run(const CLI::App& program, const ManOptions& options) {
+    if ((options.folder.empty() ? 0 : 1) + (options.page.empty() ? 0 : 1) + (options.reference ? 1 : 0) > 1) {
+        throw InputError(
+            "man: expected one of a page, -o and --reference, which have all pages, found several");
+    }
+    if (options.reference) {
+        print_reference(program);
+        return 0;
+    }
     if (!options.folder.empty()) {
         write_pages(program, options.folder);
         return 0;
@@ -63,6 +83,8 @@ void add_man_command(CLI::App& app, Command& chosen) {
     command->add_option("PAGE", options->page, "Subcommand; default: the program");
     command->add_option("-o,--output", options->folder, "Writes all pages into this folder instead")
         ->type_name("DIR");
+    command->add_flag("--reference", options->reference,
+                      "Prints the help of all commands as docs/reference/commands.md");
     command->footer("Example:\n  dfdyn man train | man -l -\nExit status: 0 done, 2 bad usage.");
     command->callback([options, &app, &chosen] { chosen = [options, &app] { return run(app, *options); }; });
 }

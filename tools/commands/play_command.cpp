@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/base/system/quiet.hpp"
 #include "tools/can/log/play.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/json_output.hpp"
@@ -45,7 +46,7 @@ int run(const PlayCommandOptions& options) {
     const JsonOutput output(options.json);
     const PlayOutcome outcome = play(options.play, stop_on_signals());
     if (!outcome.not_real_time.empty()) {
-        std::cerr << "note: the timing is that of an ordinary program (" << outcome.not_real_time << ")\n";
+        print_note("note: the timing is that of an ordinary program (" + outcome.not_real_time + ")");
     }
     output.print(json_of(outcome));
     print(outcome);

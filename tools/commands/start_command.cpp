@@ -24,6 +24,8 @@
 #include "tools/report/report.hpp"
 #include "tools/start/project.hpp"
 #include "tools/start/recording_overview.hpp"
+#include "tools/training/data/recorded_data.hpp"
+#include "tools/training/search/training_problem.hpp"
 
 #include <algorithm>
 #include <iostream>
@@ -95,6 +97,13 @@ Arm read_arm(const StartOptions& options) {
         }
     }
     throw InputError(first_failure);
+}
+
+/// Throws InputError if gaps leave no complete windows to train on, before the diagnosis takes its time.
+void require_windows(const std::vector<Recording>& recordings) {
+    ModelTraining training;
+    ClockOptions{}.apply(training.options, sample_period_s(recordings));
+    choose_rows(gather_training_data(recordings), training.options);
 }
 
 void print_recordings(const Arm& arm, bool chosen_here) {
@@ -252,6 +261,7 @@ int run(StartOptions options) {
     if (!options.setup.accept(arm.recordings, {arm.outputs, arm.robot_or_null()})) {
         return 1;
     }
+    require_windows(arm.recordings);
     std::cout << "the set-up shows no mistake\n";
     const SplitRecordings split = split_recordings(arm.recordings, training_share);
     FolderContent files;

@@ -2,6 +2,7 @@
 #include "tools/base/recording/sample_grid.hpp"
 #include "tools/base/system/atomic_file.hpp"
 #include "tools/base/system/progress.hpp"
+#include "tools/base/system/quiet.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/commands/command.hpp"
@@ -189,7 +190,7 @@ void note_ignored(const TrainOptions& options, OutputKind outputs) {
     const auto note = [&](bool ignored, std::initializer_list<const char*> names, const std::string& by) {
         for (const char* const name : names) {
             if (ignored && options.command->count(name) > 0) {
-                std::cerr << "note: " << name << " is ignored: " << by << " does not read it\n";
+                print_note("note: " + std::string(name) + " is ignored: " + by + " does not read it");
             }
         }
     };

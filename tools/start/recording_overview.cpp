@@ -57,7 +57,7 @@ void print_columns(std::ostream& out, std::span<const Recording> recordings, Col
 
 void print_overview(std::ostream& out, std::span<const Recording> recordings) {
     for (const Recording& recording : recordings) {
-        const auto gaps = std::ranges::count(recording.gap_before, 1) - 1;
+        const auto gaps = std::ranges::count(window_restarts(recording, sample_period_s(recordings)), 1) - 1;
         const double duration_s = recording.time_s.back() - recording.time_s.front();
         out << shown(recording.source) << ": " << recording.row_count() << " rows, "
             << rounded_text(duration_s) << " s, " << gaps << (gaps == 1 ? " gap\n" : " gaps\n");

@@ -194,6 +194,9 @@ TEST_CASE("a recording in degrees is reported first and gets no model") {
     CHECK(diagnosis["findings"].empty());
     CHECK_THAT(file_content(folder + "/report.html"), ContainsSubstring("looks like degrees"));
     CHECK_FALSE(std::filesystem::exists(folder + "/extended_model.json"));
+    // a header in the new folder, which is written in two ways
+    const std::string beside = " --outputs tau -o new --header ./new/m.hpp";
+    CHECK(run_program(directory, "diagnose" + arm + "--log " + log + beside, directory.path()).status == 1);
 }
 
 TEST_CASE("currents with unknown torque constants in several recordings are diagnosed") {

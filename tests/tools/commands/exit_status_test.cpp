@@ -62,6 +62,12 @@ TEST_CASE("the page on exit statuses has the row of every command's help text") 
     }
 }
 
+TEST_CASE("the reference of the commands has their help texts") {
+    const TemporaryDirectory directory;
+    CHECK(run_program(directory, "man --reference").out ==
+          dfdyn::tools::read_file(project / "docs/reference/commands.md"));
+}
+
 TEST_CASE("commands that print figures have --json") {
     const TemporaryDirectory directory;
     const std::set<std::string> without{"simulate", "plant", "man", "completion"}; // they print no figures
@@ -94,13 +100,43 @@ TEST_CASE("with --json a command prints one object and no text") {
     const Outcome footprint = run_program(directory, "footprint --model " + in + "/m.json --json");
     CHECK(nlohmann::json::parse(footprint.out).at("flash_bytes") ==
           training.at("footprint").at("flash_bytes"));
+
+    const Outcome full =
+        run_program(directory, "footprint --model " + in + "/m.json --json >/dev/full 2>" + in + "/stderr #");
+    CHECK(full.status == 2);
+    CHECK(full.error ==
+          "dfdyn: standard output: expected to write all of it, found that the system refused\n");
+}
+
+TEST_CASE("buscheck --json has the figures of its text") {
+    const TemporaryDirectory directory;
+    const Outcome checked = run_program(
+        directory, "buscheck --json --log " + std::string(DFDYN_TEST_DATA_DIR) + "/can/devices/damiao.log");
+    const auto json = nlohmann::json::parse(checked.out);
+    CHECK(json.at("bus").at("received") > 0);
+    CHECK(json.at("bus").at("load").is_null()); // no bit rate without a description
+    CHECK(json.at("sources").at(0).at("rate_hz") > 0);
+    REQUIRE(json.at("recognised").size() == json.at("families").size());
+    CHECK(json.at("recognised").at(0).at("boards").at(0).at("positions_hz") > 0);
+}
+
+TEST_CASE("a budget has the usual units") {
+    const TemporaryDirectory directory;
+    const std::string in = directory.path().string();
+    REQUIRE(run_program(directory, train + "-o " + in + "/m.json").status == 0);
+    for (const std::string budget : {"1M", "1Mi", "1MiB", "1024K", "1024Ki", "1048576"}) {
+        CAPTURE(budget);
+        CHECK(run_program(directory, "footprint --model " + in + "/m.json --flash " + budget).status == 0);
+    }
 }
 
 TEST_CASE("with --quiet a command keeps warnings and errors, and drops notes") {
     const TemporaryDirectory directory;
     const std::string in = directory.path().string();
     CHECK_THAT(run_program(directory, train + "-o " + in + "/m.json").error, ContainsSubstring("not used"));
-    CHECK(run_program(directory, train + "--quiet -o " + in + "/m.json").error.empty());
+    CHECK_THAT(run_program(directory, train + "--prior unit -o " + in + "/m.json").error,
+               ContainsSubstring("--prior is ignored"));
+    CHECK(run_program(directory, train + "--quiet --prior unit -o " + in + "/m.json").error.empty());
     directory.write("bad.csv", "t,q1,i1\n0,1,2\n0,1,2\n");
     CHECK_THAT(
         run_program(directory, "train --quiet --log " + in + "/bad.csv --outputs i -o " + in + "/x").error,

@@ -3,6 +3,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/tools/commands/run_program.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <string>
 
@@ -111,6 +113,12 @@ TEST_CASE("a simulated loop that stops by itself ends with status 1 and the reas
     CHECK(outcome.status == 1);
     CHECK_THAT(outcome.out, ContainsSubstring("stopped (following_error)"));
     CHECK_THAT(outcome.out, !ContainsSubstring("tracking error"));
+    const auto json = nlohmann::json::parse(bench.loop(simulate + bus + " --json").out);
+    CHECK(json.at("stopped") == true);
+    const auto& loop = json.at("loops").at(0);
+    CHECK(loop.at("cause") == "following_error");
+    CHECK(loop.at("ticks") > loop.at("followed_reference"));
+    CHECK(loop.at("largest_torque_step_nm").size() == 2);
 }
 
 TEST_CASE("a fault of the scenario affects a simulated loop in the same way on every run") {

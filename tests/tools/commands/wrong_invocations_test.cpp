@@ -22,6 +22,7 @@ const std::string data = DFDYN_TEST_DATA_DIR;
 /// The places that the table names in braces.
 const std::map<std::string, std::string> places{
     {"{log}", data + "/ur5_kufieta/Movement_No7_Acc_slow_Verify_Model_short.csv"},
+    {"{jittery}", data + "/ur5_kufieta/Movement_No3_Acc.csv"},
     {"{ur5}", data + "/robots/ur5/ur5_robot.urdf"},
     {"{icub}", data + "/robots/icub_right_arm/icub_right_arm.urdf"},
     {"{scenario}", data + "/scenarios/icub_xy.json"}};

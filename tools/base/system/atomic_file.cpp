@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cerrno>
+#include <climits>
 #include <csignal>
 #include <fcntl.h>
 #include <locale>
@@ -90,6 +91,13 @@ void require_parent(const fs::path& target) {
     if (found != fs::file_type::directory && found != fs::file_type::none) { // none: the system cannot tell
         throw InputError(shown(target) + ": expected an existing folder " + shown(folder) + ", found " +
                          (found == fs::file_type::not_found ? "none" : "a file"));
+    }
+}
+
+/// Throws InputError if `name`, a part of `path`, is longer than file systems allow.
+void require_valid_name(const fs::path& name, const fs::path& path) {
+    if (name.native().size() > NAME_MAX) {
+        throw system_error(path, "cannot be used as a folder", ENAMETOOLONG);
     }
 }
 
@@ -264,11 +272,17 @@ void check_writable(const fs::path& target) {
 void check_folder(const fs::path& folder) {
     refuse_dash(folder);
     fs::path existing = folder;
-    std::error_code ignored;
-    while (!fs::exists(existing, ignored)) {
+    std::error_code reason;
+    fs::file_type found = fs::status(existing, reason).type();
+    while (found == fs::file_type::not_found) {
+        require_valid_name(existing.filename(), folder);
         existing = existing.has_parent_path() ? existing.parent_path() : ".";
+        found = fs::status(existing, reason).type();
     }
-    if (!fs::is_directory(existing, ignored)) {
+    if (found == fs::file_type::none) {
+        throw system_error(folder, "cannot be used as a folder", reason.value());
+    }
+    if (found != fs::file_type::directory) {
         throw InputError(shown(folder) + ": expected a folder, found the file " + shown(existing));
     }
     try {

@@ -2,6 +2,7 @@
 #include "tools/base/system/quiet.hpp"
 
 #include <atomic>
+#include <iostream>
 
 namespace dfdyn::tools {
 namespace {
@@ -13,5 +14,11 @@ std::atomic<bool> without_notes = false;
 void be_quiet() noexcept { without_notes = true; }
 
 bool quiet() noexcept { return without_notes; }
+
+void print_note(std::string_view line) {
+    if (!quiet()) {
+        std::cerr << line << '\n';
+    }
+}
 
 } // namespace dfdyn::tools

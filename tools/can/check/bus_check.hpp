@@ -7,6 +7,8 @@
 #include "tools/can/check/value_watch.hpp"
 #include "tools/can/description/bus_finding.hpp"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <array>
 #include <limits>
 #include <optional>
@@ -122,6 +124,10 @@ std::vector<BusFinding> source_findings(const BusCheck& check);
 
 /// Findings about the joints' values and about the condition reported by the sensor.
 std::vector<BusFinding> value_findings(const BusCheck& check);
+
+/// Returns the figures of print_bus_check: schema `dfdyn.buscheck/1`. The bit rate and the loads are null if
+/// they are unknown.
+nlohmann::ordered_json bus_check_json(const BusCheck& check, std::span<const BusFinding> findings);
 
 /// Prints the table of sources, the state of the bus and the findings.
 void print_bus_check(std::ostream& out, const BusCheck& check, std::span<const BusFinding> findings);

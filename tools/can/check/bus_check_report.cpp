@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/can/check/bus_check.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <array>
 #include <cstdio>
 
@@ -72,7 +74,61 @@ void print_bus(std::ostream& out, const BusCheck& check) {
     }
 }
 
+nlohmann::ordered_json source_json(const BusCheck& check, const BusStreamKey& key, const BusStream& stream) {
+    return {{"identifier", id_text(key)},
+            {"frames", stream.count},
+            {"rate_hz", stream.rate_hz()},
+            {"expected_hz", stream.expected_hz},
+            {"jitter_s", stream.jitter_s()},
+            {"longest_gap_s", seconds_of(stream.longest_gap_ns)},
+            {"age_s", stream.count > 0 ? check.age_s(stream) : 0},
+            {"missing_share", stream.missing_share()},
+            {"bits", stream.bits},
+            {"sender", sender_of(check, stream)}};
+}
+
+nlohmann::ordered_json bus_json(const BusCheck& check) {
+    const hal::BusCounters& counters = check.counters();
+    nlohmann::ordered_json json{{"state", state_name(check.state())},
+                                {"received", counters.received},
+                                {"duration_s", check.duration_s()},
+                                {"bit_rate", nullptr},
+                                {"load", nullptr},
+                                {"expected_load", nullptr},
+                                {"dropped", counters.dropped},
+                                {"controller_overruns", counters.controller_overruns},
+                                {"error_frames", counters.error_frames},
+                                {"lost_arbitrations", counters.lost_arbitrations},
+                                {"bus_off", counters.bus_off},
+                                {"restarted", counters.restarted},
+                                {"from_host", check.from_host()}};
+    if (check.bit_rate() > 0) {
+        json["bit_rate"] = check.bit_rate();
+        json["load"] = check.load();
+        json["expected_load"] = check.expected_load();
+    }
+    return json;
+}
+
 } // namespace
+
+nlohmann::ordered_json bus_check_json(const BusCheck& check, std::span<const BusFinding> findings) {
+    nlohmann::ordered_json json{{"schema", "dfdyn.buscheck/1"},
+                                {"bus", bus_json(check)},
+                                {"sources", nlohmann::ordered_json::array()},
+                                {"findings", nlohmann::ordered_json::array()}};
+    for (const auto& [key, stream] : check.streams()) {
+        json["sources"].push_back(source_json(check, key, stream));
+    }
+    for (const BusFinding& one : findings) {
+        json["findings"].push_back({{"rule", one.rule},
+                                    {"what", one.what},
+                                    {"evidence", one.evidence},
+                                    {"confirm", one.confirm},
+                                    {"fix", one.fix}});
+    }
+    return json;
+}
 
 void print_bus_check(std::ostream& out, const BusCheck& check, std::span<const BusFinding> findings) {
     out << text("%-10s %9s %9s %9s %9s %9s %9s %6s %6s  %s\n", "identifier", "frames", "rate/Hz",

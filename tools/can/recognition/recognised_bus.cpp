@@ -170,6 +170,30 @@ RecognisedBus recognise_bus(std::span<const hal::Frame> frames) {
     return result;
 }
 
+nlohmann::ordered_json recognised_json(const RecognisedBus& bus) {
+    nlohmann::ordered_json families = nlohmann::ordered_json::array();
+    nlohmann::ordered_json recognised = nlohmann::ordered_json::array();
+    for (const RecognisedFamily& family : bus.families) {
+        families.push_back(family.name);
+        nlohmann::ordered_json boards = nlohmann::ordered_json::array();
+        for (const RecognisedBoard& board : family.recognition.boards) {
+            boards.push_back(
+                {{"name", board.name}, {"positions_hz", board.rate_hz}, {"measured", board.measured}});
+        }
+        recognised.push_back(
+            {{"family", family.name}, {"boards", std::move(boards)}, {"unsure", family.recognition.unsure}});
+    }
+    nlohmann::ordered_json json{{"families", std::move(families)},
+                                {"recognised_in_s", bus.duration_s},
+                                {"recognised", std::move(recognised)},
+                                {"commands", bus.commands},
+                                {"draft_error", nullptr}};
+    if (!bus.draft) {
+        json["draft_error"] = bus.draft_error;
+    }
+    return json;
+}
+
 void print_recognised_bus(std::ostream& out, const RecognisedBus& bus) {
     out << "\nrecognised in " << rounded_text(bus.duration_s) << " s:\n";
     for (const RecognisedFamily& family : bus.families) {

@@ -72,6 +72,10 @@ struct RecognisedBus {
 /// Recognises the devices that sent these frames, which must be in the order of time.
 RecognisedBus recognise_bus(std::span<const hal::Frame> frames);
 
+/// Returns the figures of print_recognised_bus: `families` (names), `recognised` (boards with their rates,
+/// uncertain properties), `commands`, and `draft_error`, which is null if there is a draft.
+nlohmann::ordered_json recognised_json(const RecognisedBus& bus);
+
 /// Prints the families with their boards, rates and uncertain properties.
 void print_recognised_bus(std::ostream& out, const RecognisedBus& bus);
 

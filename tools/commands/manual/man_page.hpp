@@ -12,7 +12,7 @@ namespace dfdyn::tools {
 std::vector<const CLI::App*> subcommands(const CLI::App& program);
 
 /// Returns the manual page (roff, section 1) of the program, or of its subcommand `command`, from the help
-/// texts. `version`: such as "dfdyn 0.2.0".
+/// texts. `version`: such as "dfdyn 0.3.0".
 std::string man_page(const CLI::App& program, const CLI::App* command, const std::string& version);
 
 /// Returns a script for bash that completes subcommands, options, values of options that have names, and

@@ -55,13 +55,11 @@ std::vector<Recording> RecordingOptions::read(ReadOptions options) const {
     options.topics = topics;
     std::vector<Recording> recordings = read_recordings(logs, options);
     for (const Recording& recording : recordings) {
-        const bool notes = !quiet();
-        if (notes && &recording == &recordings.front() && !recording.ignored_columns.empty()) {
-            std::cerr << recording.source << ": columns not used: " << listed(recording.ignored_columns)
-                      << '\n';
+        if (&recording == &recordings.front() && !recording.ignored_columns.empty()) {
+            print_note(recording.source + ": columns not used: " + listed(recording.ignored_columns));
         }
-        for (const std::string& note : notes ? recording.notes : std::vector<std::string>{}) {
-            std::cerr << recording.source << ": " << note << '\n';
+        for (const std::string& note : recording.notes) {
+            print_note(recording.source + ": " + note);
         }
         if (recording.skipped.total() > 0) {
             std::cerr << recording.source << ": " << describe(recording.skipped) << '\n';

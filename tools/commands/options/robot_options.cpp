@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/commands/options/robot_options.hpp"
 
+#include "tools/base/system/quiet.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/commands/options/value_checks.hpp"
@@ -8,7 +9,6 @@
 #include "tools/simulation/scenario/scenario.hpp"
 
 #include <cmath>
-#include <iostream>
 
 namespace dfdyn::tools {
 
@@ -58,7 +58,7 @@ Robot RobotOptions::read(OutputKind outputs) const {
     }
     Robot robot = read_robot(urdf, options);
     for (const std::string& note : robot.notes) {
-        std::cerr << shown(urdf) << ": " << note << '\n';
+        print_note(shown(urdf) + ": " + note);
     }
     if (outputs == OutputKind::wrench && !robot.sensor) {
         throw InputError(shown(urdf) + ": expected one F/T sensor at a fixed joint between link " +

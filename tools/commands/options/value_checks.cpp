@@ -48,15 +48,16 @@ std::optional<Number> whole_number(std::string_view text) {
 
 /// Returns the bytes that a unit stands for; 0 if there is no such unit.
 std::uint64_t unit_bytes(const std::string& unit) {
-    constexpr std::array<std::pair<const char*, std::uint64_t>, 9> units{{{"", 1},
-                                                                          {"b", 1},
-                                                                          {"k", 1024},
-                                                                          {"kb", 1024},
-                                                                          {"kib", 1024},
-                                                                          {"m", 1024 * 1024},
-                                                                          {"mb", 1024 * 1024},
-                                                                          {"mib", 1024 * 1024},
-                                                                          {"ki", 1024}}};
+    constexpr std::array<std::pair<const char*, std::uint64_t>, 10> units{{{"", 1},
+                                                                           {"b", 1},
+                                                                           {"k", 1024},
+                                                                           {"kb", 1024},
+                                                                           {"kib", 1024},
+                                                                           {"m", 1024 * 1024},
+                                                                           {"mb", 1024 * 1024},
+                                                                           {"mi", 1024 * 1024},
+                                                                           {"mib", 1024 * 1024},
+                                                                           {"ki", 1024}}};
     const auto found =
         std::ranges::find(units, CLI::detail::to_lower(unit), &std::pair<const char*, std::uint64_t>::first);
     return found == units.end() ? 0 : found->second;

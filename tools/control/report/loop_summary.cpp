@@ -3,6 +3,8 @@
 
 #include "tools/base/text/number.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <string>
 #include <vector>
 
@@ -32,6 +34,8 @@ void print_actions(std::ostream& out, const std::vector<TakenAction>& actions) {
             << described(taken) << '\n';
     }
 }
+
+std::vector<double> values_of(const JointVector& joints) { return {joints.begin(), joints.end()}; }
 
 } // namespace
 
@@ -79,6 +83,58 @@ void print_pace(std::ostream& out, const PaceOutcome& pace) {
     out << "pace: " << pace.counters.ticks << " ticks, " << pace.counters.missed
         << " deadlines missed, at most " << pace.counters.worst_late_ns / ns_per_us
         << " us late, longest tick " << pace.counters.longest_ns / ns_per_us << " us\n";
+}
+
+nlohmann::ordered_json loop_json(const std::string& name, const ControlLoop& loop, const LoopPeaks& peaks) {
+    const LoopCounters& counters = loop.counters();
+    nlohmann::ordered_json json{{"name", name},
+                                {"ticks", counters.ticks},
+                                {"followed_reference", counters.running},
+                                {"coasted", counters.coasted},
+                                {"at_torque_limit", counters.limited},
+                                {"state", dfdyn::tools::name(loop.state())},
+                                {"cause", dfdyn::tools::name(loop.cause())},
+                                {"stopped_by_joint", nullptr},
+                                {"brakes_requested", loop.brake_requested()},
+                                {"limp", loop.limp()},
+                                {"largest_torque_step_nm", values_of(peaks.torque_step())},
+                                {"largest_speed_rad_s", values_of(peaks.speed())},
+                                {"learning", nullptr},
+                                {"actions", nlohmann::ordered_json::array()}};
+    if (loop.cause() >= StopCause::overspeed) {
+        json["stopped_by_joint"] = loop.stopped_by() + 1;
+    }
+    if (const LearnedFeedForward* const learned = loop.feed_forward().learned()) {
+        json["learning"] = {{"samples", learned->counters().samples},
+                            {"learned", learned->counters().learned},
+                            {"refused", learned->counters().faults},
+                            {"multiply_adds_per_tick", learned->tick_cost()}};
+    }
+    for (const TakenAction& taken : loop.actions()) {
+        json["actions"].push_back({{"time_s", taken.time_s},
+                                   {"action", dfdyn::tools::name(taken.action)},
+                                   {"finding", described(taken)}});
+    }
+    return json;
+}
+
+nlohmann::ordered_json port_json(const PortCounters& counters) {
+    return {{"received", counters.received},
+            {"most_in_tick", counters.most_in_tick},
+            {"overfull_ticks", counters.overfull_ticks},
+            {"incomplete_ticks", counters.incomplete},
+            {"ticks_with_joints_missing", counters.held},
+            {"invalid_ticks", counters.invalid},
+            {"clock_jumps", counters.clock_jumps},
+            {"refused_commands", counters.refused}};
+}
+
+nlohmann::ordered_json pace_json(const PaceOutcome& pace) {
+    return {{"ticks", pace.counters.ticks},
+            {"missed", pace.counters.missed},
+            {"worst_late_s", 1e-9 * static_cast<double>(pace.counters.worst_late_ns)},
+            {"longest_tick_s", 1e-9 * static_cast<double>(pace.counters.longest_ns)},
+            {"real_time", pace.not_real_time.empty()}};
 }
 
 } // namespace dfdyn::tools

@@ -4,8 +4,12 @@
 #include "tools/control/bus/loop_port.hpp"
 #include "tools/control/loop/control_loop.hpp"
 #include "tools/control/real_time_run.hpp"
+#include "tools/control/report/loop_peaks.hpp"
+
+#include <nlohmann/json_fwd.hpp>
 
 #include <ostream>
+#include <string>
 
 namespace dfdyn::tools {
 
@@ -15,6 +19,15 @@ void print_loop(std::ostream& out, const ControlLoop& loop);
 
 /// Prints the traffic of the bus and its errors: one line.
 void print_port(std::ostream& out, const PortCounters& counters);
+
+/// Returns the figures of print_loop and print_peaks of the run `name`. Joints count from 1; null: no joint.
+nlohmann::ordered_json loop_json(const std::string& name, const ControlLoop& loop, const LoopPeaks& peaks);
+
+/// Returns the figures of print_port.
+nlohmann::ordered_json port_json(const PortCounters& counters);
+
+/// Returns the figures of print_pace, times in seconds.
+nlohmann::ordered_json pace_json(const PaceOutcome& pace);
 
 /// Prints the timing statistics: one line, after a line with the reason if scheduling was not real-time.
 void print_pace(std::ostream& out, const PaceOutcome& pace);

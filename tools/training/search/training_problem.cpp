@@ -6,6 +6,7 @@
 #include "tools/model/inputs/input_description.hpp"
 #include "tools/training/likelihood/stacked.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -20,6 +21,23 @@ using Eigen::VectorXd;
 constexpr int rows_least = 20;
 constexpr Index structured_betas = 2; // index of the logits of DFSR's poles among its parameters
 
+/// Returns the number and the cost of the gaps for a message; empty without gaps.
+std::string gaps_text(const TrainingData& data) {
+    std::size_t gaps = 0;
+    std::size_t run = 0;
+    std::size_t longest = 0;
+    for (std::size_t row = 0; row < data.gap_before.size(); ++row) {
+        const bool gap = row > 0 && data.gap_before[row] != 0;
+        gaps += gap ? 1 : 0;
+        run = gap ? 1 : run + 1;
+        longest = std::max(longest, run);
+    }
+    return gaps == 0 ? ""
+                     : "; the time steps are not constant: " + std::to_string(gaps) +
+                           " gaps at a sample period of " + rounded_text(1e3 * data.sample_period_s) +
+                           " ms, at most " + std::to_string(longest) + " rows without one";
+}
+
 } // namespace
 
 TrainingRows choose_rows(const TrainingData& data, const TrainingOptions& options) {
@@ -29,7 +47,8 @@ TrainingRows choose_rows(const TrainingData& data, const TrainingOptions& option
     if (split.moving.size() < rows_least) {
         throw InputError("training data: expected at least " + std::to_string(rows_least) +
                          " rows in motion with " + std::to_string(options.lags) +
-                         " rows before them without a gap, found " + std::to_string(split.moving.size()));
+                         " rows before them without a gap, found " + std::to_string(split.moving.size()) +
+                         gaps_text(data));
     }
     rows.moving = split.moving;
     rows.likelihood = likelihood_rows(split, options.likelihood_rows);
