@@ -38,6 +38,8 @@ test_packages=(
     "can-utils:the CAN backend cannot be tested against other programs"
     "python3:the frames of DBC files cannot be read by another program"
     "python3-can:the frames of DBC files cannot be read by another program"
+    "doxygen:the reference of the headers cannot be checked"
+    "debootstrap:the packages cannot be tried on a clean system"
     "iproute2:the CAN backend cannot be tested"
     "kmod:the CAN backend cannot be tested where the kernel has no CAN"
     "user-mode-linux:the CAN backend cannot be tested where the kernel has no CAN"

@@ -137,9 +137,11 @@ std::string table_html(const ReportTable& table) {
     for (std::size_t row = 0; row < table.rows.size(); ++row) {
         body += body_row_html(columns, row);
     }
-    std::string html = "<figure class=\"table\">\n<div class=\"scroll\">\n<table>\n<caption>" +
-                       escape_html(table.caption) + "</caption>\n<thead><tr>" + head +
-                       "</tr></thead>\n<tbody>\n" + body + "</tbody>\n</table>\n</div>\n";
+    const std::string caption = escape_html(table.caption);
+    std::string html =
+        "<figure class=\"table\">\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"" +
+        caption + "\">\n<table>\n<caption>" + caption + "</caption>\n<thead><tr>" + head +
+        "</tr></thead>\n<tbody>\n" + body + "</tbody>\n</table>\n</div>\n";
     if (!table.note.empty()) {
         html += "<figcaption>" + escape_html(table.note) + "</figcaption>\n";
     }

@@ -94,6 +94,24 @@ function handle_wheel(event, chart, range) {
     event.preventDefault();
 }
 
+// A chart with the focus: + and - zoom, the arrows pan, Home shows all.
+function handle_key(event, range) {
+    const length = range.max - range.min;
+    const changes = {
+        "+": [0.25 * length, -0.25 * length],
+        "-": [-0.5 * length, 0.5 * length],
+        ArrowLeft: [-0.2 * length, -0.2 * length],
+        ArrowRight: [0.2 * length, 0.2 * length],
+        Home: [range.whole[0] - range.min, range.whole[1] - range.max],
+    };
+    const change = changes[event.key];
+    if (change === undefined || event.ctrlKey || event.altKey || event.metaKey) {
+        return;
+    }
+    range.show(range.min + change[0], range.max + change[1]);
+    event.preventDefault();
+}
+
 // Touch: one finger moves the cursor, two fingers zoom and pan; a vertical swipe still scrolls the page.
 class TouchGestures {
     constructor(chart, range) {
@@ -151,4 +169,8 @@ class TouchGestures {
 function add_gestures(chart, range) {
     chart.over.addEventListener("wheel", event => handle_wheel(event, chart, range), { passive: false });
     new TouchGestures(chart, range);
+    chart.over.tabIndex = 0;
+    chart.over.setAttribute("role", "application");
+    chart.over.setAttribute("aria-label", "chart: plus and minus zoom, arrows pan, Home shows all");
+    chart.over.addEventListener("keydown", event => handle_key(event, range));
 }

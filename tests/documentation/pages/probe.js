@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Added to a copy of a page by look_at_pages.py: sends what can be seen of the page to its frame as JSON.
+"use strict";
+
+/** Returns [r, g, b, a] of a computed colour. */
+function colourOf(text) {
+  const parts = text.match(/[\d.]+/g).map(Number);
+  return parts.length === 3 ? [...parts, 1] : parts;
+}
+
+/** Returns the relative luminance of a colour (WCAG 2.1). */
+function luminanceOf([red, green, blue]) {
+  const linear = [red, green, blue].map((value) =>
+    value / 255 <= 0.04045 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4);
+  return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
+}
+
+/** Returns the colour of the nearest background that is not transparent. */
+function backgroundOf(element) {
+  for (let at = element; at; at = at.parentElement) {
+    const colour = colourOf(getComputedStyle(at).backgroundColor);
+    if (colour[3] > 0.99) {
+      return colour;
+    }
+  }
+  return [255, 255, 255, 1];
+}
+
+function contrastOf(element) {
+  const style = getComputedStyle(element);
+  const inSvg = element instanceof SVGElement;
+  const text = colourOf(inSvg ? style.fill : style.color);
+  const pair = [luminanceOf(text), luminanceOf(backgroundOf(element))].sort((a, b) => b - a);
+  return (pair[0] + 0.05) / (pair[1] + 0.05);
+}
+
+function describe(element) {
+  return `${element.tagName.toLowerCase()}.${element.getAttribute("class") || ""} "${element.textContent.trim().slice(0, 50)}"`;
+}
+
+/** Returns whether an ancestor shows the rest of the element when scrolled. */
+function isScrolled(element) {
+  for (let at = element.parentElement; at && at !== document.body; at = at.parentElement) {
+    if (["auto", "scroll"].includes(getComputedStyle(at).overflowX) && at.scrollWidth > at.clientWidth) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/** Returns whether the element has text of its own that is shown. */
+function showsText(element) {
+  const own = [...element.childNodes].some((node) => node.nodeType === Node.TEXT_NODE && node.data.trim());
+  return own && element.checkVisibility() && element.getClientRects().length > 0;
+}
+
+/** Returns the charts that do not take the keys that zoom and pan. */
+function stuckCharts() {
+  return [...document.querySelectorAll(".u-over")].filter((over) => {
+    const keys = ["+", "ArrowRight", "-", "Home"].map((key) => new KeyboardEvent("keydown", { key, cancelable: true }));
+    return over.tabIndex < 0 || keys.some((key) => over.dispatchEvent(key));
+  }).map(describe);
+}
+
+function probe() {
+  const width = document.documentElement.clientWidth;
+  const elements = [...document.body.querySelectorAll("*")].filter((one) => !["SCRIPT", "STYLE"].includes(one.tagName));
+  const texts = elements.filter(showsText);
+  const cut = texts.filter((one) => {
+    const box = one.getBoundingClientRect();
+    return (box.right > width + 1 || box.left < -1) && !isScrolled(one);
+  });
+  const clipped = texts.filter((one) => {
+    const style = getComputedStyle(one);
+    return style.overflowX === "hidden" && one.scrollWidth > one.clientWidth + 1;
+  });
+  const controls = [...document.querySelectorAll("a[href], button, summary, input, select, [role=button]")]
+    .filter((one) => one.checkVisibility());
+  const scrollers = elements.filter((one) => ["auto", "scroll"].includes(getComputedStyle(one).overflowX) &&
+    one.scrollWidth > one.clientWidth + 1);
+  const body = getComputedStyle(document.body);
+  parent.postMessage(JSON.stringify({
+    width, innerWidth, pageWidth: document.documentElement.scrollWidth,
+    text: document.body.innerText,
+    cut: cut.map(describe), clipped: clipped.map(describe),
+    faint: texts.filter((one) => contrastOf(one) < 4.5).map((one) => `${describe(one)} ${contrastOf(one).toFixed(2)}`),
+    controls: controls.length,
+    unreachable: controls.filter((one) => one.tabIndex < 0 && !one.disabled).map(describe)
+      .concat(scrollers.filter((one) => one.tabIndex < 0 && !one.querySelector("a, button, input, [tabindex]")).map(describe)),
+    background: luminanceOf(backgroundOf(document.body)), foreground: luminanceOf(colourOf(body.color)),
+    stuck: stuckCharts(),
+    errors: window.probeErrors,
+  }), "*");
+}
+
+addEventListener("load", () => setTimeout(probe, 1000));
