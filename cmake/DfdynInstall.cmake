@@ -13,18 +13,21 @@ install(EXPORT dfdynHalTargets NAMESPACE dfdyn:: DESTINATION "${dfdyn_package_di
 install(
     DIRECTORY firmware_lib/include/ firmware_lib/eigen/include/ hal/include/
     DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/libdfdyn-dev")
 install(DIRECTORY hal/dbc DESTINATION "${CMAKE_INSTALL_DATADIR}/dfdyn")
 if(DFDYN_BUILD_TOOLS)
     install(TARGETS dfdyn COMPONENT program)
-    # Manual pages and completion come from the help texts: the program prints them.
-    install(CODE "
-        set(root \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\")
-        file(MAKE_DIRECTORY \"\${root}/bash-completion/completions\")
-        execute_process(COMMAND \"$<TARGET_FILE:dfdyn>\" man -o \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1\"
-            COMMAND_ERROR_IS_FATAL ANY)
-        execute_process(COMMAND \"$<TARGET_FILE:dfdyn>\" completion bash
-            OUTPUT_FILE \"\${root}/bash-completion/completions/dfdyn\" COMMAND_ERROR_IS_FATAL ANY)"
-        COMPONENT program)
+    # Manual pages and completion come from the help texts: the program prints them, where it can run.
+    if(NOT CMAKE_CROSSCOMPILING)
+        install(CODE "
+            set(root \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\")
+            file(MAKE_DIRECTORY \"\${root}/bash-completion/completions\")
+            execute_process(COMMAND \"$<TARGET_FILE:dfdyn>\" man -o \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1\"
+                COMMAND_ERROR_IS_FATAL ANY)
+            execute_process(COMMAND \"$<TARGET_FILE:dfdyn>\" completion bash
+                OUTPUT_FILE \"\${root}/bash-completion/completions/dfdyn\" COMMAND_ERROR_IS_FATAL ANY)"
+            COMPONENT program)
+    endif()
     install(FILES LICENSE CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/dfdyn" COMPONENT program)
 endif()
 

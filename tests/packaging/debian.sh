@@ -22,6 +22,8 @@ dpkg-deb --field "$scratch"/packages/dfdyn_*.deb Depends | grep -q libc6
 
 [[ $("$root/usr/bin/dfdyn" --version) == "dfdyn $version"* ]]
 test -s "$root/usr/share/man/man1/dfdyn-train.1"
+test -s "$root/usr/share/doc/dfdyn/LICENSE"
+test -s "$root/usr/share/doc/libdfdyn-dev/LICENSE"
 bash -n "$root/usr/share/bash-completion/completions/dfdyn"
 "$root/usr/bin/dfdyn" train --log "$here/../data/ur5_kufieta/Movement_No7_Acc_slow_Verify_Model_short.csv" --rows :1200 \
     --outputs i --features 20 --starts 1 --likelihood-rows 60 --lags 4 --quiet -o "$scratch/model.json" >/dev/null

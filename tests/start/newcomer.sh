@@ -1,9 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# newcomer.sh DFDYN: goes from three recordings, which the demo and the tutorial do not use, to a controller that runs under QEMU. Prints
-# the time and the number of commands for each; both are limited to ten minutes and four commands.
+# newcomer.sh [--full] DFDYN [NAME...]: goes from three recordings, which the demo and the tutorial do not use, or from those NAMEs, to a
+# controller that runs under QEMU. Prints the time and the number of commands for each; both are limited to ten minutes and four commands.
+# --full searches as long as `dfdyn start` does by itself. INSTALL in the environment is a command that installs the program: it runs
+# first and counts.
 set -euo pipefail
+search=(--quick)
+if [[ ${1:-} == --full ]]; then
+    search=()
+    shift
+fi
 dfdyn=$1
+shift
 data=$(cd "$(dirname "${BASH_SOURCE[0]}")/../data" && pwd)
 
 scratch=$(mktemp -d)
@@ -16,19 +24,25 @@ declare -A options=(
     [xl330]="--log $data/xl330_bam/07_sin_time_square_kp200.csv"
     [ur5_singularity_free]="--log $data/ur5_kufieta/Movement_No9_Singularity_Free_NoDist.csv --robot $data/robots/ur5/ur5_robot.urdf --tip ee_link"
 )
+names=("$@")
+[[ ${#names[@]} -gt 0 ]] || names=("${!options[@]}")
 
-for name in "${!options[@]}"; do
+for name in "${names[@]}"; do
     commands=0 begin=$SECONDS
     run() {
+        local start=$SECONDS
         commands=$((commands + 1))
         "$@" >>"$name.txt" 2>&1 || {
             tail -n 30 "$name.txt"
             echo "$name: failed: $*"
             exit 1
         }
+        echo "$name: $((SECONDS - start)) s: $*"
     }
+    read -ra install <<<"${INSTALL:-}"
+    [[ ${#install[@]} -eq 0 ]] || run "${install[@]}"
     read -ra words <<<"${options[$name]}"
-    run "$dfdyn" start "${words[@]}" --quick -o "$name"
+    run "$dfdyn" start "${words[@]}" "${search[@]}" -o "$name"
     run cmake -S "$name" -B "$name/build" -DCMAKE_TOOLCHAIN_FILE=cmake/cortex-m.cmake -DDFDYN_CORE=cortex-m7
     run cmake --build "$name/build" --target run
     grep -q '^predictions as of dfdyn replay' "$name.txt"
