@@ -64,7 +64,10 @@ void refuse(bool wrong, const char* message) {
 
 void check_usage(const ReplayOptions& options) {
     const bool bus = !options.bus.empty();
-    refuse(options.recordings.logs.empty() == !options.live(), "expected --log or --can, one of them");
+    if (options.recordings.logs.empty() != options.live()) {
+        throw InputError("replay: expected one of --log and --can, found " +
+                         std::string(options.live() ? "both" : "none"));
+    }
     refuse(options.live() && !bus, "--can: expected --bus with the devices on it, found none");
     refuse(bus && options.recordings.has_choice(),
            "--rows, --skip-bad-rows, --columns, --units, --topic: expected a CSV recording, found --bus");

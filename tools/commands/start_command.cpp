@@ -86,17 +86,20 @@ Arm read_arm(const StartOptions& options) {
         arm.recordings = read_as(options, arm.robot, arm.outputs);
         return arm;
     }
-    std::string first_failure;
+    std::string first_missing;
+    std::string first_failure; ///< of a recording that has the columns
     for (const OutputKind kind : {OutputKind::joint_torque, OutputKind::motor_current, OutputKind::wrench}) {
         try {
             arm.recordings = read_as(options, arm.robot, kind);
             arm.outputs = kind;
             return arm;
+        } catch (const MissingColumns& failure) {
+            first_missing = first_missing.empty() ? failure.what() : first_missing;
         } catch (const InputError& failure) {
             first_failure = first_failure.empty() ? failure.what() : first_failure;
         }
     }
-    throw InputError(first_failure);
+    throw InputError(first_failure.empty() ? first_missing : first_failure);
 }
 
 /// Throws InputError if gaps leave no complete windows to train on, before the diagnosis takes its time.
@@ -266,10 +269,11 @@ int run(StartOptions options) {
     const SplitRecordings split = split_recordings(arm.recordings, training_share);
     FolderContent files;
     std::vector<Candidate> candidates;
+    candidates.push_back(
+        train_network(arm, split, options)); // first: it finds out at once whether the budget is too small
     if (arm.robot) {
         diagnose_robot(arm, split, options, files, candidates);
     }
-    candidates.push_back(train_network(arm, split, options));
     const Candidate& chosen = choose(candidates, split, options.sizes.budget());
     TrainedModel model = chosen.model;
     describe_training(model, arm, options);

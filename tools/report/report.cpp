@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
@@ -117,6 +118,77 @@ void add_annotations(json& data, const Report& report) {
     }
 }
 
+/// Adds the ticks first..last-1 at which the output or its error is extreme.
+void add_extremes(const ReportSeries& series, std::size_t first, std::size_t last,
+                  std::vector<std::size_t>& kept) {
+    std::size_t least = first;
+    std::size_t most = first;
+    std::size_t worst = first;
+    const auto error = [&](std::size_t tick) {
+        const float value = std::abs(series.measured[tick] - series.predicted[tick]);
+        return std::isfinite(value) ? value : -1.0F;
+    };
+    for (std::size_t tick = first; tick < last; ++tick) {
+        least = series.measured[tick] < series.measured[least] ? tick : least;
+        most = series.measured[tick] > series.measured[most] ? tick : most;
+        worst = error(tick) > error(worst) ? tick : worst;
+    }
+    kept.insert(kept.end(), {least, most, worst});
+}
+
+/// Returns the ticks that the page has, ascending: all, or at most `most_report_ticks`.
+std::vector<std::size_t> kept_ticks(const Report& report) {
+    const std::size_t ticks = report.time_s.size();
+    const std::size_t per_stretch = 1 + 3 * report.series.size(); // its first tick, and add_extremes()
+    const std::size_t stretches = ticks > most_report_ticks ? most_report_ticks / per_stretch : ticks;
+    std::vector<std::size_t> kept;
+    for (std::size_t stretch = 0; stretch < stretches; ++stretch) {
+        const std::size_t first = stretch * ticks / stretches;
+        const std::size_t last = (stretch + 1) * ticks / stretches;
+        kept.push_back(first);
+        if (last - first > 1) {
+            for (const ReportSeries& series : report.series) {
+                add_extremes(series, first, last, kept);
+            }
+        }
+    }
+    std::ranges::sort(kept);
+    kept.erase(std::ranges::unique(kept).begin(), kept.end());
+    return kept;
+}
+
+template <class Value>
+std::vector<Value> at_ticks(const std::vector<Value>& values, const std::vector<std::size_t>& ticks) {
+    std::vector<Value> kept;
+    kept.reserve(ticks.size());
+    for (const std::size_t tick : ticks) {
+        kept.push_back(values[tick]);
+    }
+    return kept;
+}
+
+/// Returns the report with the curves at the ticks that the page has.
+Report thinned(Report report) {
+    const std::size_t ticks = report.time_s.size();
+    const std::vector<std::size_t> kept = kept_ticks(report);
+    if (kept.size() == ticks) {
+        return report;
+    }
+    report.time_s = at_ticks(report.time_s, kept);
+    for (ReportSeries& series : report.series) {
+        series.measured = at_ticks(series.measured, kept);
+        series.predicted = at_ticks(series.predicted, kept);
+        series.standard_deviation = at_ticks(series.standard_deviation, kept);
+    }
+    if (report.innovation) {
+        report.innovation->normalised_squared = at_ticks(report.innovation->normalised_squared, kept);
+    }
+    report.facts.push_back({"Curves", "the extremes among " + std::to_string(ticks) +
+                                          " ticks: " + std::to_string(kept.size()) +
+                                          " ticks; dfdyn replay -o writes all as CSV"});
+    return report;
+}
+
 /// Data for the page's script; arrays in base64: see base64_floats and, for time_s, base64_doubles.
 json page_data(const Report& report) {
     json data = {{"time_s", base64_doubles(report.time_s)},
@@ -161,12 +233,13 @@ std::string render_report(const Report& report) {
     check_innovation(report);
     check_annotations(report);
     check_tables(report.tables);
+    const Report page = thinned(report);
     return fill_page(assets::report_html,
                      {{"title", escape_html(report.title)},
                       {"summary", escape_html(report.summary)},
                       {"tables", tables_html(report.tables)},
-                      {"facts", facts_html(report.facts)},
-                      {"data", script_json(page_data(report))},
+                      {"facts", facts_html(page.facts)},
+                      {"data", script_json(page_data(page))},
                       {"style", std::string{assets::report_css}.append(assets::report_charts_css)},
                       {"script", page_script()},
                       {"uplot_style", std::string{assets::uplot_css}},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <variant>
@@ -79,9 +80,14 @@ struct Report {
     std::vector<ReportRecording> recordings; ///< in order of start_s
 };
 
+/// Ticks of the curves in a page, at most: stretches shorter than a pixel of a large screen.
+constexpr std::size_t most_report_ticks = 60'000;
+
 /// Returns the report as one HTML page without external files or network access. Throws std::invalid_argument
-/// with the field's name if lengths or times violate the contracts above. Size and cost O(ticks * series):
-/// about 16 bytes per tick and output, and 150 kB for the page itself.
+/// with the field's name if lengths or times violate the contracts above. Cost O(ticks * series). Of more
+/// than `most_report_ticks` ticks the page has those with the extremes of each output and of its error, in
+/// stretches of equal length, and says so: at most about 16 bytes per kept tick and output, and 150 kB for
+/// the page itself.
 std::string render_report(const Report& report);
 
 } // namespace dfdyn::tools

@@ -124,7 +124,9 @@ bool fits(const ModelNeeds& needs, const TargetBudget& budget) {
 std::string to_text(const TargetBudget& budget) {
     constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max();
     const auto kib = [](std::int64_t bytes) {
-        return bytes == unlimited ? "unlimited" : number_text(static_cast<double>(bytes) / 1024) + " KiB";
+        return bytes == unlimited ? "unlimited"
+               : bytes < 1024     ? std::to_string(bytes) + (bytes == 1 ? " byte" : " bytes")
+                                  : number_text(static_cast<double>(bytes) / 1024) + " KiB";
     };
     return "flash " + kib(budget.flash_bytes) + ", RAM " + kib(budget.ram_bytes) + ", " +
            (budget.tick_operations == unlimited ? "unlimited" : std::to_string(budget.tick_operations)) +

@@ -120,6 +120,17 @@ TEST_CASE("buscheck --json has the figures of its text") {
     CHECK(json.at("recognised").at(0).at("boards").at(0).at("positions_hz") > 0);
 }
 
+TEST_CASE("a recording may come from a pipe of the shell") {
+    const TemporaryDirectory directory;
+    const std::string in = directory.path().string();
+    const std::string piped =
+        "--version; cat " + std::string(log_file) + " | " + DFDYN_PROGRAM +
+        " train --log /dev/stdin --outputs i --features 20 --starts 1 --likelihood-rows 60 "
+        "--lags 4 --rows 0:1200 --quiet -o " +
+        in + "/m.json";
+    CHECK(run_program(directory, piped).status == 0);
+}
+
 TEST_CASE("a budget has the usual units") {
     const TemporaryDirectory directory;
     const std::string in = directory.path().string();

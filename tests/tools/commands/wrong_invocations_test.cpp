@@ -66,6 +66,7 @@ void write_files(const TemporaryDirectory& folder) {
         {"inf.csv", "t,q1,i1\n0,1,2\n0.1,inf,3\n"},
         {"ragged.csv", "t,q1,i1\n0,1,2\n0.1,3\n"},
         {"back.csv", "t,q1,i1\n0,1,2\n-1,1,2\n"},
+        {"broken.csv", "t,q1,i1\n0,1,2\n0.01,1 2,3\n"},
         {"text.csv", "hello world\nthis is no csv\n"},
         {"noq.csv", "t,x,y\n0,1,2\n1,2,3\n"},
         {"dup.csv", "t,q1,q1,i1\n0,1,2,3\n1,1,2,3\n"},

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -252,6 +253,30 @@ TEST_CASE("a report of 15 000 ticks and 6 outputs stays below 3 MB") {
     report.series.assign(6, {"i", "A", values, values, values});
     report.innovation = {values, 16.8, "99 %"};
     CHECK(tools::render_report(report).size() < 3'000'000);
+}
+
+TEST_CASE("a report of a million ticks is thinned and keeps the extremes") {
+    Report report;
+    for (int tick = 0; tick < 1'000'000; ++tick) {
+        report.time_s.push_back(0.001 * tick);
+    }
+    const std::vector<float> values(report.time_s.size(), 1.0F);
+    report.series.assign(2, {"i", "A", values, values, values});
+    report.series[1].measured[345'678] = 7.0F;
+    report.series[0].predicted[765'432] = -9.0F; // an extreme of the error alone
+    const std::string page = tools::render_report(report);
+    CHECK(page.size() < 4'000'000);
+    CHECK_THAT(page, ContainsSubstring("<span>1000000</span>"));
+    const json data = data_of(page);
+    const auto time_s = numbers_in<double>(data["time_s"]);
+    CHECK(time_s.size() <= tools::most_report_ticks);
+    CHECK(time_s.size() > tools::most_report_ticks / 10);
+    const auto measured = numbers_in<float>(data["series"][1]["measured"]);
+    const auto predicted = numbers_in<float>(data["series"][0]["predicted"]);
+    CHECK(time_s.at(static_cast<std::size_t>(std::ranges::find(measured, 7.0F) - measured.begin())) ==
+          report.time_s[345'678]);
+    CHECK(time_s.at(static_cast<std::size_t>(std::ranges::find(predicted, -9.0F) - predicted.begin())) ==
+          report.time_s[765'432]);
 }
 
 } // namespace report_test

@@ -13,4 +13,10 @@ class InputError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// A recording without the columns that were asked for; others may be there.
+class MissingColumns : public InputError {
+  public:
+    using InputError::InputError;
+};
+
 } // namespace dfdyn::tools

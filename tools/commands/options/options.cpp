@@ -10,6 +10,17 @@
 
 namespace dfdyn::tools {
 
+namespace {
+
+/// Returns the path with its links followed, as far as it leads to files: a pipe of the shell has no place.
+std::filesystem::path place_of(const std::filesystem::path& path) {
+    std::error_code without_place;
+    const std::filesystem::path place = std::filesystem::weakly_canonical(path, without_place);
+    return without_place ? path : place;
+}
+
+} // namespace
+
 void RecordingOptions::add_to(CLI::App& command) {
     command
         .add_option("--log", logs,
@@ -75,7 +86,7 @@ void check_distinct(const std::vector<std::filesystem::path>& outputs,
             continue;
         }
         for (const std::filesystem::path& other : inputs) {
-            if (std::filesystem::weakly_canonical(output) == std::filesystem::weakly_canonical(other)) {
+            if (place_of(output) == place_of(other)) {
                 throw InputError(shown(output) +
                                  ": expected a file of its own, found one that another option names");
             }

@@ -70,7 +70,11 @@ std::string count_message(const CLI::Option& option, const std::string& refusal)
 std::string option_message(const CLI::App& command, const CLI::ParseError& failure) {
     const std::vector<const CLI::Option*> named = named_options(command, failure.what());
     if (named.empty()) {
-        return failure.what();
+        const std::string what = failure.what();
+        const std::string required = " is required"; // a value without an option
+        return what.ends_with(required)
+                   ? "expected " + what.substr(0, what.size() - required.size()) + ", found none"
+                   : what;
     }
     const CLI::Option& first = *named.front();
     if (dynamic_cast<const CLI::RequiredError*>(&failure) != nullptr) {

@@ -12,6 +12,9 @@ function element(name, class_name, ...children) {
     return node;
 }
 
+// Times of recordings from here on are seconds since 1970 (this one is in 2001), and shown as dates.
+const first_date_s = 1e9;
+
 // A key of the legend with the value under the cursor beside it.
 function legend_key(kind, text) {
     const value = element("span", "value");
@@ -136,8 +139,13 @@ class Page {
         const seconds = value => `${signed_text(value.toFixed(this.time_decimals))} s`;
         const parts = [`t = ${seconds(t)}`];
         const recording = this.report.recordings.filter(each => each.start_s <= t).pop();
-        if (this.report.recordings.length > 1 && recording !== undefined) {
-            parts.push(`${recording.name} at ${seconds(recording.first_t_s + t - recording.start_s)}`);
+        if (recording !== undefined) {
+            const own = recording.first_t_s + t - recording.start_s;
+            if (own > first_date_s) {
+                parts.push(`${recording.name}, ${new Date(1e3 * own).toISOString().replace("T", " ").replace("Z", " UTC")}`);
+            } else if (this.report.recordings.length > 1) {
+                parts.push(`${recording.name} at ${seconds(own)}`);
+            }
         }
         const around = this.report.intervals.filter(each => each.start_s <= t && t <= each.end_s);
         return parts.concat(around.map(each => each.label)).join("  ·  ");

@@ -129,9 +129,10 @@ class Builder {
         std::copy_if(names.begin(), names.end(), std::back_inserter(missing),
                      [this](const std::string& name) { return !index_.contains(name); });
         if (!missing.empty()) {
-            throw InputError(where_ + ": expected columns " + listed(names) + ", found no " +
-                             listed(missing) + nearest(missing, names) + "; the header has " +
-                             listed(labels(header_.columns)) + " (--columns assigns columns to quantities)");
+            throw MissingColumns(where_ + ": expected columns " + listed(names) + ", found no " +
+                                 listed(missing) + nearest(missing, names) + "; the header has " +
+                                 listed(labels(header_.columns)) +
+                                 " (--columns assigns columns to quantities)");
         }
     }
 
