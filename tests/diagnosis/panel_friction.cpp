@@ -127,7 +127,7 @@ DrawnEffect drift(const EffectDraw& of, Eigen::Index joint) {
         friction.hide(level, scenario);
         friction_of(scenario, joint).drift_per_s = sign * size;
     };
-    effect.parameters = [sign](double size) { return EffectParameters{{"drift", sign * size}}; };
+    effect.parameters = [sign](double size) { return EffectParameters{{"rate", sign * size}}; };
     effect.guess = change / duration;
     effect.largest = sign < 0 ? 0.95 / duration : 4 / duration;
     effect.drifting_joint = joint;

@@ -84,7 +84,7 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
         measure_from(work, 0, work.explanation); // without effects
         return work;
     }
-    ExplanationOptions how{gains_known, 1, options.progress};
+    ExplanationOptions how{gains_known, 1, options.progress, options.effects};
     work.explanation = explain(*signals, work.measured, how);
     work.rest = work.measured - signals->nominal - work.explanation.all(*signals);
     work.pushes = standing_contacts(*signals, work.explanation, work.measured, work.rest);

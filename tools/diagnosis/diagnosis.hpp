@@ -14,6 +14,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -107,6 +108,7 @@ struct DiagnosisOptions {
     bool measure = true;     ///< whether to measure the held-out error, which doubles the run time
     bool check_setup = true; ///< false: continues even if units, clock, columns or signs look wrong
     std::function<void(int round)> progress = {};
+    std::span<const Effect> effects = effect_catalogue(); ///< that can be named
 };
 
 /// All intermediate results of a diagnosis, for the report and the extended model.

@@ -32,14 +32,15 @@ std::size_t count_of(Each each, const DiagnosisSignals& signals) {
     return 0;
 }
 
-/// Returns the candidates of all effects at all their places. `make` returns those of one effect at one
+/// Returns the candidates of the effects at all their places. `make` returns those of one effect at one
 /// place.
 template <class Make>
-std::vector<Candidate> candidates_by(const DiagnosisSignals& signals, const Make& make) {
+std::vector<Candidate> candidates_by(const DiagnosisSignals& signals, std::span<const Effect> effects,
+                                     const Make& make) {
     std::vector<Candidate> result;
     for (const Each each : places) {
         for (std::size_t number = 0; number < count_of(each, signals); ++number) {
-            for (const Effect& effect : effect_catalogue()) {
+            for (const Effect& effect : effects) {
                 if (effect.each != each) {
                     continue;
                 }
@@ -107,14 +108,15 @@ bool has_trait(const std::string& effect, bool Effect::*trait) {
     return found != nullptr && found->*trait;
 }
 
-std::vector<Candidate> lasting_candidates(const DiagnosisSignals& signals) {
-    return candidates_by(signals, [&](const Effect& effect, std::size_t number) {
+std::vector<Candidate> lasting_candidates(const DiagnosisSignals& signals, std::span<const Effect> effects) {
+    return candidates_by(signals, effects, [&](const Effect& effect, std::size_t number) {
         return effect.candidates == nullptr ? std::vector<Candidate>() : effect.candidates(signals, number);
     });
 }
 
-std::vector<Candidate> fitted_candidates(const DiagnosisSignals& signals, const FittedModel& model) {
-    return candidates_by(signals, [&](const Effect& effect, std::size_t number) {
+std::vector<Candidate> fitted_candidates(const DiagnosisSignals& signals, const FittedModel& model,
+                                         std::span<const Effect> effects) {
+    return candidates_by(signals, effects, [&](const Effect& effect, std::size_t number) {
         return effect.fitted_candidates == nullptr ? std::vector<Candidate>()
                                                    : effect.fitted_candidates(signals, model, number);
     });

@@ -3,6 +3,7 @@
 
 #include "tools/diagnosis/effects/effect.hpp"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -52,10 +53,12 @@ const Effect& effect_named(const std::string& name);
 /// Returns the trait of the effect with this name, or false for an unknown name.
 bool has_trait(const std::string& effect, bool Effect::*trait);
 
-/// Returns the candidates that do not depend on a fitted model.
-std::vector<Candidate> lasting_candidates(const DiagnosisSignals& signals);
+/// Returns the candidates of `effects` that do not depend on a fitted model.
+std::vector<Candidate> lasting_candidates(const DiagnosisSignals& signals,
+                                          std::span<const Effect> effects = effect_catalogue());
 
-/// Returns the candidates that depend on a fitted model: gains, delays, drifts, crosstalk.
-std::vector<Candidate> fitted_candidates(const DiagnosisSignals& signals, const FittedModel& model);
+/// Returns the candidates of `effects` that depend on a fitted model: gains, delays, drifts, crosstalk.
+std::vector<Candidate> fitted_candidates(const DiagnosisSignals& signals, const FittedModel& model,
+                                         std::span<const Effect> effects = effect_catalogue());
 
 } // namespace dfdyn::tools

@@ -61,12 +61,12 @@ class Search {
         : signals_(signals), options_(options), rows_(signals.measured),
           regression_(rows_, measured - signals.nominal, rows_.frames_within(options.fitted_share)) {
         add_nuisance();
-        for (Candidate& candidate : lasting_candidates(signals_)) {
+        for (Candidate& candidate : lasting_candidates(signals_, options_.effects)) {
             if (visible(signals_, candidate)) {
                 lasting_.emplace_back(rows_, std::move(candidate));
             }
         }
-        for (const Effect& effect : effect_catalogue()) {
+        for (const Effect& effect : options_.effects) {
             if (effect.scan != nullptr) {
                 scans_.push_back({&effect, effect.scan(signals_, rows_)});
             }
@@ -189,7 +189,7 @@ std::vector<CandidateEntry> Search::passing() const {
             }
         }
     };
-    add(fitted_candidates(signals_, fitted_model()));
+    add(fitted_candidates(signals_, fitted_model(), options_.effects));
     for (std::size_t i = 0; i < at_.chosen.size(); ++i) {
         const Candidate& chosen = at_.candidates[at_.chosen[i].candidate];
         if (chosen.about) {

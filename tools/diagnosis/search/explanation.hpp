@@ -3,10 +3,12 @@
 
 #include "tools/diagnosis/candidates/candidate.hpp"
 #include "tools/diagnosis/candidates/effect_regression.hpp"
+#include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/search/effect_search.hpp"
 #include "tools/diagnosis/signals/signals.hpp"
 
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -15,6 +17,7 @@ struct ExplanationOptions {
     bool gains_known = true; ///< false: every joint has an unknown gain, which is a nuisance parameter
     double fitted_share = 1; ///< of the recording's time, from its beginning; the rest is held out
     std::function<void(int round)> progress = {};
+    std::span<const Effect> effects = effect_catalogue(); ///< that can be named; must outlive the search
 };
 
 /// Model of the difference between a measurement and the rigid body.
