@@ -4,6 +4,7 @@
 #include "tools/diagnosis/verdict/extension_errors.hpp"
 #include "tools/diagnosis/verdict/findings.hpp"
 #include "tools/diagnosis/verdict/granted.hpp"
+#include "tools/diagnosis/verdict/joint_units.hpp"
 #include "tools/diagnosis/verdict/plausibility.hpp"
 #include "tools/diagnosis/verdict/unexplained.hpp"
 #include "tools/setup_check/setup_check.hpp"
@@ -66,6 +67,7 @@ bool suspect(Diagnosis& diagnosis, std::vector<Suspicion> suspicions) {
 DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const DiagnosisOptions& options) {
     DiagnosisWork work;
     work.diagnosis.output_names = recording.output.names;
+    set_output_units(work.diagnosis, robot, options.outputs);
     if (options.check_setup && suspect(work.diagnosis, suspicions_of_setup(robot, recording, options))) {
         return work;
     }
@@ -94,6 +96,7 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     work.diagnosis.findings =
         findings_of(*signals, work.explanation, work.pushes, work.rest, work.diagnosis.output_names);
     work.diagnosis.granted = granted_quantities(*signals, work.explanation, work.torque_gains);
+    use_units_of_joints(work.diagnosis, robot);
     work.diagnosis.unexplained = unnamed_dependences(*signals, work.measured, work.explanation);
     add_rest(work.diagnosis.unexplained,
              unexplained_rest(*signals, work.measured, work.rest, work.explanation.noise));

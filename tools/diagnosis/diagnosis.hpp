@@ -82,6 +82,8 @@ struct ErrorMeasure {
 /// Result of comparing a recording with a robot's model. Interfaces: diagnosis.json.
 struct Diagnosis {
     std::vector<std::string> output_names;
+    std::vector<std::string> output_units; ///< as measured: A, N·m or N
+    std::vector<std::string> torque_units; ///< of the causes' contributions to the outputs: N·m or N
     std::vector<Suspicion> suspicions;
     /// On the held-out time, or over the whole recording without one; of the samples as measured.
     ErrorMeasure nominal, extended;

@@ -36,7 +36,7 @@ std::vector<Candidate> load_friction_candidates(const DiagnosisSignals& signals,
 ExplainingVariable over_driven_load(const PlottedFinding& at) {
     const Eigen::ArrayXd velocity = at.signals.measured.motion.velocity.col(at.joint());
     const Eigen::ArrayXd load = at.signals.joint_torque.col(at.joint());
-    return at.whole(at.named("|torque| with the sign of the velocity") + " (N·m)",
+    return at.whole(at.named("|torque| with the sign of the velocity", "N·m"),
                     (load.abs() * velocity.sign()).matrix());
 }
 

@@ -48,7 +48,7 @@ ExplainingVariable over_travel(const PlottedFinding& at) {
     constexpr double reach = 6; // multiple of the distance over which the friction builds up
     const double distance =
         at.parameter(break_away.name) / std::max(1e-9, at.parameter(presliding_stiffness.name));
-    return at.whole(at.named("travel since its last reversal") + " (rad)",
+    return at.whole(at.named("travel since its last reversal", "rad"),
                     travel.cwiseMax(-reach * distance).cwiseMin(reach * distance));
 }
 

@@ -25,7 +25,7 @@ Effect effects::rotor_inertia() {
                 },
             .plotted_over =
                 [](const PlottedFinding& at) {
-                    return at.whole(at.named("acceleration") + " (rad/s²)",
+                    return at.whole(at.named("acceleration", "rad/s²"),
                                     at.signals.measured.motion.acceleration.col(at.joint()));
                 },
             .extend =

@@ -50,7 +50,7 @@ std::string errors_sentence(const DiagnosisCase& one) {
         .append(" (")
         .append(rounded_text(diagnosis.nominal.rms[worst]))
         .append(" ")
-        .append(output_unit(name))
+        .append(diagnosis.output_units[static_cast<std::size_t>(worst)])
         .append(" rms).");
 }
 
@@ -144,7 +144,7 @@ ReportTable error_table(const Diagnosis& diagnosis) {
                      : std::string("Over the whole recording, which the extended model was fitted to.");
     for (std::size_t k = 0; k < diagnosis.output_names.size(); ++k) {
         const auto row = static_cast<Eigen::Index>(k);
-        table.rows.push_back({diagnosis.output_names[k], output_unit(diagnosis.output_names[k]),
+        table.rows.push_back({diagnosis.output_names[k], diagnosis.output_units[k],
                               diagnosis.nominal.rms[row], percent(diagnosis.nominal.nrmse[row]),
                               diagnosis.extended.rms[row], percent(diagnosis.extended.nrmse[row]),
                               percent(diagnosis.least_squares.nrmse[row])});

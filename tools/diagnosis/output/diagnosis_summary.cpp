@@ -56,19 +56,20 @@ void print_errors(std::ostream& out, const Diagnosis& diagnosis) {
         show(diagnosis.nominal);
         out << "  ->";
         show(diagnosis.extended);
-        out << ' ' << output_unit(diagnosis.output_names[k]) << while_moving(diagnosis, row)
-            << "; plain least squares " << percent(diagnosis.least_squares.nrmse[row]) << '\n';
+        out << ' ' << diagnosis.output_units[k] << while_moving(diagnosis, row) << "; plain least squares "
+            << percent(diagnosis.least_squares.nrmse[row]) << '\n';
     }
 }
 
 void print_finding(std::ostream& out, const Diagnosis& diagnosis, const Finding& finding) {
-    const std::string& output = diagnosis.output_names[static_cast<std::size_t>(finding.output)];
+    const auto index = static_cast<std::size_t>(finding.output);
+    const std::string& output = diagnosis.output_names[index];
     out << "  " << std::setw(6) << confidence_text(finding.confidence) << "  " << cause_words(finding)
         << ": ";
     const std::string parameter = main_parameter_words(finding);
     out << parameter << (parameter.empty() ? "" : ", ");
     out << output << " error " << rounded_text(finding.rms_before) << " -> "
-        << rounded_text(finding.rms_after) << (output.front() == 'f' ? " N" : " N·m") << '\n';
+        << rounded_text(finding.rms_after) << ' ' << diagnosis.torque_units[index] << '\n';
     if (!finding.indistinguishable.empty()) {
         out << "        this motion hardly tells it from: ";
         for (std::size_t i = 0; i < finding.indistinguishable.size(); ++i) {

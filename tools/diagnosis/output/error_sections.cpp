@@ -104,9 +104,10 @@ ReportTable rest_table(const DiagnosisWork& work, const Eigen::MatrixXd& rest) {
                  "Autocorrelation 0: white; near 1: slow, so that something is still to be named.";
     const Eigen::MatrixXd measured = in_output_units(work, work.measured);
     for (Eigen::Index output = 0; output < rest.cols(); ++output) {
-        const std::string& name = work.diagnosis.output_names[static_cast<std::size_t>(output)];
+        const auto index = static_cast<std::size_t>(output);
         const Eigen::VectorXd centred = measured.col(output).array() - measured.col(output).mean();
-        table.rows.push_back({name, output_unit(name), root_mean_square(rest.col(output)),
+        table.rows.push_back({work.diagnosis.output_names[index], work.diagnosis.output_units[index],
+                              root_mean_square(rest.col(output)),
                               root_mean_square(rest.col(output)) / std::max(root_mean_square(centred), 1e-12),
                               autocorrelation(*work.signals, rest.col(output))});
     }
@@ -142,14 +143,15 @@ PageSection comparison_section(const DiagnosisWork& work) {
     const Eigen::MatrixXd extended = nominal + in_output_units(work, work.explanation.model(*work.signals));
     for (Eigen::Index output = 0; output < measured.cols(); ++output) {
         const std::string& name = work.diagnosis.output_names[static_cast<std::size_t>(output)];
-        XyChart chart{name, "time (s)", std::string(name).append(" (").append(output_unit(name)).append(")")};
+        const std::string& unit = work.diagnosis.output_units[static_cast<std::size_t>(output)];
+        XyChart chart{name, "time (s)", std::string(name).append(" (").append(unit).append(")")};
         chart.height = 220;
         chart.reference = over_time(work, "measured", measured.col(output), rows);
         chart.lines = {over_time(work, "simulated", nominal.col(output), rows),
                        over_time(work, "extended", extended.col(output), rows)};
         section.charts.push_back({"outputs_" + name, name, xy_chart(chart)});
         XyChart error{std::string("error of ").append(name), "time (s)",
-                      std::string("error (").append(output_unit(name)).append(")")};
+                      std::string("error (").append(unit).append(")")};
         error.height = 220;
         error.lines = {over_time(work, "of the simulated", measured.col(output) - nominal.col(output), rows),
                        over_time(work, "of the extended", measured.col(output) - extended.col(output), rows)};
@@ -173,11 +175,12 @@ PageSection rest_section(const DiagnosisWork& work) {
     const SpectralRows rows(work.signals->measured);
     for (Eigen::Index output = 0; output < rest.cols(); ++output) {
         const std::string& name = work.diagnosis.output_names[static_cast<std::size_t>(output)];
+        const std::string& unit = work.diagnosis.output_units[static_cast<std::size_t>(output)];
         const ChartCurve left = spectrum(rows, "left by the extended", rest, output);
         section.charts.push_back(
             {"spectrum_" + name, name,
              curve_chart(std::string("spectrum of the error of ").append(name), "frequency (Hz)",
-                         std::string("per bin (").append(output_unit(name)).append(")"),
+                         std::string("per bin (").append(unit).append(")"),
                          {white_level(left), spectrum(rows, "of the simulated", nominal, output), left})});
     }
     return section;

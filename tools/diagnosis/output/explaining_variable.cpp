@@ -2,6 +2,7 @@
 #include "tools/diagnosis/output/explaining_variable.hpp"
 
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/verdict/joint_units.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +15,14 @@ Eigen::Index PlottedFinding::joint() const {
     return digits == std::string::npos ? 0 : std::stol(finding.where.substr(digits)) - 1;
 }
 
-std::string PlottedFinding::named(const char* what) const {
-    return std::string(what).append(" of joint ").append(std::to_string(joint() + 1));
+std::string PlottedFinding::named(const char* what, const char* unit) const {
+    const bool prismatic = signals.robot.joints[static_cast<std::size_t>(joint())].prismatic;
+    return std::string(what)
+        .append(" of joint ")
+        .append(std::to_string(joint() + 1))
+        .append(" (")
+        .append(unit_at_joint(unit, prismatic))
+        .append(")");
 }
 
 double PlottedFinding::parameter(const char* name) const {
@@ -28,11 +35,11 @@ ExplainingVariable PlottedFinding::whole(std::string label, Eigen::VectorXd valu
 }
 
 ExplainingVariable over_velocity(const PlottedFinding& at) {
-    return at.whole(at.named("velocity") + " (rad/s)", at.signals.measured.motion.velocity.col(at.joint()));
+    return at.whole(at.named("velocity", "rad/s"), at.signals.measured.motion.velocity.col(at.joint()));
 }
 
 ExplainingVariable over_position(const PlottedFinding& at) {
-    return at.whole(at.named("position") + " (rad)", at.signals.measured.motion.position.col(at.joint()));
+    return at.whole(at.named("position", "rad"), at.signals.measured.motion.position.col(at.joint()));
 }
 
 ExplainingVariable over_time(const PlottedFinding& at) {
@@ -42,7 +49,7 @@ ExplainingVariable over_time(const PlottedFinding& at) {
 }
 
 ExplainingVariable over_load(const PlottedFinding& at) {
-    return at.whole(at.named("rigid-body torque") + " (N·m)", at.signals.joint_torque.col(at.joint()));
+    return at.whole(at.named("rigid-body torque", "N·m"), at.signals.joint_torque.col(at.joint()));
 }
 
 ExplainingVariable over_angle(const PlottedFinding& at) {
@@ -52,10 +59,10 @@ ExplainingVariable over_angle(const PlottedFinding& at) {
     const double period = cycles > most_waves ? full_turn / cycles : full_turn;
     const Eigen::ArrayXd position = at.signals.measured.motion.position.col(at.joint());
     if (position.maxCoeff() - position.minCoeff() < period) {
-        return at.whole(at.named("angle") + " (rad)", position.matrix());
+        return at.whole(at.named("angle", "rad"), position.matrix());
     }
     const char* const within = cycles > most_waves ? "angle within one wave" : "angle within one turn";
-    return at.whole(at.named(within) + " (rad)", (position - period * (position / period).floor()).matrix());
+    return at.whole(at.named(within, "rad"), (position - period * (position / period).floor()).matrix());
 }
 
 ExplainingVariable over_output(const PlottedFinding& at) {

@@ -25,8 +25,9 @@ struct PlottedFinding {
     const Finding& finding;
     const Eigen::VectorXd& share; ///< T: contribution to its output
 
-    Eigen::Index joint() const;                ///< index of `jointK`, from 0
-    std::string named(const char* what) const; ///< `velocity of joint 2`
+    Eigen::Index joint() const;                                  ///< index of `jointK`, from 0
+    /// Returns `velocity of joint 2 (rad/s)`. `unit`: at a revolute joint.
+    std::string named(const char* what, const char* unit) const;
     /// value of a parameter; 0 if the finding has none with this name
     double parameter(const char* name) const;
     /// Returns the abscissa `value` (T) with all rows.

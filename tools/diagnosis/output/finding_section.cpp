@@ -18,7 +18,7 @@ constexpr std::size_t bins = 24;
 constexpr std::size_t curve_points = 120;
 
 std::string unit_of(const DiagnosisWork& work, const Finding& finding) {
-    return work.signals->wrench() && finding.output < 3 ? "N" : "N·m";
+    return work.diagnosis.torque_units[static_cast<std::size_t>(finding.output)];
 }
 
 /// Returns every k-th entry, with the smallest k that leaves at most `most` entries.

@@ -86,8 +86,4 @@ std::string granted_words(const GrantedQuantity& granted) {
 
 std::string cause_words(const OtherCause& cause) { return words(cause.effect, cause.where); }
 
-std::string output_unit(const std::string& output_name) {
-    return output_name.front() == 'f' ? "N" : output_name.front() == 'i' ? "A" : "N·m";
-}
-
 } // namespace dfdyn::tools

@@ -35,7 +35,4 @@ std::string cause_words(const OtherCause& cause);
 /// Returns `link2 3.1 (2.9 … 3.3) instead of 3`, without the unit.
 std::string granted_words(const GrantedQuantity& granted);
 
-/// Returns the unit of an output from its column's name: `N·m`, `N` or `A`.
-std::string output_unit(const std::string& output_name);
-
 } // namespace dfdyn::tools
