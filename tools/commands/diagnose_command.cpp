@@ -8,6 +8,7 @@
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/robot_options.hpp"
 #include "tools/commands/options/value_checks.hpp"
+#include "tools/diagnosis/extension/corrected_robot.hpp"
 #include "tools/diagnosis/extension/extended_model.hpp"
 #include "tools/diagnosis/extension/joined_recording.hpp"
 #include "tools/diagnosis/extension/online_view.hpp"
@@ -33,6 +34,7 @@ struct DiagnoseOptions {
     std::vector<double> torque_constants;
     std::filesystem::path folder;
     std::filesystem::path header;
+    std::vector<std::string> formats; ///< names of robot_formats()
     bool quick = false;
     bool no_setup_check = false;
     bool json = false;
@@ -91,10 +93,30 @@ void write_model(const DiagnoseOptions& options, const TrainedModel& model) {
     }
 }
 
-/// Removes a model of an earlier run, which could be mistaken for a result of this one.
+/// Calls `use` with each wanted format of the corrected robot and its file.
+template <class Use>
+void for_each_export(const DiagnoseOptions& options, const Use& use) {
+    for (const RobotFormat& format : robot_formats()) {
+        if (std::ranges::find(options.formats, format.name) != options.formats.end()) {
+            use(format, options.folder / format.file);
+        }
+    }
+}
+
+void write_exports(const DiagnoseOptions& options, const Extension& extension) {
+    const RobotExport corrected = options.formats.empty() ? RobotExport{} : corrected_robot(extension);
+    for_each_export(options, [&](const RobotFormat& format, const std::filesystem::path& file) {
+        write_file(file, format.text(corrected));
+    });
+}
+
+/// Removes the model and the robots of an earlier run, which could be mistaken for results of this one.
 void remove_model(const DiagnoseOptions& options) {
     std::error_code ignored;
     std::filesystem::remove(options.model(), ignored);
+    for_each_export(options, [&](const RobotFormat&, const std::filesystem::path& file) {
+        std::filesystem::remove(file, ignored);
+    });
 }
 
 /// Throws InputError unless all results can be written.
@@ -104,6 +126,8 @@ void check_folders(const DiagnoseOptions& options) {
         for (const std::filesystem::path& output : {options.findings(), options.page(), options.model()}) {
             check_writable(output);
         }
+        for_each_export(options,
+                        [](const RobotFormat&, const std::filesystem::path& file) { check_writable(file); });
     }
     const auto place_of = [](const std::filesystem::path& path) {
         return std::filesystem::weakly_canonical(std::filesystem::absolute(path) / "");
@@ -133,6 +157,7 @@ int run(const DiagnoseOptions& options) {
     write_file(options.page(), diagnosis_page({robot, recordings, work, extension, online}));
     if (model) {
         write_model(options, *model);
+        write_exports(options, extension);
     } else {
         remove_model(options);
     }
@@ -168,6 +193,16 @@ void add_diagnose_command(CLI::App& app, Command& chosen) {
         ->type_name("DIR");
     command->add_option("--header", options->header, "The extended model as C++ constants for flash")
         ->type_name("M.hpp");
+    std::vector<std::string> formats;
+    for (const RobotFormat& format : robot_formats()) {
+        formats.emplace_back(format.name);
+    }
+    command
+        ->add_option("--export", options->formats,
+                     "The corrected robot for simulators: masses, centres, friction, armature")
+        ->delimiter(',')
+        ->check(CLI::IsMember(formats))
+        ->type_name("FORMAT,...");
     command->add_flag("--no-held-out", options->quick,
                       "Leave out the error on held-out time, which takes half of the run");
     command->add_flag("--no-setup-check", options->no_setup_check,

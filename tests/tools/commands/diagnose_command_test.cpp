@@ -99,7 +99,7 @@ TEST_CASE("diagnose names friction and rotors and writes report and figures and 
     const std::string log = simulated(directory);
     const std::string folder = directory.path() / "out";
     const Outcome outcome = diagnose(directory, "--log " + log + " --outputs tau -o " + folder +
-                                                    " --header " + folder + "/m.hpp");
+                                                    " --header " + folder + "/m.hpp --export urdf,mjcf,json");
     CAPTURE(outcome.out, outcome.error);
     REQUIRE(outcome.status == 0);
     CHECK_THAT(outcome.out, StartsWith("error, rms"));
@@ -126,6 +126,15 @@ TEST_CASE("diagnose names friction and rotors and writes report and figures and 
         CHECK_FALSE(finding["confirm"].get<std::string>().empty());
         CHECK(finding["gain"]["rms_before"].is_number());
     }
+
+    tools::ReadRobotOptions chain;
+    chain.tip = "tool";
+    const tools::Robot corrected = tools::read_robot(folder + "/corrected_robot.urdf", chain);
+    CHECK(corrected.joints.size() == 2);
+    const json exported = json::parse(file_content(folder + "/corrected_robot.json"));
+    CHECK(double(exported["joints"][0]["armature"]) > 0);
+    CHECK(double(exported["joints"][1]["damping"]) > 0);
+    CHECK_THAT(file_content(folder + "/corrected_robot.xml"), ContainsSubstring("<mujoco model="));
 
     const std::string page = file_content(folder + "/report.html");
     for (const char* part : {"What the simulation of", "Measured, simulated, extended", "What is left",

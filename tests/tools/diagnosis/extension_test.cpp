@@ -8,7 +8,9 @@
 #include "tools/base/numerics/to_vector.hpp"
 #include "tools/diagnosis/candidates/candidates.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/extension/corrected_robot.hpp"
 #include "tools/model/chain_model.hpp"
+#include "tools/robot/dynamics/arm_dynamics.hpp"
 #include "tools/training/physics/robot_regressor.hpp"
 
 #include <cmath>
@@ -214,4 +216,53 @@ TEST_CASE("columns of the same effect at the same place are merged into one") {
     const Extension names = names_only(work, extension);
     CHECK(names.columns[1].value == 0);
     CHECK(names.columns[1].deviation == 5);
+}
+
+TEST_CASE("the corrected robot has the extended model's torques and names what it cannot hold") {
+    DFDYN_SEEDED_ENGINE(engine);
+    const Robot robot = dfdyn::tests::ur5();
+    const auto signals = std::make_shared<const DiagnosisSignals>(
+        diagnosis_signals(robot, OutputKind::joint_torque, swinging(robot, engine)));
+    DiagnosisWork work;
+    work.signals = signals;
+    work.torque_gains = VectorXd::Ones(6);
+    const std::map<std::string, std::pair<std::size_t, double>> hidden{
+        {"viscous_friction@joint2 ", {0, 3}}, {"coulomb_friction@joint3 ", {0, 2}},
+        {"rotor_inertia@joint1 ", {0, 0.5}},  {"payload@tool ", {0, 1.5}},
+        {"torque_offset@joint4 ", {0, 0.7}},  {"link_inertia_error@link2 ", {0, -1}}};
+    std::vector<double> coefficients;
+    for (const Candidate& candidate : lasting_candidates(*signals)) {
+        if (const auto found = hidden.find(candidate.key()); found != hidden.end()) {
+            work.explanation.chosen.push_back({work.explanation.candidates.size(), found->second.first});
+            work.explanation.candidates.push_back(candidate);
+            coefficients.push_back(found->second.second);
+        }
+    }
+    REQUIRE(coefficients.size() == hidden.size());
+    const auto count = static_cast<Index>(coefficients.size());
+    work.explanation.named.coefficients = Eigen::Map<const VectorXd>(coefficients.data(), count);
+    work.explanation.named.covariance = MatrixXd::Identity(count, count);
+    const Extension extension = extension_of(work);
+    const RobotExport corrected = corrected_robot(extension);
+    CHECK(corrected.left_out == std::vector<std::string>{"torque_offset at joint4"});
+    const ArmDynamics dynamics(corrected.robot, JointVector::Zero(6));
+    ArmDynamics::Configuration configuration;
+    const RobotMotion& motion = signals->measured.motion;
+    const MatrixXd extended = outputs_of(extension, motion);
+    for (Index row = 0; row < motion.rows(); row += 50) {
+        const JointVector velocity = motion.velocity.row(row).transpose();
+        dynamics.configure(motion.position.row(row).transpose(), configuration);
+        JointVector torque =
+            dynamics.inverse(configuration, velocity, motion.acceleration.row(row).transpose());
+        torque[0] += corrected.joints[0].armature * motion.acceleration(row, 0);
+        torque[1] += corrected.joints[1].damping * velocity[1];
+        torque[3] += 0.7;                           // the offset, which was left out
+        for (const Index joint : {0, 1, 3, 4, 5}) { // joint 3 has friction, whose sign is smooth in the model
+            CHECK(torque[joint] == Approx(extended(row, joint)).margin(1e-6));
+        }
+        if (std::abs(velocity[2]) > 0.5) {
+            const double friction = std::copysign(corrected.joints[2].friction, velocity[2]);
+            CHECK(torque[2] + friction == Approx(extended(row, 2)).margin(1e-3));
+        }
+    }
 }

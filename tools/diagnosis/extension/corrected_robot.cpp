@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/extension/corrected_robot.hpp"
+
+#include "tools/diagnosis/candidates/candidate_parts.hpp"
+#include "tools/model/effects.hpp"
+
+#include <utility>
+
+namespace dfdyn::tools {
+
+namespace {
+
+/// Member of the joint that holds a column's coefficient; null if there is none.
+double JointDynamics::*member_of(const std::string& effect) {
+    if (effect == effect_kinds::viscous_friction.name) {
+        return &JointDynamics::damping;
+    }
+    if (effect == effect_kinds::coulomb_friction.name) {
+        return &JointDynamics::friction;
+    }
+    return effect == effect_kinds::rotor_inertia.name ? &JointDynamics::armature : nullptr;
+}
+
+/// The link's parameters with the correction. At an F/T sensor only the part beyond it was measured.
+InertialParameters corrected_link(const Extension& extension, std::size_t link,
+                                  const InertialParameters& found) {
+    const RobotJoint& joint = extension.robot.joints[link];
+    const bool divided = extension.kind == OutputKind::wrench && extension.robot.sensor &&
+                         extension.robot.sensor->link == link + 1;
+    return divided ? InertialParameters(joint.inertia - extension.robot.sensor->inertia_beyond + found)
+                   : found;
+}
+
+void correct_links(RobotExport& result, const Extension& extension) {
+    const auto bodies = static_cast<std::size_t>(extension.bodies.size() / 10);
+    const std::size_t first = extension.robot.joints.size() - bodies;
+    for (std::size_t body = 0; body < bodies; ++body) {
+        const InertialParameters link = corrected_link(
+            extension, first + body, extension.bodies.segment<10>(10 * static_cast<Eigen::Index>(body)));
+        if (const auto fault = inertia_fault(link)) {
+            result.left_out.push_back(numbered("link", first + body) + " as found: " + *fault);
+        } else {
+            result.robot.joints[first + body].inertia = link;
+        }
+    }
+}
+
+} // namespace
+
+RobotExport corrected_robot(const Extension& extension) {
+    RobotExport result{extension.robot, std::vector<JointDynamics>(extension.robot.joints.size()), {}};
+    correct_links(result, extension);
+    for (const ExtensionColumn& column : extension.columns) {
+        double JointDynamics::*const member = member_of(column.effect.name);
+        const auto joint = static_cast<std::size_t>(column.effect.row);
+        if (member != nullptr && column.value >= 0) {
+            result.joints[joint].*member += column.value;
+        } else {
+            result.left_out.push_back(column.effect.name + " at " + numbered("joint", joint));
+        }
+    }
+    for (const CarriedFinding& carried : extension.carried) {
+        if (carried.how == EffectDisposition::left_out) {
+            result.left_out.push_back(carried.effect + " at " + carried.where);
+        }
+    }
+    return result;
+}
+
+} // namespace dfdyn::tools

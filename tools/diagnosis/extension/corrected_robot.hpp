@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tools/diagnosis/extension/extension.hpp"
+#include "tools/robot/export/robot_export.hpp"
+
+namespace dfdyn::tools {
+
+/// Returns the robot that the diagnosis found: masses, centres of mass, moments of inertia, gravity and
+/// offsets of the encoders; viscous and dry friction and the rotor's inertia of each joint. `left_out` names
+/// what a robot file cannot hold, and links whose parameters no body can have; these keep those of the file.
+RobotExport corrected_robot(const Extension& extension);
+
+} // namespace dfdyn::tools
