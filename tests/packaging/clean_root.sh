@@ -7,8 +7,8 @@ set -euo pipefail
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 packages=${1:-}
 
-if [[ $(id -u) -ne 0 ]] || ! command -v debootstrap >/dev/null; then
-    echo "not run: needs root rights and debootstrap"
+if [[ $(id -u) -ne 0 ]] || ! command -v debootstrap >/dev/null || ! command -v objdump >/dev/null; then
+    echo "not run: needs root rights, debootstrap and objdump"
     exit 77
 fi
 mirror=$(sed -nE 's/^URIs: *(\S+).*/\1/p; s/^deb (\[[^]]*\] )?(\S+) bookworm .*/\2/p' \

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/system/atomic_file.hpp"
 #include "tools/base/system/progress.hpp"
+#include "tools/base/system/quiet.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/commands/command.hpp"
@@ -108,15 +109,23 @@ void write_exports(const DiagnoseOptions& options, const Extension& extension) {
     for_each_export(options, [&](const RobotFormat& format, const std::filesystem::path& file) {
         write_file(file, format.text(corrected));
     });
+    for (const std::string& part : corrected.left_out) {
+        print_note("note: not in the exported robot: " + part);
+    }
 }
 
-/// Removes the model and the robots of an earlier run, which could be mistaken for results of this one.
-void remove_model(const DiagnoseOptions& options) {
+/// Removes the robots of an earlier run that this one does not replace, and the model if there is none now:
+/// they could be mistaken for results of this run.
+void remove_earlier(const DiagnoseOptions& options, bool has_model) {
     std::error_code ignored;
-    std::filesystem::remove(options.model(), ignored);
-    for_each_export(options, [&](const RobotFormat&, const std::filesystem::path& file) {
-        std::filesystem::remove(file, ignored);
-    });
+    if (!has_model) {
+        std::filesystem::remove(options.model(), ignored);
+    }
+    for (const RobotFormat& format : robot_formats()) {
+        if (!has_model || std::ranges::find(options.formats, format.name) == options.formats.end()) {
+            std::filesystem::remove(options.folder / format.file, ignored);
+        }
+    }
 }
 
 /// Throws InputError unless all results can be written.
@@ -130,7 +139,7 @@ void check_folders(const DiagnoseOptions& options) {
                         [](const RobotFormat&, const std::filesystem::path& file) { check_writable(file); });
     }
     const auto place_of = [](const std::filesystem::path& path) {
-        return std::filesystem::weakly_canonical(std::filesystem::absolute(path) / "");
+        return std::filesystem::weakly_canonical(std::filesystem::current_path() / path / "");
     };
     if (!options.header.empty() && place_of(options.header.parent_path()) != place_of(options.folder)) {
         check_writable(options.header);
@@ -155,11 +164,10 @@ int run(const DiagnoseOptions& options) {
     const nlohmann::ordered_json findings = diagnosis_json(work.diagnosis);
     write_file(options.findings(), findings.dump(2) + '\n');
     write_file(options.page(), diagnosis_page({robot, recordings, work, extension, online}));
+    remove_earlier(options, model.has_value());
     if (model) {
         write_model(options, *model);
         write_exports(options, extension);
-    } else {
-        remove_model(options);
     }
     output.print(findings);
     print_diagnosis(std::cout, work.diagnosis, extension.carried);

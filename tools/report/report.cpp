@@ -128,9 +128,10 @@ void add_extremes(const ReportSeries& series, std::size_t first, std::size_t las
         const float value = std::abs(series.measured[tick] - series.predicted[tick]);
         return std::isfinite(value) ? value : -1.0F;
     };
+    const auto below = [](float value, float other) { return value < other || std::isnan(other); };
     for (std::size_t tick = first; tick < last; ++tick) {
-        least = series.measured[tick] < series.measured[least] ? tick : least;
-        most = series.measured[tick] > series.measured[most] ? tick : most;
+        least = below(series.measured[tick], series.measured[least]) ? tick : least;
+        most = below(-series.measured[tick], -series.measured[most]) ? tick : most;
         worst = error(tick) > error(worst) ? tick : worst;
     }
     kept.insert(kept.end(), {least, most, worst});

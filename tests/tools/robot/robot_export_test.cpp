@@ -49,4 +49,22 @@ TEST_CASE("an exported JSON holds the joints and what is left out") {
     CHECK(json["left_out"][0] == "delay at actuator1");
 }
 
+TEST_CASE("exported robots keep names with markup and leave out the inertia of links without mass") {
+    RobotExport exported = export_of_ur5();
+    const std::string name = "a<b & \"c\"";
+    exported.robot.joints[0].name = name;
+    exported.robot.joints[0].inertia.setZero();
+    tinyxml2::XMLDocument mjcf;
+    REQUIRE(mjcf.Parse(mjcf_text(exported).c_str()) == tinyxml2::XML_SUCCESS);
+    const tinyxml2::XMLElement* const body = mjcf.FirstChildElement("mujoco")
+                                                 ->FirstChildElement("worldbody")
+                                                 ->FirstChildElement("body")
+                                                 ->FirstChildElement("body");
+    CHECK(body->FirstChildElement("joint")->Attribute("name") == name);
+    CHECK(body->FirstChildElement("inertial") == nullptr);
+    tinyxml2::XMLDocument urdf;
+    REQUIRE(urdf.Parse(urdf_text(exported).c_str()) == tinyxml2::XML_SUCCESS);
+    CHECK(urdf.FirstChildElement("robot")->FirstChildElement("joint")->Attribute("name") == name);
+}
+
 } // namespace robot_export_test

@@ -4,6 +4,7 @@
 #include "tools/diagnosis/candidates/candidate_parts.hpp"
 #include "tools/model/effects.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -45,6 +46,19 @@ void correct_links(RobotExport& result, const Extension& extension) {
     }
 }
 
+std::string text_of(const ExtensionColumn& column, OutputKind kind) {
+    const auto output = static_cast<std::size_t>(column.effect.row);
+    return column.effect.name + " at " +
+           (kind == OutputKind::wrench ? "ft_sensor" : numbered("joint", output));
+}
+
+/// Returns whether least squares of each joint determine a finding that the causes leave out.
+bool has_column(const Extension& extension, const CarriedFinding& carried) {
+    return std::ranges::any_of(extension.columns, [&](const ExtensionColumn& column) {
+        return text_of(column, extension.kind) == carried.effect + " at " + carried.where;
+    });
+}
+
 } // namespace
 
 RobotExport corrected_robot(const Extension& extension) {
@@ -56,14 +70,16 @@ RobotExport corrected_robot(const Extension& extension) {
         if (member != nullptr && column.value >= 0) {
             result.joints[joint].*member += column.value;
         } else {
-            result.left_out.push_back(column.effect.name + " at " + numbered("joint", joint));
+            result.left_out.push_back(text_of(column, extension.kind));
         }
     }
     for (const CarriedFinding& carried : extension.carried) {
-        if (carried.how == EffectDisposition::left_out) {
+        if (carried.how == EffectDisposition::left_out && !has_column(extension, carried)) {
             result.left_out.push_back(carried.effect + " at " + carried.where);
         }
     }
+    const auto repeated = std::ranges::unique(result.left_out); // the axes of a sensor
+    result.left_out.erase(repeated.begin(), repeated.end());
     return result;
 }
 

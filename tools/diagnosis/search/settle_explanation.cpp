@@ -150,12 +150,13 @@ bool keep_masses_in_range(Explanation& at, SearchProblem& promising) {
 
 bool narrow_masses(SearchProblem& problem, const EffectFit& fit, Eigen::Index uncertain_masses) {
     constexpr double largest = 0.1;
-    constexpr double tolerance = 1.02; ///< otherwise the steps become smaller and smaller
+    constexpr double tolerance = 1.02;
+    constexpr double least_step = 1.25; ///< so that the steps are few where the data outweigh the prior
     bool narrowed = false;
     for (Eigen::Index i = 0; i < uncertain_masses; ++i) {
         const double excess = std::abs(fit.coefficients[i]) / largest;
         if (excess > tolerance) {
-            problem.nuisance[static_cast<std::size_t>(i)].deviation /= excess;
+            problem.nuisance[static_cast<std::size_t>(i)].deviation /= std::max(excess, least_step);
             narrowed = true;
         }
     }

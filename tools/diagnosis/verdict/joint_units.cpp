@@ -50,7 +50,8 @@ void use_units_of_joints(Diagnosis& diagnosis, const Robot& robot) {
     for (Finding& finding : diagnosis.findings) {
         const bool prismatic = at_prismatic_joint(finding.where, robot);
         for (FoundParameter& parameter : finding.parameters) {
-            parameter.unit = unit_at_joint(parameter.unit, prismatic);
+            const bool angle = parameter.name == "phase"; // at every joint
+            parameter.unit = unit_at_joint(parameter.unit, prismatic && !angle);
         }
     }
     for (GrantedQuantity& granted : diagnosis.granted) {

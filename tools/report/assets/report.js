@@ -14,6 +14,7 @@ function element(name, class_name, ...children) {
 
 // Times of recordings from here on are seconds since 1970 (this one is in 2001), and shown as dates.
 const first_date_s = 1e9;
+const last_date_s = 8.64e12; // of Date
 
 // A key of the legend with the value under the cursor beside it.
 function legend_key(kind, text) {
@@ -141,7 +142,7 @@ class Page {
         const recording = this.report.recordings.filter(each => each.start_s <= t).pop();
         if (recording !== undefined) {
             const own = recording.first_t_s + t - recording.start_s;
-            if (own > first_date_s) {
+            if (own > first_date_s && own < last_date_s) {
                 parts.push(`${recording.name}, ${new Date(1e3 * own).toISOString().replace("T", " ").replace("Z", " UTC")}`);
             } else if (this.report.recordings.length > 1) {
                 parts.push(`${recording.name} at ${seconds(own)}`);

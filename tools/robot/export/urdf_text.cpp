@@ -12,10 +12,6 @@ namespace {
 /// Magnitude of a limit that the robot's description does not have, because URDF requires one.
 constexpr double no_limit = 1000;
 
-std::string attribute(const char* name, const std::string& value) {
-    return std::string(" ").append(name).append("=\"").append(value).append("\"");
-}
-
 /// Roll, pitch and yaw: rotations about the fixed axes x, y, z, in this order.
 Eigen::Vector3d fixed_axis_angles(const Eigen::Matrix3d& rotation) {
     const double pitch = std::asin(std::clamp(-rotation(2, 0), -1.0, 1.0));
