@@ -205,7 +205,7 @@ TEST_CASE("drifting friction changes by its rate per second relative to the leve
     for (const SimulatedSample& sample : trial.samples) {
         const double velocity = sample.truth.velocity[trial.joint()];
         const double added = (sample.torque - rigid(trial, sample.truth))[trial.joint()];
-        const double factor = 1 + trial.parameter("drift") * sample.time_s;
+        const double factor = 1 + trial.parameter("rate") * sample.time_s;
         if (viscous) {
             REQUIRE(added == Approx(level * factor * velocity).margin(1e-6));
         } else if (companion.size() == 1 && std::abs(velocity) > 0.3) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/setup_check/robot_match.hpp"
 
-#include "tools/base/numerics/linear_algebra.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
+#include "tools/setup_check/signed_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,31 +31,6 @@ std::vector<Index> moving_rows(const RobotMotion& motion, Index joint) {
         }
     }
     return rows;
-}
-
-/// Returns the share of an output's variance that a least-squares fit leaves in rows that it has not seen: in
-/// each second eighth of the rows by a fit of the others. So many columns describe any few moves.
-double left_unseen(const VectorXd& output, const MatrixXd& columns) {
-    constexpr Index eighths = 8;
-    constexpr double ridge = 1e-6;
-    const MatrixXd centred = columns.rowwise() - columns.colwise().mean();
-    const MatrixXd scaled =
-        centred * (centred.colwise().norm().array() + 1e-12).inverse().matrix().asDiagonal();
-    const VectorXd target = output.array() - output.mean();
-    double left = 0;
-    for (const Index parity : {0, 1}) {
-        std::vector<Index> seen;
-        std::vector<Index> unseen;
-        for (Index row = 0; row < output.size(); ++row) {
-            (eighths * row / output.size() % 2 == parity ? seen : unseen).push_back(row);
-        }
-        const MatrixXd fitted = scaled(seen, Eigen::all);
-        const MatrixXd gram =
-            fitted.transpose() * fitted + ridge * MatrixXd::Identity(fitted.cols(), fitted.cols());
-        const VectorXd weights = solve_symmetric(gram, VectorXd(fitted.transpose() * target(seen)));
-        left += (target(unseen) - scaled(unseen, Eigen::all) * weights).squaredNorm();
-    }
-    return left / std::max(target.squaredNorm(), 1e-300);
 }
 
 VectorXd deviations(const MatrixXd& columns) {
@@ -87,9 +62,8 @@ SetupFindings check_robot_match(const ArmRecording& arm) {
         const std::vector<Index> rows = moving_rows(motion, k);
         const VectorXd output = arm.output(k)(rows);
         const double by_robot = left_by(output, expected_columns(arm, motion, parts, k)(rows, Eigen::all));
-        MatrixXd any(output.size(), smooth.cols() + 2);
-        any << smooth(rows, Eigen::all), friction_columns(motion, k)(rows, Eigen::all);
-        const double by_any = left_unseen(output, any);
+        const double by_any =
+            fit_signed(output, smooth(rows, Eigen::all), friction_columns(motion, k)(rows, Eigen::all)).left;
         ratio += std::log(std::max(by_robot, least_share) / std::max(by_any, least_share));
         left += by_robot;
         columns.push_back(arm.recording.output.names[static_cast<std::size_t>(k)]);

@@ -271,7 +271,8 @@ TEST_CASE("training rejects data from which it cannot learn") {
         }
         CHECK(message(data, options) ==
               "training data: expected at least 20 rows in motion with 5 rows before "
-              "them without a gap, found 0");
+              "them without a gap, found 0; the time steps are not constant: 119 gaps at a sample "
+              "period of 10 ms, at most 5 rows without one");
     }
     SECTION("a constant output") {
         data.outputs.col(1).setConstant(2.5);

@@ -92,7 +92,6 @@ class Search {
             gather(std::move(dependent));
             at_.chosen = search_effects(at_.problem, at_.chosen);
             at_.fit = fit_effects(at_.problem, at_.chosen);
-            bound_masses();
             // with the spectrum of a residual that still contains effects, these effects would be taken for
             // noise
             estimate_noise(round + 1 < white_rounds);
@@ -116,7 +115,6 @@ class Search {
     std::vector<CandidateEntry> passing() const;
     void refine();
     void place_nuisance();
-    void bound_masses();
     void count_rivals();
     void gather(std::vector<CandidateEntry> passing);
     void estimate_noise(bool white);
@@ -245,14 +243,6 @@ void Search::place_nuisance() {
     at_.problem.nuisance.clear();
     for (std::size_t i = 0; i < nuisance_.size(); ++i) {
         at_.problem.nuisance.push_back({static_cast<Eigen::Index>(i), nuisance_deviation_[i]});
-    }
-}
-
-/// Keeps the uncertain masses within their range in this round. In the next one they are free again, because
-/// an effect that is found later may have been what they explained.
-void Search::bound_masses() {
-    while (narrow_masses(at_.problem, at_.fit, at_.uncertain_masses)) {
-        at_.fit = fit_effects(at_.problem, at_.chosen);
     }
 }
 

@@ -4,7 +4,6 @@
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -138,36 +137,12 @@ bool keep_what_is_allowed(Explanation& at, SearchProblem& promising) {
     return dropped;
 }
 
-/// Keeps the uncertain masses within their range. Returns true if the fit must be repeated.
-bool keep_masses_in_range(Explanation& at, SearchProblem& promising) {
-    const bool by_all = narrow_masses(at.problem, at.fit, at.uncertain_masses);
-    const bool by_named = narrow_masses(at.problem, at.named, at.uncertain_masses);
-    promising.nuisance = at.problem.nuisance;
-    return by_all || by_named;
-}
-
 } // namespace
-
-bool narrow_masses(SearchProblem& problem, const EffectFit& fit, Eigen::Index uncertain_masses) {
-    constexpr double largest = 0.1;
-    constexpr double tolerance = 1.02;
-    constexpr double least_step = 1.25; ///< so that the steps are few where the data outweigh the prior
-    bool narrowed = false;
-    for (Eigen::Index i = 0; i < uncertain_masses; ++i) {
-        const double excess = std::abs(fit.coefficients[i]) / largest;
-        if (excess > tolerance) {
-            problem.nuisance[static_cast<std::size_t>(i)].deviation /= std::max(excess, least_step);
-            narrowed = true;
-        }
-    }
-    return narrowed;
-}
 
 void settle(Explanation& at, const EffectRegression& regression) {
     decide_masses(at, regression);
     SearchProblem promising = at.problem; // without the shapes of removed effects
-    while (keep_what_predicts(at, regression, promising) || keep_what_is_allowed(at, promising) ||
-           keep_masses_in_range(at, promising)) {
+    while (keep_what_predicts(at, regression, promising) || keep_what_is_allowed(at, promising)) {
         at.chosen = search_effects(promising, at.chosen);
         at.fit = fit_effects(at.problem, at.chosen);
     }

@@ -6,10 +6,6 @@
 
 namespace dfdyn::tools {
 
-/// Narrows the prior of each uncertain mass whose coefficient exceeds ±10 %, the range in which masses are
-/// nuisance parameters. Returns true if any was narrowed: the fit must then be repeated.
-bool narrow_masses(SearchProblem& problem, const EffectFit& fit, Eigen::Index uncertain_masses);
-
 /// Prunes an explanation at the end of its search. Decides whether masses are uncertain, and keeps the chosen
 /// effects that are admissible and that predict held-out blocks of time. `regression`: that of the
 /// explanation's problem. Also fits the named effects alone. Cost: one search after each removal.
