@@ -2,7 +2,6 @@
 #include "tests/diagnosis/panel_effect.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -86,38 +85,6 @@ DrawnEffect link_error(const EffectDraw& of) {
     return effect;
 }
 
-/// Draws an error of one moment of inertia of a link. It is limited to what a body can have.
-DrawnEffect link_rotation(const EffectDraw& of) {
-    constexpr std::array<Eigen::Index, 3> moments{4, 7, 9};
-    constexpr std::array<const char*, 3> names{"delta_ixx", "delta_iyy", "delta_izz"};
-    const Robot& robot = of.setup.robot;
-    const std::size_t first = of.setup.wrench() ? robot.sensor->link : 0;
-    const std::size_t link = first + of.draw.below(robot.joints.size() - first);
-    const std::size_t axis = of.draw.below(3);
-    const double sign = of.draw.sign();
-    const auto possible = [&](double size) {
-        InertialParameters body = robot.joints[link].inertia;
-        body[moments[axis]] += sign * size;
-        return body[0] > 0 && !inertia_fault(body);
-    };
-    DrawnEffect effect;
-    effect.where = "link" + std::to_string(link + 1);
-    effect.hide = [link, axis, sign](double size, Scenario& scenario) {
-        LinkError error{.joint = link};
-        error.delta_inertia[static_cast<Eigen::Index>(axis)] = sign * size;
-        scenario.robot_errors.links.push_back(error);
-    };
-    effect.parameters = [name = names[axis], sign](double size) {
-        return EffectParameters{{name, sign * size}};
-    };
-    effect.largest = 1; // kg·m²
-    while (!possible(effect.largest) && effect.largest > 1e-6) {
-        effect.largest *= 0.9;
-    }
-    effect.guess = guess_along_reference(of, effect.hide, 0.1 * effect.largest);
-    return effect;
-}
-
 DrawnEffect tilt(const EffectDraw& of) {
     const double direction = of.draw.uniform(-std::numbers::pi, std::numbers::pi);
     const double x = std::cos(direction);
@@ -179,7 +146,6 @@ namespace hidden_effects {
 
 DrawnEffect payload(const EffectDraw& of) { return mass_at_tool(of); }
 DrawnEffect link_inertia_error(const EffectDraw& of) { return link_error(of); }
-DrawnEffect link_rotational_inertia_error(const EffectDraw& of) { return link_rotation(of); }
 DrawnEffect gravity_tilt(const EffectDraw& of) { return tilt(of); }
 DrawnEffect encoder_offset(const EffectDraw& of) { return at_encoder(of, shifted_zero); }
 DrawnEffect encoder_eccentricity(const EffectDraw& of) { return at_encoder(of, eccentricity); }

@@ -28,7 +28,6 @@ DrawnEffect joint_flexibility(const EffectDraw& of);
 DrawnEffect actuator_gain(const EffectDraw& of);
 DrawnEffect payload(const EffectDraw& of);
 DrawnEffect link_inertia_error(const EffectDraw& of);
-DrawnEffect link_rotational_inertia_error(const EffectDraw& of);
 DrawnEffect gravity_tilt(const EffectDraw& of);
 DrawnEffect ft_bias(const EffectDraw& of);
 DrawnEffect ft_drift(const EffectDraw& of);
@@ -55,7 +54,7 @@ struct CatalogueEntry {
     bool on_request = false;
 };
 
-constexpr std::array<CatalogueEntry, 26> catalogue{{
+constexpr std::array<CatalogueEntry, 25> catalogue{{
     {"viscous_friction", Shows::torque, hidden_effects::viscous_friction},
     {"coulomb_friction", Shows::torque, hidden_effects::coulomb_friction},
     {"stribeck_friction", Shows::torque, hidden_effects::stribeck_friction},
@@ -70,7 +69,6 @@ constexpr std::array<CatalogueEntry, 26> catalogue{{
     {"actuator_gain", Shows::torque, hidden_effects::actuator_gain},
     {"payload", Shows::both, hidden_effects::payload},
     {"link_inertia_error", Shows::both, hidden_effects::link_inertia_error},
-    {"link_rotational_inertia_error", Shows::both, hidden_effects::link_rotational_inertia_error, true},
     {"gravity_tilt", Shows::both, hidden_effects::gravity_tilt},
     {"ft_bias", Shows::wrench, hidden_effects::ft_bias},
     {"ft_drift", Shows::wrench, hidden_effects::ft_drift},

@@ -73,7 +73,6 @@ const std::vector<Effect>& effect_catalogue() {
         payload(),
         gravity_tilt(),
         link_inertia_error(),
-        link_rotational_inertia_error(),
         encoder_offset(),
         encoder_eccentricity(),
         joint_flexibility(),
