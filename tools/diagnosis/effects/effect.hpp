@@ -86,7 +86,6 @@ struct Effect {
     bool beyond_arm = false;    ///< acts on the measurement or from outside: not part of FittedModel::output
     bool delays_output = false; ///< its coefficient is the delay (s) of its outputs
     bool mass_of_link = false;  ///< small errors of all links' masses could explain it as well
-    bool error_of_link = false; ///< errors of one link are one hypothesis among all causes
     /// A chosen candidate is kept even when a later scan of the residual does not find it again.
     bool kept_while_chosen = false;
     /// Its parameters begin with start and end (s). Overlapping findings at one place are the same finding.

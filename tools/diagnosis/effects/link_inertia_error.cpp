@@ -79,7 +79,6 @@ Effect effects::link_inertia_error() {
                           "weigh the link if it comes off",
             .in_extended_model = "adapting: the rigid body's parameters start there",
             .mass_of_link = true,
-            .error_of_link = true,
             .each = Each::body,
             .candidates = link_candidates,
             .extend = extend_by_link};

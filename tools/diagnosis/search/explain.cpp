@@ -10,12 +10,10 @@
 #include "tools/robot/firmware_chain.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <utility>
 
 namespace dfdyn::tools {
@@ -246,19 +244,10 @@ void Search::place_nuisance() {
     }
 }
 
-/// Counts the hypotheses of each class: named and unnamed. All errors of one link count once.
+/// Counts the candidates of each class: named and unnamed.
 void Search::count_rivals() {
-    std::set<std::string> wrong_links;
-    std::ptrdiff_t named = 0;
-    for (const Candidate& candidate : at_.candidates) {
-        if (has_trait(candidate.effect, &Effect::error_of_link)) {
-            wrong_links.insert(candidate.where);
-        } else {
-            named += candidate.named() ? 1 : 0;
-        }
-    }
-    named += std::ssize(wrong_links);
-    const auto unnamed = std::ranges::count_if(at_.candidates, std::not_fn(&Candidate::named));
+    const auto named = std::ranges::count_if(at_.candidates, &Candidate::named);
+    const auto unnamed = std::ssize(at_.candidates) - named;
     for (std::size_t i = 0; i < at_.candidates.size(); ++i) {
         at_.problem.candidates[i].rivals = static_cast<double>(at_.candidates[i].named() ? named : unnamed);
     }
