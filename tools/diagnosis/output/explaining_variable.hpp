@@ -25,7 +25,7 @@ struct PlottedFinding {
     const Finding& finding;
     const Eigen::VectorXd& share; ///< T: contribution to its output
 
-    Eigen::Index joint() const;                                  ///< index of `jointK`, from 0
+    Eigen::Index joint() const; ///< index of `jointK`, from 0
     /// Returns `velocity of joint 2 (rad/s)`. `unit`: at a revolute joint.
     std::string named(const char* what, const char* unit) const;
     /// value of a parameter; 0 if the finding has none with this name
