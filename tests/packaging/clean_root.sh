@@ -34,7 +34,8 @@ library=$(find "$packages" -maxdepth 1 -name 'libdfdyn-dev_*_amd64.deb')
 
 # The program runs on every x86-64-v2 processor: no instruction uses the wide registers or the encoding of AVX.
 dpkg-deb -x "$program" "$scratch/unpacked"
-avx=$(objdump -d --no-show-raw-insn "$scratch/unpacked/usr/bin/dfdyn" | grep -cE '%[yz]mm[0-9]|	v[a-z0-9]+ .*%xmm' || true)
+objdump -d --no-show-raw-insn "$scratch/unpacked/usr/bin/dfdyn" >"$scratch/instructions"
+avx=$(grep -cE '%[yz]mm[0-9]|	v[a-z0-9]+ .*%xmm' "$scratch/instructions" || true)
 echo "instructions beyond x86-64-v2: $avx"
 [[ $avx -eq 0 ]]
 

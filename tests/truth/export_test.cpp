@@ -4,10 +4,10 @@
 #include "dfdyn/physics/rigid_body.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/truth/kdl_torques.hpp"
 #include "tests/truth/regressor.hpp"
 #include "tools/robot/export/robot_export.hpp"
 
-#include <kdl/chainidsolver_recursive_newton_euler.hpp>
 #include <kdl_parser/kdl_parser.hpp>
 #include <urdf_parser/urdf_parser.h>
 
@@ -37,37 +37,23 @@ Eigen::VectorXd torques_of_file(const std::string& urdf, const Eigen::VectorXd& 
     REQUIRE(kdl_parser::treeFromString(urdf, tree));
     KDL::Chain chain;
     REQUIRE(tree.getChain(tree.getRootSegment()->first, "tool", chain));
-    const unsigned n = chain.getNrOfJoints();
-    REQUIRE(n == static_cast<unsigned>(xi.size() / 3));
-    KDL::JntArray position(n), velocity(n), acceleration(n), torques(n);
-    for (unsigned i = 0; i < n; ++i) {
-        position(i) = xi[3 * i];
-        velocity(i) = xi[3 * i + 1];
-        acceleration(i) = xi[3 * i + 2];
-    }
-    KDL::ChainIdSolver_RNE solver(chain, KDL::Vector(0, 0, -gravity));
-    REQUIRE(solver.CartToJnt(position, velocity, acceleration, KDL::Wrenches(chain.getNrOfSegments()),
-                             torques) == 0);
+    Eigen::VectorXd torques = kdl_torques(chain, KDL::Vector(0, 0, -gravity), xi);
     const auto model = urdf::parseURDF(urdf);
     REQUIRE(model);
-    Eigen::VectorXd result(n);
-    for (unsigned i = 0; i < n; ++i) {
+    for (Eigen::Index i = 0; i < torques.size(); ++i) {
         const auto dynamics = model->getJoint("joint" + std::to_string(i + 1))->dynamics;
         REQUIRE(dynamics);
-        result[i] =
-            torques(i) + dynamics->damping * velocity(i) + std::copysign(dynamics->friction, velocity(i));
+        const double velocity = xi[3 * i + 1];
+        torques[i] += dynamics->damping * velocity + std::copysign(dynamics->friction, velocity);
     }
-    return result;
+    return torques;
 }
 
 Eigen::VectorXd torques_of_model(const tools::RobotExport& exported, const Eigen::VectorXd& xi) {
     using Arm = Chain<dynamic>;
     const int n = static_cast<int>(exported.joints.size());
-    Eigen::VectorXd parameters(10 * n);
-    for (int i = 0; i < n; ++i) {
-        parameters.segment<10>(10 * i) = exported.robot.joints[static_cast<std::size_t>(i)].inertia;
-    }
-    Eigen::VectorXd torques = regressor<Arm>(chain_of<Arm>(exported.robot), {{n}, {n}, {n}}, xi) * parameters;
+    Eigen::VectorXd torques =
+        regressor<Arm>(chain_of<Arm>(exported.robot), {{n}, {n}, {n}}, xi) * all_parameters(exported.robot);
     for (int i = 0; i < n; ++i) {
         const tools::JointDynamics& dynamics = exported.joints[static_cast<std::size_t>(i)];
         torques[i] += dynamics.damping * xi[3 * i + 1] + std::copysign(dynamics.friction, xi[3 * i + 1]);

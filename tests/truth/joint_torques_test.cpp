@@ -2,9 +2,8 @@
 // Compares the regressor of joint torques with the recursive Newton-Euler algorithm of the Orocos project.
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/truth/kdl_torques.hpp"
 #include "tests/truth/regressor.hpp"
-
-#include <kdl/chainidsolver_recursive_newton_euler.hpp>
 
 namespace {
 
@@ -40,29 +39,7 @@ KDL::Chain kdl_chain(const tools::Robot& robot) {
 }
 
 Eigen::VectorXd kdl_torques(const tools::Robot& robot, const Eigen::VectorXd& xi) {
-    const KDL::Chain chain = kdl_chain(robot);
-    const unsigned n = chain.getNrOfJoints();
-    KDL::JntArray position(n);
-    KDL::JntArray velocity(n);
-    KDL::JntArray acceleration(n);
-    KDL::JntArray torques(n);
-    for (unsigned i = 0; i < n; ++i) {
-        position(i) = xi[3 * i];
-        velocity(i) = xi[3 * i + 1];
-        acceleration(i) = xi[3 * i + 2];
-    }
-    KDL::ChainIdSolver_RNE solver(chain, kdl_vector(robot.gravity));
-    REQUIRE(solver.CartToJnt(position, velocity, acceleration, KDL::Wrenches(n), torques) == 0);
-    return Eigen::VectorXd::NullaryExpr(n, [&](Eigen::Index i) { return torques(static_cast<unsigned>(i)); });
-}
-
-Eigen::VectorXd all_parameters(const tools::Robot& robot) {
-    Eigen::VectorXd parameters(inertial_parameters * robot.joints.size());
-    for (std::size_t i = 0; i < robot.joints.size(); ++i) {
-        parameters.segment<inertial_parameters>(static_cast<Eigen::Index>(inertial_parameters * i)) =
-            robot.joints[i].inertia;
-    }
-    return parameters;
+    return tests::kdl_torques(kdl_chain(robot), kdl_vector(robot.gravity), xi);
 }
 
 } // namespace

@@ -18,4 +18,14 @@ Regressor regressor(const typename Arm::template Constants<double>& chain, const
     return psi;
 }
 
+/// All links' parameters, one after the other.
+inline Eigen::VectorXd all_parameters(const tools::Robot& robot) {
+    Eigen::VectorXd parameters(inertial_parameters * robot.joints.size());
+    for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+        parameters.segment<inertial_parameters>(static_cast<Eigen::Index>(inertial_parameters * i)) =
+            robot.joints[i].inertia;
+    }
+    return parameters;
+}
+
 } // namespace dfdyn::tests

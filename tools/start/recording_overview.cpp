@@ -56,14 +56,15 @@ void print_columns(std::ostream& out, std::span<const Recording> recordings, Col
 } // namespace
 
 void print_overview(std::ostream& out, std::span<const Recording> recordings) {
+    const double period_s = sample_period_s(recordings);
     for (const Recording& recording : recordings) {
-        const auto gaps = std::ranges::count(window_restarts(recording, sample_period_s(recordings)), 1) - 1;
+        const auto gaps = std::ranges::count(window_restarts(recording, period_s), 1) - 1;
         const double duration_s = recording.time_s.back() - recording.time_s.front();
         out << shown(recording.source) << ": " << recording.row_count() << " rows, "
             << rounded_text(duration_s) << " s, " << gaps << (gaps == 1 ? " gap\n" : " gaps\n");
     }
-    out << "sample rate " << formatted("%.4g", 1 / sample_period_s(recordings)) << " Hz, "
-        << recordings.front().joint_count() << " joints\n";
+    out << "sample rate " << formatted("%.4g", 1 / period_s) << " Hz, " << recordings.front().joint_count()
+        << " joints\n";
     print_columns(out, recordings, &Recording::position);
     print_columns(out, recordings, &Recording::output);
 }

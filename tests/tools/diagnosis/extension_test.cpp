@@ -153,6 +153,16 @@ std::map<std::string, int> check_all(const std::shared_ptr<const DiagnosisSignal
     return carried;
 }
 
+/// A diagnosis of joint torques that has no findings yet.
+DiagnosisWork work_of_swinging_ur5(std::mt19937_64& engine) {
+    const Robot robot = dfdyn::tests::ur5();
+    DiagnosisWork work;
+    work.signals = std::make_shared<const DiagnosisSignals>(
+        diagnosis_signals(robot, OutputKind::joint_torque, swinging(robot, engine)));
+    work.torque_gains = VectorXd::Ones(6);
+    return work;
+}
+
 } // namespace
 
 TEST_CASE("the extended model of joint torques adds what the columns of the diagnosis add") {
@@ -189,13 +199,9 @@ TEST_CASE("the extended model of a wrench adds what the columns of the diagnosis
 
 TEST_CASE("columns of the same effect at the same place are merged into one") {
     std::mt19937_64 engine(1);
-    const Robot robot = dfdyn::tests::ur5();
-    const auto signals = std::make_shared<const DiagnosisSignals>(
-        diagnosis_signals(robot, OutputKind::joint_torque, swinging(robot, engine)));
-    DiagnosisWork work;
-    work.signals = signals;
-    work.torque_gains = VectorXd::Ones(6);
-    for (const Candidate& candidate : lasting_candidates(*signals)) {
+    DiagnosisWork work = work_of_swinging_ur5(engine);
+    const DiagnosisSignals& signals = *work.signals;
+    for (const Candidate& candidate : lasting_candidates(signals)) {
         if (candidate.where == "joint2" &&
             (candidate.effect == "joint_spring" || candidate.effect == "torque_offset")) {
             work.explanation.chosen.push_back({work.explanation.candidates.size(), 0});
@@ -220,18 +226,14 @@ TEST_CASE("columns of the same effect at the same place are merged into one") {
 
 TEST_CASE("the corrected robot has the extended model's torques and names what it cannot hold") {
     DFDYN_SEEDED_ENGINE(engine);
-    const Robot robot = dfdyn::tests::ur5();
-    const auto signals = std::make_shared<const DiagnosisSignals>(
-        diagnosis_signals(robot, OutputKind::joint_torque, swinging(robot, engine)));
-    DiagnosisWork work;
-    work.signals = signals;
-    work.torque_gains = VectorXd::Ones(6);
+    DiagnosisWork work = work_of_swinging_ur5(engine);
+    const DiagnosisSignals& signals = *work.signals;
     const std::map<std::string, std::pair<std::size_t, double>> hidden{
         {"viscous_friction@joint2 ", {0, 3}}, {"coulomb_friction@joint3 ", {0, 2}},
         {"rotor_inertia@joint1 ", {0, 0.5}},  {"payload@tool ", {0, 1.5}},
         {"torque_offset@joint4 ", {0, 0.7}},  {"link_inertia_error@link2 ", {0, -1}}};
     std::vector<double> coefficients;
-    for (const Candidate& candidate : lasting_candidates(*signals)) {
+    for (const Candidate& candidate : lasting_candidates(signals)) {
         if (const auto found = hidden.find(candidate.key()); found != hidden.end()) {
             work.explanation.chosen.push_back({work.explanation.candidates.size(), found->second.first});
             work.explanation.candidates.push_back(candidate);
@@ -247,7 +249,7 @@ TEST_CASE("the corrected robot has the extended model's torques and names what i
     CHECK(corrected.left_out == std::vector<std::string>{"torque_offset at joint4"});
     const ArmDynamics dynamics(corrected.robot, JointVector::Zero(6));
     ArmDynamics::Configuration configuration;
-    const RobotMotion& motion = signals->measured.motion;
+    const RobotMotion& motion = signals.measured.motion;
     const MatrixXd extended = outputs_of(extension, motion);
     for (Index row = 0; row < motion.rows(); row += 50) {
         const JointVector velocity = motion.velocity.row(row).transpose();

@@ -25,26 +25,6 @@ CentralBody central_body(const InertialParameters& parameters) {
     return body;
 }
 
-std::string attribute(const char* name, const std::string& value) {
-    std::string text = std::string(" ").append(name).append("=\"");
-    for (const char character : value) {
-        switch (character) {
-        case '&':
-            text += "&amp;";
-            break;
-        case '<':
-            text += "&lt;";
-            break;
-        case '"':
-            text += "&quot;";
-            break;
-        default:
-            text += character;
-        }
-    }
-    return text + "\"";
-}
-
 std::string spaced(const Eigen::VectorXd& values) {
     std::string text;
     for (const double value : values) {

@@ -52,9 +52,6 @@ struct CentralBody {
 /// Returns the body of these parameters. Its centre is the link's origin if it has no mass.
 CentralBody central_body(const InertialParameters& parameters);
 
-/// Returns ` name="value"` of an XML element, with the characters of markup escaped.
-std::string attribute(const char* name, const std::string& value);
-
 /// Returns numbers as text with a space between them. Each reads back as the same number.
 std::string spaced(const Eigen::VectorXd& values);
 

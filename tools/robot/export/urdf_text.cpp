@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/text/number.hpp"
 #include "tools/robot/export/robot_export.hpp"
+#include "tools/robot/export/xml_element.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,8 @@
 namespace dfdyn::tools {
 
 namespace {
+
+using tinyxml2::XMLPrinter;
 
 /// Magnitude of a limit that the robot's description does not have, because URDF requires one.
 constexpr double no_limit = 1000;
@@ -22,80 +25,106 @@ Eigen::Vector3d fixed_axis_angles(const Eigen::Matrix3d& rotation) {
     return {std::atan2(rotation(2, 1), rotation(2, 2)), pitch, std::atan2(rotation(1, 0), rotation(0, 0))};
 }
 
-std::string origin(const Eigen::Isometry3d& placement) {
-    return "<origin" + attribute("xyz", spaced(placement.translation())) +
-           attribute("rpy", spaced(fixed_axis_angles(placement.linear()))) + "/>";
-}
-
-std::string link(const std::string& name, const InertialParameters& parameters) {
+void print_link(XMLPrinter& out, const std::string& name, const InertialParameters& parameters) {
+    XmlElement link(out, "link");
+    link.set("name", name);
     if (parameters.isZero(0)) {
-        return "  <link" + attribute("name", name) + "/>\n";
+        return;
     }
     const CentralBody body = central_body(parameters);
-    const auto element = [&](const char* axes, Eigen::Index row, Eigen::Index column) {
-        return attribute(axes, number_text(body.inertia(row, column)));
+    const auto moment = [&](Eigen::Index row, Eigen::Index column) {
+        return number_text(body.inertia(row, column));
     };
-    return "  <link" + attribute("name", name) + ">\n    <inertial>\n      <origin" +
-           attribute("xyz", spaced(body.centre)) + "/>\n      <mass" +
-           attribute("value", number_text(body.mass)) + "/>\n      <inertia" + element("ixx", 0, 0) +
-           element("ixy", 0, 1) + element("ixz", 0, 2) + element("iyy", 1, 1) + element("iyz", 1, 2) +
-           element("izz", 2, 2) + "/>\n    </inertial>\n  </link>\n";
+    const XmlElement inertial(out, "inertial");
+    XmlElement(out, "origin").set("xyz", spaced(body.centre));
+    XmlElement(out, "mass").set("value", number_text(body.mass));
+    XmlElement(out, "inertia")
+        .set("ixx", moment(0, 0))
+        .set("ixy", moment(0, 1))
+        .set("ixz", moment(0, 2))
+        .set("iyy", moment(1, 1))
+        .set("iyz", moment(1, 2))
+        .set("izz", moment(2, 2));
 }
 
-/// The beginning of a joint's element: name, type, links and origin.
-std::string joint_between(const std::string& name, const std::string& type, const std::string& parent,
-                          const std::string& child, const Eigen::Isometry3d& placement) {
-    return "  <joint" + attribute("name", name) + attribute("type", type) + ">\n    <parent" +
-           attribute("link", parent) + "/>\n    <child" + attribute("link", child) + "/>\n    " +
-           origin(placement) + "\n";
+/// Prints what all joints have: name, type, links and origin.
+void print_connection(XMLPrinter& out, XmlElement& joint, const std::string& name, const char* type,
+                      const std::string& parent, const std::string& child,
+                      const Eigen::Isometry3d& placement) {
+    joint.set("name", name).set("type", type);
+    XmlElement(out, "parent").set("link", parent);
+    XmlElement(out, "child").set("link", child);
+    XmlElement(out, "origin")
+        .set("xyz", spaced(placement.translation()))
+        .set("rpy", spaced(fixed_axis_angles(placement.linear())));
 }
 
-std::string fixed_joint(const std::string& parent, const std::string& child,
-                        const Eigen::Isometry3d& placement) {
-    return joint_between(parent + "_to_" + child, "fixed", parent, child, placement) + "  </joint>\n";
+void print_fixed_joint(XMLPrinter& out, const std::string& parent, const std::string& child,
+                       const Eigen::Isometry3d& placement) {
+    XmlElement joint(out, "joint");
+    print_connection(out, joint, parent + "_to_" + child, "fixed", parent, child, placement);
 }
 
-std::string moving_joint(const RobotJoint& joint, const JointDynamics& dynamics, const std::string& parent) {
-    const bool bounded = joint.lower && joint.upper;
-    std::string limit;
-    if (bounded || joint.prismatic) {
-        limit = attribute("lower", number_text(joint.lower.value_or(-no_limit))) +
-                attribute("upper", number_text(joint.upper.value_or(no_limit)));
+void print_limits(XMLPrinter& out, const RobotJoint& joint) {
+    XmlElement limit(out, "limit");
+    if ((joint.lower && joint.upper) || joint.prismatic) {
+        limit.set("lower", number_text(joint.lower.value_or(-no_limit)))
+            .set("upper", number_text(joint.upper.value_or(no_limit)));
     }
-    limit += attribute("effort", number_text(joint.effort.value_or(no_limit))) +
-             attribute("velocity", number_text(joint.velocity.value_or(no_limit)));
-    const char* const type = joint.prismatic ? "prismatic" : bounded ? "revolute" : "continuous";
-    return joint_between(joint.name, type, parent, joint.link, joint.placement) + "    <axis" +
-           attribute("xyz", spaced(joint.axis)) + "/>\n    <limit" + limit + "/>\n    <dynamics" +
-           attribute("damping", number_text(dynamics.damping)) +
-           attribute("friction", number_text(dynamics.friction)) + "/>\n  </joint>\n";
+    limit.set("effort", number_text(joint.effort.value_or(no_limit)))
+        .set("velocity", number_text(joint.velocity.value_or(no_limit)));
 }
 
-} // namespace
+void print_moving_joint(XMLPrinter& out, const RobotJoint& joint, const JointDynamics& dynamics,
+                        const std::string& parent) {
+    const bool bounded = joint.lower && joint.upper;
+    const char* const type = joint.prismatic ? "prismatic" : bounded ? "revolute" : "continuous";
+    XmlElement element(out, "joint");
+    print_connection(out, element, joint.name, type, parent, joint.link, joint.placement);
+    XmlElement(out, "axis").set("xyz", spaced(joint.axis));
+    print_limits(out, joint);
+    XmlElement(out, "dynamics")
+        .set("damping", number_text(dynamics.damping))
+        .set("friction", number_text(dynamics.friction));
+}
 
-std::string urdf_text(const RobotExport& exported) {
-    const Robot& robot = exported.robot;
-    std::string text = "<?xml version=\"1.0\"?>\n<robot" + attribute("name", robot.name) + ">\n";
+/// Prints a root link whose z axis points up, if that of the robot's base does not.
+void print_gravity_frame(XMLPrinter& out, const Robot& robot) {
     const Eigen::Vector3d down = robot.gravity.normalized();
     if (robot.gravity.norm() > 0 && (down + Eigen::Vector3d::UnitZ()).norm() > 1e-12) {
         Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();
         turned.linear() =
             Eigen::Quaterniond::FromTwoVectors(down, -Eigen::Vector3d::UnitZ()).toRotationMatrix();
-        text += link("gravity_frame", InertialParameters::Zero()) +
-                fixed_joint("gravity_frame", robot.base, turned);
+        print_link(out, "gravity_frame", InertialParameters::Zero());
+        print_fixed_joint(out, "gravity_frame", robot.base, turned);
     }
-    text += link(robot.base, InertialParameters::Zero());
+}
+
+void print_robot(XMLPrinter& out, const RobotExport& exported) {
+    const Robot& robot = exported.robot;
+    XmlElement element(out, "robot");
+    element.set("name", robot.name);
+    print_gravity_frame(out, robot);
+    print_link(out, robot.base, InertialParameters::Zero());
     std::string parent = robot.base;
     for (std::size_t i = 0; i < robot.joints.size(); ++i) {
-        text += moving_joint(robot.joints[i], exported.joints[i], parent);
+        print_moving_joint(out, robot.joints[i], exported.joints[i], parent);
         parent = robot.joints[i].link;
-        text += link(parent, robot.joints[i].inertia);
+        print_link(out, parent, robot.joints[i].inertia);
     }
     if (parent != robot.tip) {
-        text +=
-            fixed_joint(parent, robot.tip, robot.tip_placement) + link(robot.tip, InertialParameters::Zero());
+        print_fixed_joint(out, parent, robot.tip, robot.tip_placement);
+        print_link(out, robot.tip, InertialParameters::Zero());
     }
-    return text + "</robot>\n";
+}
+
+} // namespace
+
+std::string urdf_text(const RobotExport& exported) {
+    XMLPrinter out;
+    out.PushHeader(false, true);
+    print_robot(out, exported);
+    return out.CStr();
 }
 
 } // namespace dfdyn::tools
