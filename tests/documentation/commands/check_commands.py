@@ -9,8 +9,8 @@ import subprocess
 import sys
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent.parent.parent
-INDENTED = re.compile(r"^ {4}(?:dfdyn|build/|tools/|cmake|ctest|[A-Z]=)")
-CALL = re.compile(r"\bdfdyn ([a-z]+)((?: (?!dfdyn )[^`\n]*)?)")
+INDENTED = re.compile(r"^ {4}(?:\$ |dfdyn |build/|tools/|cmake |ctest |[A-Z]=)")
+CALL = re.compile(r"(?:^|[`$|&;(] ?)(?:build/release/tools/)?dfdyn ([a-z]+)((?: [^`\n]*)?)")
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z0-9-]*")
 
 
@@ -61,7 +61,7 @@ def main():
         for number, line in lines:
             calls += len(CALL.findall(line))
             wrong += [f"{name}:{number}: unknown: {one}" for one in wrong_options(dfdyn, line)]
-            if INDENTED.match(line) and name.parts[:2] != ("docs", "results"):
+            if INDENTED.match(line) and name.parts[:2] != ("docs", "results") and not line.startswith("    dfdyn::"):
                 wrong.append(f"{name}:{number}: expected a block ```sh, found an indented command")
     print(*wrong, sep="\n")
     print(f"{len(pages)} pages, {calls} calls of the program, {len(wrong)} complaints")
