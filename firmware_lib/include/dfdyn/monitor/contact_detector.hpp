@@ -42,7 +42,7 @@ struct ContactLimits {
 /// detected. The constants were chosen on the UR5 recordings No5 to No9, `contact_clip` on
 /// pushes of a simulated UR5. Use in each tick:
 ///
-///     const auto estimate = estimator.tick(sample);
+///     const auto estimate = estimator.tick(sample, budget);
 ///     if (estimate.status.predicted() && measured) {
 ///         detector.tick(sample.time_ns, sample.position.data(), error);
 ///     } else {
