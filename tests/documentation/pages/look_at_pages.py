@@ -18,7 +18,7 @@ from make_pages import make_pages
 HERE = pathlib.Path(__file__).resolve().parent
 
 
-NUMBER = re.compile(r"-?\d+(?:\.(\d+))?(?:e[+-]?\d+)?")
+NUMBER = re.compile(r"-?\d+(?:\.(\d+))?(?:e([+-]?\d+))?")
 
 
 def shows(cell, value):
@@ -27,11 +27,8 @@ def shows(cell, value):
     if not found:
         return False
     scale = 100 if "%" in cell else 1
-    shown = float(found[0])
-    digit = 10.0 ** -len(found[1] or "")
-    if "e" in found[0] or (found[1] is None and abs(shown) >= 100):  # three significant digits
-        digit = 10.0 ** (len(str(int(abs(shown)))) - 3)
-    return abs(shown - scale * value) <= 0.501 * max(digit, 1e-12)
+    last_digit = 10.0 ** (int(found[2] or 0) - len(found[1] or ""))
+    return abs(float(found[0]) - scale * value) <= 0.501 * last_digit
 
 
 def missing_figures(seen, figures):
