@@ -23,34 +23,35 @@
 /// not stop the arm: if `ticks_without_sample` exceeds what your arm tolerates, stop it.
 class JointController {
   public:
-    static constexpr int joints = 6;
-    static constexpr std::int64_t period_ns = 1'000'000;
-    static constexpr int ticks_per_sample = 8; // the model was trained on samples 8 ms apart
-    static constexpr int hold_ticks = 5;
-    static constexpr float step_share = 0.02F; // of the limit, per tick: 20 limits per second
+    static constexpr int joints = 6;                     ///< of the arm and of the model
+    static constexpr std::int64_t period_ns = 1'000'000; ///< of `update`
+    static constexpr int ticks_per_sample = 8;           ///< the model was trained on samples 8 ms apart
+    static constexpr int hold_ticks = 5; ///< for which a joint without measurements keeps its correction
+    static constexpr float step_share = 0.02F; ///< of the limit, per tick: 20 limits per second
 
-    using Learned = dfdyn::LearnedTorque<ur5_model::Model>;
-    using Forward = dfdyn::FeedForward<Learned>;
-    using Observer = dfdyn::DisturbanceObserver<float, joints>;
-    using Reference = dfdyn::Reference<float, joints>;
-    using Efforts = dfdyn::Storage<float, joints>;
+    using Learned = dfdyn::LearnedTorque<ur5_model::Model>;     ///< the model and its state
+    using Forward = dfdyn::FeedForward<Learned>;                ///< nominal and learned effort
+    using Observer = dfdyn::DisturbanceObserver<float, joints>; ///< what the feed-forward leaves
+    using Reference = dfdyn::Reference<float, joints>;          ///< position, velocity, acceleration
+    using Efforts = dfdyn::Storage<float, joints>;              ///< one value per joint, A
 
     /// Measured state of the joints at one time.
     struct State {
-        std::int64_t time_ns;
-        Efforts position; // rad
-        Efforts velocity; // rad/s
+        std::int64_t time_ns; ///< stamp of the measurement
+        Efforts position;     ///< rad; NaN: not measured
+        Efforts velocity;     ///< rad/s; NaN: not measured
     };
 
     /// Gains and limits of the loop, the same for all joints for brevity.
     struct Gains {
-        float position;  // A/rad
-        float velocity;  // A·s/rad
-        float inertia;   // A·s²/rad, approximate
-        float limit;     // A
-        float bandwidth; // of the observer, rad/s; see dfdyn::LoopMargin
+        float position;  ///< A/rad, > 0
+        float velocity;  ///< A·s/rad, > 0
+        float inertia;   ///< A·s²/rad, approximate; 0 if unknown
+        float limit;     ///< A, > 0
+        float bandwidth; ///< of the observer, rad/s, ≥ 0; see dfdyn::LoopMargin
     };
 
+    /// Starts with the learned state of the model in flash. Call `activate` before the first `update`.
     explicit JointController(const Gains& gains)
         : gains_(gains), learned_(ur5_model::constants, ticks_per_sample),
           forward_(learned_, {.period_ns = period_ns,
@@ -99,6 +100,7 @@ class JointController {
     /// Switches the learned part on and off, without a step.
     void enable_learned(bool on) { forward_.enable(on); }
 
+    /// Returns the feed-forward: its share, its learned part, and the learner with its counters.
     [[nodiscard]] const Forward& forward() const { return forward_; }
 
   private:

@@ -104,6 +104,11 @@ inline bool refused(const Diagnosis& diagnosis) {
                                [](const Suspicion& suspicion) { return !suspicion.code.empty(); });
 }
 
+/// Returns whether a part of the recording fitted nothing, so that the errors are those of that part.
+inline bool has_held_out(const Diagnosis& diagnosis) {
+    return diagnosis.heldout_to_s > diagnosis.heldout_from_s;
+}
+
 struct DiagnosisOptions {
     OutputKind outputs = OutputKind::joint_torque;
     std::vector<double> torque_constants; ///< N·m/A per joint; empty: unknown, each joint has its own gain

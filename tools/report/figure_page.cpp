@@ -14,7 +14,8 @@ namespace {
 std::string charts_html(const std::vector<PageChart>& charts) {
     std::string html = "<div class=\"charts\">\n";
     for (const PageChart& chart : charts) {
-        html += "<div>\n" + chart.svg + "</div>\n";
+        html += "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"" +
+                escape_html(chart.title) + "\">\n" + chart.svg + "</div>\n";
     }
     return html + "</div>\n";
 }

@@ -78,19 +78,34 @@ Column format_cells(const ReportTable& table, std::size_t index) {
     return column;
 }
 
-std::string cell_html(const std::string& content, std::string_view scope, bool numeric) {
+std::string cell_html(const std::string& content, std::string_view scope, std::string_view classes) {
     const std::string element = scope.empty() ? "td" : "th";
     std::string html = "<" + element;
     if (!scope.empty()) {
         html.append(" scope=\"").append(scope).append("\"");
     }
-    return html + (numeric ? " class=\"number\">" : ">") + content + "</" + element + ">";
+    if (!classes.empty()) {
+        html.append(" class=\"").append(classes).append("\"");
+    }
+    return html + ">" + content + "</" + element + ">";
+}
+
+std::string_view class_of(const Column& column) { return column.numeric ? "number" : ""; }
+
+/// Returns the cell of a column's name. The style sheet gives long names room for two lines instead of more.
+std::string head_html(const std::string& name, const Column& column) {
+    constexpr std::size_t short_name = 14;
+    std::string classes{class_of(column)};
+    if (name.size() > short_name) {
+        classes += classes.empty() ? "long" : " long";
+    }
+    return cell_html(escape_html(name), "col", classes);
 }
 
 std::string body_row_html(const std::vector<Column>& columns, std::size_t row) {
     std::string html = "<tr>";
     for (std::size_t i = 0; i < columns.size(); ++i) {
-        html += cell_html(escape_html(columns[i].cells[row]), i == 0 ? "row" : "", columns[i].numeric);
+        html += cell_html(escape_html(columns[i].cells[row]), i == 0 ? "row" : "", class_of(columns[i]));
     }
     return html + "</tr>\n";
 }
@@ -131,7 +146,7 @@ std::string table_html(const ReportTable& table) {
     std::string head;
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
         columns.push_back(format_cells(table, i));
-        head += cell_html(escape_html(table.columns[i]), "col", columns.back().numeric);
+        head += head_html(table.columns[i], columns.back());
     }
     std::string body;
     for (std::size_t row = 0; row < table.rows.size(); ++row) {

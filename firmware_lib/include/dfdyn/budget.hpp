@@ -13,11 +13,14 @@ namespace dfdyn {
 /// The costs of all parts are constant expressions of the sizes (`Estimator::cost()`), so a control loop can
 /// assign a share of its period to learning.
 struct Budget {
-    std::int64_t operations = 0;
+    std::int64_t operations = 0; ///< multiply-adds that are left
 
+    /// Returns a budget in which a sample is learned in its own tick.
     static constexpr Budget unlimited() noexcept { return {std::numeric_limits<std::int64_t>::max()}; }
+    /// Returns a budget with which nothing is learned.
     static constexpr Budget predict_only() noexcept { return {0}; }
 
+    /// Returns whether `cost` multiply-adds are left.
     [[nodiscard]] constexpr bool affords(std::int64_t cost) const noexcept { return cost <= operations; }
 
     /// Subtracts `cost` and returns true if the budget affords it; otherwise returns false and changes

@@ -22,7 +22,7 @@ namespace dfdyn {
 template <class Scalar>
 class LatticePredictor {
   public:
-    static constexpr Scalar outlier = 10;
+    static constexpr Scalar outlier = 10;               ///< root mean squares beyond which a value is clipped
     static constexpr int cost = 2 * function_cost + 26; ///< multiply-adds of `add` plus `next`, maximum
 
     /// Sets both stages to zero coefficients. `scale`: expected root mean square, > 0, in the series' unit.
@@ -67,6 +67,7 @@ class LatticePredictor {
         return std::clamp(value, -bound, bound);
     }
 
+    /// Visits the contents of a snapshot.
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         for (int stage = 0; stage < 2; ++stage) {
@@ -190,6 +191,7 @@ class ColouredResidual {
         return std::int64_t{output_count} * (2 * LatticePredictor<Scalar>::cost + 2 * function_cost + 24);
     }
 
+    /// Returns the size of a snapshot, in bytes.
     [[nodiscard]] std::size_t snapshot_bytes() const noexcept { return dfdyn::snapshot_bytes(*this); }
 
     /// Writes the coefficients to the front of `buffer`, which holds at least `snapshot_bytes()`.
@@ -207,6 +209,7 @@ class ColouredResidual {
         return result;
     }
 
+    /// Visits the contents of a snapshot.
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         visitor.ranged(self.samples_, Scalar(0), self.memory_);

@@ -29,7 +29,7 @@ struct Estimate {
     /// m while the model is valid, 0 without a measurement. If outputs share parameters (P, SPK) it is not
     /// chi-square, because the correlation of their errors is ignored.
     Scalar normalised_innovation_squared;
-    Status status;
+    Status status; ///< whether there is a prediction, whether the sample was learned, and why not
 };
 
 /// Number of occurrences of each reason since the last reset; monotonic in between. 64 bits suffice for 584
@@ -37,9 +37,9 @@ struct Estimate {
 /// fault. A 32-bit core reads a counter in two loads, so read it in the context that ticks, or while nothing
 /// ticks.
 struct Counters {
-    std::uint64_t ticks = 0;
-    std::uint64_t predicted = 0;
-    std::uint64_t learned = 0;
+    std::uint64_t ticks = 0;     ///< calls of `tick`
+    std::uint64_t predicted = 0; ///< ticks with a prediction of the model itself, within its bound
+    std::uint64_t learned = 0;   ///< samples learned completely
     /// Indexed by the reason's number: the reason of the prediction, or of learning if predicted.
     Storage<std::uint64_t, reason_count> reasons{};
 };
@@ -51,12 +51,13 @@ struct Counters {
 template <class ModelType>
 class Estimator {
   public:
-    using Model = ModelType;
-    using Scalar = typename Model::Scalar;
-    using Constants = typename Model::Constants;
-    using Sample = typename Model::Sample;
-    using Estimate = dfdyn::Estimate<Scalar, Model::outputs>;
+    using Model = ModelType;                                  ///< a `dfdyn::Model`
+    using Scalar = typename Model::Scalar;                    ///< float or double
+    using Constants = typename Model::Constants;              ///< what `dfdyn train` writes
+    using Sample = typename Model::Sample;                    ///< positions and outputs of one tick
+    using Estimate = dfdyn::Estimate<Scalar, Model::outputs>; ///< result of one tick
 
+    /// The columns and the learner of the model's structure.
     using Regression = typename Model::Structure::template Regression<Model>;
     static_assert(RegressionOf<Regression, Scalar, Sample>);
 
@@ -65,6 +66,7 @@ class Estimator {
     static constexpr int clock_restart_samples = 3;
 
     explicit Estimator(const Constants&&) = delete; // prevents a reference to a temporary
+    /// Starts with an empty window and the learned state that `constants` contain. O(size of the state).
     explicit Estimator(const Constants& constants) noexcept
         : constants_(&constants), sizes_(constants.sizes), learn_cost_(cost(constants.sizes).learn),
           regression_(constants), target_(Outputs::zeros(sizes_.output_count)), ratio_(target_),
@@ -162,7 +164,9 @@ class Estimator {
         return result;
     }
 
+    /// Returns the numbers of ticks, predictions, learned samples and reasons since the last reset.
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
+    /// Returns the columns and the learned weights, in units of the noise standard deviations.
     [[nodiscard]] const Regression& regression() const noexcept { return regression_; }
 
     /// Returns the cost of a tick's parts in multiply-adds, a constant expression for a firmware model.

@@ -12,13 +12,16 @@ inline constexpr int dynamic = -1;
 /// A size. Fixed sizes take no memory and fold to constants.
 template <int value>
 struct Extent {
+    /// Returns the size.
     // It is a number: NOLINTNEXTLINE(google-explicit-constructor)
     constexpr operator int() const noexcept { return value; }
 };
 
+/// A size that is known at run time.
 template <>
 struct Extent<dynamic> {
-    int value = 0;
+    int value = 0; ///< the size, ≥ 0
+    /// Returns the size.
     // It is a number: NOLINTNEXTLINE(google-explicit-constructor)
     constexpr operator int() const noexcept { return value; }
 };
@@ -33,9 +36,10 @@ constexpr Extent<value> extent([[maybe_unused]] int number) noexcept {
     }
 }
 
-/// Product and sum of template sizes; `dynamic` if an operand is `dynamic`.
+/// Returns the product of template sizes; `dynamic` if an operand is `dynamic`.
 constexpr int product(int a, int b) noexcept { return a == dynamic || b == dynamic ? dynamic : a * b; }
 
+/// Returns the sum of template sizes; `dynamic` if an operand is `dynamic`.
 constexpr int sum(int a, int b) noexcept { return a == dynamic || b == dynamic ? dynamic : a + b; }
 
 } // namespace dfdyn

@@ -23,6 +23,7 @@ struct ExtrapolationConstants {
     /// `parameter_variance_factor`.
     Storage<Scalar, m> output_variance{};
 
+    /// Returns whether `dfdyn train` measured these constants; otherwise predictions are the paper's.
     [[nodiscard]] constexpr bool measured() const noexcept {
         return inverse_far_variance > 0 || parameter_variance_factor > 0;
     }
@@ -46,8 +47,10 @@ struct ExtrapolationConstants {
 template <class Scalar>
 class Extrapolation {
   public:
-    static constexpr int cost = 7;
+    static constexpr int cost = 7; ///< multiply-adds of the constructor
 
+    /// `feature_variance`: φ'Pφ, ≥ 0, in units of the noise variance; the others as in
+    /// `ExtrapolationConstants`.
     constexpr Extrapolation(Scalar feature_variance, Scalar inverse_far_variance,
                             Scalar parameter_variance_factor = 0) noexcept
         : factor_(parameter_variance_factor > 0 ? parameter_variance_factor : Scalar(1)),

@@ -174,6 +174,7 @@ class ForecastCombination {
         }
     }
 
+    /// Returns the size of a snapshot, in bytes.
     [[nodiscard]] std::size_t snapshot_bytes() const noexcept { return dfdyn::snapshot_bytes(*this); }
 
     /// Writes the learned state to the front of `buffer`, which holds at least `snapshot_bytes()`.
@@ -190,6 +191,7 @@ class ForecastCombination {
         return result;
     }
 
+    /// Visits the contents of a snapshot.
     template <class Self, class Visitor>
     static void visit_state(Self& self, Visitor& visitor) noexcept {
         visitor.ranged(self.samples_, Scalar(0), self.memory_);

@@ -12,12 +12,15 @@ namespace dfdyn {
 template <class Scalar, int n, int M>
 class LagWindow {
   public:
+    /// Starts empty. `joints`: n; `lags`: M.
     constexpr LagWindow(Extent<n> joints, Extent<M> lags) noexcept
         : joints_(joints), lags_(lags), rows_(Rows::zeros(extent<size>(2 * (lags + 1) * joints))) {}
 
     /// Returns the number of rows of a full window: M+1.
     [[nodiscard]] constexpr int capacity() const noexcept { return lags_ + 1; }
+    /// Returns whether the window contains M+1 rows.
     [[nodiscard]] constexpr bool full() const noexcept { return filled_ == capacity(); }
+    /// Returns the number of rows since the last restart, at most M+1.
     [[nodiscard]] constexpr int filled() const noexcept { return filled_; }
 
     /// Empties the window; it must fill again.
@@ -42,6 +45,7 @@ class LagWindow {
         return rows_.data() + (newest_ + lag) * joints_;
     }
 
+    /// Returns the bytes of the rows.
     [[nodiscard]] static constexpr std::int64_t state_bytes(int joints, int lags) noexcept {
         return storage_bytes<Scalar>(std::int64_t{2} * (lags + 1) * joints);
     }

@@ -13,8 +13,8 @@ namespace dfdyn {
 /// An arm with n joints and m outputs and no known geometry. `Chain` adds the geometry.
 template <int n, int m>
 struct Joints {
-    static constexpr int joints = n;
-    static constexpr int outputs = m;
+    static constexpr int joints = n;  ///< joints of the arm, or `dynamic`
+    static constexpr int outputs = m; ///< torques, currents or wrench components, or `dynamic`
 };
 
 namespace detail {
@@ -32,53 +32,61 @@ using SampleOf = std::conditional_t<
 template <class ScalarType, class ArmType, class InputType, class FeatureType,
           class StructureType = Nonparametric<>>
 struct Model {
-    using Scalar = ScalarType;
-    using Arm = ArmType;
-    using Input = InputType;
-    using Features = FeatureType;
-    using Structure = StructureType;
-    using Physics = typename Structure::Physics;
+    using Scalar = ScalarType;       ///< float or double
+    using Arm = ArmType;             ///< `Joints` or `Chain`
+    using Input = InputType;         ///< last positions to ξ: `DerivativeFreeReduced`, `Standard`, …
+    using Features = FeatureType;    ///< ξ to φ: `RandomFourier`
+    using Structure = StructureType; ///< what is learned: `Nonparametric`, `SemiparametricKernel`, …
+    using Physics = typename Structure::Physics; ///< rigid body and effects; `NoPhysics` if there are none
 
-    static constexpr int joints = Arm::joints;
-    static constexpr int outputs = Arm::outputs;
-    static constexpr int inputs = product(joints, Input::features_per_joint);
-    static constexpr int columns = Features::columns;   ///< 2d
-    static constexpr int parameters = Physics::columns; ///< p
+    static constexpr int joints = Arm::joints;                                ///< n
+    static constexpr int outputs = Arm::outputs;                              ///< m
+    static constexpr int inputs = product(joints, Input::features_per_joint); ///< n·k, size of ξ
+    static constexpr int columns = Features::columns;                         ///< 2d
+    static constexpr int parameters = Physics::columns;                       ///< p
 
+    /// Rows of R and scales.
     using InputConstants = typename Input::template Constants<Scalar, joints>;
+    /// Frequencies ω, divided by the length scale.
     using FeatureConstants = typename Features::template Constants<Scalar, inputs>;
+    /// Geometry, selected columns and their scales.
     using PhysicsConstants = typename Physics::template Constants<Scalar, Arm>;
+    /// Initial state of the learner and its forgetting.
     using StructureConstants = typename Structure::template Constants<Scalar, columns, outputs>;
+    /// Positions and outputs of one tick; with velocities and accelerations where input or physics need them.
     using Sample = detail::SampleOf<Input, typename Physics::Motion, Scalar, joints, outputs>;
 
     /// Empty for a firmware model, where every size is a template argument.
     struct Sizes {
-        [[no_unique_address]] Extent<joints> joint_count{};
-        [[no_unique_address]] Extent<outputs> output_count{};
-        [[no_unique_address]] Extent<Input::lags> lag_count{};
-        [[no_unique_address]] Extent<Input::features_per_joint> features_per_joint{};
-        [[no_unique_address]] Extent<Features::count> feature_count{};
-        [[no_unique_address]] typename Physics::template Sizes<Arm> physics{};
+        [[no_unique_address]] Extent<joints> joint_count{};                           ///< n
+        [[no_unique_address]] Extent<outputs> output_count{};                         ///< m
+        [[no_unique_address]] Extent<Input::lags> lag_count{};                        ///< M
+        [[no_unique_address]] Extent<Input::features_per_joint> features_per_joint{}; ///< k
+        [[no_unique_address]] Extent<Features::count> feature_count{};                ///< d
+        [[no_unique_address]] typename Physics::template Sizes<Arm> physics{};        ///< bodies, parameters
 
+        /// Returns the size of ξ, n·k.
         [[nodiscard]] constexpr Extent<inputs> input_count() const noexcept {
             return extent<inputs>(joint_count * features_per_joint);
         }
+        /// Returns the number of features, 2d.
         [[nodiscard]] constexpr Extent<columns> column_count() const noexcept {
             return extent<columns>(2 * feature_count);
         }
     };
 
+    /// A trained model: all that an estimator needs besides its state.
     struct Constants {
-        [[no_unique_address]] Sizes sizes;
+        [[no_unique_address]] Sizes sizes; ///< empty for a firmware model
         /// Differs between models: a snapshot of one model is not restored into another.
         std::uint32_t identity;
         /// Without a period: a longer time between two samples is a gap.
         std::int64_t gap_ns;
         /// Nominal sample period; with it, `SampleClock` decides on gaps.
         std::int64_t period_ns = 0;
-        [[no_unique_address]] InputConstants input;
-        [[no_unique_address]] FeatureConstants features;
-        [[no_unique_address]] PhysicsConstants physics;
+        [[no_unique_address]] InputConstants input;      ///< last positions to ξ
+        [[no_unique_address]] FeatureConstants features; ///< ξ to φ
+        [[no_unique_address]] PhysicsConstants physics;  ///< motion to ψ
         Storage<Scalar, outputs> output_offset;    ///< y = offset + noise_std (prediction + e), e ~ N(0, 1)
         Storage<Scalar, outputs> output_noise_std; ///< > 0, in the output's unit
         Storage<Scalar, joints> position_limit; ///< |q_i| beyond it is refused (rad; m for prismatic joints)
@@ -90,7 +98,7 @@ struct Model {
         std::int32_t innovation_patience;
         /// Predictions are limited to ±`prediction_limit` (the output's unit). 0 or absent: no limit.
         Storage<Scalar, outputs> prediction_limit{};
-        StructureConstants learner;
+        StructureConstants learner; ///< initial weights and covariance, forgetting
         ExtrapolationConstants<Scalar, outputs> extrapolation{}; ///< all zero: as in the paper
     };
 };

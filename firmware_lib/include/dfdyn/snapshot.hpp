@@ -36,13 +36,13 @@ enum class SnapshotResult : std::uint8_t {
 /// `visit_state`, and then the CRC-32 of all preceding bytes. A snapshot can therefore be written
 /// sequentially, and an unfinished one is rejected.
 struct SnapshotHeader {
-    static constexpr std::uint32_t expected_magic = 0x59444644; // "DFDY"
-    static constexpr std::uint32_t expected_version = 5;
+    static constexpr std::uint32_t expected_magic = 0x59444644; ///< "DFDY"
+    static constexpr std::uint32_t expected_version = 5;        ///< of the format
 
-    std::uint32_t magic = expected_magic;
-    std::uint32_t version = expected_version;
-    std::uint32_t model = 0;
-    std::uint32_t payload_bytes = 0; ///< of the state
+    std::uint32_t magic = expected_magic;     ///< of a snapshot in this machine's byte order
+    std::uint32_t version = expected_version; ///< of the format
+    std::uint32_t model = 0;                  ///< `model_identity()` of the estimator that wrote it
+    std::uint32_t payload_bytes = 0;          ///< of the state
 };
 
 using SnapshotChecksum = std::uint32_t;

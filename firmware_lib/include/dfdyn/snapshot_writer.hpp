@@ -73,8 +73,9 @@ class SnapshotWriter {
 
     /// Returns `in_progress`, `ok` after the whole snapshot is written, or the reason why there is none.
     [[nodiscard]] SnapshotResult result() const noexcept { return result_; }
-    /// Size of the whole snapshot, and the number of bytes written so far.
+    /// Returns the size of the whole snapshot, in bytes.
     [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
+    /// Returns the number of bytes written so far.
     [[nodiscard]] std::size_t written() const noexcept { return position_; }
 
   private:

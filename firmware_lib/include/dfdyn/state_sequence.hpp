@@ -25,6 +25,7 @@ namespace dfdyn {
 class StateSequence {
   public:
     StateSequence() noexcept = default;
+    /// Starts without a hold, whatever the other has.
     StateSequence(const StateSequence& /*other*/) noexcept {}
     /// Assignment overwrites the state, so a copy in progress detects a change.
     StateSequence& operator=(const StateSequence& other) noexcept {
@@ -59,6 +60,7 @@ class StateSequence {
         sequence_.store(sequence_.load(std::memory_order_relaxed) + 1, std::memory_order_seq_cst);
         std::atomic_thread_fence(std::memory_order_release);
     }
+    /// Ends the changes that `try_change` or `begin_change` began.
     void end_change() noexcept {
         sequence_.store(sequence_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
     }

@@ -116,11 +116,13 @@ struct Status {
     Reason prediction = Reason::ok;
     Reason learning = Reason::ok; ///< ok: the sample has been learned
 
+    /// Returns true if the estimate is the model's own prediction, within its bound.
     [[nodiscard]] constexpr bool predicted() const noexcept { return prediction == Reason::ok; }
     /// Returns true if the estimate contains a value: the model's own prediction, or its limit.
     [[nodiscard]] constexpr bool estimated() const noexcept {
         return predicted() || prediction == Reason::prediction_bounded;
     }
+    /// Returns true if the sample has been learned in this tick.
     [[nodiscard]] constexpr bool learned() const noexcept { return estimated() && learning == Reason::ok; }
     /// Returns the one reason to report: that of the prediction unless it is ok. A fault of the measurement
     /// takes precedence over `prediction_bounded`.

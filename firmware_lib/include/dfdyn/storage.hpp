@@ -24,19 +24,23 @@ constexpr std::int64_t storage_bytes(std::int64_t count) noexcept {
 template <class T, int count>
 struct Storage {
     static_assert(count > 0);
-    alignas(storage_alignment) T values[count];
+    alignas(storage_alignment) T values[count]; ///< the numbers
 
+    /// Returns `count` zeros.
     static constexpr Storage zeros(Extent<count> /*size*/) noexcept { return Storage{}; }
 
+    /// Returns `count`.
     [[nodiscard]] static constexpr int size() noexcept { return count; }
-    [[nodiscard]] constexpr T* data() noexcept { return values; }
-    [[nodiscard]] constexpr const T* data() const noexcept { return values; }
+    [[nodiscard]] constexpr T* data() noexcept { return values; }             ///< Returns the first number.
+    [[nodiscard]] constexpr const T* data() const noexcept { return values; } ///< Returns the first number.
+    /// Returns a number, 0 ≤ index < count; not checked.
     constexpr T& operator[](int index) noexcept { return values[index]; }
+    /// Returns a number, 0 ≤ index < count; not checked.
     constexpr const T& operator[](int index) const noexcept { return values[index]; }
-    [[nodiscard]] constexpr T* begin() noexcept { return values; }
-    [[nodiscard]] constexpr T* end() noexcept { return values + count; }
-    [[nodiscard]] constexpr const T* begin() const noexcept { return values; }
-    [[nodiscard]] constexpr const T* end() const noexcept { return values + count; }
+    [[nodiscard]] constexpr T* begin() noexcept { return values; }                   ///< Begin of the range.
+    [[nodiscard]] constexpr T* end() noexcept { return values + count; }             ///< End of the range.
+    [[nodiscard]] constexpr const T* begin() const noexcept { return values; }       ///< Begin of the range.
+    [[nodiscard]] constexpr const T* end() const noexcept { return values + count; } ///< End of the range.
 };
 
 /// The host's tools specialise this for sizes that are known only at run time.

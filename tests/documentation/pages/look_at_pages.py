@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """look_at_pages.py DFDYN [FOLDER]: opens every kind of page that the program writes in headless Chromium, 390 and 1440 pixels wide, light and
-dark. Nothing may be cut or faint, every control must be reachable by keyboard, and the figures must be those of the command's JSON. FOLDER
-keeps the pages and their pictures. Exit status 77: there is no Chromium."""
+dark. Nothing may be cut, faint or tiny, every control must be reachable by keyboard, and the numbers of the tables must be those of the command's
+JSON. FOLDER keeps the pages and their pictures. Exit status 77: there is no Chromium."""
 
 import html
 import json
@@ -13,44 +13,36 @@ import subprocess
 import sys
 import tempfile
 
+from make_pages import make_pages
+
 HERE = pathlib.Path(__file__).resolve().parent
-DATA = HERE.parent.parent / "data"
-LEAST_CONTRAST = 4.5  # of text, WCAG 2.1 AA
-UR5 = DATA / "ur5_kufieta"
-TX40 = DATA / "tx40_figaroh" / "tx40_5kHz.csv"
 
 
-def run(dfdyn, *words, expected=0):
-    """Runs the program; returns its standard output."""
-    done = subprocess.run([dfdyn, *map(str, words)], capture_output=True, text=True, check=False)
-    assert done.returncode == expected, f"{words}: status {done.returncode}: {done.stderr}"
-    return done.stdout
+NUMBER = re.compile(r"-?\d+(?:\.(\d+))?(?:e([+-]?\d+))?")
 
 
-def make_pages(dfdyn, folder):
-    """Writes all pages. Returns {name: (page, figures that it must show)}."""
-    pages = {}
-    model = folder / "model.json"
-    train = ["train", "--outputs", "i", "--lags", 10, "--features", 30, "--likelihood-rows", 100, "--starts", 1, "--quiet"]
-    run(dfdyn, *train, "--log", UR5 / "Movement_No6_Acc_slow_Verify_Model.csv", "--rows", ":3421", "-o", model)
-    replay = json.loads(run(dfdyn, "replay", "--model", model, "--contacts", "--json", "--report", folder / "replay.html",
-                            "--log", UR5 / "Movement_No7_Acc_slow_Verify_Model_short_with_disturbance.csv"))
-    errors = replay["recordings"][0]["nrmse"]
-    pages["replay"] = folder / "replay.html", [f"{error:.3f}" for error in errors]
+def shows(cell, value):
+    """Returns whether a cell's first number is `value`, rounded to the digits that the cell has; a share may be in %."""
+    found = NUMBER.search(cell.replace("\u2212", "-"))
+    if not found:
+        return False
+    scale = 100 if "%" in cell else 1
+    last_digit = 10.0 ** (int(found[2] or 0) - len(found[1] or ""))
+    return abs(float(found[0]) - scale * value) <= 0.501 * last_digit
 
-    robot = ["--robot", DATA / "robots" / "tx40" / "tx40.urdf", "--tip", "link_6"]
-    findings = json.loads(run(dfdyn, "diagnose", *robot, "--log", TX40, "--outputs", "tau", "--no-held-out",
-                              "--quiet", "--json", "-o", folder / "diagnosis"))
-    figures = [one["effect"].replace("_", " ") for one in findings["findings"] if one["confidence"] >= 0.5]
-    assert figures, "expected findings on the TX40"
-    pages["diagnosis"] = folder / "diagnosis" / "report.html", figures
 
-    arm = DATA / "robots" / "small_arm" / "small_arm.urdf"
-    loop = json.loads(run(dfdyn, "loop", "--simulate", "--duration", 11, "--robot", arm, "--json", "--quiet",
-                          "--scenario", DATA / "scenarios" / "small_arm_loop.json", "-o", folder / "loop"))
-    windows = loop["runs"][0]["windows"]
-    pages["loop"] = folder / "loop" / "tracking.html", [f"{1e3 * one['rms_all_rad']:.3g}" for one in windows[:2]]
-    return pages
+def missing_figures(seen, figures):
+    """Returns what the tables of a page do not have: (row, column, value); without a row the page has the text."""
+    missing = []
+    for row, column, value in figures:
+        if row is None:
+            missing += [] if value.lower() in " ".join(seen["text"].lower().split()) else [f"no text {value!r}"]
+            continue
+        cells = [line[place] for table in seen["tables"] for line in table[1:] for place, title in enumerate(table[0])
+                 if line[0].lower() == row.lower() and title == column and place < len(line)]
+        if not any(shows(cell, value) for cell in cells):
+            missing.append(f"{row}, {column}: expected {value:.4g}, found {cells or 'no such cell'}")
+    return missing
 
 
 def look(chromium, page, width, dark, picture):
@@ -88,12 +80,11 @@ def complaints(seen, figures, width, dark):
         wrong.append(f"shown {seen['width']} px wide")
     if seen["pageWidth"] > seen["width"]:
         wrong.append(f"is {seen['pageWidth']} px wide")
-    for kind in ("cut", "clipped", "faint", "unreachable", "stuck", "errors"):
+    for kind in ("cut", "clipped", "faint", "unreachable", "stuck", "errors", "unprinted", "small", "tall"):
         wrong += [f"{kind}: {one}" for one in seen[kind]]
     if (seen["background"] < 0.18) != dark or (seen["foreground"] > 0.18) != dark:
         wrong.append(f"background of luminance {seen['background']:.2f}, text {seen['foreground']:.2f}")
-    wrong += [f"shows no {figure}" for figure in figures if figure.lower() not in seen["text"].lower()]
-    return wrong
+    return wrong + missing_figures(seen, figures)
 
 
 def main():
@@ -105,7 +96,7 @@ def main():
         folder = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else scratch).resolve()
         folder.mkdir(parents=True, exist_ok=True)
         failed = False
-        for name, (page, figures) in make_pages(sys.argv[1], folder).items():
+        for name, (page, figures) in make_pages(str(pathlib.Path(sys.argv[1]).resolve()), folder).items():
             for width in (390, 1440):
                 for dark in (False, True):
                     shade = "dark" if dark else "light"

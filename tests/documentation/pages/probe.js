@@ -2,6 +2,8 @@
 // Added to a copy of a page by look_at_pages.py: sends what can be seen of the page to its frame as JSON.
 "use strict";
 
+const smallestText = 8; // pixels
+
 /** Returns [r, g, b, a] of a computed colour. */
 function colourOf(text) {
   const parts = text.match(/[\d.]+/g).map(Number);
@@ -54,12 +56,39 @@ function showsText(element) {
   return own && element.checkVisibility() && element.getClientRects().length > 0;
 }
 
+/** Returns the size of a text in pixels of the screen; drawings may be scaled. */
+function sizeOf(element) {
+  const size = parseFloat(getComputedStyle(element).fontSize);
+  const scale = element instanceof SVGElement ? element.getScreenCTM() : null;
+  return scale ? size * Math.hypot(scale.a, scale.b) : size;
+}
+
+/** Returns the cells of table heads with more than two lines, which leave a gap above the others. */
+function tallHeads() {
+  return [...document.querySelectorAll("thead th")].filter((cell) => {
+    const lines = document.createRange();
+    lines.selectNodeContents(cell);
+    return new Set([...lines.getClientRects()].map((box) => Math.round(box.top))).size > 2;
+  }).map(describe);
+}
+
 /** Returns the charts that do not take the keys that zoom and pan. */
 function stuckCharts() {
   return [...document.querySelectorAll(".u-over")].filter((over) => {
     const keys = ["+", "ArrowRight", "-", "Home"].map((key) => new KeyboardEvent("keydown", { key, cancelable: true }));
     return over.tabIndex < 0 || keys.some((key) => over.dispatchEvent(key));
   }).map(describe);
+}
+
+/** Returns the tables: the text of all cells, row by row. */
+function tablesOf() {
+  return [...document.querySelectorAll("table")].map((table) =>
+    [...table.rows].map((row) => [...row.cells].map((cell) => cell.innerText.trim())));
+}
+
+/** Returns the texts that show a value without a number. */
+function unprinted(texts) {
+  return texts.filter((one) => /(^|[^\w])-?(nan|inf|undefined|null)([^\w]|$)/i.test(one.textContent)).map(describe);
 }
 
 function probe() {
@@ -81,9 +110,11 @@ function probe() {
   const body = getComputedStyle(document.body);
   parent.postMessage(JSON.stringify({
     width, innerWidth, pageWidth: document.documentElement.scrollWidth,
-    text: document.body.innerText,
+    text: document.body.innerText, tables: tablesOf(), unprinted: unprinted(texts),
     cut: cut.map(describe), clipped: clipped.map(describe),
     faint: texts.filter((one) => contrastOf(one) < 4.5).map((one) => `${describe(one)} ${contrastOf(one).toFixed(2)}`),
+    small: texts.filter((one) => sizeOf(one) < smallestText).map((one) => `${describe(one)} ${sizeOf(one).toFixed(1)} px`),
+    tall: tallHeads(),
     controls: controls.length,
     unreachable: controls.filter((one) => one.tabIndex < 0 && !one.disabled).map(describe)
       .concat(scrollers.filter((one) => one.tabIndex < 0 && !one.querySelector("a, button, input, [tabindex]")).map(describe)),

@@ -52,6 +52,15 @@ TEST_CASE("a table aligns numbers to the right and has row headers in the first 
     CHECK(html.find("figcaption") == std::string::npos);
 }
 
+TEST_CASE("a long name of a column is marked so that it has room for two lines") {
+    const std::string html = tools::table_html(
+        {"Errors", {"Output", "in the extended model", "errors before and after"}, {{"i1", "no", 0.25}}, ""});
+    CAPTURE(html);
+    CHECK_THAT(html, ContainsSubstring("<th scope=\"col\" class=\"long\">in the extended model</th>"));
+    CHECK_THAT(html,
+               ContainsSubstring("<th scope=\"col\" class=\"number long\">errors before and after</th>"));
+}
+
 TEST_CASE("a table escapes caption and columns and cells and note") {
     const std::string html = tools::table_html({"<1>", {"<2>"}, {{"<3>"}}, "<4>"});
     CAPTURE(html);

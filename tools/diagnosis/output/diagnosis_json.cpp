@@ -98,19 +98,22 @@ ordered_json refusals(const std::vector<Suspicion>& suspicions) {
 } // namespace
 
 ordered_json diagnosis_json(const Diagnosis& diagnosis) {
-    ordered_json json{{"schema", "dfdyn.diagnosis/1"},
-                      {"outputs", diagnosis.output_names},
-                      {"suspicions", texts(diagnosis.suspicions)},
-                      {"refused", refused(diagnosis)},
-                      {"refusals", refusals(diagnosis.suspicions)},
-                      {"nominal", to_json(diagnosis.nominal)},
-                      {"extended", to_json(diagnosis.extended)},
-                      {"least_squares", to_json(diagnosis.least_squares)},
-                      {"extended_by_least_squares", diagnosis.by_least_squares},
-                      {"heldout",
-                       {{"from", diagnosis.heldout_from_s},
-                        {"to", diagnosis.heldout_to_s},
-                        {"note", "these figures are on data that fitted nothing"}}}};
+    ordered_json json{
+        {"schema", "dfdyn.diagnosis/1"},
+        {"outputs", diagnosis.output_names},
+        {"suspicions", texts(diagnosis.suspicions)},
+        {"refused", refused(diagnosis)},
+        {"refusals", refusals(diagnosis.suspicions)},
+        {"nominal", to_json(diagnosis.nominal)},
+        {"extended", to_json(diagnosis.extended)},
+        {"least_squares", to_json(diagnosis.least_squares)},
+        {"extended_by_least_squares", diagnosis.by_least_squares},
+        {"heldout",
+         {{"from", diagnosis.heldout_from_s},
+          {"to", diagnosis.heldout_to_s},
+          {"note", has_held_out(diagnosis)
+                       ? "these figures are on data that fitted nothing"
+                       : "nothing was held out: these figures are on data that fitted the model"}}}};
     ordered_json findings = ordered_json::array();
     for (const Finding& finding : diagnosis.findings) {
         findings.push_back(

@@ -78,7 +78,7 @@ std::string causes_sentence(const Diagnosis& diagnosis) {
 }
 
 std::string gain_sentence(const Diagnosis& diagnosis) {
-    const bool held_out = diagnosis.heldout_to_s > diagnosis.heldout_from_s;
+    const bool held_out = has_held_out(diagnosis);
     const Eigen::Index worst = worst_output(diagnosis.nominal);
     if (!held_out) {
         return "The error on held-out time was not measured.";
@@ -135,7 +135,7 @@ ReportTable error_table(const Diagnosis& diagnosis) {
                        "plain least squares, of deviation"},
                       {},
                       {}};
-    const bool held_out = diagnosis.heldout_to_s > diagnosis.heldout_from_s;
+    const bool held_out = has_held_out(diagnosis);
     table.note = held_out
                      ? "On " + rounded_text(diagnosis.heldout_from_s) + " to " +
                            rounded_text(diagnosis.heldout_to_s) +

@@ -38,7 +38,7 @@ std::string while_moving(const Diagnosis& diagnosis, Eigen::Index output) {
 }
 
 void print_errors(std::ostream& out, const Diagnosis& diagnosis) {
-    const bool held_out = diagnosis.heldout_to_s > diagnosis.heldout_from_s;
+    const bool held_out = has_held_out(diagnosis);
     out << "error, rms and share of the output's deviation, ";
     if (held_out) {
         out << "on held-out time (" << rounded_text(diagnosis.heldout_from_s) << " to "

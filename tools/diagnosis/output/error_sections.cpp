@@ -134,9 +134,10 @@ ReportTable unexplained_table(const Diagnosis& diagnosis) {
 
 PageSection comparison_section(const DiagnosisWork& work) {
     PageSection section{"Measured, simulated, extended", {}, {}, {}};
-    section.paragraphs.emplace_back(
-        "Simulated: the rigid body of the robot's file along the measured motion. Extended: with all named "
-        "effects, fitted to the whole recording. The first 20 s of the held-out time are shown.");
+    section.paragraphs.push_back(
+        std::string("Simulated: the rigid body of the robot's file along the measured motion. Extended: with "
+                    "all named effects, fitted to the whole recording. The first 20 s of the ") +
+        (has_held_out(work.diagnosis) ? "held-out time" : "recording") + " are shown.");
     const std::vector<Eigen::Index> rows = shown_rows(work);
     const Eigen::MatrixXd measured = in_output_units(work, work.measured);
     const Eigen::MatrixXd nominal = in_output_units(work, work.signals->nominal);

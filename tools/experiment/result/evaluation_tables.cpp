@@ -30,6 +30,9 @@ std::string spread_over(const std::vector<const UnitResult*>& draws, const Value
     std::ranges::transform(draws, std::back_inserter(values),
                            [&](const UnitResult* draw) { return value(*draw); });
     const Box box = box_of(std::move(values));
+    if (std::isnan(box.lower_quartile)) {
+        return "–"; // no draw has a value
+    }
     const auto shown_as = [](double number) {
         return std::isinf(number) ? std::string("∞") : formatted("%.3g", number);
     };

@@ -30,14 +30,16 @@ namespace dfdyn {
 template <class Scalar, int n>
 class DisturbanceObserver {
   public:
-    using Torques = Storage<Scalar, n>;
+    using Torques = Storage<Scalar, n>; ///< n values, N·m (N for prismatic joints)
 
+    /// Period, bandwidths and limits. A value outside its range is not detected.
     struct Settings {
         Scalar period_s;   ///< of a control tick; > 0
         Torques bandwidth; ///< per joint, rad/s; ≥ 0 and below 1 / period
         Torques limit;     ///< of |estimate|, per joint, N·m; ≥ 0
     };
 
+    /// Starts without an estimate. `joint_count`: n.
     DisturbanceObserver(Extent<n> joint_count, Settings settings) noexcept
         : joints_(joint_count), settings_(std::move(settings)), integral_(Torques::zeros(joint_count)),
           estimate_(integral_) {}

@@ -48,19 +48,20 @@ concept TorqueLearner = requires(L learner, std::int64_t time_ns, const typename
 template <TorqueLearner Learner>
 class FeedForward {
   public:
-    using Scalar = typename Learner::Scalar;
-    static constexpr int n = Learner::outputs;
-    using Torques = Storage<Scalar, n>;
+    using Scalar = typename Learner::Scalar;   ///< float or double
+    static constexpr int n = Learner::outputs; ///< joints; each has one torque
+    using Torques = Storage<Scalar, n>;        ///< n values, N·m (N for prismatic joints)
 
+    /// Limits and times. A value outside its range is not detected.
     struct Settings {
-        std::int64_t period_ns; ///< control period, > 0
-        int ticks_per_sample;   ///< control ticks per sample period of the model, ≥ 1
-        Torques limit;          ///< of each joint's torque, N·m, > 0
-        Torques cap;            ///< of the learned part beyond the nominal torque, N·m, ≥ 0
-        Torques rate;           ///< of change of the learned part, N·m/s, > 0
-        Scalar rise_s = Scalar(0.5);
-        Scalar fall_s = Scalar(0.2);
-        Scalar memory_s = 1; ///< memory of the comparison, ≥ one sample period
+        std::int64_t period_ns;      ///< control period, > 0
+        int ticks_per_sample;        ///< control ticks per sample period of the model, ≥ 1
+        Torques limit;               ///< of each joint's torque, N·m, > 0
+        Torques cap;                 ///< of the learned part beyond the nominal torque, N·m, ≥ 0
+        Torques rate;                ///< of change of the learned part, N·m/s, > 0
+        Scalar rise_s = Scalar(0.5); ///< time in which the learned share rises from 0 to 1, s, > 0
+        Scalar fall_s = Scalar(0.2); ///< time in which it falls from 1 to 0, s, > 0
+        Scalar memory_s = 1;         ///< memory of the comparison, ≥ one sample period
     };
 
     /// Ticks by which the interpolation leads. A command is held for a tick, so on average it acts half a
@@ -68,6 +69,8 @@ class FeedForward {
     /// read.
     static constexpr Scalar lead = 1;
 
+    /// Refers to `learner`, which must outlive this object; copies `settings`. Call `begin` before the first
+    /// `update`.
     explicit FeedForward(Learner& learner, const Settings& settings) noexcept
         : learner_(&learner), joints_(learner.output_count()), settings_(settings),
           judged_for_(std::max(1, static_cast<int>(settings.memory_s / sample_period_s(settings)))),
@@ -90,6 +93,7 @@ class FeedForward {
 
     /// Includes or excludes the learned part in the torque, without a step. Learning continues in both cases.
     void enable(bool on) noexcept { enabled_ = on; }
+    /// Returns whether the learned part is included. Initially true.
     [[nodiscard]] bool enabled() const noexcept { return enabled_; }
 
     /// Returns the feed-forward torque of this tick, N·m, for the present `reference` and `nominal` torque (n
@@ -147,6 +151,7 @@ class FeedForward {
     [[nodiscard]] const Torques& share() const noexcept { return share_; }
     /// Returns the learned part of the present torque, N·m.
     [[nodiscard]] const Torques& learned_part() const noexcept { return part_; }
+    /// Returns the learner, for its counters and snapshots.
     [[nodiscard]] const Learner& learner() const noexcept { return *learner_; }
 
   private:

@@ -24,10 +24,10 @@ namespace dfdyn {
 template <class ModelType>
 class LearnedTorque {
   public:
-    using Model = ModelType;
-    using Scalar = typename Model::Scalar;
-    using Estimator = dfdyn::Estimator<Model>;
-    static constexpr int outputs = Model::outputs;
+    using Model = ModelType;                       ///< whose outputs are the torques of all joints
+    using Scalar = typename Model::Scalar;         ///< float or double
+    using Estimator = dfdyn::Estimator<Model>;     ///< learns from the measured motion
+    static constexpr int outputs = Model::outputs; ///< n: one torque per joint
     static_assert(Model::joints == Model::outputs, "outputs must be the torques of all joints");
     static_assert(Model::outputs != dynamic, "sizes must be fixed at compile time");
 
@@ -40,6 +40,7 @@ class LearnedTorque {
         take_over();
     }
 
+    /// Returns the number of torques, n.
     [[nodiscard]] Extent<outputs> output_count() const noexcept { return constants_->sizes.output_count; }
 
     /// Starts both windows as if the arm had rested at `position` (n values, rad) for a long time. What has
@@ -110,6 +111,8 @@ class LearnedTorque {
         take_over();
     }
 
+    /// Returns the estimator of the measured motion, for its counters and costs. Never feed its prediction
+    /// forward.
     [[nodiscard]] const Estimator& estimator() const noexcept { return estimator_; }
     /// Size in bytes of a buffer that holds any snapshot.
     static constexpr std::size_t snapshot_capacity = Estimator::snapshot_capacity;

@@ -41,13 +41,14 @@ constexpr const char* name(Cause cause) noexcept {
 template <class Scalar, int m>
 struct Change {
     std::int64_t onset_ns = 0; ///< estimated
-    std::int64_t alarm_ns = 0;
-    std::int64_t end_ns = 0; ///< when it was learned or had passed; 0: not yet
-    int channel = 0;         ///< output that raised the alarm; m: all together; -1: a repeated reading
+    std::int64_t alarm_ns = 0; ///< stamp of the sample at which it was detected
+    std::int64_t end_ns = 0;   ///< when it was learned or had passed; 0: not yet
+    int channel = 0;           ///< output that raised the alarm; m: all together; -1: a repeated reading
 
-    Cause cause = Cause::unknown;
-    Cause runner_up = Cause::unknown;
-    Scalar confidence = 0, runner_up_confidence = 0; ///< 0 … 1; over all causes they sum to 1
+    Cause cause = Cause::unknown;     ///< the most probable
+    Cause runner_up = Cause::unknown; ///< the second
+    Scalar confidence = 0;            ///< of `cause`, 0 … 1; over all causes they sum to 1
+    Scalar runner_up_confidence = 0;  ///< of `runner_up`
 
     /// Index of the place, or -1:
     /// - friction: joint;

@@ -42,7 +42,7 @@ struct ContactLimits {
 /// detected. The constants were chosen on the UR5 recordings No5 to No9, `contact_clip` on
 /// pushes of a simulated UR5. Use in each tick:
 ///
-///     const auto estimate = estimator.tick(sample);
+///     const auto estimate = estimator.tick(sample, budget);
 ///     if (estimate.status.predicted() && measured) {
 ///         detector.tick(sample.time_ns, sample.position.data(), error);
 ///     } else {
@@ -54,20 +54,21 @@ struct ContactLimits {
 template <class Scalar, int joints>
 class ContactDetector {
   public:
-    static constexpr Scalar filter_s = Scalar(0.025);
-    static constexpr Scalar velocity_filter_s = Scalar(0.01);
-    static constexpr Scalar baseline_s = Scalar(0.7);
+    static constexpr Scalar filter_s = Scalar(0.025);         ///< time constant of each pole of the error, s
+    static constexpr Scalar velocity_filter_s = Scalar(0.01); ///< time constant of the velocity's pole, s
+    static constexpr Scalar baseline_s = Scalar(0.7);         ///< time constant of the baseline, s
+    /// A joint whose deceleration brings it to rest within this time is about to stop, s.
     static constexpr Scalar stop_s = Scalar(0.1);
-    static constexpr Scalar change_s = Scalar(0.2);
-    static constexpr Scalar clip = Scalar(0.4);
-    static constexpr Scalar contact_clip = Scalar(0.1);
-    static constexpr Scalar release = Scalar(0.75);
-    static constexpr Scalar release_s = Scalar(0.1);
-    static constexpr Scalar longest_s = 3;
-    static constexpr Scalar longest_gap_s = Scalar(0.1);
-    static constexpr Scalar settling_s = Scalar(0.5);
-    static constexpr Scalar median_s = 20; ///< time in which a median doubles or halves, at least
-    static constexpr Scalar most_growth = 4;
+    static constexpr Scalar change_s = Scalar(0.2); ///< for which a change of the motion lasts, s
+    static constexpr Scalar clip = Scalar(0.4); ///< largest deviation that the baseline follows, in limits
+    static constexpr Scalar contact_clip = Scalar(0.1);  ///< the same during a contact
+    static constexpr Scalar release = Scalar(0.75);      ///< of `excess()`: below it a contact may end
+    static constexpr Scalar release_s = Scalar(0.1);     ///< time below `release` that ends a contact, s
+    static constexpr Scalar longest_s = 3;               ///< of a contact; then it is a change of the arm, s
+    static constexpr Scalar longest_gap_s = Scalar(0.1); ///< between two stamps; a longer one interrupts, s
+    static constexpr Scalar settling_s = Scalar(0.5);    ///< after an interruption without contacts, s
+    static constexpr Scalar median_s = 20;        ///< time in which a median doubles or halves, at least
+    static constexpr Scalar most_growth = 4;      ///< largest factor by which a limit grows with its median
     static constexpr Scalar still = Scalar(0.02); ///< rad/s, largest speed of a standing joint
     static constexpr int cost = 24;               ///< multiply-adds per joint of `tick`, at most
 
@@ -117,7 +118,9 @@ class ContactDetector {
     [[nodiscard]] bool running() const noexcept { return running_; }
     /// Returns whether the last contact was accepted as a change of the arm, because it did not end.
     [[nodiscard]] bool persistent() const noexcept { return lasted_s_ >= longest_s; }
+    /// Returns the number of joints.
     [[nodiscard]] int size() const noexcept { return count_; }
+    /// Returns whether a contact lasts, as the last `tick` did.
     [[nodiscard]] bool contact() const noexcept { return contact_; }
     /// Returns the joint with the largest deviation in units of its limit at the start of the last contact.
     [[nodiscard]] int joint() const noexcept { return joint_; }
@@ -125,6 +128,7 @@ class ContactDetector {
     [[nodiscard]] Scalar deviation(int joint) const noexcept { return states_[joint].deviation; }
     /// Returns the root of the sum of squares of this tick's deviations in units of their limits.
     [[nodiscard]] Scalar excess() const noexcept { return excess_; }
+    /// Returns the motion of a joint in this tick, `joint` from 0.
     [[nodiscard]] JointMotion motion(int joint) const noexcept { return states_[joint].motion; }
 
   private:

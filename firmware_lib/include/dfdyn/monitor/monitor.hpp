@@ -14,7 +14,7 @@ namespace dfdyn {
 /// Input of a monitor for one tick. Arrays of n or m values.
 template <class Scalar>
 struct Observation {
-    std::int64_t time_ns;
+    std::int64_t time_ns;             ///< stamp of the sample
     const Scalar* position;           ///< rad, m
     const Scalar* output;             ///< measured, output units
     const Scalar* prediction;         ///< one-step-ahead prediction of the estimator
@@ -50,20 +50,21 @@ struct Observation {
 template <class Scalar, class Arm, int M, int history = 48>
 class Monitor {
   public:
-    static constexpr int n = Arm::joints;
-    static constexpr int m = Arm::outputs;
-    using Change = dfdyn::Change<Scalar, m>;
-    using Motion = DerivativeFreeReduced<M, 3>;
+    static constexpr int n = Arm::joints;       ///< joints
+    static constexpr int m = Arm::outputs;      ///< outputs
+    using Change = dfdyn::Change<Scalar, m>;    ///< a change with its most probable cause
+    using Motion = DerivativeFreeReduced<M, 3>; ///< position, velocity and acceleration from the window
 
+    /// Geometry, time scales and the false-alarm rate. Must outlive the monitor.
     struct Constants {
-        [[no_unique_address]] typename Arm::Sizes sizes;
-        [[no_unique_address]] Extent<M> lags; ///< of the window of positions, even
-        typename Arm::template Constants<Scalar> chain;
+        [[no_unique_address]] typename Arm::Sizes sizes;       ///< numbers of joints, outputs and bodies
+        [[no_unique_address]] Extent<M> lags;                  ///< of the window of positions, even
+        typename Arm::template Constants<Scalar> chain;        ///< geometry of the arm
         typename Motion::template Constants<Scalar, n> motion; ///< `centred_motion_rows` in difference form
-        Storage<Scalar, m> output_gain; ///< output per N·m or N: 1, or 1 / torque constant (A/N·m)
-        Scalar tip[3];                  ///< m, point of a force on the tool, in the last link's frame
-        Scalar sign_velocity;           ///< rad/s, v of the sign of friction tanh(q̇ / v)
-        SpeedClasses<Scalar> speed;
+        Storage<Scalar, m> output_gain;     ///< output per N·m or N: 1, or 1 / torque constant (A/N·m)
+        Scalar tip[3];                      ///< m, point of a force on the tool, in the last link's frame
+        Scalar sign_velocity;               ///< rad/s, v of the sign of friction tanh(q̇ / v)
+        SpeedClasses<Scalar> speed;         ///< upper bounds of "stationary" and "creeping"
         std::int32_t block_samples;         ///< about 0.1 s
         Scalar blocks_between_false_alarms; ///< mean distance, all outputs together
         std::int32_t report_blocks;         ///< from the onset to the first report, about 2 s
@@ -82,6 +83,7 @@ class Monitor {
     static constexpr Scalar largest_position = 10'000; ///< rad, m; a larger position counts as a gap
 
     explicit Monitor(const Constants&&) = delete; // it would refer to a temporary
+    /// Starts without a change. Refers to `constants`.
     explicit Monitor(const Constants& constants) noexcept
         : constants_(&constants), motion_(constants.motion, constants.sizes.joint_count, constants.lags, {}),
           innovations_(constants.sizes.output_count, constants.lags),
@@ -152,6 +154,7 @@ class Monitor {
     [[nodiscard]] bool renewal_due() const noexcept {
         return !changing_ && since_renewal_ >= constants_->renewal_blocks;
     }
+    /// Registers that the delayed weights have been refreshed.
     void renewed() noexcept { since_renewal_ -= constants_->renewal_blocks; }
 
     /// Returns true from an alarm until the change is over.

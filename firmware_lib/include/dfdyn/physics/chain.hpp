@@ -22,7 +22,7 @@ struct ChainJoint {
     /// Pose of the link's frame in the previous link's frame, at joint position 0.
     Placement<Scalar> placement;
     Scalar axis[3]; ///< unit vector in the link's frame
-    bool prismatic;
+    bool prismatic; ///< slides along `axis` (m) instead of rotating about it (rad)
 };
 
 /// Parameters per body, in the link's frame: mass, first moment m·c, and inertia about the origin of the
@@ -35,10 +35,13 @@ inline constexpr int inertial_parameters = 10;
 /// the bodies that contribute (the last `bodies` links), and the link at which each output's screw begins.
 /// The screw is the motion whose virtual power is that output.
 struct JointTorques {
-    static constexpr int identity = 1;
+    static constexpr int identity = 1; ///< differs from that of every other kind of outputs
+    /// Returns the number of outputs of an arm with `joints` joints.
     static constexpr int outputs(int joints) noexcept { return joints; }
+    /// Returns the number of bodies that contribute.
     static constexpr int bodies(int joints) noexcept { return joints; }
 
+    /// Torques need no constants.
     template <class Scalar>
     struct Constants {};
 
@@ -76,10 +79,13 @@ struct JointTorques {
 /// the sensor is mounted on the base.
 template <int body_count>
 struct WrenchAtSensor {
-    static constexpr int identity = 2;
+    static constexpr int identity = 2; ///< differs from that of every other kind of outputs
+    /// Returns 6: three forces (N), three torques (N·m).
     static constexpr int outputs(int /*joints*/) noexcept { return 6; }
+    /// Returns the number of bodies that contribute.
     static constexpr int bodies(int /*joints*/) noexcept { return body_count; }
 
+    /// Place and sign of the sensor.
     template <class Scalar>
     struct Constants {
         std::int32_t link;        ///< link that carries the sensor: 0 the base, i the link that joint i moves
@@ -107,15 +113,18 @@ struct WrenchAtSensor {
         return 6;
     }
 
+    /// Returns the number of pairs of an output and a body that contributes to it.
     static constexpr std::int64_t pairs(int outputs, int bodies) noexcept {
         return std::int64_t{outputs} * bodies;
     }
 
-    /// An upper bound: if every link contributes, the sensor may be on the first link instead of the base.
+    /// Returns an upper bound of the number of transforms of a screw from one link's frame to the next: if
+    /// every link contributes, the sensor may be on the first link instead of the base.
     static constexpr std::int64_t carries(int outputs, int bodies, int joints) noexcept {
         return std::int64_t{outputs} * (bodies == joints ? bodies : bodies - 1);
     }
 
+    /// Multiply-adds of all calls of `begin`.
     static constexpr int begin_cost = 27;
 };
 
@@ -123,25 +132,27 @@ struct WrenchAtSensor {
 /// learned.
 template <int n, class OutputType = JointTorques>
 struct Chain {
-    using Output = OutputType;
-    static constexpr int joints = n;
-    static constexpr int outputs = OutputType::outputs(n);
-    static constexpr int bodies = OutputType::bodies(n);
-    static constexpr int parameters = product(inertial_parameters, bodies);
+    using Output = OutputType;                             ///< `JointTorques` or `WrenchAtSensor`
+    static constexpr int joints = n;                       ///< joints, base to tip
+    static constexpr int outputs = OutputType::outputs(n); ///< m
+    static constexpr int bodies = OutputType::bodies(n);   ///< links that contribute, the last ones
+    static constexpr int parameters = product(inertial_parameters, bodies); ///< ten per body
     static_assert(n == dynamic || bodies <= n, "more bodies than links");
 
     /// Empty for a firmware model, where every size is a template argument.
     struct Sizes {
-        [[no_unique_address]] Extent<joints> joint_count{};
-        [[no_unique_address]] Extent<outputs> output_count{};
-        [[no_unique_address]] Extent<bodies> body_count{};
+        [[no_unique_address]] Extent<joints> joint_count{};   ///< n
+        [[no_unique_address]] Extent<outputs> output_count{}; ///< m
+        [[no_unique_address]] Extent<bodies> body_count{};    ///< links that contribute
     };
 
+    /// Geometry of the arm.
     template <class Scalar>
     struct Constants {
         Storage<ChainJoint<Scalar>, n> joint; ///< base to tip
         Scalar gravity[3];                    ///< m/s², in the base link's frame
-        [[no_unique_address]] typename OutputType::template Constants<Scalar> output;
+        [[no_unique_address]] typename OutputType::template Constants<Scalar>
+            output; ///< of the kind of outputs
     };
 };
 

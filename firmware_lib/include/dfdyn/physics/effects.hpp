@@ -40,16 +40,19 @@ namespace detail {
 /// argument `Effect` makes the constants of different effects different types.
 template <template <int> class Effect, int count, int element>
 struct MotionColumns {
-    static constexpr int columns = count;
+    static constexpr int columns = count; ///< each acts on one output
+    /// Maximum multiply-adds of one column.
     template <class>
     static constexpr std::int64_t column_cost = 0;
-    static constexpr bool at_joint = true;
+    static constexpr bool at_joint = true; ///< the outputs must be joint torques
 
+    /// Place and shape of each column.
     template <class Scalar>
     struct Constants {
-        Storage<std::int32_t, count> row;
+        Storage<std::int32_t, count> row; ///< output of each column, from 0
     };
 
+    /// Returns the entry of a column for the motion `xi` (q, q̇, q̈ of joint i at 3i).
     template <class Real, class Scalar>
     static Scalar value(const Constants<Real>& constants, int column, const Scalar* xi) noexcept {
         return xi[3 * constants.row[column] + element];
@@ -61,24 +64,27 @@ struct MotionColumns {
 /// `viscous_friction`: q̇. Unit of the parameter: N·m·s/rad.
 template <int count>
 struct ViscousFriction : detail::MotionColumns<ViscousFriction, count, 1> {
-    static constexpr int identity = 1;
+    static constexpr int identity = 1; ///< in a snapshot
 };
 
 /// `coulomb_friction`: tanh(q̇ / v), a smooth sign. Unit of the parameter: N·m.
 template <int count>
 struct CoulombFriction {
-    static constexpr int identity = 2;
-    static constexpr int columns = count;
+    static constexpr int identity = 2;    ///< in a snapshot
+    static constexpr int columns = count; ///< each acts on one output
+    /// Maximum multiply-adds of one column.
     template <class>
     static constexpr std::int64_t column_cost = function_cost + 1;
-    static constexpr bool at_joint = true;
+    static constexpr bool at_joint = true; ///< the outputs must be joint torques
 
+    /// Place and shape of each column.
     template <class Scalar>
     struct Constants {
-        Storage<std::int32_t, count> row;
+        Storage<std::int32_t, count> row;     ///< output of each column, from 0
         Storage<Scalar, count> sign_velocity; ///< v > 0 (rad/s): 3 v gives 99.5 % of the sign
     };
 
+    /// Returns the entry of a column for the motion `xi` (q, q̇, q̈ of joint i at 3i).
     template <class Real, class Scalar>
     static Scalar value(const Constants<Real>& constants, int column, const Scalar* xi) noexcept {
         using std::tanh;
@@ -90,21 +96,24 @@ struct CoulombFriction {
 /// static minus Coulomb friction (N·m).
 template <int count>
 struct StribeckFriction {
-    static constexpr int identity = 3;
-    static constexpr int columns = count;
+    static constexpr int identity = 3;    ///< in a snapshot
+    static constexpr int columns = count; ///< each acts on one output
+    /// Maximum multiply-adds of one column.
     template <class>
     static constexpr std::int64_t column_cost = 2 * function_cost + 4;
-    static constexpr bool at_joint = true;
+    static constexpr bool at_joint = true; ///< the outputs must be joint torques
     /// exp(-40) is negligible; beyond 87 the result in float would be denormal.
     static constexpr int faded = 40;
 
+    /// Place and shape of each column.
     template <class Scalar>
     struct Constants {
-        Storage<std::int32_t, count> row;
+        Storage<std::int32_t, count> row;         ///< output of each column, from 0
         Storage<Scalar, count> sign_velocity;     ///< v > 0 (rad/s), as for Coulomb friction
         Storage<Scalar, count> stribeck_velocity; ///< v_s > 0 (rad/s), above v
     };
 
+    /// Returns the entry of a column for the motion `xi` (q, q̇, q̈ of joint i at 3i).
     template <class Real, class Scalar>
     static Scalar value(const Constants<Real>& constants, int column, const Scalar* xi) noexcept {
         using std::exp;
@@ -124,34 +133,37 @@ struct StribeckFriction {
 /// `rotor_inertia`: q̈. The parameter is the inertia reflected to the joint (kg·m²).
 template <int count>
 struct RotorInertia : detail::MotionColumns<RotorInertia, count, 2> {
-    static constexpr int identity = 4;
+    static constexpr int identity = 4; ///< in a snapshot
 };
 
 /// `joint_spring`: q. The parameter is the stiffness (N·m/rad). Its rest position is part of the row's
 /// offset.
 template <int count>
 struct JointSpring : detail::MotionColumns<JointSpring, count, 0> {
-    static constexpr int identity = 5;
+    static constexpr int identity = 5; ///< in a snapshot
 };
 
 /// `torque_ripple`: sin(c q + phase). Two columns with phases 0 and pi/2 form a wave of any phase. Unit of
 /// the parameters: N·m.
 template <int count>
 struct TorqueRipple {
-    static constexpr int identity = 6;
-    static constexpr int columns = count;
+    static constexpr int identity = 6;    ///< in a snapshot
+    static constexpr int columns = count; ///< each acts on one output
+    /// Maximum multiply-adds of one column.
     template <class Scalar>
     static constexpr std::int64_t column_cost = cos_sin_cost<Scalar>(1) + 1;
-    static constexpr bool at_joint = true;
+    static constexpr bool at_joint = true; ///< the outputs must be joint torques
 
+    /// Place and shape of each column.
     template <class Scalar>
     struct Constants {
-        Storage<std::int32_t, count> row;
+        Storage<std::int32_t, count> row; ///< output of each column, from 0
         Storage<Scalar, count>
             cycles_per_rev; ///< c > 0, c |q| ≤ 8000; in float the angle is accurate to 1e-4 rad up to c = 200
         Storage<Scalar, count> phase; ///< rad
     };
 
+    /// Returns the entry of a column for the motion `xi` (q, q̇, q̈ of joint i at 3i).
     template <class Real, class Scalar>
     static Scalar value(const Constants<Real>& constants, int column, const Scalar* xi) noexcept {
         const Scalar angle = xi[3 * constants.row[column]] * constants.cycles_per_rev[column];
@@ -165,17 +177,20 @@ struct TorqueRipple {
 /// `torque_offset` or `ft_bias`: 1. The parameter is added to the output (N·m, N).
 template <int count>
 struct OutputOffset {
-    static constexpr int identity = 7;
-    static constexpr int columns = count;
+    static constexpr int identity = 7;    ///< in a snapshot
+    static constexpr int columns = count; ///< each acts on one output
+    /// Maximum multiply-adds of one column.
     template <class>
     static constexpr std::int64_t column_cost = 0;
-    static constexpr bool at_joint = false;
+    static constexpr bool at_joint = false; ///< for joint torques and wrenches
 
+    /// Place and shape of each column.
     template <class Scalar>
     struct Constants {
-        Storage<std::int32_t, count> row;
+        Storage<std::int32_t, count> row; ///< output of each column, from 0
     };
 
+    /// Returns the entry of a column for the motion `xi` (q, q̇, q̈ of joint i at 3i).
     template <class Real, class Scalar>
     static Scalar value(const Constants<Real>& /*constants*/, int /*column*/, const Scalar* /*xi*/) noexcept {
         return Scalar(1);

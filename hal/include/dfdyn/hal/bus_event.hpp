@@ -11,15 +11,15 @@ namespace dfdyn::hal {
 
 /// Classes of error frames: bits of `Frame::id` with the values of Linux (linux/can/error.h).
 namespace error_class {
-inline constexpr std::uint32_t transmit_timeout = 0x001;
-inline constexpr std::uint32_t lost_arbitration = 0x002;
-inline constexpr std::uint32_t controller = 0x004; ///< details are in data[1]: see controller_detail
-inline constexpr std::uint32_t protocol = 0x008;
-inline constexpr std::uint32_t transceiver = 0x010;
-inline constexpr std::uint32_t no_acknowledgement = 0x020;
-inline constexpr std::uint32_t bus_off = 0x040;
-inline constexpr std::uint32_t bus_error = 0x080;
-inline constexpr std::uint32_t restarted = 0x100;
+inline constexpr std::uint32_t transmit_timeout = 0x001;   ///< the driver gave up sending a frame
+inline constexpr std::uint32_t lost_arbitration = 0x002;   ///< another node had the lower identifier
+inline constexpr std::uint32_t controller = 0x004;         ///< details are in data[1]: see controller_detail
+inline constexpr std::uint32_t protocol = 0x008;           ///< bit, form or stuff error
+inline constexpr std::uint32_t transceiver = 0x010;        ///< a level on CAN high or low is wrong
+inline constexpr std::uint32_t no_acknowledgement = 0x020; ///< no other node acknowledged a frame
+inline constexpr std::uint32_t bus_off = 0x040;            ///< the controller left the bus
+inline constexpr std::uint32_t bus_error = 0x080;          ///< an error on the wire, of any kind
+inline constexpr std::uint32_t restarted = 0x100;          ///< the controller is back after bus-off
 /// error counters: data[6] for transmission, data[7] for reception
 inline constexpr std::uint32_t counters = 0x200;
 } // namespace error_class
@@ -27,11 +27,11 @@ inline constexpr std::uint32_t counters = 0x200;
 /// Bits of data[1] in an error frame of the class `controller`. Where a constant has two bits, one is for
 /// reception and one for transmission.
 namespace controller_detail {
-inline constexpr std::uint32_t receive_overflow = 0x01;
-inline constexpr std::uint32_t transmit_overflow = 0x02;
-inline constexpr std::uint32_t warning = 0x04 | 0x08;
-inline constexpr std::uint32_t passive = 0x10 | 0x20;
-inline constexpr std::uint32_t active = 0x40;
+inline constexpr std::uint32_t receive_overflow = 0x01;  ///< a received frame was overwritten
+inline constexpr std::uint32_t transmit_overflow = 0x02; ///< a frame to be sent was lost
+inline constexpr std::uint32_t warning = 0x04 | 0x08;    ///< an error counter has reached 96
+inline constexpr std::uint32_t passive = 0x10 | 0x20;    ///< an error counter is above 127
+inline constexpr std::uint32_t active = 0x40;            ///< the error counters are low again
 } // namespace controller_detail
 
 namespace detail {

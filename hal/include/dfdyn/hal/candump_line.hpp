@@ -73,18 +73,19 @@ constexpr std::string_view expected(CandumpFault fault) noexcept {
 
 /// Result of reading one line of a candump log.
 struct CandumpLine {
+    /// What a line contains.
     enum class Kind : std::uint8_t {
         nothing,  ///< an empty line, or a comment that starts with #
         frame,    ///< `frame`
         dropped,  ///< `dropped` frames were lost at this line
         malformed ///< `fault`, at `column`
     };
-    Kind kind = Kind::nothing;
+    Kind kind = Kind::nothing;     ///< which of the other members are valid
     Frame frame{};                 ///< its time stamp is the log's, in nanoseconds; `stamp_source` is `log`
     std::string_view interface {}; ///< a view into the line
-    std::uint64_t dropped = 0;
-    CandumpFault fault = CandumpFault::none;
-    std::size_t column = 0;   ///< position of the syntax error, counted from 1
+    std::uint64_t dropped = 0;     ///< frames that the recorder lost
+    CandumpFault fault = CandumpFault::none; ///< the syntax error
+    std::size_t column = 0;                  ///< position of the syntax error, counted from 1
     std::string_view found{}; ///< the text at `column` up to the next blank; empty at the end of the line
 };
 

@@ -36,9 +36,9 @@ struct Frame {
     /// bytes of data: 0 … 8, or 0 … 8, 12, 16, 20, 24, 32, 48, 64 (CAN FD); in a remote request the number of
     /// requested bytes
     std::uint8_t length = 0;
-    Origin origin = Origin::remote;
-    StampSource stamp_source = StampSource::arrival;
-    std::array<std::uint8_t, 64> data{}; ///< bytes beyond `length` are zero
+    Origin origin = Origin::remote;                  ///< the sender
+    StampSource stamp_source = StampSource::arrival; ///< clock of `stamp_ns`
+    std::array<std::uint8_t, 64> data{};             ///< bytes beyond `length` are zero
 };
 
 /// Returns true if a classic CAN frame, or a CAN FD frame, can have `length` bytes.

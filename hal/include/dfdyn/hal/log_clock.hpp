@@ -16,9 +16,12 @@ namespace dfdyn::hal {
 ///   between are a gap.
 class LogClock {
   public:
+    /// Largest distance of a stamp behind the latest one of a frame that was merely overtaken.
     static constexpr std::int64_t overtaken_ns = 5'000'000;
     static constexpr std::int64_t longest_step_ns =
         100'000'000; ///< longest interval between consecutive frames
+    /// Consecutive frames with earlier stamps after which the recorder's clock is known to have been set
+    /// back.
     static constexpr int set_back_after = 20;
 
     /// Returns the time at which the next frame of the recording is due. O(1).

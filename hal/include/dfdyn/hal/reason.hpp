@@ -120,9 +120,10 @@ enum class Reason : std::uint8_t {
 /// One more than the largest reason number; the size of tables that are indexed by a reason.
 inline constexpr int reason_count = 69;
 
+/// A reason and its name in messages and files.
 struct NamedReason {
-    Reason reason;
-    const char* name;
+    Reason reason;    ///< the reason
+    const char* name; ///< its name, such as "position_gap"
 };
 
 inline constexpr NamedReason reason_names[] = {

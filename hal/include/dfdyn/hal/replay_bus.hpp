@@ -17,7 +17,7 @@ namespace dfdyn::hal {
 
 /// One frame of a recording.
 struct ReplayEntry {
-    Frame frame{};
+    Frame frame{};                    ///< with the recorder's time stamp
     std::uint64_t dropped_before = 0; ///< frames that the recorder lost since the previous one
 };
 
@@ -64,6 +64,7 @@ class ReplayBus {
     /// Returns true if all frames have been returned by `drain`.
     bool ended() const noexcept { return ended_; }
 
+    /// Returns the frames that are due, at most `into.size()`, as the filled part of `into`.
     std::span<const Frame> drain(std::span<Frame> into) noexcept {
         std::size_t count = 0;
         while (count < into.size() && is_due()) {
@@ -111,8 +112,11 @@ class ReplayBus {
         return into.first(count);
     }
 
+    /// Returns the time of the replay, which the caller advances.
     std::int64_t now_ns() const noexcept { return now_ns_; }
+    /// Returns the state that the recording's error frames describe.
     BusState state() const noexcept { return state_; }
+    /// Returns the counters after the last drain or send.
     const BusCounters& counters() const noexcept { return counters_; }
 
   private:

@@ -17,47 +17,47 @@
 
 namespace dfdyn::hal {
 
-/// Makes samples of what is on one or two buses: all joints and the output, at one instant.
+/// Assembles samples from the frames of one or two buses: all joints and the outputs, at one instant.
 ///
-/// Frames go in as they come (`take`, or `drain` for all that a bus has); at a moment of the caller's choice
-/// `assemble(instant, now)` gives the sample of an instant in the recent past. Every value is brought to it:
-/// linearly between the measurements before and after, or held from the last one if the next is not due yet.
-/// A value that was due and has not come is missing: no sample, until the next one comes (`pending`, Track).
-/// Positions are those that the joint's motion leads to (MotionGate). So the stamps have the steady period
-/// that a lag window needs, if the instants have it, whatever the devices' phases and jitter:
-/// - by SYNC: `Moment::sync`, its instant is the SYNC at which the values that are complete now were
-/// measured;
-/// - by a timer: `now - delay`. With a delay of the output's latency and one period of the slowest source
-/// everything
-///   is interpolated; with a shorter one predictions are fresher and values held;
-/// - by the last frame of a set: `Moment::set`, its instant is the output's measurement, taken as it is.
-/// A latency from the measurement to the frame is taken off each stamp first. An output is valid at most
-/// once: not again until one of its measurements is new.
+/// `take` (or `drain`, for all frames of a bus) accepts the frames as they arrive. `assemble(instant, now)`
+/// returns the sample of an instant in the recent past. Each value is interpolated linearly between the
+/// measurements before and after the instant, or held if the next measurement is not due yet. A value that
+/// was due and did not arrive is missing: there is no sample until the next value arrives (`pending`, Track).
+/// Positions must agree with the joint's motion (MotionGate). If the instants have a constant period, the
+/// samples have it too, independently of the devices' phases and jitter. An instant is chosen
+/// - by SYNC: `Moment::sync`; its instant is the SYNC at which the complete values were measured;
+/// - by a timer: `now - delay`. With a delay of the output's latency and one period of the slowest source all
+///   values are interpolated; with a shorter delay predictions are more recent, and values are held;
+/// - by the last frame of a set: `Moment::set`; its instant is that of the output's measurement.
+/// The latency from the measurement to the frame is subtracted from each stamp first. An output is valid in
+/// at most one sample for each of its measurements.
 ///
-/// Positions that are bad: no sample; the report says which joints have one all the same. An output that is
-/// bad: a sample with output_valid = false.
+/// If a position is bad, there is no sample; the report lists the joints that have a position. If an output
+/// is bad, the sample has `output_valid = false`.
 ///
-/// If `n` is `dynamic`, the configuration has the number of joints. `Board` is the JointSource of each of
-/// `boards` boards; `Output` a WrenchOutput or EffortOutput. Positions are on bus 0. `take`: O(boards + n).
-/// `assemble`: O(capacity (n + outputs)).
+/// If `n` is `dynamic`, the configuration contains the number of joints. `Board` is the JointSource of each
+/// of `boards` boards; `Output` is a WrenchOutput or EffortOutput. Positions are on bus 0. Cost of `take`:
+/// O(boards + n); of `assemble`: O(capacity (n + outputs)).
 template <class Scalar, int n, JointSource Board, int boards, class Output, int capacity = 16>
 class SampleAssembly {
   public:
-    using Assembled = AssembledSample<Scalar, n, Output::outputs>;
-    using Sample = decltype(Assembled::sample);
-    using Report = decltype(Assembled::report);
-    static constexpr int buses = 2;
+    using Assembled = AssembledSample<Scalar, n, Output::outputs>; ///< sample and report
+    using Sample = decltype(Assembled::sample);                    ///< for `Estimator::tick`
+    using Report = decltype(Assembled::report);                    ///< why the sample is as it is
+    static constexpr int buses = 2;                                ///< largest number of buses
 
+    /// Boards, clocks and limits of an arm.
     struct Config {
         std::array<Board, static_cast<std::size_t>(boards)> board; ///< joints they name must be < n
-        TrackConfig position;
-        PerJoint<Range, n> position_range; ///< rad
-        ClockGate::Config clock;
-        int output_bus = 0; ///< 0, or 1 where the sensor has a bus for itself
-        PerJoint<MotionLimits, n> limits{};
-        Extent<n> joints{}; ///< at most `largest_joint_count`
+        TrackConfig position;               ///< period, latency and age of the positions
+        PerJoint<Range, n> position_range;  ///< rad
+        ClockGate::Config clock;            ///< of the frames' time stamps
+        int output_bus = 0;                 ///< 0, or 1 where the sensor has a bus for itself
+        PerJoint<MotionLimits, n> limits{}; ///< largest velocity and acceleration
+        Extent<n> joints{};                 ///< at most `largest_joint_count`
     };
 
+    /// Starts without measurements. `colliding_id` finds mistakes in the configuration.
     // A small stack has no room for a copy: NOLINTNEXTLINE(modernize-pass-by-value)
     constexpr SampleAssembly(const Config& config, const Output& output) noexcept
         : joints_(config.joints), board_(config.board),
@@ -65,9 +65,9 @@ class SampleAssembly {
           output_bus_(config.output_bus), watch_{BusWatch(config.clock), BusWatch(config.clock)},
           moments_(config.joints) {}
 
-    using Moment = SampleMoment;
+    using Moment = SampleMoment; ///< an instant of which a sample can be assembled
 
-    /// Takes a frame of bus 0 or 1, read at `now_ns`.
+    /// Accepts a frame of bus 0 or 1, read at `now_ns`. Returns the instant that it completes, if any.
     constexpr Moment take(const Frame& frame, std::int64_t now_ns, int bus = 0) noexcept {
         BusWatch& watch = watch_[static_cast<std::size_t>(bus)];
         if (frame.error) {
@@ -91,8 +91,8 @@ class SampleAssembly {
         return offer(timed, bus);
     }
 
-    /// Takes all that a bus has, in at most `rounds` drains, and its state. `on_moment` gets the moments
-    /// other than none, as they come.
+    /// Accepts all frames of a bus, in at most `rounds` drains, and its state. Calls `on_moment` for each
+    /// instant that a frame completes.
     template <Bus B, class OnMoment>
     constexpr void drain(B& bus, std::span<Frame> buffer, OnMoment on_moment, int index = 0) noexcept {
         for (int round = 0; round < rounds; ++round) {
@@ -109,13 +109,14 @@ class SampleAssembly {
             }
         }
     }
+    /// Accepts all frames of a bus and its state.
     template <Bus B>
     constexpr void drain(B& bus, std::span<Frame> buffer, int index = 0) noexcept {
         drain(
             bus, buffer, [](const Moment& /*moment*/) {}, index);
     }
 
-    /// State and counters of a bus after a drain; `drain` does it.
+    /// Accepts the state and the counters of a bus after a drain. `drain` calls it.
     constexpr void update(BusState state, const BusCounters& counters, int bus = 0) noexcept {
         BusHealth& health = watch_[static_cast<std::size_t>(bus)].health;
         const std::uint64_t before = health.losses();
@@ -129,14 +130,14 @@ class SampleAssembly {
     /// whether the dropped set contained a joint.
     constexpr bool drop_set(std::int64_t now_ns) noexcept { return moments_.drop_set(now_ns); }
 
-    /// Whether a value of this instant is missing that may yet be interpolated: `assemble` gives more after
-    /// the next frames. Never for longer than the sources' `max_age` and a period after the last value.
+    /// Returns true if a value of this instant is missing that the next frames may supply. It becomes false
+    /// at the latest `max_age` of the sources and one period after the last value.
     [[nodiscard]] constexpr bool pending(std::int64_t instant_ns, std::int64_t now_ns) const noexcept {
         return output_.pending(instant_ns, now_ns) || position_.pending(instant_ns, now_ns);
     }
 
-    /// The sample of an instant not later than `now_ns`, both on the clock of the buses. The positions of
-    /// joints without one are 0, and without output_valid the outputs.
+    /// Returns the sample of an instant not later than `now_ns`, both on the clock of the buses. Missing
+    /// positions are 0; outputs are 0 without `output_valid`.
     constexpr Assembled assemble(std::int64_t instant_ns, std::int64_t now_ns) noexcept {
         Assembled result{};
         result.report.joints = joints_;
@@ -158,8 +159,8 @@ class SampleAssembly {
         return result;
     }
 
-    /// A standard identifier that two devices of one bus would send; none if all is well. O(2048 (boards +
-    /// 1)); for the start.
+    /// Returns a standard identifier that two devices of one bus would send; none if there is no such
+    /// mistake. O(2048 (boards + 1)): call it once at the start.
     [[nodiscard]] constexpr std::optional<std::uint32_t> colliding_id() const noexcept {
         for (std::uint32_t id = 0; id <= 0x7FF; ++id) {
             int senders = output_bus_ == 0 && output_.claims(id) ? 1 : 0;
@@ -173,13 +174,17 @@ class SampleAssembly {
         return std::nullopt;
     }
 
+    /// Returns the numbers of samples and of refusals by reason.
     [[nodiscard]] constexpr const AssemblyCounters& counters() const noexcept { return counters_; }
+    /// Returns clock and health of bus 0 or 1.
     [[nodiscard]] constexpr const BusWatch& bus(int index) const noexcept {
         return watch_[static_cast<std::size_t>(index)];
     }
+    /// Returns the measurements of a joint, `joint` from 0.
     [[nodiscard]] constexpr const PositionTrack<capacity>& position(int joint) const noexcept {
         return position_[static_cast<std::size_t>(joint)];
     }
+    /// Returns the measurements of the outputs.
     [[nodiscard]] constexpr const Output& output() const noexcept { return output_; }
 
   private:

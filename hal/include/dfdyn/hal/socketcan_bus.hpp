@@ -23,11 +23,12 @@ class BusError : public std::runtime_error {
 
 /// Accepts frames with `(frame id & mask) == (id & mask)` and the same kind of identifier.
 struct IdFilter {
-    std::uint32_t id = 0;
-    std::uint32_t mask = 0;
-    bool extended = false;
+    std::uint32_t id = 0;   ///< 11 or 29 bits
+    std::uint32_t mask = 0; ///< bits that are compared; 0: every identifier of this kind
+    bool extended = false;  ///< 29-bit identifiers
 };
 
+/// What a `SocketCanBus` opens.
 struct SocketCanOptions {
     std::string interface;              ///< such as `can0`
     std::vector<IdFilter> filters = {}; ///< empty: all frames; error frames are received in any case
@@ -61,6 +62,8 @@ class SocketCanBus {
     SocketCanBus(const SocketCanBus&) = delete;
     SocketCanBus& operator=(const SocketCanBus&) = delete;
 
+    /// Returns the received frames in the order of arrival, at most `into.size()`, as the filled part of
+    /// `into`.
     std::span<const Frame> drain(std::span<Frame> into) noexcept;
 
     /// Sleeps until a frame arrives, a signal arrives or `timeout_ns` has passed. For programs that have
@@ -71,8 +74,11 @@ class SocketCanBus {
     /// CAN interface is short: it holds 10 frames unless `ip link set IFACE txqueuelen 100` made it longer.
     SendResult send(const Frame& frame) noexcept;
 
+    /// Returns CLOCK_MONOTONIC.
     std::int64_t now_ns() const noexcept;
+    /// Returns the state after the last drain or send.
     BusState state() const noexcept { return state_; }
+    /// Returns the counters after the last drain or send.
     const BusCounters& counters() const noexcept { return counters_; }
 
   private:

@@ -15,6 +15,7 @@ class WallClock {
     /// A larger change of the difference means that the clock was set; slewing changes it by far less.
     static constexpr std::int64_t step_ns = 1'000'000;
 
+    /// A converted time stamp.
     struct Converted {
         std::int64_t stamp_ns = 0; ///< on the monotonic clock, never after now
         bool plausible = false;    ///< false: no difference explains the time stamp, and `stamp_ns` is now
