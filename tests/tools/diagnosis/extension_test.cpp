@@ -78,8 +78,8 @@ DiagnosisWork work_with(const std::shared_ptr<const DiagnosisSignals>& signals, 
     work.torque_gains = VectorXd::Ones(signals->outputs());
     work.explanation.candidates = {candidate};
     work.explanation.chosen = {{0, shape}};
-    work.explanation.named.coefficients = coefficients;
-    work.explanation.named.covariance = 1e-12 * MatrixXd::Identity(coefficients.size(), coefficients.size());
+    work.explanation.values.coefficients = coefficients;
+    work.explanation.values.covariance = 1e-12 * MatrixXd::Identity(coefficients.size(), coefficients.size());
     return work;
 }
 
@@ -208,9 +208,9 @@ TEST_CASE("columns of the same effect at the same place are merged into one") {
             work.explanation.candidates.push_back(candidate);
         }
     }
-    work.explanation.named.coefficients =
+    work.explanation.values.coefficients =
         VectorXd::LinSpaced(3, 1, 3); // the spring's stiffness and offset, then the torque offset
-    work.explanation.named.covariance = MatrixXd::Identity(3, 3);
+    work.explanation.values.covariance = MatrixXd::Identity(3, 3);
     const Extension extension = extension_of(work);
     REQUIRE(extension.columns.size() == 2);
     CHECK(extension.columns[0].effect.name == "joint_spring");
@@ -242,8 +242,8 @@ TEST_CASE("the corrected robot has the extended model's torques and names what i
     }
     REQUIRE(coefficients.size() == hidden.size());
     const auto count = static_cast<Index>(coefficients.size());
-    work.explanation.named.coefficients = Eigen::Map<const VectorXd>(coefficients.data(), count);
-    work.explanation.named.covariance = MatrixXd::Identity(count, count);
+    work.explanation.values.coefficients = Eigen::Map<const VectorXd>(coefficients.data(), count);
+    work.explanation.values.covariance = MatrixXd::Identity(count, count);
     const Extension extension = extension_of(work);
     const RobotExport corrected = corrected_robot(extension);
     CHECK(corrected.left_out == std::vector<std::string>{"torque_offset at joint4"});

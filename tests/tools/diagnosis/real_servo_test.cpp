@@ -89,9 +89,9 @@ TEST_CASE("a real servo's viscous and load-dependent friction agree with the pub
 
     const Finding& load = found(diagnosis, "load_dependent_friction");
     CHECK(load.confidence >= likely);
-    CHECK(may_be(load.parameters[0], m6["load_friction_motor"]));
     const double of_motor = m6["load_friction_motor"];
     const double slowly = of_motor + m6["load_friction_external_stribeck"];
+    CHECK(may_be(load.parameters[0], slowly / (1 - of_motor * of_motor))); // mean of lifting and lowering
     CHECK(load.parameters[0].value > of_motor / (1 + of_motor)); // lowering, fast
     CHECK(load.parameters[0].value < slowly / (1 - of_motor));   // lifting, slowly
 

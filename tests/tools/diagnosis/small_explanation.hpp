@@ -53,6 +53,7 @@ inline tools::Explanation explanation_of(const std::vector<tools::Candidate>& ca
                                 unexplained.squaredNorm()};
     explanation.fit = tools::fit_effects(explanation.problem, explanation.chosen);
     explanation.named = tools::fit_effects(explanation.problem, explanation.named_effects());
+    explanation.values = explanation.named;
     return explanation;
 }
 

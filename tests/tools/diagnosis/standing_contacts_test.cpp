@@ -132,6 +132,7 @@ TEST_CASE("no push at rest is reported if the friction estimate is uncertain") {
     explanation.problem.sums.gram *= precision;
     explanation.problem.sums.moment *= precision;
     explanation.named = fit_effects(explanation.problem, explanation.named_effects());
+    explanation.values = explanation.named;
     CHECK(pushes_in(signals, explanation, measured).empty());
 }
 

@@ -2,6 +2,8 @@
 #include "tools/diagnosis/candidates/effect_regression.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <numeric>
 
 namespace dfdyn::tools {
 
@@ -46,30 +48,42 @@ Eigen::VectorXd EffectRegression::weighed(const Eigen::MatrixXd& rows, Eigen::In
     return result.reshaped();
 }
 
-WeighedSums EffectRegression::weighed_sums(Eigen::Index first, Eigen::Index count) const {
-    WeighedSums sums{Eigen::MatrixXd::Zero(columns(), columns()), Eigen::VectorXd::Zero(columns()), 0};
-    for (Eigen::Index output = 0; output < outputs(); ++output) {
-        std::vector<Eigen::Index> acting;
-        for (Eigen::Index column = 0; column < columns(); ++column) {
-            if (columns_[static_cast<std::size_t>(column)]->on(output) != nullptr) {
-                acting.push_back(column);
-            }
-        }
-        const auto size = static_cast<Eigen::Index>(acting.size());
-        Eigen::MatrixXd matrix(rows_.bins() * count, size);
-        for (Eigen::Index i = 0; i < size; ++i) {
-            const auto column = static_cast<std::size_t>(acting[static_cast<std::size_t>(i)]);
-            matrix.col(i) = weighed(*columns_[column]->on(output), output, first, count);
-        }
-        const Eigen::VectorXd wanted =
-            weighed(target_[static_cast<std::size_t>(output)], output, first, count);
-        Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(size, size);
-        gram.selfadjointView<Eigen::Lower>().rankUpdate(matrix.transpose());
-        gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
-        sums.gram(acting, acting) += gram;
-        sums.moment(acting) += matrix.transpose() * wanted;
-        sums.energy += wanted.squaredNorm();
+void EffectRegression::add_sums(WeighedSums& sums, Eigen::Index output,
+                                const std::vector<Eigen::Index>& columns, Eigen::Index first,
+                                Eigen::Index count) const {
+    std::vector<Eigen::Index> acting;
+    std::ranges::copy_if(columns, std::back_inserter(acting), [&](Eigen::Index column) {
+        return columns_[static_cast<std::size_t>(column)]->on(output) != nullptr;
+    });
+    const auto size = static_cast<Eigen::Index>(acting.size());
+    Eigen::MatrixXd matrix(rows_.bins() * count, size);
+    for (Eigen::Index i = 0; i < size; ++i) {
+        const auto column = static_cast<std::size_t>(acting[static_cast<std::size_t>(i)]);
+        matrix.col(i) = weighed(*columns_[column]->on(output), output, first, count);
     }
+    const Eigen::VectorXd wanted = weighed(target_[static_cast<std::size_t>(output)], output, first, count);
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(size, size);
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(matrix.transpose());
+    gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+    sums.gram(acting, acting) += gram;
+    sums.moment(acting) += matrix.transpose() * wanted;
+    sums.energy += wanted.squaredNorm();
+}
+
+WeighedSums EffectRegression::weighed_sums(Eigen::Index first, Eigen::Index count) const {
+    std::vector<Eigen::Index> all(columns_.size());
+    std::iota(all.begin(), all.end(), 0);
+    WeighedSums sums = WeighedSums::zero(columns());
+    for (Eigen::Index output = 0; output < outputs(); ++output) {
+        add_sums(sums, output, all, first, count);
+    }
+    return sums;
+}
+
+WeighedSums EffectRegression::sums_of_output(Eigen::Index output,
+                                             const std::vector<Eigen::Index>& columns) const {
+    WeighedSums sums = WeighedSums::zero(this->columns());
+    add_sums(sums, output, columns, 0, fitted_frames_);
     return sums;
 }
 

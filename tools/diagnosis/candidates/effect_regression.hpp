@@ -17,6 +17,11 @@ struct WeighedSums {
     Eigen::MatrixXd gram;   ///< p x p
     Eigen::VectorXd moment; ///< p
     double energy = 0;      ///< of the target
+
+    /// Returns the sums of `columns` columns over nothing.
+    static WeighedSums zero(Eigen::Index columns) {
+        return {Eigen::MatrixXd::Zero(columns, columns), Eigen::VectorXd::Zero(columns), 0};
+    }
 };
 
 /// A column as spectral rows, for each output on which it acts.
@@ -55,6 +60,8 @@ class EffectRegression {
     WeighedSums weighed_sums() const { return weighed_sums(0, fitted_frames_); }
     /// Returns the sums over `count` frames from `first` on.
     WeighedSums weighed_sums(Eigen::Index first, Eigen::Index count) const;
+    /// Returns the sums over one output and all fitted frames. Columns that are not in `columns` have zeros.
+    WeighedSums sums_of_output(Eigen::Index output, const std::vector<Eigen::Index>& columns) const;
 
     /// Returns an output's weights of squares (bins x fitted frames).
     Eigen::MatrixXd weight(Eigen::Index output) const {
@@ -72,6 +79,8 @@ class EffectRegression {
                           const Eigen::MatrixXd& covariance) const;
 
   private:
+    void add_sums(WeighedSums& sums, Eigen::Index output, const std::vector<Eigen::Index>& columns,
+                  Eigen::Index first, Eigen::Index count) const;
     Eigen::VectorXd weighed(const Eigen::MatrixXd& rows, Eigen::Index output, Eigen::Index first,
                             Eigen::Index count) const;
 

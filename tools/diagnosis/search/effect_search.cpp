@@ -178,6 +178,10 @@ EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShap
     return fit;
 }
 
+double evidence_of(const SearchProblem& problem, const ChosenShape& chosen, double explained) {
+    return 0.5 * explained - price(problem, chosen, explained);
+}
+
 double held_out_score(const SearchProblem& problem, const std::vector<WeighedSums>& blocks,
                       const std::vector<ChosenShape>& chosen) {
     const std::vector<Eigen::Index> columns = columns_of(problem, chosen);

@@ -61,6 +61,10 @@ struct EffectFit {
 /// shapes of a candidate have the same probability.
 EffectFit fit_effects(const SearchProblem& problem, const std::vector<ChosenShape>& chosen);
 
+/// Returns the log-evidence of a chosen effect that explains a sum of squares `explained`, in units of the
+/// noise.
+double evidence_of(const SearchProblem& problem, const ChosenShape& chosen, double explained);
+
 /// Leave-one-block-out cross-validation score: the reduction of half the sum of squares in each block by the
 /// fit to all other blocks, summed over the blocks. The prior penalty of the nuisance coefficients is
 /// subtracted, because they could replace a removed effect. `blocks`: their sum is the problem's sums.

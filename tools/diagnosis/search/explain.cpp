@@ -6,6 +6,7 @@
 #include "tools/diagnosis/candidates/scans.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
 #include "tools/diagnosis/search/candidate_entry.hpp"
+#include "tools/diagnosis/search/robust_values.hpp"
 #include "tools/diagnosis/search/settle_explanation.hpp"
 #include "tools/robot/firmware_chain.hpp"
 
@@ -103,6 +104,7 @@ class Search {
             last = std::move(keys);
         }
         settle(at_, regression_);
+        make_robust(at_, regression_);
         return std::move(at_);
     }
 

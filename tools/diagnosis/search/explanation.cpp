@@ -33,13 +33,18 @@ Eigen::Index Explanation::first_column(std::size_t chosen_index) const {
 
 Eigen::VectorXd Explanation::coefficients(std::size_t chosen_index) const {
     const Eigen::Index first = first_column(chosen_index);
-    return named.coefficients.segment(first, first_column(chosen_index + 1) - first);
+    return values.coefficients.segment(first, first_column(chosen_index + 1) - first);
 }
 
 Eigen::MatrixXd Explanation::covariance(std::size_t chosen_index) const {
     const Eigen::Index first = first_column(chosen_index);
     const Eigen::Index count = first_column(chosen_index + 1) - first;
-    return named.covariance.block(first, first, count, count);
+    return values.covariance.block(first, first, count, count);
+}
+
+double Explanation::evidence(std::size_t chosen_index) const {
+    const Eigen::VectorXd own = coefficients(chosen_index);
+    return evidence_of(problem, chosen[chosen_index], own.dot(covariance(chosen_index).ldlt().solve(own)));
 }
 
 std::vector<ChosenShape> Explanation::named_effects() const {
@@ -86,7 +91,7 @@ Eigen::MatrixXd Explanation::all(const DiagnosisSignals& signals) const {
 }
 
 Eigen::MatrixXd Explanation::model(const DiagnosisSignals& signals) const {
-    return with_nuisance(signals, named, &Candidate::named);
+    return with_nuisance(signals, values, &Candidate::named);
 }
 
 } // namespace dfdyn::tools

@@ -25,8 +25,9 @@ struct Explanation {
     std::vector<Candidate> candidates;
     std::vector<ChosenShape> chosen; ///< of `candidates`, named ones first
     SearchProblem problem;
-    EffectFit fit;   ///< fit of all chosen effects
-    EffectFit named; ///< fit of the named effects only, without influence of the unnamed ones
+    EffectFit fit;    ///< fit of all chosen effects
+    EffectFit named;  ///< fit of the named effects only, without influence of the unnamed ones
+    EffectFit values; ///< of the named effects: the coefficients that are reported (`robust_values`)
     /// Number of links with uncertain mass, the first nuisance parameters: all or none.
     Eigen::Index uncertain_masses = 0;
     Eigen::MatrixXd noise; ///< bins x m: spectra of the residual
@@ -39,9 +40,11 @@ struct Explanation {
     Eigen::MatrixXd all(const DiagnosisSignals& signals) const;
     /// Returns the contribution (T x m) of the named effects and nuisance parameters, by `named`.
     Eigen::MatrixXd model(const DiagnosisSignals& signals) const;
-    /// Coefficients of a chosen named candidate's shape, and their covariance, by `named`.
+    /// Coefficients of a chosen named candidate's shape, and their covariance, by `values`.
     Eigen::VectorXd coefficients(std::size_t chosen_index) const;
     Eigen::MatrixXd covariance(std::size_t chosen_index) const;
+    /// Log-evidence of a chosen named candidate, by `values`.
+    double evidence(std::size_t chosen_index) const;
 
     /// Returns the chosen effects that have a name, which are those of the fit `named`.
     std::vector<ChosenShape> named_effects() const;

@@ -117,6 +117,7 @@ void fit_named(Explanation& at) {
                           [&at](const ChosenShape& one) { return at.candidates[one.candidate].named(); });
     at.fit = fit_effects(at.problem, at.chosen);
     at.named = fit_effects(at.problem, at.named_effects());
+    at.values = at.named;
 }
 
 /// Removes, one by one, named effects whose coefficients are inadmissible in the fit without unnamed effects.

@@ -61,8 +61,8 @@ std::string confirmation(const Finding& finding) {
 }
 
 /// Returns a chosen named effect as a finding, without its gain.
-Finding of_cause(const Explanation& explanation, const Neighbours& near, const Neighbours& near_named,
-                 std::size_t index, double duration_s) {
+Finding of_cause(const Explanation& explanation, const Neighbours& near, std::size_t index,
+                 double duration_s) {
     const Candidate& candidate = explanation.candidates[explanation.chosen[index].candidate];
     Finding finding;
     finding.effect = candidate.effect;
@@ -71,8 +71,7 @@ Finding of_cause(const Explanation& explanation, const Neighbours& near, const N
     finding.parameters = found_parameters(explanation, index);
     weigh_alternatives(finding, explanation, near, index);
     // confidence is low if an effect is significant only together with an unnamed one that cancels most of it
-    finding.margin_to_nothing =
-        std::min(finding.margin_to_nothing, explanation.named.score - near_named.score_without(index));
+    finding.margin_to_nothing = std::min(finding.margin_to_nothing, explanation.evidence(index));
     finding.confidence = calibrated_confidence(finding, duration_s);
     finding.confirm = confirmation(finding);
     return finding;
@@ -119,11 +118,10 @@ std::vector<Finding> of_causes(const DiagnosisSignals& signals, const Explanatio
     const Neighbours near(explanation.problem, explanation.chosen);
     // named effects are the first of those chosen
     const std::vector<ChosenShape> named = explanation.named_effects();
-    const Neighbours near_named(explanation.problem, named);
     std::vector<Finding> findings;
     for (std::size_t i = 0; i < named.size(); ++i) {
         const std::string key = explanation.candidates[named[i].candidate].key();
-        Finding finding = of_cause(explanation, near, near_named, i, duration_s);
+        Finding finding = of_cause(explanation, near, i, duration_s);
         if (gains.tell(finding, explanation.effects(
                                     signals, [&](const Candidate& one) { return one.key() == key; }))) {
             findings.push_back(std::move(finding));

@@ -43,6 +43,12 @@ ShapeParameters parameters_over_shapes(const Explanation& explanation, std::size
     const EffectShape& own_shape = candidate.shapes[named[index].shape];
     const ShapeParameters own(candidate, own_shape, explanation.coefficients(index),
                               explanation.covariance(index));
+    const Eigen::Index first = explanation.first_column(index);
+    const Eigen::Index count = explanation.coefficients(index).size();
+    // the same by the evidence's weights, to which the other shapes are compared
+    const ShapeParameters by_evidence(candidate, own_shape,
+                                      explanation.named.coefficients.segment(first, count),
+                                      explanation.named.covariance.block(first, first, count, count));
     ShapeParameters result = own;
     double total = 1;
     for (std::size_t shape = 0; shape < candidate.shapes.size(); ++shape) {
@@ -53,8 +59,6 @@ ShapeParameters parameters_over_shapes(const Explanation& explanation, std::size
             continue;
         }
         const EffectFit fit = fit_effects(explanation.problem, named);
-        const auto first = explanation.first_column(index);
-        const auto count = std::ssize(other_shape.columns);
         const ShapeParameters other(candidate, other_shape, fit.coefficients.segment(first, count),
                                     fit.covariance.block(first, first, count, count));
         const double odds = std::exp(std::min(0.0, fit.score - explanation.named.score));
@@ -62,7 +66,7 @@ ShapeParameters parameters_over_shapes(const Explanation& explanation, std::size
             total += odds;
             for (Eigen::Index k = 0; k < own.variance.size(); ++k) {
                 const auto i = static_cast<std::size_t>(k);
-                const double apart = other.values[i].value - own.values[i].value;
+                const double apart = other.values[i].value - by_evidence.values[i].value;
                 result.variance[k] += odds * (other.variance[k] + apart * apart);
             }
         }

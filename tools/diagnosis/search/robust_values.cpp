@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/diagnosis/search/robust_values.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <vector>
+
+namespace dfdyn::tools {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Sums over one output, and the covariance of their moments for noise with its own spectrum.
+struct OutputSums {
+    WeighedSums sums;
+    MatrixXd scatter;
+};
+
+/// Fits of the named effects. Each output has the weights of its noise, or the same weight for all
+/// frequencies.
+class Refit {
+  public:
+    Refit(const Explanation& at, EffectRegression& regression)
+        : columns_(at.named.columns), problem_(at.problem) {
+        const MatrixXd even = at.noise.colwise().mean().replicate(at.noise.rows(), 1);
+        std::vector<MatrixXd> precision;
+        std::vector<MatrixXd> ones;
+        for (Index output = 0; output < regression.outputs(); ++output) {
+            by_noise_.push_back(sums_of(regression, output));
+            by_noise_.back().scatter = by_noise_.back().sums.gram;
+            precision.push_back(regression.weight(output));
+            ones.push_back(MatrixXd::Ones(precision.back().rows(), precision.back().cols()));
+        }
+        regression.set_noise(even, ones);
+        for (Index output = 0; output < regression.outputs(); ++output) {
+            evenly_.push_back(sums_of(regression, output));
+        }
+        regression.set_noise(even.array().square(), precision);
+        for (Index output = 0; output < regression.outputs(); ++output) {
+            evenly_[static_cast<std::size_t>(output)].scatter = sums_of(regression, output).sums.gram;
+        }
+    }
+
+    Index outputs() const { return std::ssize(evenly_); }
+
+    /// `even`: per output, whether all frequencies have the same weight.
+    EffectFit fit(const std::vector<ChosenShape>& chosen, const std::vector<bool>& even) {
+        const Index all = problem_.sums.gram.rows();
+        problem_.sums = WeighedSums::zero(all);
+        MatrixXd scatter = MatrixXd::Zero(all, all);
+        for (std::size_t output = 0; output < even.size(); ++output) {
+            const OutputSums& own = even[output] ? evenly_[output] : by_noise_[output];
+            problem_.sums.gram += own.sums.gram;
+            problem_.sums.moment += own.sums.moment;
+            scatter += own.scatter;
+        }
+        for (const NuisanceColumn& nuisance : problem_.nuisance) {
+            scatter(nuisance.column, nuisance.column) += 1 / (nuisance.deviation * nuisance.deviation);
+        }
+        EffectFit result = fit_effects(problem_, chosen);
+        result.covariance =
+            (result.covariance * scatter(result.columns, result.columns) * result.covariance).eval();
+        return result;
+    }
+
+    /// Returns the positions in a fit of the columns that act on this output alone.
+    std::vector<Index> columns_of(const EffectFit& fit, Index output) const {
+        std::vector<Index> result;
+        for (Index i = 0; i < std::ssize(fit.columns); ++i) {
+            const Index column = fit.columns[static_cast<std::size_t>(i)];
+            const auto acts = [column](const OutputSums& one) { return one.sums.gram(column, column) > 0; };
+            if (acts(evenly_[static_cast<std::size_t>(output)]) &&
+                std::ranges::count_if(evenly_, acts) == 1) {
+                result.push_back(i);
+            }
+        }
+        return result;
+    }
+
+  private:
+    OutputSums sums_of(const EffectRegression& regression, Index output) const {
+        return {regression.sums_of_output(output, columns_), {}};
+    }
+
+    std::vector<Index> columns_;
+    SearchProblem problem_;
+    std::vector<OutputSums> by_noise_, evenly_;
+};
+
+/// Returns whether noise cannot explain the difference of two fits. `even`: the one with the larger variance.
+bool contradict(const EffectFit& fit, const EffectFit& even, const std::vector<Index>& columns) {
+    // the squared distance per column, 1 if the effects are right: docs/results/diagnosis-panel.md
+    constexpr double far = 2;
+    const VectorXd apart = even.coefficients(columns) - fit.coefficients(columns);
+    return apart.dot(even.covariance(columns, columns).ldlt().solve(apart)) >
+           far * static_cast<double>(columns.size());
+}
+
+/// Returns a lasting effect on the outputs `even` that `values` do not support: its coefficients are
+/// inadmissible, or its evidence is the least and does not pay its price.
+std::optional<std::size_t> unsupported(const Explanation& at, const std::vector<bool>& even) {
+    std::optional<std::size_t> result;
+    double least = 0;
+    for (std::size_t effect = 0; effect < at.named_effects().size(); ++effect) {
+        const ChosenShape& one = at.chosen[effect];
+        const Candidate& candidate = at.candidates[one.candidate];
+        const EffectShape& shape = candidate.shapes[one.shape];
+        const auto on_even = [&](const EffectColumn::Part& part) {
+            return even[static_cast<std::size_t>(part.output)];
+        };
+        if (candidate.event ||
+            !std::ranges::any_of(candidate.columns[shape.columns.front()].parts, on_even)) {
+            continue;
+        }
+        if (!shape.allowed(at.coefficients(effect))) {
+            return effect;
+        }
+        if (const double evidence = at.evidence(effect); evidence < least) {
+            least = evidence;
+            result = effect;
+        }
+    }
+    return result;
+}
+
+/// Sets the values. Returns an effect to be removed, if there is one.
+std::optional<std::size_t> choose_values(Explanation& at, Refit& refit) {
+    const auto outputs = static_cast<std::size_t>(refit.outputs());
+    const EffectFit all_even = refit.fit(at.named_effects(), std::vector<bool>(outputs, true));
+    std::vector<bool> even;
+    for (Index output = 0; output < refit.outputs(); ++output) {
+        even.push_back(contradict(at.named, all_even, refit.columns_of(at.named, output)));
+    }
+    at.values = refit.fit(at.named_effects(), even);
+    return unsupported(at, even);
+}
+
+} // namespace
+
+void make_robust(Explanation& at, EffectRegression& regression) {
+    Refit refit(at, regression);
+    while (const std::optional<std::size_t> effect = choose_values(at, refit)) {
+        at.chosen = without(at.chosen, *effect);
+        at.fit = fit_effects(at.problem, at.chosen);
+        at.named = fit_effects(at.problem, at.named_effects());
+    }
+}
+
+} // namespace dfdyn::tools
