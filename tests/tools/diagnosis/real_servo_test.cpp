@@ -92,8 +92,8 @@ TEST_CASE("a real servo's viscous and load-dependent friction agree with the pub
     const double of_motor = m6["load_friction_motor"];
     const double slowly = of_motor + m6["load_friction_external_stribeck"];
     CHECK(may_be(load.parameters[0], slowly / (1 - of_motor * of_motor))); // mean of lifting and lowering
-    CHECK(load.parameters[0].value > of_motor / (1 + of_motor)); // lowering, fast
-    CHECK(load.parameters[0].value < slowly / (1 - of_motor));   // lifting, slowly
+    CHECK(load.parameters[0].value > of_motor / (1 + of_motor));           // lowering, fast
+    CHECK(load.parameters[0].value < slowly / (1 - of_motor));             // lifting, slowly
 
     CHECK(diagnosis.extended.nrmse[0] < 0.7 * diagnosis.nominal.nrmse[0]);
 }

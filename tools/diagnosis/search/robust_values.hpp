@@ -8,11 +8,11 @@ namespace dfdyn::tools {
 /// Sets `values` of a settled explanation, and removes effects that only wrong weights support.
 ///
 /// The noise's spectrum gives the best weights where the effects are exactly right. Where they are not, the
-/// frequencies with the least noise decide, and these are not those with most of the torque: dry friction, for
-/// example, is then fitted to its reversals. A second fit gives all frequencies the same weight. An output at
-/// which the two differ by more than noise can explain (a specification test: J. A. Hausman, 1978) has these
-/// weights in `values`. There an effect whose evidence does not pay its price is removed. The covariance is that
-/// of noise with its own spectrum. Changes the weights of `regression`.
+/// frequencies with the least noise decide, and these are not those with most of the torque: dry friction,
+/// for example, is then fitted to its reversals. A second fit gives all frequencies the same weight. An
+/// output at which the two differ by more than noise can explain (a specification test: J. A. Hausman, 1978)
+/// has these weights in `values`. There an effect whose evidence does not pay its price is removed. The
+/// covariance is that of noise with its own spectrum. Changes the weights of `regression`.
 void make_robust(Explanation& explanation, EffectRegression& regression);
 
 } // namespace dfdyn::tools
