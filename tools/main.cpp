@@ -49,14 +49,17 @@ int run(int argc, char** argv) {
     app.set_version_flag("--version", dfdyn::tools::build_flags());
     dfdyn::tools::Command command;
     add_commands(app, command);
+    dfdyn::tools::refuse_missing_values(app, {argv, static_cast<std::size_t>(argc)});
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
-        return app.exit(request); // --help, --version
+        const int done = app.exit(request); // --help, --version
+        dfdyn::tools::flush_standard_output(std::cout);
+        return done;
     } catch (const CLI::ParseError& failure) {
         throw dfdyn::tools::InputError(dfdyn::tools::usage_message(app, failure));
     }
-    dfdyn::tools::refuse_empty_values(app);
+    dfdyn::tools::refuse_wrong_values(app);
     const int status = command();
     dfdyn::tools::flush_standard_output(std::cout);
     return status;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/base/system/atomic_file.hpp"
+#include "tools/base/system/file_set.hpp"
 #include "tools/bench/bench_report.hpp"
 #include "tools/bench/memory_table.hpp"
 #include "tools/report/chart.hpp"
@@ -143,14 +143,16 @@ json bench_json(const BenchResults& results) {
 
 void write_bench(const std::filesystem::path& folder, const BenchResults& results) {
     const FigurePage page = bench_page(results);
-    make_folder(folder / "pictures");
-    write_file(folder / "bench.json", bench_json(results).dump(2) + '\n');
-    write_file(folder / "bench.md", figure_page_markdown(page));
+    FileSet files;
+    files.add_folder(folder / "pictures");
+    files.add(folder / "bench.json", bench_json(results).dump(2) + '\n');
+    files.add(folder / "bench.md", figure_page_markdown(page));
     for (const PageSection& section : page.sections) {
         for (const PageChart& chart : section.charts) {
-            write_file(folder / "pictures" / (chart.name + ".svg"), standalone_chart(chart.svg));
+            files.add(folder / "pictures" / (chart.name + ".svg"), standalone_chart(chart.svg));
         }
     }
+    files.commit();
 }
 
 } // namespace dfdyn::tools

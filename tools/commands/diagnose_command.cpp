@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/system/atomic_file.hpp"
+#include "tools/base/system/file_set.hpp"
 #include "tools/base/system/progress.hpp"
 #include "tools/base/system/quiet.hpp"
 #include "tools/base/text/error.hpp"
@@ -16,6 +17,7 @@
 #include "tools/diagnosis/output/diagnosis_json.hpp"
 #include "tools/diagnosis/output/diagnosis_page.hpp"
 #include "tools/diagnosis/output/diagnosis_summary.hpp"
+#include "tools/diagnosis/output/error_sections.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/model/header/model_header.hpp"
 
@@ -43,6 +45,7 @@ struct DiagnoseOptions {
     std::filesystem::path findings() const { return folder / "diagnosis.json"; }
     std::filesystem::path page() const { return folder / "report.html"; }
     std::filesystem::path model() const { return folder / "extended_model.json"; }
+    std::filesystem::path curves() const { return folder / "curves.csv"; }
 };
 
 void check_torque_constants(const DiagnoseOptions& options, OutputKind outputs, std::size_t joints) {
@@ -85,12 +88,12 @@ std::optional<TrainedModel> make_model(const DiagnosisWork& work, const Extensio
     return answered(work) ? std::optional(extended_model(extension, recordings)) : std::nullopt;
 }
 
-void write_model(const DiagnoseOptions& options, const TrainedModel& model) {
+void add_model(const DiagnoseOptions& options, const TrainedModel& model, FileSet& files) {
     const std::string json = model_to_json(model);
     model_from_json(json, shown(options.model())); // nothing is written that `replay` would reject
-    write_file(options.model(), json);
+    files.add(options.model(), json);
     if (!options.header.empty()) {
-        write_file(options.header, model_to_header(model, to_identifier(options.header.stem().string())));
+        files.add(options.header, model_to_header(model, to_identifier(options.header.stem().string())));
     }
 }
 
@@ -104,26 +107,26 @@ void for_each_export(const DiagnoseOptions& options, const Use& use) {
     }
 }
 
-void write_exports(const DiagnoseOptions& options, const Extension& extension) {
+void add_exports(const DiagnoseOptions& options, const Extension& extension, FileSet& files) {
     const RobotExport corrected = options.formats.empty() ? RobotExport{} : corrected_robot(extension);
     for_each_export(options, [&](const RobotFormat& format, const std::filesystem::path& file) {
-        write_file(file, format.text(corrected));
+        files.add(file, format.text(corrected));
     });
     for (const std::string& part : corrected.left_out) {
         print_note("note: not in the exported robot: " + part);
     }
 }
 
-/// Removes the robots of an earlier run that this one does not replace, and the model if there is none now:
-/// they could be mistaken for results of this run.
-void remove_earlier(const DiagnoseOptions& options, bool has_model) {
-    std::error_code ignored;
+/// Removes the robots of an earlier run that this one does not replace, and model and curves if there are
+/// none now: they could be mistaken for results of this run.
+void remove_earlier(const DiagnoseOptions& options, bool has_model, FileSet& files) {
     if (!has_model) {
-        std::filesystem::remove(options.model(), ignored);
+        files.remove(options.model());
+        files.remove(options.curves());
     }
     for (const RobotFormat& format : robot_formats()) {
         if (!has_model || std::ranges::find(options.formats, format.name) == options.formats.end()) {
-            std::filesystem::remove(options.folder / format.file, ignored);
+            files.remove(options.folder / format.file);
         }
     }
 }
@@ -132,7 +135,8 @@ void remove_earlier(const DiagnoseOptions& options, bool has_model) {
 void check_folders(const DiagnoseOptions& options) {
     check_folder(options.folder);
     if (std::filesystem::exists(options.folder)) {
-        for (const std::filesystem::path& output : {options.findings(), options.page(), options.model()}) {
+        for (const std::filesystem::path& output :
+             {options.findings(), options.page(), options.model(), options.curves()}) {
             check_writable(output);
         }
         for_each_export(options,
@@ -150,7 +154,8 @@ int run(const DiagnoseOptions& options) {
     const JsonOutput output(options.json);
     std::vector<std::filesystem::path> inputs = options.recordings.logs;
     inputs.push_back(options.robot.urdf);
-    check_distinct({options.findings(), options.page(), options.model(), options.header}, std::move(inputs));
+    check_distinct({options.findings(), options.page(), options.model(), options.curves(), options.header},
+                   std::move(inputs));
     const OutputKind outputs = parse_output_kind(options.outputs);
     const Robot robot = options.robot.read(outputs);
     check_torque_constants(options, outputs, robot.joints.size());
@@ -159,16 +164,21 @@ int run(const DiagnoseOptions& options) {
     const DiagnosisWork work = run_diagnosis(robot, recordings, options, outputs);
     const Extension extension = answered(work) ? extension_of(work) : Extension{};
     const std::optional<TrainedModel> model = make_model(work, extension, recordings);
-    make_folder(options.folder);
     const OnlineView online = model ? online_view(work, extension, *model, recordings) : OnlineView{};
     const nlohmann::ordered_json findings = diagnosis_json(work.diagnosis);
-    write_file(options.findings(), findings.dump(2) + '\n');
-    write_file(options.page(), diagnosis_page({robot, recordings, work, extension, online}));
-    remove_earlier(options, model.has_value());
-    if (model) {
-        write_model(options, *model);
-        write_exports(options, extension);
+    FileSet files;
+    files.add_folder(options.folder);
+    files.add(options.findings(), findings.dump(2) + '\n');
+    files.add(options.page(), diagnosis_page({robot, recordings, work, extension, online, "curves.csv"}));
+    if (answered(work)) {
+        write_comparison_csv(files.add(options.curves()), work);
     }
+    remove_earlier(options, model.has_value(), files);
+    if (model) {
+        add_model(options, *model, files);
+        add_exports(options, extension, files);
+    }
+    files.commit();
     output.print(findings);
     print_diagnosis(std::cout, work.diagnosis, extension.carried);
     std::cout << "report: " << options.page().string() << '\n';
@@ -196,7 +206,8 @@ void add_diagnose_command(CLI::App& app, Command& chosen) {
         ->type_name("K1,K2...");
     command
         ->add_option("-o,--output", options->folder,
-                     "Folder for diagnosis.json, report.html and extended_model.json")
+                     "Folder for diagnosis.json, report.html, curves.csv (every row of the curves) and "
+                     "extended_model.json")
         ->required()
         ->type_name("DIR");
     command->add_option("--header", options->header, "The extended model as C++ constants for flash")
@@ -209,7 +220,7 @@ void add_diagnose_command(CLI::App& app, Command& chosen) {
         ->add_option("--export", options->formats,
                      "The corrected robot for simulators: masses, centres, friction, armature")
         ->delimiter(',')
-        ->check(CLI::IsMember(formats))
+        ->check(one_of(formats))
         ->type_name("FORMAT,...");
     command->add_flag("--no-held-out", options->quick,
                       "Leave out the error on held-out time, which takes half of the run");

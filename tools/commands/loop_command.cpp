@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/system/atomic_file.hpp"
+#include "tools/base/system/file_set.hpp"
 #include "tools/base/system/progress.hpp"
 #include "tools/base/system/read_file.hpp"
 #include "tools/base/text/error.hpp"
@@ -91,40 +92,42 @@ LoopRecording make_recording(const LoopParts& parts, const LoopOptions& options)
             options.duration_s > 0 ? options.duration_s : without_end_s};
 }
 
-/// Writes the recording of the run `name` if there is a folder for results.
-void write_recording(const LoopOptions& options, const std::string& name, const LoopRecording& recording) {
+/// Adds the recording of the run `name` if there is a folder for results.
+void add_recording(const LoopOptions& options, const std::string& name, const LoopRecording& recording,
+                   FileSet& files) {
     if (!options.folder.empty()) {
-        make_folder(options.folder);
-        recording.write(options.folder / (name + ".csv"));
+        files.add_folder(options.folder);
+        recording.write(files.add(options.folder / (name + ".csv")));
     }
 }
 
-void show_tracking(const LoopParts& parts, const LoopOptions& options, const std::vector<TrackingRun>& runs) {
+void show_tracking(const LoopParts& parts, const LoopOptions& options, const std::vector<TrackingRun>& runs,
+                   FileSet& files) {
     print_tracking(std::cout, runs);
     if (!options.folder.empty()) {
-        write_tracking(options.folder, "Tracking of " + parts.robot.name, runs);
+        add_tracking(options.folder, "Tracking of " + parts.robot.name, runs, files);
     }
 }
 
 /// Shows the findings of the learner's monitor on the terminal and in a file next to the tracking results.
-void show_changes(const LoopOptions& options, const ControlLoop& loop) {
+void show_changes(const LoopOptions& options, const ControlLoop& loop, FileSet& files) {
     if (const LearnedFeedForward* const learned = loop.feed_forward().learned()) {
         const RecordedChanges changes = learned->changes();
         print_changes(std::cout, changes);
         if (!options.folder.empty()) {
-            write_file(options.folder / "changes.json",
-                       changes_json(std::span(&changes, 1), MonitorSetup().false_alarm_hours).dump(2) + '\n');
+            files.add(options.folder / "changes.json",
+                      changes_json(std::span(&changes, 1), MonitorSetup().false_alarm_hours).dump(2) + '\n');
         }
     }
 }
 
 /// Saves the learned state, except after a stop by the loop itself: the last samples may be faulty.
-void save_learned(const LoopOptions& options, const ControlLoop& loop) {
+void save_learned(const LoopOptions& options, const ControlLoop& loop, FileSet& files) {
     const LearnedFeedForward* const learned = loop.feed_forward().learned();
     const bool sound = loop.state() == LoopState::running || loop.cause() == StopCause::requested;
     if (learned != nullptr && sound && !options.saved.empty()) {
         const std::vector<std::byte> snapshot = learned->snapshot();
-        write_file(options.saved, {reinterpret_cast<const char*>(snapshot.data()), snapshot.size()});
+        files.add(options.saved, {reinterpret_cast<const char*>(snapshot.data()), snapshot.size()});
     }
 }
 
@@ -163,7 +166,8 @@ struct SimulatedRun {
     nlohmann::ordered_json loop;
 };
 
-SimulatedRun simulate_run(const LoopParts& parts, const LoopOptions& options, const Contender& contender) {
+SimulatedRun simulate_run(const LoopParts& parts, const LoopOptions& options, const Contender& contender,
+                          FileSet& files) {
     LoopLimits limits = options.limits;
     if (!contender.observer) {
         limits.observer_bandwidth = {0};
@@ -181,13 +185,13 @@ SimulatedRun simulate_run(const LoopParts& parts, const LoopOptions& options, co
         recording.add(instant.measured);
         progress.update(static_cast<std::size_t>(instant.time_s * 1000));
     });
-    write_recording(options, name, recording);
+    add_recording(options, name, recording, files);
     std::cout << name << ' ';
     print_loop(std::cout, loop.loop());
     print_peaks(std::cout, peaks);
-    show_changes(options, loop.loop());
+    show_changes(options, loop.loop(), files);
     if (contender.name == contenders(options).back().name) {
-        save_learned(options, loop.loop());
+        save_learned(options, loop.loop(), files);
     }
     SimulatedRun result{std::nullopt, loop_json(name, loop.loop(), peaks)};
     if (loop.loop().state() == LoopState::running) {
@@ -202,8 +206,9 @@ int simulate(const LoopOptions& options) {
     std::vector<TrackingRun> runs;
     nlohmann::ordered_json loops = nlohmann::ordered_json::array();
     bool stopped = false;
+    FileSet files;
     for (const Contender& contender : contenders(options)) {
-        SimulatedRun run = simulate_run(parts, options, contender);
+        SimulatedRun run = simulate_run(parts, options, contender, files);
         stopped = stopped || !run.tracking;
         if (run.tracking) {
             runs.push_back(*run.tracking);
@@ -212,10 +217,11 @@ int simulate(const LoopOptions& options) {
     }
     nlohmann::ordered_json figures = tracking_json(runs, stopped);
     figures["loops"] = std::move(loops);
-    output.print(figures);
     if (!runs.empty()) {
-        show_tracking(parts, options, runs);
+        show_tracking(parts, options, runs, files);
     }
+    files.commit();
+    output.print(figures);
     return stopped ? 1 : 0;
 }
 
@@ -236,17 +242,19 @@ int run_on_bus(const LoopOptions& options) {
     print_port(std::cout, port.counters());
     print_pace(std::cout, pace);
     const std::string name = contenders(options).back().name;
-    save_learned(options, *loop);
-    write_recording(options, name, log.recording);
-    show_changes(options, *loop);
+    FileSet files;
+    save_learned(options, *loop, files);
+    add_recording(options, name, log.recording, files);
+    show_changes(options, *loop, files);
     const std::vector<TrackingRun> runs{{name, log.tracking.windows()}};
     const bool stopped = loop->cause() != StopCause::requested;
     nlohmann::ordered_json figures = tracking_json(runs, stopped);
     figures["loops"] = nlohmann::ordered_json::array({loop_json(name, *loop, log.peaks)});
     figures["bus"] = port_json(port.counters());
     figures["pace"] = pace_json(pace);
+    show_tracking(parts, options, runs, files);
+    files.commit();
     output.print(figures);
-    show_tracking(parts, options, runs);
     return stopped ? 1 : 0;
 }
 

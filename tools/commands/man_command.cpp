@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/base/system/atomic_file.hpp"
+#include "tools/base/system/file_set.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/nearest_name.hpp"
 #include "tools/base/text/text.hpp"
@@ -27,12 +27,14 @@ std::string program_version() {
 }
 
 void write_pages(const CLI::App& program, const std::filesystem::path& folder) {
-    make_folder(folder);
-    write_file(folder / "dfdyn.1", man_page(program, nullptr, program_version()));
+    FileSet files;
+    files.add_folder(folder);
+    files.add(folder / "dfdyn.1", man_page(program, nullptr, program_version()));
     for (const CLI::App* const command : subcommands(program)) {
-        write_file(folder / ("dfdyn-" + command->get_name() + ".1"),
-                   man_page(program, command, program_version()));
+        files.add(folder / ("dfdyn-" + command->get_name() + ".1"),
+                  man_page(program, command, program_version()));
     }
+    files.commit();
 }
 
 /// Prints the help texts of all commands as docs/reference/commands.md.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/bag/bag.hpp"
-#include "tools/base/system/atomic_file.hpp"
+#include "tools/base/system/file_set.hpp"
 #include "tools/base/system/progress.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/text.hpp"
@@ -52,6 +52,18 @@ struct ReplayOptions {
     InterfaceOptions can;
 
     bool live() const { return !can.interface.empty(); }
+    /// File of all ticks beside the report, for a page that has only a part: the output if it is beside the
+    /// page.
+    std::filesystem::path full_data() const {
+        std::error_code ignored;
+        if (report.empty() || (std::filesystem::exists(report, ignored) &&
+                               !std::filesystem::is_regular_file(report, ignored))) {
+            return {}; // a pipe has no place for a file beside it
+        }
+        return !csv.empty() && csv.parent_path() == report.parent_path()
+                   ? csv
+                   : std::filesystem::path(report).replace_extension(".ticks.csv");
+    }
     /// In real time the default is no index, because of its cost.
     std::size_t chosen_horizon() const { return horizon.value_or(live() ? 0 : 25); }
 };
@@ -187,18 +199,35 @@ std::vector<ReplayedBus> replay_bus(const ReplayOptions& options, std::span<cons
     return replayed;
 }
 
+void write_files(const ReplayOptions& options, const TrainedModel& model, const Replaying& replaying,
+                 std::span<const ReplayedRecording> replayed, const ReplaySummary& summary) {
+    FileSet files;
+    if (!options.csv.empty() && !options.live()) {
+        write_replay_csv(files.add(options.csv), model, replayed);
+    }
+    if (!options.report.empty()) {
+        Report report = make_replay_report(model, replayed, summary);
+        const std::filesystem::path full_data = options.full_data();
+        report.full_data = full_data.filename().string();
+        if (has_thinned_page(report) && !full_data.empty() && full_data != options.csv) {
+            write_replay_csv(files.add(full_data), model, replayed);
+        }
+        files.add(options.report, render_report(report));
+    }
+    if (replaying.monitor != nullptr) {
+        options.monitor.add_file(replaying.changes, files);
+    }
+    if (replaying.detector != nullptr) {
+        options.contacts.add_file(replaying.contacts, model.outputs.names, files);
+    }
+    files.commit();
+}
+
 void write_results(const ReplayOptions& options, std::span<const TrainedModel> models,
                    const Replaying& replaying, std::span<const ReplayedRecording> replayed,
                    const JsonOutput& output) {
     const ReplaySummary summary = summarise(models, *replaying.estimator, replayed, options.chosen_horizon());
-    if (!options.csv.empty() && !options.live()) {
-        AtomicFile file(options.csv);
-        write_replay_csv(file.stream(), models.front(), replayed);
-        file.commit();
-    }
-    if (!options.report.empty()) {
-        write_file(options.report, render_report(make_replay_report(models.front(), replayed, summary)));
-    }
+    write_files(options, models.front(), replaying, replayed, summary);
     nlohmann::ordered_json json = replay_json(summary);
     if (replaying.monitor != nullptr) {
         json["monitor"] = options.monitor.json(replaying.changes);
@@ -250,9 +279,12 @@ int run(const ReplayOptions& options) {
     std::vector<std::filesystem::path> inputs = options.recordings.logs;
     inputs.insert(inputs.end(), options.models.begin(), options.models.end());
     inputs.push_back(options.bus);
-    check_outputs(
-        {options.csv, options.report, options.can.record, options.monitor.file, options.contacts.file},
-        std::move(inputs));
+    std::vector<std::filesystem::path> outputs{options.csv, options.report, options.can.record,
+                                               options.monitor.file, options.contacts.file};
+    if (options.full_data() != options.csv) {
+        outputs.push_back(options.full_data());
+    }
+    check_outputs(outputs, std::move(inputs));
     const std::vector<TrainedModel> models = read_models(options.models);
     Replaying replaying = make_replaying(options, models);
     if (options.bus.empty()) {
@@ -309,7 +341,11 @@ void add_replay_command(CLI::App& app, Command& chosen) {
             "One row per tick: measured, predicted, deviation, nis, learned, status. With --can it is "
             "written as the ticks come, and there at any time")
         ->type_name("OUT.csv");
-    command->add_option("--report", options->report, "Self-contained page with curves and figures")
+    command
+        ->add_option(
+            "--report", options->report,
+            "Self-contained page with curves and figures. Of more than 60000 ticks it has the extremes, and "
+            "R.ticks.csv beside it has all, unless -o writes them there")
         ->type_name("R.html");
     command
         ->add_option("--horizon", options->horizon,
@@ -317,10 +353,11 @@ void add_replay_command(CLI::App& app, Command& chosen) {
         ->check(whole_number_in(0, 10000));
     command->add_flag("--from-prior", options->from_prior,
                       "Start with nothing learned: keep the hyperparameters, drop the trained start");
-    command->add_flag(
-        "--frozen", options->frozen,
-        "Predict without learning: nothing of the recording's outputs reaches the model; errors "
-        "and innovations are reported as always");
+    command
+        ->add_flag("--frozen", options->frozen,
+                   "Predict without learning: nothing of the recording's outputs reaches the model; errors "
+                   "and innovations are reported as always")
+        ->excludes("--from-prior");
     options->contacts.add_to(*command);
     options->monitor.add_to(*command);
     add_json_option(*command, options->json);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/base/system/atomic_file.hpp"
+#include "tools/base/system/file_set.hpp"
 #include "tools/base/system/progress.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/can/log/bus_traffic.hpp"
@@ -30,10 +30,11 @@ struct SimulateOptions {
 /// Writes the frames of a bus' devices as a log.
 class CandumpOutput {
   public:
-    CandumpOutput(const SimulateOptions& options, const Robot& robot, const Scenario& scenario)
+    CandumpOutput(const SimulateOptions& options, const Robot& robot, const Scenario& scenario,
+                  std::ostream& out)
         : description_(read_bus_description(options.bus)), torque_sensor_(scenario.torque_sensor),
-          file_(options.candump, "can0"), traffic_(description_, {.seed = scenario.seed},
-                                                   [this](const hal::Frame& frame) { file_.write(frame); }) {
+          writer_(out, "can0"), traffic_(description_, {.seed = scenario.seed},
+                                         [this](const hal::Frame& frame) { writer_.write(frame); }) {
         const bool measured = description_.outputs == OutputKind::wrench ? scenario.force_torque.has_value()
                               : description_.outputs == OutputKind::motor_current
                                   ? scenario.torque_sensor.torque_constant.has_value()
@@ -49,10 +50,7 @@ class CandumpOutput {
         traffic_.add(std::llround(1e9 * sample.time_s), span_of(sample.position), span_of(output(sample)));
     }
 
-    void commit() {
-        traffic_.finish();
-        file_.commit();
-    }
+    void finish() { traffic_.finish(); }
 
   private:
     static std::span<const double> span_of(const auto& values) {
@@ -69,23 +67,21 @@ class CandumpOutput {
 
     BusDescription description_;
     TorqueSensorModel torque_sensor_;
-    FrameRecorder file_;
+    FrameWriter writer_;
     BusTraffic traffic_;
     Eigen::VectorXd output_;
 };
 
-/// The requested files: recording, true quantities and frames. Each is replaced atomically.
+/// The requested files: recording, true quantities and frames.
 class Outputs {
   public:
     Outputs(const SimulateOptions& options, const Scenario& scenario, const Robot& robot)
-        : recording_file_(options.recording),
-          recording_(recording_file_.stream(), scenario, robot.joints.size()) {
+        : recording_(files_.add(options.recording), scenario, robot.joints.size()) {
         if (!options.truth.empty()) {
-            truth_file_.emplace(options.truth);
-            truth_.emplace(truth_file_->stream(), scenario.force_torque.has_value(), robot.joints.size());
+            truth_.emplace(files_.add(options.truth), scenario.force_torque.has_value(), robot.joints.size());
         }
         if (!options.candump.empty()) {
-            candump_.emplace(options, robot, scenario);
+            candump_.emplace(options, robot, scenario, files_.add(options.candump));
         }
     }
 
@@ -101,18 +97,14 @@ class Outputs {
 
     void commit() {
         if (candump_) {
-            candump_->commit();
+            candump_->finish();
         }
-        if (truth_file_) {
-            truth_file_->commit();
-        }
-        recording_file_.commit();
+        files_.commit();
     }
 
   private:
-    AtomicFile recording_file_;
+    FileSet files_;
     SimulatedRecordingCsv recording_;
-    std::optional<AtomicFile> truth_file_;
     std::optional<SimulatedTruthCsv> truth_;
     std::optional<CandumpOutput> candump_;
 };

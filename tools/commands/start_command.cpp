@@ -17,9 +17,11 @@
 #include "tools/diagnosis/output/diagnosis_json.hpp"
 #include "tools/diagnosis/output/diagnosis_page.hpp"
 #include "tools/diagnosis/output/diagnosis_summary.hpp"
+#include "tools/diagnosis/output/error_sections.hpp"
 #include "tools/model/file/model_file.hpp"
 #include "tools/replay/contacts/contact_limits.hpp"
 #include "tools/replay/contradiction.hpp"
+#include "tools/replay/replay_csv.hpp"
 #include "tools/replay/replay_report.hpp"
 #include "tools/report/report.hpp"
 #include "tools/start/project.hpp"
@@ -28,9 +30,11 @@
 #include "tools/training/search/training_problem.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 
 namespace dfdyn::tools {
 
@@ -99,7 +103,9 @@ Arm read_arm(const StartOptions& options) {
             first_failure = first_failure.empty() ? failure.what() : first_failure;
         }
     }
-    throw InputError(first_failure.empty() ? first_missing : first_failure);
+    throw InputError(first_failure.empty()
+                         ? first_missing + "; start also accepts motor currents (i) or a wrench as outputs"
+                         : first_failure);
 }
 
 /// Throws InputError if gaps leave no complete windows to train on, before the diagnosis takes its time.
@@ -133,9 +139,14 @@ void diagnose_robot(const Arm& arm, const SplitRecordings& split, const StartOpt
     const bool answered = work.signals != nullptr && !work.explanation.candidates.empty();
     const Extension extension = answered ? extension_of(work) : Extension{};
     files["diagnosis.json"] = diagnosis_json(work.diagnosis).dump(2) + '\n';
-    files["diagnosis.html"] = diagnosis_page({*arm.robot, split.training, work, extension, OnlineView{}});
+    const std::string curves = "diagnosis_curves.csv";
+    files["diagnosis.html"] =
+        diagnosis_page({*arm.robot, split.training, work, extension, OnlineView{}, curves});
     print_diagnosis(std::cout, work.diagnosis, extension.carried);
     if (answered) {
+        std::ostringstream table;
+        write_comparison_csv(table, work);
+        files[curves] = table.str();
         const Activity activity("building the extended model");
         candidates.push_back(
             {"the robot with the causes found", extended_model(extension, split.training), {}, 0});
@@ -189,6 +200,12 @@ const Candidate& choose(std::vector<Candidate>& candidates, const SplitRecording
         throw InputError("the budget (--flash, --ram): expected room for one of the models above, found " +
                          to_text(budget));
     }
+    if (!std::isfinite(best->error)) {
+        throw InputError(
+            split.judging.front().source +
+            ": expected motion in the last 30 % of the rows as in those before, found none that the "
+            "model predicts: record longer, with more varied motion");
+    }
     std::cout << "chosen: " << best->name << ": "
               << (candidates.size() > 1 ? "the least error; within 2 % the least flash\n" : "the only one\n");
     if (!(best->error < 1)) { // the error of predicting the mean
@@ -210,7 +227,14 @@ void replay_held_out(const TrainedModel& model, const SplitRecordings& split, Fo
             replay(*estimator, {&model, 1}, recording, 0, [&](std::size_t done) { progress.update(done); }));
     }
     const ReplaySummary summary = summarise({&model, 1}, *estimator, replayed, 0);
-    files["report.html"] = render_report(make_replay_report(model, replayed, summary));
+    Report report = make_replay_report(model, replayed, summary);
+    if (has_thinned_page(report)) {
+        report.full_data = "report.ticks.csv";
+        std::ostringstream ticks;
+        write_replay_csv(ticks, model, replayed);
+        files[report.full_data] = ticks.str();
+    }
+    files["report.html"] = render_report(report);
     print_summary(std::cout, summary);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/recording/sample_grid.hpp"
-#include "tools/base/system/atomic_file.hpp"
+#include "tools/base/system/file_set.hpp"
 #include "tools/base/system/progress.hpp"
 #include "tools/base/system/quiet.hpp"
 #include "tools/base/text/error.hpp"
@@ -250,10 +250,12 @@ void fit_rigid_body_of(TrainedModel& model, const ModelTraining& training,
 void write_model(const TrainOptions& options, const TrainedModel& model) {
     const std::string json = model_to_json(model);
     model_from_json(json, shown(options.model)); // nothing is written that `replay` would reject
-    write_file(options.model, json);
+    FileSet files;
+    files.add(options.model, json);
     if (!options.header.empty()) {
-        write_file(options.header, model_to_header(model, to_identifier(options.header.stem().string())));
+        files.add(options.header, model_to_header(model, to_identifier(options.header.stem().string())));
     }
+    files.commit();
 }
 
 int run(const TrainOptions& options) {

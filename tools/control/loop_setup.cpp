@@ -166,7 +166,9 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
                                                int delay_ticks, const LoopLimits& limits) {
     const ControllerModel& controller = scenario.controller;
     if (controller.kind != ControllerKind::feed_forward) {
-        throw InputError(source + ": controller.kind: expected feed_forward, found another");
+        throw InputError(source + ": controller.kind: expected feed_forward, found " +
+                         (controller.kind == ControllerKind::computed_torque ? "computed_torque"
+                                                                             : "gravity_compensation"));
     }
     const auto joints = static_cast<int>(robot.joints.size());
     LoopConfig config;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/report.hpp"
 
+#include "tools/report/page_curves.hpp"
 #include "tools/report/page_text.hpp"
 #include "tools/report/report_assets.hpp"
 #include "tools/report/report_table.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
@@ -118,81 +119,42 @@ void add_annotations(json& data, const Report& report) {
     }
 }
 
-/// Adds the ticks first..last-1 at which the output or its error is extreme.
-void add_extremes(const ReportSeries& series, std::size_t first, std::size_t last,
-                  std::vector<std::size_t>& kept) {
-    std::size_t least = first;
-    std::size_t most = first;
-    std::size_t worst = first;
-    const auto error = [&](std::size_t tick) {
-        const float value = std::abs(series.measured[tick] - series.predicted[tick]);
-        return std::isfinite(value) ? value : -1.0F;
-    };
-    const auto below = [](float value, float other) { return value < other || std::isnan(other); };
-    for (std::size_t tick = first; tick < last; ++tick) {
-        least = below(series.measured[tick], series.measured[least]) ? tick : least;
-        most = below(-series.measured[tick], -series.measured[most]) ? tick : most;
-        worst = error(tick) > error(worst) ? tick : worst;
-    }
-    kept.insert(kept.end(), {least, most, worst});
-}
-
-/// Returns the ticks that the page has, ascending: all, or at most `most_report_ticks`.
-std::vector<std::size_t> kept_ticks(const Report& report) {
-    const std::size_t ticks = report.time_s.size();
-    const std::size_t per_stretch = 1 + 3 * report.series.size(); // its first tick, and add_extremes()
-    const std::size_t stretches = ticks > most_report_ticks ? most_report_ticks / per_stretch : ticks;
-    std::vector<std::size_t> kept;
-    for (std::size_t stretch = 0; stretch < stretches; ++stretch) {
-        const std::size_t first = stretch * ticks / stretches;
-        const std::size_t last = (stretch + 1) * ticks / stretches;
-        kept.push_back(first);
-        if (last - first > 1) {
-            for (const ReportSeries& series : report.series) {
-                add_extremes(series, first, last, kept);
-            }
+/// Percent-encodes a file's name for a link.
+std::string link_to(std::string_view name) {
+    constexpr std::string_view digits = "0123456789ABCDEF";
+    std::string link = "./";
+    for (const char character : name) {
+        const auto byte = static_cast<unsigned char>(character);
+        if (byte < 0x80 &&
+            (std::isalnum(byte) != 0 || std::string_view("-._~").find(character) != std::string_view::npos)) {
+            link += character;
+        } else {
+            link.append({'%', digits[byte >> 4U], digits[byte & 15U]});
         }
     }
-    std::ranges::sort(kept);
-    kept.erase(std::ranges::unique(kept).begin(), kept.end());
-    return kept;
+    return link;
 }
 
-template <class Value>
-std::vector<Value> at_ticks(const std::vector<Value>& values, const std::vector<std::size_t>& ticks) {
-    std::vector<Value> kept;
-    kept.reserve(ticks.size());
-    for (const std::size_t tick : ticks) {
-        kept.push_back(values[tick]);
+/// Returns a paragraph about the ticks that are not in the page; empty if all are.
+std::string thinning_html(const Report& report, std::size_t kept) {
+    if (!has_thinned_page(report)) {
+        return "";
     }
-    return kept;
-}
-
-/// Returns the report with the curves at the ticks that the page has.
-Report thinned(Report report) {
-    const std::size_t ticks = report.time_s.size();
-    const std::vector<std::size_t> kept = kept_ticks(report);
-    if (kept.size() == ticks) {
-        return report;
-    }
-    report.time_s = at_ticks(report.time_s, kept);
-    for (ReportSeries& series : report.series) {
-        series.measured = at_ticks(series.measured, kept);
-        series.predicted = at_ticks(series.predicted, kept);
-        series.standard_deviation = at_ticks(series.standard_deviation, kept);
-    }
-    if (report.innovation) {
-        report.innovation->normalised_squared = at_ticks(report.innovation->normalised_squared, kept);
-    }
-    report.facts.push_back({"Curves", "the extremes among " + std::to_string(ticks) +
-                                          " ticks: " + std::to_string(kept.size()) +
-                                          " ticks; dfdyn replay -o writes all as CSV"});
-    return report;
+    const std::string all = std::to_string(report.time_s.size());
+    return "<p>The curves have the extremes among " + all + " ticks, " + std::to_string(kept) +
+           " of them. All " + all + " ticks " +
+           (report.full_data.empty() ? "are in the table that <code>dfdyn replay -o</code> writes"
+                                     : "are in <a href=\"" + link_to(report.full_data) + "\">" +
+                                           escape_html(report.full_data) + "</a>") +
+           ".</p>";
 }
 
 /// Data for the page's script; arrays in base64: see base64_floats and, for time_s, base64_doubles.
-json page_data(const Report& report) {
+json page_data(const PageCurves& curves) {
+    const Report& report = curves.report;
     json data = {{"time_s", base64_doubles(report.time_s)},
+                 {"sample_time_s", curves.sample_time_s},
+                 {"breaks", curves.breaks},
                  {"series", json::array()},
                  {"innovation", nullptr},
                  {"intervals", json::array()},
@@ -234,12 +196,13 @@ std::string render_report(const Report& report) {
     check_innovation(report);
     check_annotations(report);
     check_tables(report.tables);
-    const Report page = thinned(report);
+    const PageCurves page = page_curves(report);
     return fill_page(assets::report_html,
                      {{"title", escape_html(report.title)},
                       {"summary", escape_html(report.summary)},
+                      {"thinning", thinning_html(report, page.report.time_s.size())},
                       {"tables", tables_html(report.tables)},
-                      {"facts", facts_html(page.facts)},
+                      {"facts", facts_html(report.facts)},
                       {"data", script_json(page_data(page))},
                       {"style", std::string{assets::report_css}.append(assets::report_charts_css)},
                       {"script", page_script()},

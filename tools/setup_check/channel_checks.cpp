@@ -2,6 +2,7 @@
 #include "tools/setup_check/channel_checks.hpp"
 
 #include "tools/base/recording/stretches.hpp"
+#include "tools/base/text/instant.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/setup_check/recording_checks.hpp"
@@ -94,8 +95,8 @@ SetupFindings check_frozen_outputs(const Recording& recording, OutputKind output
                     {SetupFault::dead_output, Severity::mistake, columns.names[output],
                      "column " + columns.names[output] + ": expected values that vary, found " +
                          number_text(cell(columns, run.first, output)) +
-                         " in every row from t = " + rounded_text(from_s) + " to " + rounded_text(to_s) +
-                         " s: a dead channel; check its sensor, or use --rows"});
+                         " in every row from t = " + instant_text(from_s) + " to " + instant_text(to_s) +
+                         ": a dead channel; check its sensor, or use --rows"});
                 break;
             }
         }

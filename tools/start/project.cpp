@@ -2,6 +2,7 @@
 #include "tools/start/project.hpp"
 
 #include "tools/base/system/atomic_file.hpp"
+#include "tools/base/system/file_set.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/model/header/model_header.hpp"
@@ -13,7 +14,6 @@
 #include <sstream>
 #include <string_view>
 #include <system_error>
-#include <unistd.h>
 
 namespace dfdyn::tools {
 
@@ -157,24 +157,13 @@ void require_new_folder(const std::filesystem::path& folder) {
 }
 
 void write_folder(const std::filesystem::path& folder, const FolderContent& content) {
-    const std::filesystem::path target = std::filesystem::absolute(folder).lexically_normal();
-    const std::filesystem::path beside = target.string() + ".tmp." + std::to_string(::getpid());
-    std::error_code fault;
-    try {
-        for (const auto& [path, text] : content) {
-            make_folder((beside / path).parent_path());
-            write_file(beside / path, text);
-        }
-        std::filesystem::rename(beside, target, fault); // replaces an empty folder
-    } catch (...) {
-        std::filesystem::remove_all(beside, fault);
-        throw;
+    FileSet files;
+    files.add_folder(folder);
+    for (const auto& [path, text] : content) {
+        files.add_folder((folder / path).parent_path());
+        files.add(folder / path, text);
     }
-    if (fault) {
-        std::error_code ignored;
-        std::filesystem::remove_all(beside, ignored);
-        throw system_error(folder, "cannot create the folder", fault.value());
-    }
+    files.commit();
 }
 
 } // namespace dfdyn::tools

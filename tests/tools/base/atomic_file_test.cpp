@@ -2,6 +2,7 @@
 #include "tools/base/system/atomic_file.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/child_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tools/base/text/error.hpp"
 
@@ -23,28 +24,12 @@
 namespace {
 
 using dfdyn::tests::file_content;
+using dfdyn::tests::status_of_child;
 using dfdyn::tests::TemporaryDirectory;
 using dfdyn::tools::AtomicFile;
 using dfdyn::tools::GrowingFile;
 using dfdyn::tools::InputError;
 using dfdyn::tools::write_file;
-
-/// Runs `work` in a child process and returns its waitpid status. Exit status 99 means an exception.
-template <typename Work>
-int status_of_child(Work work) {
-    const pid_t child = ::fork();
-    REQUIRE(child >= 0);
-    if (child == 0) {
-        try {
-            ::_exit(work());
-        } catch (...) {
-            ::_exit(99);
-        }
-    }
-    int status = 0;
-    REQUIRE(::waitpid(child, &status, 0) == child);
-    return status;
-}
 
 class Pipe {
   public:
@@ -373,20 +358,6 @@ TEST_CASE("AtomicFile writes all bytes however many signals interrupt it") {
     slow_reader.join();
     REQUIRE(::sigaction(SIGUSR1, &previous, nullptr) == 0);
     CHECK(received == content);
-}
-
-TEST_CASE("AtomicFile rejects a seventeenth file and accepts one again afterwards") {
-    const TemporaryDirectory directory;
-    const std::string base = directory.path() / "out";
-    {
-        std::array<std::unique_ptr<AtomicFile>, 16> files;
-        for (std::size_t index = 0; index < files.size(); ++index) {
-            files.at(index) = std::make_unique<AtomicFile>(base + std::to_string(index));
-        }
-        CHECK_THROWS_AS(AtomicFile(base), InputError);
-    }
-    write_file(base, "x");
-    CHECK(directory.file_count() == 1);
 }
 
 TEST_CASE("GrowingFile replaces its target and shows data as soon as they are flushed") {

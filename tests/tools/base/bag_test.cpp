@@ -124,7 +124,8 @@ TEST_CASE("a folder with bag files is read as one bag, in the order of their num
     CHECK(read_recording(directory.path(), chain(OutputKind::joint_torque)).row_count() == 40);
     directory.write("run_1.mcap", file_content(bags / "zstd.mcap")); // the same times again
     CHECK(refusal(directory.path(), chain(OutputKind::joint_torque)) ==
-          ": row 1: expected a time after that of the message before, found the same time");
+          ": row 1: expected a time after that of the message before, found the same time "
+          "(the bags of this folder are one recording: run_0.mcap, run_1.mcap)");
     ReadOptions options = chain(OutputKind::joint_torque);
     options.skip_bad_rows = true;
     const Recording recording = read_recording(directory.path(), options);

@@ -86,10 +86,10 @@ TEST_CASE("a bad header is rejected with the expected and the found text") {
              "1: expected columns t, q1, tau1, found no t, q1, tau1; the header has 0, 1.5" + advice},
             {"t,tau1\n0,0\n",
              "1: expected columns t, q1, tau1, found no q1; the header has t, tau1" + advice},
-            {"T,Q1,tau1\n0,0,0\n",
-             "1: expected columns t, q1, tau1, found no t, q1 (did you mean \"T\" for t?); the header has T, "
-             "Q1, tau1" +
-                 advice},
+            {"T,Q1,tau1\n0,0,0\n", "1: expected columns t, q1, tau1, found no t, q1 (did you mean \"T\" for "
+                                   "t, \"Q1\" for q1: --columns q=Q*,t=T?); the header has T, "
+                                   "Q1, tau1" +
+                                       advice},
             {"t,q1,q2,tau1,tua2\n",
              needed + "tau2 (did you mean \"tua2\" for tau2?); the header has t, q1, q2, tau1, tua2" +
                  advice},

@@ -119,6 +119,8 @@ TEST_CASE("a row range selects rows of the file and does not read others") {
     CHECK(recording.gap_before.front() == 1);
     CHECK(read("t,q1\n0,0\n1,1\n", {.rows = parse_row_range("1:")}).position.values == Values{1});
     CHECK(read("t,q1\n0,0\n1,1\n", {.rows = parse_row_range(":2")}).position.values == Values{0, 1});
+    CHECK(read("t,q1\nbad\n1,1\nbad\n3,3\nbad\n5,5\n", {.rows = parse_row_range("1::2")}).position.values ==
+          Values{1, 3, 5});
 }
 
 TEST_CASE("skipped rows are counted by reason and leave a gap") {

@@ -27,6 +27,10 @@ TEST_CASE("a row range has an optional first and last row") {
     CHECK(parse_row_range(":7").last == 7);
     CHECK(parse_row_range("5:7").first == 5);
     CHECK(parse_row_range("5:7").last == 7);
+    CHECK(parse_row_range("5:7").step == 1);
+    CHECK(parse_row_range("5::2").first == 5);
+    CHECK_FALSE(parse_row_range("5::2").last);
+    CHECK(parse_row_range("5::2").step == 2);
 }
 
 TEST_CASE("an invalid row range is an error that quotes it") {
@@ -40,7 +44,10 @@ TEST_CASE("an invalid row range is an error that quotes it") {
         {"+5:", whole_numbers},
         {"1.5:", whole_numbers},
         {" 1:2", whole_numbers},
-        {"1:2:3", whole_numbers},
+        {"1:2:x", whole_numbers},
+        {"1:2:3:4", whole_numbers},
+        {"1:2:0", "FIRST:LAST:STEP with a STEP from 1"},
+        {"::", "FIRST:LAST:STEP with a STEP from 1"},
         {"99999999999999999999:", whole_numbers},
         {"7:7", order},
         {"7:5", order},

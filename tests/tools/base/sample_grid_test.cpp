@@ -78,6 +78,23 @@ TEST_CASE("a window restarts where the recording has a gap") {
     CHECK(flags[40] == 1);
 }
 
+TEST_CASE("the stride with constant steps is found in a recording of pairs and in no random one") {
+    const Recording pairs = with_stamps(repeated_steps({8'000'000, 24'000'000}, 1000));
+    const SteadyStride stride = steady_stride({&pairs, 1});
+    CHECK(stride.rows == 2);
+    CHECK(stride.period_s == 0.032);
+    const Recording triples = with_stamps(repeated_steps({8'000'000, 8'000'000, 30'000'000}, 1000));
+    CHECK(steady_stride({&triples, 1}).rows == 3);
+    DFDYN_SEEDED_ENGINE(engine);
+    std::vector<std::int64_t> stamps{0};
+    std::uniform_int_distribution<int> lost(0, 3);
+    while (stamps.size() < 1000) {
+        stamps.push_back(stamps.back() + 8'000'000 * (1 + 2 * lost(engine)));
+    }
+    const Recording random = with_stamps(stamps);
+    CHECK(steady_stride({&random, 1}).rows == 0);
+}
+
 TEST_CASE("a recording of one row has no period") {
     const Recording recording = with_stamps({5});
     CHECK_THROWS_MATCHES(

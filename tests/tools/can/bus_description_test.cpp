@@ -131,7 +131,7 @@ TEST_CASE("an impossible bus description is rejected with field and expected val
          "field \"bitrate\": expected one of schema, bit_rate, data_bit_rate, sample_rate_hz, trigger, "
          "joints, output, "
          "found "
-         "another"},
+         "another (did you mean \"bit_rate\"?)"},
     }));
     CAPTURE(example, from, to);
     std::string found;

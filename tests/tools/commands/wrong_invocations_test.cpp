@@ -25,7 +25,9 @@ const std::map<std::string, std::string> places{
     {"{jittery}", data + "/ur5_kufieta/Movement_No3_Acc.csv"},
     {"{ur5}", data + "/robots/ur5/ur5_robot.urdf"},
     {"{icub}", data + "/robots/icub_right_arm/icub_right_arm.urdf"},
-    {"{scenario}", data + "/scenarios/icub_xy.json"}};
+    {"{scenario}", data + "/scenarios/icub_xy.json"},
+    {"{bus}", data + "/can/ur5_loop.json"},
+    {"{bags}", data + "/ros2_bags"}};
 
 std::string with_places(std::string text) {
     for (const auto& [name, place] : places) {
@@ -60,6 +62,8 @@ std::vector<Invocation> invocations() {
 void write_files(const TemporaryDirectory& folder) {
     const std::map<std::string, std::string> contents{
         {"empty.csv", ""},
+        {"empty.txt", ""},
+        {"notes.txt", "hello world\nthis is no robot\n"},
         {"headers.csv", "t,q1,i1\n"},
         {"onerow.csv", "t,q1,i1\n0,1,2\n"},
         {"nan.csv", "t,q1,i1\n0,1,2\n0.1,nan,3\n"},
@@ -68,6 +72,7 @@ void write_files(const TemporaryDirectory& folder) {
         {"back.csv", "t,q1,i1\n0,1,2\n-1,1,2\n"},
         {"broken.csv", "t,q1,i1\n0,1,2\n0.01,1 2,3\n"},
         {"text.csv", "hello world\nthis is no csv\n"},
+        {"upper.csv", "t,Q1,I1\n0,1,2\n0.1,1,2\n"},
         {"noq.csv", "t,x,y\n0,1,2\n1,2,3\n"},
         {"dup.csv", "t,q1,q1,i1\n0,1,2,3\n1,1,2,3\n"},
         {"two.csv", "t,q1,q2,i1,i2\n0,1,2,3,4\n1,2,3,4,5\n"},
@@ -82,6 +87,7 @@ void write_files(const TemporaryDirectory& folder) {
     for (const auto& [name, content] : contents) {
         folder.write(name, content);
     }
+    fs::create_symlink("nowhere.csv", folder.path() / "dangling.csv");
     fs::create_directory(folder.path() / "dir");
     fs::create_directory(folder.path() / "full");
     folder.write("full/file", "x");
@@ -114,7 +120,7 @@ TEST_CASE("a wrong invocation is answered by what was expected and found, and ch
                 .status == 0);
     const auto before = state_of(folder.path());
     const std::vector<Invocation> all = invocations();
-    CHECK(all.size() >= 220);
+    CHECK(all.size() >= 480);
     for (const Invocation& one : all) {
         CAPTURE(one.arguments);
         const Outcome outcome = run_program(output, one.arguments, folder.path());

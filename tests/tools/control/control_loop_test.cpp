@@ -274,7 +274,7 @@ TEST_CASE("a scenario or model that the loop cannot use is rejected with what is
     CHECK(refusal(scenario, robot, nullptr) == "none");
     scenario.controller.kind = ControllerKind::computed_torque;
     CHECK(refusal(scenario, robot, nullptr) ==
-          "s.json: controller.kind: expected feed_forward, found another");
+          "s.json: controller.kind: expected feed_forward, found computed_torque");
 }
 
 TEST_CASE("a position that is NaN moves nothing and the loop continues") {

@@ -3,16 +3,14 @@
 
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/temporary_directory.hpp"
 
 #include <algorithm>
+#include <sstream>
 #include <string>
 
 namespace loop_recording_test {
 
 using namespace dfdyn::tools;
-using dfdyn::tests::file_content;
-using dfdyn::tests::TemporaryDirectory;
 
 /// Records ticks of 1 ms from 5 s on, whose position is the number of the tick; tick 4 has no torque.
 void record(LoopRecording& recording, int ticks) {
@@ -29,9 +27,9 @@ void record(LoopRecording& recording, int ticks) {
 }
 
 std::string written(const LoopRecording& recording) {
-    const TemporaryDirectory directory;
-    recording.write(directory.path() / "run.csv");
-    return file_content(directory.path() / "run.csv");
+    std::ostringstream out;
+    recording.write(out);
+    return out.str();
 }
 
 TEST_CASE("a recording keeps one row in every n ticks if position and torque were measured") {

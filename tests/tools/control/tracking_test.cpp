@@ -59,9 +59,16 @@ TEST_CASE("runs are printed side by side with the first run's error divided by t
 TEST_CASE("a report has a table and curves and a page and needs a run with a complete window") {
     const dfdyn::tests::TemporaryDirectory directory;
     const std::filesystem::path folder = directory.path() / "out";
-    write_tracking(folder, "A title", {{"nominal", {}}});
+    {
+        FileSet files;
+        files.add_folder(folder);
+        add_tracking(folder, "A title", {{"nominal", {}}}, files);
+        files.commit();
+    }
     CHECK(std::filesystem::is_empty(folder));
-    write_tracking(folder, "A title", {{"nominal", windows()}, {"learned", windows()}});
+    FileSet files;
+    add_tracking(folder, "A title", {{"nominal", windows()}, {"learned", windows()}}, files);
+    files.commit();
     const std::string csv = dfdyn::tests::file_content(folder / "tracking.csv");
     CHECK_THAT(csv, Catch::Matchers::StartsWith("feed_forward,start,end,all,joint1,joint2,learned_share1,"
                                                 "learned_share2\nnominal,0,1,"));

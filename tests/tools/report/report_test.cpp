@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace report_test {
@@ -266,7 +267,7 @@ TEST_CASE("a report of a million ticks is thinned and keeps the extremes") {
     report.series[0].predicted[765'432] = -9.0F; // an extreme of the error alone
     const std::string page = tools::render_report(report);
     CHECK(page.size() < 4'000'000);
-    CHECK_THAT(page, ContainsSubstring("<span>1000000</span>"));
+    CHECK_THAT(page, ContainsSubstring("extremes among 1000000 ticks"));
     const json data = data_of(page);
     const auto time_s = numbers_in<double>(data["time_s"]);
     CHECK(time_s.size() <= tools::most_report_ticks);
@@ -277,6 +278,48 @@ TEST_CASE("a report of a million ticks is thinned and keeps the extremes") {
           report.time_s[345'678]);
     CHECK(time_s.at(static_cast<std::size_t>(std::ranges::find(predicted, -9.0F) - predicted.begin())) ==
           report.time_s[765'432]);
+    CHECK(time_s.back() == report.time_s.back());
+}
+
+TEST_CASE("a thinned page links the table with all ticks and a complete page does not") {
+    Report report;
+    for (int tick = 0; tick < 70'000; ++tick) {
+        report.time_s.push_back(0.001 * tick);
+    }
+    report.full_data = "run 1 & 2.ticks.csv";
+    CHECK_THAT(
+        tools::render_report(report),
+        ContainsSubstring("All 70000 ticks are in <a href=\"./run%201%20%26%202.ticks.csv\">run 1 &amp; "
+                          "2.ticks.csv</a>."));
+    report.time_s.resize(60'000);
+    CHECK(tools::render_report(report).find("ticks.csv") == std::string::npos);
+}
+
+TEST_CASE("a thinned page interrupts its curves at gaps and nowhere else") {
+    const bool long_recording = GENERATE(false, true);
+    CAPTURE(long_recording);
+    Report report;
+    const int ticks = long_recording ? 300'000 : 3000;
+    double t = 1e9;
+    for (int tick = 0; tick < ticks; ++tick) {
+        t +=
+            tick == ticks / 2 ? 0.02 : 0.001; // a gap of 20 samples; a thinned page has every 30th tick or so
+        report.time_s.push_back(t);
+    }
+    const auto first_of_second = static_cast<std::size_t>(ticks / 3);
+    report.recordings = {{report.time_s.front(), 0, "a.csv"}, {report.time_s[first_of_second], 0, "b.csv"}};
+    const std::vector<float> flat(report.time_s.size(), 1.0F); // its extremes are far apart
+    report.series.assign(6, {"i", "A", flat, flat, flat});
+    const json data = data_of(tools::render_report(report));
+    const auto time_s = numbers_in<double>(data["time_s"]);
+    const auto breaks = data["breaks"].get<std::vector<std::size_t>>();
+    REQUIRE(breaks.size() == 2);
+    const auto gap = static_cast<std::size_t>(ticks / 2);
+    for (const auto& [found, expected] : {std::pair{breaks[0], first_of_second}, {breaks[1], gap}}) {
+        CHECK(time_s.at(found) == report.time_s.at(expected));
+        CHECK(time_s.at(found - 1) == report.time_s.at(expected - 1));
+    }
+    CHECK(data["sample_time_s"].get<double>() == Approx(0.001).epsilon(1e-3));
 }
 
 } // namespace report_test

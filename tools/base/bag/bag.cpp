@@ -29,22 +29,24 @@ BagFormat format_of(const std::filesystem::path& file) {
     return begin == "SQLite format 3\0"sv ? BagFormat::sqlite : BagFormat::none;
 }
 
-/// Returns the bag files of a folder: `run_0.mcap`, …, `run_9.mcap`, `run_10.mcap`.
-std::vector<std::filesystem::path> bag_files(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> files;
+} // namespace
+
+std::vector<std::filesystem::path> bag_files(const std::filesystem::path& path) {
     std::error_code ignored;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    if (!std::filesystem::is_directory(path, ignored)) {
+        return {path};
+    }
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(path, ignored)) {
         if (format_of(entry.path()) != BagFormat::none) {
             files.push_back(entry.path());
         }
     }
-    std::ranges::sort(files, {}, [](const std::filesystem::path& file) {
+    std::ranges::sort(files, {}, [](const std::filesystem::path& file) { // run_9.mcap before run_10.mcap
         return std::pair(file.native().size(), file.native());
     });
     return files;
 }
-
-} // namespace
 
 bool is_bag(const std::filesystem::path& path) {
     std::error_code ignored;

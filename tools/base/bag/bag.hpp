@@ -31,6 +31,9 @@ using BagVisitor = std::function<void(const BagMessage&)>;
 /// such files. Pipes and standard input are not.
 bool is_bag(const std::filesystem::path& path);
 
+/// Returns the files of a bag that is a folder, in the order of their numbers; otherwise the bag itself.
+std::vector<std::filesystem::path> bag_files(const std::filesystem::path& path);
+
 /// Visits all messages of an MCAP file. Throws InputError with the place for damaged or incomplete content.
 void visit_mcap(const std::filesystem::path& path, const BagVisitor& visit);
 

@@ -124,7 +124,7 @@ class ContentReader {
 class BagRecording {
   public:
     BagRecording(const std::filesystem::path& path, const ReadOptions& options)
-        : name_(shown(path)), options_(options), content_(ContentReader(path, options).read()) {
+        : path_(path), name_(shown(path)), options_(options), content_(ContentReader(path, options).read()) {
         recording_.source = path.string();
     }
 
@@ -212,9 +212,7 @@ class BagRecording {
         return true;
     }
 
-    bool wanted(std::size_t row) const {
-        return row >= options_.rows.first && (!options_.rows.last || row < *options_.rows.last);
-    }
+    bool wanted(std::size_t row) const { return options_.rows.has(row); }
 
     /// Appends values of the message in the order of the joints. Returns a fault, or "".
     std::string append(Columns& columns, const std::vector<double>& values, const std::string& quantity,
@@ -277,8 +275,9 @@ class BagRecording {
                                                recording_.output.values.size()};
         const bool increasing = recording_.row_count() == 0 || joints.time_ns > recording_.time_ns.back();
         const std::string fault =
-            increasing ? append_values(joints)
-                       : "expected a time after that of the message before, found the same time";
+            increasing
+                ? append_values(joints)
+                : "expected a time after that of the message before, found the same time" + bags_note();
         if (fault.empty()) {
             recording_.time_ns.push_back(joints.time_ns);
             recording_.time_s.push_back(static_cast<double>(joints.time_ns) / 1e9);
@@ -295,6 +294,15 @@ class BagRecording {
         gap_ = true;
     }
 
+    /// Returns a note on what is read as one recording; empty for a single file.
+    std::string bags_note() const {
+        Names files;
+        for (const std::filesystem::path& file : bag_files(path_)) {
+            files.push_back(file.filename().string());
+        }
+        return files.size() < 2 ? "" : " (the bags of this folder are one recording: " + listed(files) + ")";
+    }
+
     void require_rows() const {
         const std::size_t needed = options_.rows.last.value_or(options_.rows.first + 1);
         if (row_ < needed) {
@@ -306,6 +314,7 @@ class BagRecording {
         }
     }
 
+    std::filesystem::path path_;
     std::string name_;
     const ReadOptions& options_;
     BagContent content_;

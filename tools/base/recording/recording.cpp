@@ -69,8 +69,15 @@ RowRange parse_row_range(std::string_view text) {
     if (colon == std::string_view::npos) {
         throw bad_range(text, "FIRST:LAST");
     }
-    const RowRange range{.first = parse_bound(text.substr(0, colon), text).value_or(0),
-                         .last = parse_bound(text.substr(colon + 1), text)};
+    const std::size_t second = std::min(text.find(':', colon + 1), text.size());
+    RowRange range{.first = parse_bound(text.substr(0, colon), text).value_or(0),
+                   .last = parse_bound(text.substr(colon + 1, second - colon - 1), text)};
+    if (second < text.size()) {
+        range.step = parse_bound(text.substr(second + 1), text).value_or(0);
+        if (range.step == 0) {
+            throw bad_range(text, "FIRST:LAST:STEP with a STEP from 1");
+        }
+    }
     if (range.last && *range.last <= range.first) {
         throw bad_range(text, "FIRST before LAST (which is not included)");
     }

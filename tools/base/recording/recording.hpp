@@ -36,9 +36,15 @@ std::vector<std::string> joint_names(std::string_view prefix, std::size_t count)
 struct RowRange {
     std::size_t first = 0;
     std::optional<std::size_t> last = std::nullopt; ///< not included; empty: to the end
+    std::size_t step = 1;                           ///< from 1: every step-th row
+
+    bool has(std::size_t row) const {
+        return row >= first && (!last || row < *last) && (row - first) % step == 0;
+    }
 };
 
-/// Reads `FIRST:LAST`; either may be empty. Throws InputError for any other text, and for an empty range.
+/// Reads `FIRST:LAST` or `FIRST:LAST:STEP`; FIRST and LAST may be empty. Throws InputError for any other
+/// text, and for an empty range.
 RowRange parse_row_range(std::string_view text);
 
 /// A group of columns with all their rows.

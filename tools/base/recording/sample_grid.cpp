@@ -5,6 +5,7 @@
 #include "tools/base/numerics/quantile.hpp"
 #include "tools/base/text/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -35,6 +36,18 @@ double mean_step_s(std::span<const Recording> recordings, double period_s) {
     return count > 0 ? total_s / count : period_s;
 }
 
+/// Returns the steps (s) between every `stride`-th row of each recording.
+std::vector<double> steps_of_every(std::size_t stride, std::span<const Recording> recordings) {
+    std::vector<double> steps_s;
+    for (const Recording& recording : recordings) {
+        for (std::size_t row = stride; row < recording.row_count(); row += stride) {
+            steps_s.push_back(1e-9 *
+                              static_cast<double>(recording.time_ns[row] - recording.time_ns[row - stride]));
+        }
+    }
+    return steps_s;
+}
+
 } // namespace
 
 double sample_period_s(std::span<const Recording> recordings) {
@@ -53,6 +66,25 @@ double sample_period_s(std::span<const Recording> recordings) {
         period_s = mean_step_s(recordings, period_s);
     }
     return std::abs(period_s / middle_s - 1) <= same_period ? middle_s : period_s;
+}
+
+SteadyStride steady_stride(std::span<const Recording> recordings) {
+    constexpr std::size_t longest = 8;
+    constexpr double steady_share = 0.97;
+    constexpr double same_step = 0.1; // relative
+    for (std::size_t stride = 2; stride <= longest; ++stride) {
+        const std::vector<double> steps_s = steps_of_every(stride, recordings);
+        if (steps_s.empty()) {
+            return {};
+        }
+        const double middle_s = median(steps_s);
+        const auto steady = std::ranges::count_if(
+            steps_s, [&](double step_s) { return std::abs(step_s / middle_s - 1) <= same_step; });
+        if (static_cast<double>(steady) >= steady_share * static_cast<double>(steps_s.size())) {
+            return {stride, middle_s};
+        }
+    }
+    return {};
 }
 
 std::vector<std::uint8_t> window_restarts(const Recording& recording, double period_s) {

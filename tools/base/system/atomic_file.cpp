@@ -115,8 +115,8 @@ fs::path link_target(fs::path path) {
 
 class AtomicFile::Implementation {
   public:
-    explicit Implementation(const fs::path& target)
-        : shown_target_(target), buffer_(target), stream_(&buffer_) {
+    Implementation(const fs::path& target, const fs::path& shown_target)
+        : shown_target_(shown_target), target_(target), buffer_(shown_target), stream_(&buffer_) {
         refuse_dash(target);
         require_parent(target);
         ignore_file_size_signal();
@@ -144,17 +144,59 @@ class AtomicFile::Implementation {
 
     std::ostream& stream() noexcept { return stream_; }
 
-    void commit() {
+    bool is_direct() const noexcept { return direct_; }
+
+    void finish() {
         if (!stream_) {
             throw InputError(shown(shown_target_) + ": cannot write: an earlier write failed");
         }
+        if (descriptor_ < 0) {
+            return;
+        }
         stream_.flush();
-        check(temporary_.empty() ? 0 : ::fsync(descriptor_), "cannot write");
+        check(direct_ ? 0 : ::fsync(descriptor_), "cannot write");
         check(::close(std::exchange(descriptor_, -1)), "cannot write");
+    }
+
+    void publish() {
         if (!temporary_.empty()) {
             check(::rename(temporary_.c_str(), target_.c_str()), "cannot replace");
             temporary_.clear();
         }
+    }
+
+    /// Gives an existing target a second name first, from which `undo` restores it.
+    void publish_reversibly() {
+        if (direct_) {
+            return;
+        }
+        const std::string backup = target_.string() + ".old." + std::to_string(::getpid());
+        ::unlink(backup.c_str()); // of an aborted run
+        std::error_code ignored;
+        if (fs::is_directory(target_, ignored)) {
+            throw system_error(shown_target_, "cannot replace", EISDIR);
+        }
+        // not every file system has hard links; with `rename` there is a moment without the target
+        const bool existing =
+            ::link(target_.c_str(), backup.c_str()) == 0 || ::rename(target_.c_str(), backup.c_str()) == 0;
+        check(existing || errno == ENOENT ? 0 : -1, "cannot replace");
+        backup_ = existing ? backup : "";
+        publish();
+        published_ = true;
+    }
+
+    void undo() noexcept {
+        if (!backup_.empty()) {
+            ::rename(backup_.c_str(), target_.c_str());
+        } else if (published_) {
+            ::unlink(target_.c_str());
+        }
+        keep();
+    }
+
+    void keep() noexcept {
+        ::unlink(backup_.c_str()); // also after `rename`, which leaves both names of one file
+        backup_.clear();
     }
 
   private:
@@ -165,12 +207,13 @@ class AtomicFile::Implementation {
     }
 
     void open_directly() {
-        descriptor_ = ::open(shown_target_.c_str(), O_WRONLY | O_CLOEXEC);
+        direct_ = true;
+        descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
         check(descriptor_, "cannot write");
     }
 
     void open_beside(std::optional<mode_t> mode) {
-        target_ = link_target(fs::absolute(shown_target_));
+        target_ = link_target(fs::absolute(target_));
         check(mode ? ::faccessat(AT_FDCWD, target_.c_str(), W_OK, AT_EACCESS) : 0, "cannot write");
         create_temporary();
         if (mode && ::fchmod(descriptor_, *mode) != 0) {
@@ -199,21 +242,38 @@ class AtomicFile::Implementation {
     }
 
     fs::path shown_target_; ///< as named by the user
-    fs::path target_;       ///< file to replace: absolute, links followed; empty if written directly
+    fs::path target_;       ///< file to replace: absolute, links followed, unless it is written directly
+    bool direct_ = false;
     std::string temporary_; ///< empty if there is no temporary file
+    std::string backup_;    ///< second name of the earlier target, until `undo` or `keep`
+    bool published_ = false;
     std::optional<RemoveOnSignal> guard_;
     int descriptor_ = -1;
     DescriptorBuffer buffer_;
     std::ostream stream_;
 };
 
-AtomicFile::AtomicFile(const fs::path& target) : implementation_(std::make_unique<Implementation>(target)) {}
+AtomicFile::AtomicFile(const fs::path& target, const fs::path& shown_as)
+    : implementation_(std::make_unique<Implementation>(target, shown_as.empty() ? target : shown_as)) {}
 
 AtomicFile::~AtomicFile() = default;
 
 std::ostream& AtomicFile::stream() noexcept { return implementation_->stream(); }
 
-void AtomicFile::commit() { implementation_->commit(); }
+void AtomicFile::commit() {
+    implementation_->finish();
+    implementation_->publish();
+}
+
+bool AtomicFile::is_direct() const noexcept { return implementation_->is_direct(); }
+
+void AtomicFile::finish() { implementation_->finish(); }
+
+void AtomicFile::publish() { implementation_->publish_reversibly(); }
+
+void AtomicFile::undo() noexcept { implementation_->undo(); }
+
+void AtomicFile::keep() noexcept { implementation_->keep(); }
 
 class GrowingFile::Implementation {
   public:

@@ -16,8 +16,8 @@ namespace dfdyn::tools {
 class AtomicFile {
   public:
     /// Creates the temporary file. Throws InputError with the path and the system's reason if this fails, or
-    /// if the target exists and is not writable.
-    explicit AtomicFile(const std::filesystem::path& target);
+    /// if the target exists and is not writable. `shown_as`: the path in messages; empty: `target`.
+    explicit AtomicFile(const std::filesystem::path& target, const std::filesystem::path& shown_as = {});
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
@@ -29,6 +29,20 @@ class AtomicFile {
     /// Flushes to the disk, closes and renames. Call once, at the end. Throws InputError if any step, or an
     /// earlier write, failed; the target is then unchanged.
     void commit();
+
+    // The steps of `commit` for several files (FileSet), which are renamed when all of them are complete.
+
+    /// Returns whether the target is no ordinary file. It is then complete after `finish`, and `publish` and
+    /// `undo` have no effect.
+    bool is_direct() const noexcept;
+    /// Flushes to the disk and closes. Further calls have no effect. Throws like `commit`.
+    void finish();
+    /// Renames and keeps the earlier target for `undo`. Throws InputError; call `undo` then as well.
+    void publish();
+    /// Restores the earlier target, or removes the new one if there was none.
+    void undo() noexcept;
+    /// Removes the earlier target that `publish` kept.
+    void keep() noexcept;
 
   private:
     class Implementation;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/system/remove_on_signal.hpp"
 
-#include "tools/base/text/text.hpp"
-
 #include <array>
 #include <atomic>
 #include <climits>
@@ -10,24 +8,35 @@
 #include <unistd.h>
 
 namespace dfdyn::tools {
+
+enum class RemovalState : unsigned char { vacant, claimed, armed };
+static_assert(std::atomic<RemovalState>::is_always_lock_free, "the signal handler reads it");
+
+/// An entry of a list that only grows: a signal handler may neither allocate nor lock, and may run at any
+/// time. Vacant entries are used again.
+struct RemoveOnSignal::Slot {
+    std::atomic<RemovalState> state = RemovalState::claimed;
+    std::array<char, PATH_MAX> path{};
+    Slot* next = nullptr;
+};
+
 namespace {
 
-enum class State : unsigned char { vacant, claimed, armed };
+std::atomic<RemoveOnSignal::Slot*> first_slot = nullptr;
+static_assert(std::atomic<RemoveOnSignal::Slot*>::is_always_lock_free, "the signal handler reads it");
 
-struct Slot {
-    std::atomic<State> state = State::vacant;
-    std::array<char, PATH_MAX> path{};
-};
-static_assert(std::atomic<State>::is_always_lock_free, "the signal handler reads it");
-
-// Static storage, because a signal handler may neither allocate nor lock.
-std::array<Slot, 16> slots;
+/// Removes what `remove` can remove; returns whether there was any.
+bool remove_armed(int (*remove)(const char*)) {
+    bool any = false;
+    for (const RemoveOnSignal::Slot* slot = first_slot.load(); slot != nullptr; slot = slot->next) {
+        any = (slot->state.load() == RemovalState::armed && remove(slot->path.data()) == 0) || any;
+    }
+    return any;
+}
 
 extern "C" void remove_files_and_end(int signal_number) {
-    for (const Slot& slot : slots) {
-        if (slot.state.load() == State::armed) {
-            ::unlink(slot.path.data());
-        }
+    remove_armed(::unlink);
+    while (remove_armed(::rmdir)) { // a folder becomes empty when the folders in it are removed
     }
     // SA_RESETHAND has restored the default action; delivered when this handler returns
     std::raise(signal_number);
@@ -44,31 +53,33 @@ void handle_unless_taken(int signal_number) {
     ::sigaction(signal_number, &action, nullptr);
 }
 
-std::size_t claim_slot(const std::string& path) {
-    for (std::size_t index = 0; index < slots.size(); ++index) {
-        State vacant = State::vacant;
-        if (slots.at(index).state.compare_exchange_strong(vacant, State::claimed)) {
-            return index;
+RemoveOnSignal::Slot* claim_slot() {
+    for (RemoveOnSignal::Slot* slot = first_slot.load(); slot != nullptr; slot = slot->next) {
+        RemovalState vacant = RemovalState::vacant;
+        if (slot->state.compare_exchange_strong(vacant, RemovalState::claimed)) {
+            return slot;
         }
     }
-    throw InputError(shown(path) + ": cannot create: " + std::to_string(slots.size()) +
-                     " files are being written already");
+    auto* const slot = new RemoveOnSignal::Slot; // never deleted: a handler may read it at any time
+    slot->next = first_slot.load();
+    while (!first_slot.compare_exchange_weak(slot->next, slot)) {
+    }
+    return slot;
 }
 
 } // namespace
 
-RemoveOnSignal::RemoveOnSignal(const std::string& path) : slot_(claim_slot(path)) {
-    Slot& slot = slots.at(slot_);
-    if (path.size() >= slot.path.size()) {
+RemoveOnSignal::RemoveOnSignal(const std::string& path) : slot_(claim_slot()) {
+    if (path.size() >= slot_->path.size()) {
         return;
     }
-    slot.path.at(path.copy(slot.path.data(), path.size())) = '\0';
-    slot.state = State::armed;
+    slot_->path.at(path.copy(slot_->path.data(), path.size())) = '\0';
+    slot_->state = RemovalState::armed;
     for (const int signal_number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
         handle_unless_taken(signal_number);
     }
 }
 
-RemoveOnSignal::~RemoveOnSignal() { slots.at(slot_).state = State::vacant; }
+RemoveOnSignal::~RemoveOnSignal() { slot_->state = RemovalState::vacant; }
 
 } // namespace dfdyn::tools

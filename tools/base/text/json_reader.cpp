@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/text/json_reader.hpp"
 
+#include "tools/base/text/nearest_name.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 
@@ -84,7 +85,8 @@ void JsonReader::allow_only(std::span<const std::string_view> names) const {
                 known.append(known.empty() ? "" : ", ").append(one);
             }
             throw InputError(source_ + ": " + path_ + "field " + in_quotes(name) + ": expected one of " +
-                             known + ", found another");
+                             known + ", found another" +
+                             suggestion(name, std::vector<std::string>(names.begin(), names.end())));
         }
     }
 }

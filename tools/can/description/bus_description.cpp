@@ -237,11 +237,11 @@ void check_identifiers(const JsonReader& reader, const BusDescription& descripti
 
 BusDescription parse(const JsonReader& reader, const std::filesystem::path& path) {
     const std::filesystem::path folder = path.parent_path();
-    reader.allow_only(std::array<std::string_view, 7>{"schema", "bit_rate", "data_bit_rate", "sample_rate_hz",
-                                                      "trigger", "joints", "output"});
     if (reader.text("schema") != schema) {
         throw reader.error("schema", in_quotes(schema), in_quotes(reader.text("schema")));
     }
+    reader.allow_only(std::array<std::string_view, 7>{"schema", "bit_rate", "data_bit_rate", "sample_rate_hz",
+                                                      "trigger", "joints", "output"});
     BusDescription description;
     description.source = shown(path);
     description.bit_rate = reader.number_within("bit_rate", 1e4, 1e7);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/commands/options/contact_options.hpp"
 
-#include "tools/base/system/atomic_file.hpp"
 #include "tools/base/text/error.hpp"
 
 #include <nlohmann/json.hpp>
@@ -34,8 +33,12 @@ void ContactOptions::show(std::span<const RecordedContacts> contacts,
         count += recorded.contacts.size();
     }
     std::cout << "contacts: " << count << '\n';
+}
+
+void ContactOptions::add_file(std::span<const RecordedContacts> contacts,
+                              std::span<const std::string> outputs, FileSet& files) const {
     if (!file.empty()) {
-        write_file(file, contacts_json(contacts, outputs).dump(2) + '\n');
+        files.add(file, contacts_json(contacts, outputs).dump(2) + '\n');
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/base/system/file_set.hpp"
 #include "tools/model/model.hpp"
 #include "tools/replay/contacts/contact_list.hpp"
 
@@ -24,8 +25,11 @@ struct ContactOptions {
     /// Returns the limits of the first model. Throws InputError, naming `source`, if it has none.
     static const ContactModel& limits(const TrainedModel& model, const std::string& source);
 
-    /// Prints the contacts, and writes the file if one was requested.
+    /// Prints the contacts.
     void show(std::span<const RecordedContacts> contacts, std::span<const std::string> outputs) const;
+    /// Adds the file of the contacts if one was requested.
+    void add_file(std::span<const RecordedContacts> contacts, std::span<const std::string> outputs,
+                  FileSet& files) const;
 };
 
 } // namespace dfdyn::tools

@@ -3,7 +3,10 @@
 
 #include "tools/base/text/error.hpp"
 
+#include <cerrno>
 #include <iostream>
+#include <string>
+#include <system_error>
 
 namespace dfdyn::tools {
 
@@ -12,8 +15,11 @@ void add_json_option(CLI::App& command, bool& chosen) {
 }
 
 void flush_standard_output(std::ostream& output) {
+    errno = 0;
     if (!output.flush()) {
-        throw InputError("standard output: expected to write all of it, found that the system refused");
+        throw InputError(std::string("cannot write to standard output: ") +
+                         (errno == 0 ? "an earlier write failed"
+                                     : std::error_code(errno, std::generic_category()).message()));
     }
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/commands/options/monitor_options.hpp"
 
-#include "tools/base/system/atomic_file.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/value_checks.hpp"
 
@@ -52,8 +51,11 @@ void MonitorOptions::show(std::span<const RecordedChanges> changes) const {
         count += recorded.changes.size();
     }
     std::cout << "changes: " << count << '\n';
+}
+
+void MonitorOptions::add_file(std::span<const RecordedChanges> changes, FileSet& files) const {
     if (!file.empty()) {
-        write_file(file, json(changes).dump(2) + '\n');
+        files.add(file, json(changes).dump(2) + '\n');
     }
 }
 

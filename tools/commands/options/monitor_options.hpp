@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/base/system/file_set.hpp"
 #include "tools/commands/options/robot_options.hpp"
 #include "tools/monitor/monitored_estimator.hpp"
 
@@ -33,8 +34,10 @@ struct MonitorOptions {
     /// Returns the changes, as in the file.
     nlohmann::ordered_json json(std::span<const RecordedChanges> changes) const;
 
-    /// Prints the changes, and writes the file if one was requested.
+    /// Prints the changes.
     void show(std::span<const RecordedChanges> changes) const;
+    /// Adds the file of the changes if one was requested.
+    void add_file(std::span<const RecordedChanges> changes, FileSet& files) const;
 };
 
 } // namespace dfdyn::tools

@@ -31,9 +31,11 @@ void RecordingOptions::add_to(CLI::App& command) {
         ->delimiter(',')
         ->type_name("L.csv[,L2.csv...]");
     command
-        .add_option("--rows", rows,
-                    "Only rows FIRST:LAST of each (from 0, LAST not included, either may be empty)")
-        ->type_name("FIRST:LAST")
+        .add_option(
+            "--rows", rows,
+            "Only rows FIRST:LAST of each (from 0, LAST not included, either may be empty); with STEP "
+            "one row in STEP")
+        ->type_name("FIRST:LAST[:STEP]")
         ->capture_default_str();
     command.add_flag("--skip-bad-rows", skip_bad_rows,
                      "Leave bad rows out, as gaps, instead of refusing the file");

@@ -6,6 +6,9 @@
 #include "tools/base/text/text.hpp"
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -48,6 +51,59 @@ std::vector<const CLI::Option*> named_options(const CLI::App& command, const std
 std::string with_value(const CLI::Option& option) {
     const std::string value = option.get_type_name().substr(0, option.get_type_name().find(':'));
     return option.get_name() + (value.empty() ? "" : " " + value);
+}
+
+std::string help_of(const CLI::App& command) { return " (dfdyn " + command.get_name() + " --help)"; }
+
+/// Returns the option that an argument names without a value; null if it names none.
+const CLI::Option* option_at(const CLI::App& command, const std::string& argument) {
+    return argument.starts_with('-') && argument.size() > 1 ? command.get_option_no_throw(argument) : nullptr;
+}
+
+/// Endings of files by which an option is recognised; an ending such as `.log` fits several.
+bool tells_option(const std::string& ending) {
+    constexpr std::array<std::string_view, 6> endings{".csv", ".json", ".hpp", ".html", ".urdf", ".mcap"};
+    return std::ranges::find(endings, ending) != endings.end();
+}
+
+/// Returns whether the option names files with this ending, such as `--log L.csv`.
+bool takes_files(const CLI::Option& option, const std::string& ending) {
+    const std::string type = option.get_type_name();
+    return type.find(ending) != std::string::npos || (ending == ".mcap" && option.get_name() == "--log");
+}
+
+/// Returns the first option that names files with the ending of `argument`; null if there is none.
+const CLI::Option* option_of_file(const CLI::App& command, const std::string& argument) {
+    const std::string ending = std::filesystem::path(argument).extension().string();
+    if (!tells_option(ending)) {
+        return nullptr;
+    }
+    const std::vector<const CLI::Option*> options = command.get_options();
+    const auto found = std::ranges::find_if(
+        options, [&](const CLI::Option* option) { return takes_files(*option, ending); });
+    return found == options.end() ? nullptr : *found;
+}
+
+void refuse_file_of_other_option(const CLI::App& command, const CLI::Option& option) {
+    for (const std::string& value : option.results()) {
+        const CLI::Option* const other = option_of_file(command, value);
+        const bool names_files = option.get_type_name().find('.') != std::string::npos;
+        if (other != nullptr && names_files &&
+            !takes_files(option, std::filesystem::path(value).extension().string())) {
+            throw InputError(with_value(option) + ": expected a file of that kind, found " +
+                             shown(std::filesystem::path(value)) + ", which fits " + with_value(*other) +
+                             help_of(command));
+        }
+    }
+}
+
+/// Returns a hint for an argument without an option.
+std::string option_hint(const CLI::App& command, const std::string& argument) {
+    if (const CLI::Option* const option = option_of_file(command, argument)) {
+        return " (did you mean " + option->get_name() + " " + shown(std::filesystem::path(argument)) + "?)";
+    }
+    const bool file = argument.find_first_of("./") != std::string::npos;
+    return file ? "" : suggestion(argument, option_names(command));
 }
 
 /// Returns the message for too many or too few values of an option, which CLI11 refused with `refusal`.
@@ -110,7 +166,7 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& failure) {
         return expected + in_quotes(unknown.front()) + suggestion(unknown.front(), names) + " (dfdyn --help)";
     }
     const CLI::App& command = *chosen.front();
-    const std::string help = " (dfdyn " + command.get_name() + " --help)";
+    const std::string help = help_of(command);
     if (unknown.empty()) {
         return option_message(command, failure) + help;
     }
@@ -119,14 +175,44 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& failure) {
     const std::string& argument = option == unknown.end() ? unknown.front() : *option;
     const std::string name = argument.substr(0, argument.find('='));
     return "expected an option of " + command.get_name() + ", found " + in_quotes(name) +
-           suggestion(name, option_names(command)) + help;
+           option_hint(command, name) + help;
 }
 
-void refuse_empty_values(const CLI::App& app) {
+void refuse_missing_values(const CLI::App& app, std::span<char* const> arguments) {
+    const CLI::App* command = nullptr;
+    for (std::size_t i = 1; i < arguments.size(); ++i) {
+        const std::string argument = arguments[i];
+        if (command == nullptr) {
+            const auto named =
+                app.get_subcommands([&](const CLI::App* one) { return one->check_name(argument); });
+            command = named.empty() ? nullptr : named.front();
+            continue;
+        }
+        if (argument.ends_with('=')) { // CLI11 would take the next argument as the value
+            const CLI::Option* const empty = option_at(*command, argument.substr(0, argument.size() - 1));
+            if (empty != nullptr) {
+                throw InputError(with_value(*empty) + ": expected a value, found an empty one");
+            }
+        }
+        const CLI::Option* const option = option_at(*command, argument);
+        if (option != nullptr && i + 1 < arguments.size() && option->get_items_expected_min() > 0 &&
+            option_at(*command, arguments[i + 1]) != nullptr) {
+            throw InputError(with_value(*option) + ": expected a value, found the option " +
+                             in_quotes(arguments[i + 1]) + help_of(*command));
+        }
+    }
+}
+
+void refuse_wrong_values(const CLI::App& app) {
     for (const CLI::App* const command : app.get_subcommands()) {
         for (const CLI::Option* const option : command->get_options()) {
             if (option->count() > 0 && std::ranges::any_of(option->results(), &std::string::empty)) {
                 throw InputError(with_value(*option) + ": expected a value, found an empty one");
+            }
+        }
+        for (const CLI::Option* const option : command->get_options()) {
+            if (option->count() > 0) {
+                refuse_file_of_other_option(*command, *option);
             }
         }
     }

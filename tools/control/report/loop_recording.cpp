@@ -3,7 +3,6 @@
 
 #include "tools/base/recording/csv_writer.hpp"
 #include "tools/base/recording/recording.hpp"
-#include "tools/base/system/atomic_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -41,15 +40,13 @@ void LoopRecording::add(const LoopInput& input) {
     }
 }
 
-void LoopRecording::write(const std::filesystem::path& path) const {
-    AtomicFile file(path);
-    CsvWriter csv(file.stream(), columns(joints_));
+void LoopRecording::write(std::ostream& out) const {
+    CsvWriter csv(out, columns(joints_));
     for (std::size_t row = 0; row < time_ns_.size(); ++row) {
         csv.field(1e-9 * static_cast<double>(time_ns_[row] - time_ns_.front()));
         csv.fields(std::span(values_).subspan(2 * joints_ * row, 2 * joints_));
         csv.end_row();
     }
-    file.commit();
 }
 
 } // namespace dfdyn::tools

@@ -3,7 +3,7 @@
 
 #include "tools/control/loop/control_loop.hpp"
 
-#include <filesystem>
+#include <ostream>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -18,8 +18,8 @@ class LoopRecording {
     /// Adds one tick, unless a measurement is missing.
     void add(const LoopInput& input);
 
-    /// Writes the recording, with times counted from the first row. The file is replaced atomically.
-    void write(const std::filesystem::path& path) const;
+    /// Writes the recording, with times counted from the first row.
+    void write(std::ostream& out) const;
 
   private:
     std::size_t joints_;

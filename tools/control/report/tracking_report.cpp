@@ -3,7 +3,6 @@
 
 #include "tools/base/recording/csv_writer.hpp"
 #include "tools/base/recording/recording.hpp"
-#include "tools/base/system/atomic_file.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/build_flags.hpp"
 #include "tools/report/chart.hpp"
@@ -45,14 +44,13 @@ ChartCurve curve_of(const TrackingRun& run) {
     return curve;
 }
 
-void write_table(const std::filesystem::path& path, const std::vector<TrackingRun>& runs) {
+void write_table(std::ostream& out, const std::vector<TrackingRun>& runs) {
     const auto joints = static_cast<std::size_t>(runs.front().windows.front().rms.size());
     std::vector<std::string> columns{"feed_forward", "start", "end", "all"};
     for (const char* const prefix : {"joint", "learned_share"}) {
         std::ranges::copy(joint_names(prefix, joints), std::back_inserter(columns));
     }
-    AtomicFile file(path);
-    CsvWriter csv(file.stream(), columns);
+    CsvWriter csv(out, columns);
     for (const TrackingRun& run : runs) {
         for (const TrackingWindow& window : run.windows) {
             const JointVector rms = mrad_per_rad * window.rms;
@@ -61,7 +59,6 @@ void write_table(const std::filesystem::path& path, const std::vector<TrackingRu
             csv.end_row();
         }
     }
-    file.commit();
 }
 
 ReportTable window_table(const std::vector<TrackingRun>& runs) {
@@ -130,15 +127,14 @@ nlohmann::ordered_json tracking_json(const std::vector<TrackingRun>& runs, bool 
     return json;
 }
 
-void write_tracking(const std::filesystem::path& folder, const std::string& title,
-                    const std::vector<TrackingRun>& runs) {
-    make_folder(folder);
+void add_tracking(const std::filesystem::path& folder, const std::string& title,
+                  const std::vector<TrackingRun>& runs, FileSet& files) {
     if (runs.front().windows.empty()) {
         return;
     }
-    write_table(folder / "tracking.csv", runs);
+    write_table(files.add(folder / "tracking.csv"), runs);
     const std::string chart = curves_of(runs);
-    write_file(folder / "tracking.svg", standalone_chart(chart));
+    files.add(folder / "tracking.svg", standalone_chart(chart));
     const std::string summary =
         "Reference minus true position, root mean square over windows of time: "
         "feedback and feed-forward of the nominal rigid body, and of a learned model.";
@@ -147,7 +143,7 @@ void write_tracking(const std::filesystem::path& folder, const std::string& titl
         summary,
         {{"Tracking error", {}, {{"tracking", "Tracking error", chart}}, {window_table(runs)}}},
         {{"Build", build_flags()}}};
-    write_file(folder / "tracking.html", render_figure_page(page));
+    files.add(folder / "tracking.html", render_figure_page(page));
 }
 
 } // namespace dfdyn::tools

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/base/system/file_set.hpp"
 #include "tools/control/report/tracking.hpp"
 
 #include <nlohmann/json_fwd.hpp>
@@ -26,10 +27,10 @@ void print_tracking(std::ostream& out, const std::vector<TrackingRun>& runs);
 /// Returns the windows of all runs, schema `dfdyn.loop/1`; `stopped`: whether a loop stopped by itself.
 nlohmann::ordered_json tracking_json(const std::vector<TrackingRun>& runs, bool stopped);
 
-/// Writes tracking.csv (per run and window: error over all joints and of each joint, mrad; share of the
-/// learned model), tracking.svg, and tracking.html with both into `folder`. Writes nothing for runs without a
-/// complete window. Each file is replaced atomically.
-void write_tracking(const std::filesystem::path& folder, const std::string& title,
-                    const std::vector<TrackingRun>& runs);
+/// Adds tracking.csv (per run and window: error over all joints and of each joint, mrad; share of the
+/// learned model), tracking.svg, and tracking.html with both in `folder`, which exists or is in
+/// `files`. Adds nothing for runs without a complete window.
+void add_tracking(const std::filesystem::path& folder, const std::string& title,
+                  const std::vector<TrackingRun>& runs, FileSet& files);
 
 } // namespace dfdyn::tools

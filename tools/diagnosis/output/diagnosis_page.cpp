@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/output/diagnosis_page.hpp"
 
+#include "tools/base/text/instant.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/build_flags.hpp"
 #include "tools/diagnosis/output/error_sections.hpp"
@@ -136,12 +137,11 @@ ReportTable error_table(const Diagnosis& diagnosis) {
                       {},
                       {}};
     const bool held_out = has_held_out(diagnosis);
-    table.note = held_out
-                     ? "On " + rounded_text(diagnosis.heldout_from_s) + " to " +
-                           rounded_text(diagnosis.heldout_to_s) +
-                           " s, which neither chose nor fitted anything: the effects behind these figures "
-                           "were found in the time before."
-                     : std::string("Over the whole recording, which the extended model was fitted to.");
+    table.note = held_out ? "On " + instant_text(diagnosis.heldout_from_s) + " to " +
+                                instant_text(diagnosis.heldout_to_s) +
+                                ", which neither chose nor fitted anything: the effects behind these figures "
+                                "were found in the time before."
+                          : std::string("Over the whole recording, which the extended model was fitted to.");
     for (std::size_t k = 0; k < diagnosis.output_names.size(); ++k) {
         const auto row = static_cast<Eigen::Index>(k);
         table.rows.push_back({diagnosis.output_names[k], diagnosis.output_units[k],
@@ -281,7 +281,7 @@ std::string diagnosis_page(const DiagnosisCase& one) {
     }
     if (!one.work.explanation.candidates.empty()) {
         page.sections.push_back(overview_section(one));
-        page.sections.push_back(comparison_section(one.work));
+        page.sections.push_back(comparison_section(one.work, one.full_data));
         for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
             page.sections.push_back(finding_section(one.work, diagnosis.findings[i], i + 1));
         }

@@ -17,6 +17,7 @@ struct DiagnosisCase {
     const DiagnosisWork& work;
     const Extension& extension;
     const OnlineView& online;
+    std::string full_data{}; ///< name of the table of all rows beside the page; empty: none
 };
 
 /// Returns the report as one HTML page without external files, network access or scripts.

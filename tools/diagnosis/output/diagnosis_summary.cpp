@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/output/diagnosis_summary.hpp"
 
+#include "tools/base/text/instant.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/diagnosis/output/finding_words.hpp"
 
@@ -41,8 +42,8 @@ void print_errors(std::ostream& out, const Diagnosis& diagnosis) {
     const bool held_out = has_held_out(diagnosis);
     out << "error, rms and share of the output's deviation, ";
     if (held_out) {
-        out << "on held-out time (" << rounded_text(diagnosis.heldout_from_s) << " to "
-            << rounded_text(diagnosis.heldout_to_s) << " s fitted nothing):\n";
+        out << "on held-out time (" << instant_text(diagnosis.heldout_from_s) << " to "
+            << instant_text(diagnosis.heldout_to_s) << " fitted nothing):\n";
     } else {
         out << "over the whole recording:\n";
     }

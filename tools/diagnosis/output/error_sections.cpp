@@ -4,14 +4,15 @@
 #include "tools/base/numerics/quantile.hpp"
 #include "tools/base/numerics/root_mean_square.hpp"
 #include "tools/base/numerics/to_vector.hpp"
+#include "tools/base/recording/csv_writer.hpp"
 #include "tools/diagnosis/output/finding_words.hpp"
+#include "tools/diagnosis/output/over_time.hpp"
 #include "tools/diagnosis/signals/spectral_rows.hpp"
 #include "tools/report/chart.hpp"
 #include "tools/report/xy_chart.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace dfdyn::tools {
 
@@ -41,23 +42,6 @@ std::vector<Eigen::Index> shown_rows(const DiagnosisWork& work) {
         thin.push_back(rows[i]);
     }
     return thin;
-}
-
-/// Returns a line with gaps where the recording has gaps.
-XyLine over_time(const DiagnosisWork& work, std::string name, const Eigen::VectorXd& series,
-                 const std::vector<Eigen::Index>& rows) {
-    const Eigen::VectorXd& time = work.signals->measured.time_s;
-    XyLine line{std::move(name), {}, {}};
-    const double usual = rows.size() > 1 ? time[rows[1]] - time[rows[0]] : 1;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (i > 0 && time[rows[i]] - time[rows[i - 1]] > 3 * usual) {
-            line.x.push_back(time[rows[i]]);
-            line.y.push_back(std::numeric_limits<double>::quiet_NaN());
-        }
-        line.x.push_back(time[rows[i]]);
-        line.y.push_back(series[rows[i]]);
-    }
-    return line;
 }
 
 /// Autocorrelation at lag one: 0 for white noise, near 1 for slow signals.
@@ -132,30 +116,60 @@ ReportTable unexplained_table(const Diagnosis& diagnosis) {
 
 } // namespace
 
-PageSection comparison_section(const DiagnosisWork& work) {
+ComparedOutputs compared_outputs(const DiagnosisWork& work) {
+    const Eigen::MatrixXd simulated = in_output_units(work, work.signals->nominal);
+    return {in_output_units(work, work.measured), simulated,
+            simulated + in_output_units(work, work.explanation.model(*work.signals))};
+}
+
+void write_comparison_csv(std::ostream& out, const DiagnosisWork& work) {
+    std::vector<std::string> columns{"t"};
+    for (const std::string& name : work.diagnosis.output_names) {
+        columns.insert(columns.end(), {name, name + "_simulated", name + "_extended"});
+    }
+    const ComparedOutputs outputs = compared_outputs(work);
+    CsvWriter csv(out, columns);
+    for (Eigen::Index row = 0; row < outputs.measured.rows(); ++row) {
+        csv.field(work.signals->measured.time_s[row]);
+        for (Eigen::Index output = 0; output < outputs.measured.cols(); ++output) {
+            csv.field(outputs.measured(row, output))
+                .field(outputs.simulated(row, output))
+                .field(outputs.extended(row, output));
+        }
+        csv.end_row();
+    }
+}
+
+PageSection comparison_section(const DiagnosisWork& work, const std::string& full_data) {
     PageSection section{"Measured, simulated, extended", {}, {}, {}};
     section.paragraphs.push_back(
         std::string("Simulated: the rigid body of the robot's file along the measured motion. Extended: with "
                     "all named effects, fitted to the whole recording. The first 20 s of the ") +
         (has_held_out(work.diagnosis) ? "held-out time" : "recording") + " are shown.");
+    if (!full_data.empty()) {
+        section.paragraphs.push_back("Curves have at most " + std::to_string(most_points) +
+                                     " points. The file " + full_data +
+                                     " beside this page has every row of the whole recording.");
+    }
+    const MeasuredMotion& motion = work.signals->measured;
+    const std::string time_label = time_axis(motion).label;
     const std::vector<Eigen::Index> rows = shown_rows(work);
-    const Eigen::MatrixXd measured = in_output_units(work, work.measured);
-    const Eigen::MatrixXd nominal = in_output_units(work, work.signals->nominal);
-    const Eigen::MatrixXd extended = nominal + in_output_units(work, work.explanation.model(*work.signals));
+    const auto [measured, nominal, extended] = compared_outputs(work);
     for (Eigen::Index output = 0; output < measured.cols(); ++output) {
         const std::string& name = work.diagnosis.output_names[static_cast<std::size_t>(output)];
         const std::string& unit = work.diagnosis.output_units[static_cast<std::size_t>(output)];
-        XyChart chart{name, "time (s)", std::string(name).append(" (").append(unit).append(")")};
+        XyChart chart{name, time_label, std::string(name).append(" (").append(unit).append(")")};
         chart.height = 220;
-        chart.reference = over_time(work, "measured", measured.col(output), rows);
-        chart.lines = {over_time(work, "simulated", nominal.col(output), rows),
-                       over_time(work, "extended", extended.col(output), rows)};
+        chart.reference = line_over_time(motion, "measured", measured.col(output), rows);
+        chart.lines = {line_over_time(motion, "simulated", nominal.col(output), rows),
+                       line_over_time(motion, "extended", extended.col(output), rows)};
         section.charts.push_back({"outputs_" + name, name, xy_chart(chart)});
-        XyChart error{std::string("error of ").append(name), "time (s)",
+        XyChart error{std::string("error of ").append(name), time_label,
                       std::string("error (").append(unit).append(")")};
         error.height = 220;
-        error.lines = {over_time(work, "of the simulated", measured.col(output) - nominal.col(output), rows),
-                       over_time(work, "of the extended", measured.col(output) - extended.col(output), rows)};
+        error.lines = {
+            line_over_time(motion, "of the simulated", measured.col(output) - nominal.col(output), rows),
+            line_over_time(motion, "of the extended", measured.col(output) - extended.col(output), rows)};
         section.charts.push_back({"errors_" + name, error.title, xy_chart(error)});
     }
     return section;

@@ -4,10 +4,29 @@
 #include "tools/diagnosis/diagnosis.hpp"
 #include "tools/report/figure_page.hpp"
 
+#include <Eigen/Core>
+
+#include <ostream>
+#include <string>
+
 namespace dfdyn::tools {
 
+/// Outputs on the clock of the diagnosis, in their units. T x m each.
+struct ComparedOutputs {
+    Eigen::MatrixXd measured;
+    Eigen::MatrixXd simulated; ///< by the rigid body of the robot's file
+    Eigen::MatrixXd extended;  ///< with all named effects
+};
+
+ComparedOutputs compared_outputs(const DiagnosisWork& work);
+
+/// Writes every row of the comparison as a table: `t`, then per output `tau1`, `tau1_simulated` and
+/// `tau1_extended`.
+void write_comparison_csv(std::ostream& out, const DiagnosisWork& work);
+
 /// Measured, simulated and extended outputs over a time window, and the errors of both models, per output.
-PageSection comparison_section(const DiagnosisWork& work);
+/// `full_data`: name of the file from `write_comparison_csv` beside the page; empty: none.
+PageSection comparison_section(const DiagnosisWork& work, const std::string& full_data);
 
 /// Spectra of the errors, whiteness of the residual, and its remaining dependences.
 PageSection rest_section(const DiagnosisWork& work);

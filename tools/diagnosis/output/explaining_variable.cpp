@@ -2,6 +2,7 @@
 #include "tools/diagnosis/output/explaining_variable.hpp"
 
 #include "tools/diagnosis/effects/effect_catalogue.hpp"
+#include "tools/diagnosis/output/over_time.hpp"
 #include "tools/diagnosis/verdict/joint_units.hpp"
 
 #include <algorithm>
@@ -43,7 +44,8 @@ ExplainingVariable over_position(const PlottedFinding& at) {
 }
 
 ExplainingVariable over_time(const PlottedFinding& at) {
-    ExplainingVariable variable = at.whole("time (s)", at.signals.measured.time_s);
+    const TimeAxis axis = time_axis(at.signals.measured);
+    ExplainingVariable variable = at.whole(axis.label, at.signals.measured.time_s.array() - axis.origin_s);
     variable.time = true;
     return variable;
 }

@@ -2,8 +2,10 @@
 #include "tools/diagnosis/output/finding_section.hpp"
 
 #include "tools/base/numerics/to_vector.hpp"
+#include "tools/base/text/instant.hpp"
 #include "tools/diagnosis/output/explaining_variable.hpp"
 #include "tools/diagnosis/output/finding_words.hpp"
+#include "tools/diagnosis/output/over_time.hpp"
 #include "tools/report/xy_chart.hpp"
 
 #include <algorithm>
@@ -13,7 +15,7 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr std::size_t most_dots = 900;
+constexpr Eigen::Index most_dots = 900;
 constexpr std::size_t bins = 24;
 constexpr std::size_t curve_points = 120;
 
@@ -21,23 +23,32 @@ std::string unit_of(const DiagnosisWork& work, const Finding& finding) {
     return work.diagnosis.torque_units[static_cast<std::size_t>(finding.output)];
 }
 
-/// Returns every k-th entry, with the smallest k that leaves at most `most` entries.
-std::vector<double> thinned(const Eigen::VectorXd& values, std::size_t most) {
-    const auto size = static_cast<std::size_t>(values.size());
-    const std::size_t step = (size + most - 1) / std::max<std::size_t>(1, most);
+/// Returns the smallest k with which every k-th entry of `size` are at most `most`.
+Eigen::Index thinning_step(Eigen::Index size, Eigen::Index most) {
+    return std::max<Eigen::Index>(1, (size + most - 1) / most);
+}
+
+std::vector<double> thinned(const Eigen::VectorXd& values, Eigen::Index most) {
     std::vector<double> result;
-    for (std::size_t i = 0; i < size; i += std::max<std::size_t>(1, step)) {
-        result.push_back(values[static_cast<Eigen::Index>(i)]);
+    for (Eigen::Index i = 0; i < values.size(); i += thinning_step(values.size(), most)) {
+        result.push_back(values[i]);
     }
     return result;
 }
 
-/// Returns the effect as a curve over its abscissa: means of its contribution in fine bins.
-XyLine fitted_curve(const ExplainingVariable& over, const Eigen::VectorXd& x, const Eigen::VectorXd& share) {
+/// Returns the effect as a curve over its abscissa: over time with the gaps of the recording, otherwise means
+/// of its contribution in fine bins.
+XyLine fitted_curve(const ExplainingVariable& over, const MeasuredMotion& measured, const Finding& finding) {
     const std::string name = "named effect";
     if (over.time) {
-        return {name, thinned(x, most_dots), thinned(share, most_dots)};
+        std::vector<Eigen::Index> rows;
+        for (Eigen::Index row = 0; row < over.count; row += thinning_step(over.count, most_dots)) {
+            rows.push_back(over.first + row);
+        }
+        return line_over_time(measured, name, finding.share, rows);
     }
+    const Eigen::VectorXd x = over.value.segment(over.first, over.count);
+    const Eigen::VectorXd share = finding.share.segment(over.first, over.count);
     const XyBins fine = binned(name, to_vector(x), to_vector(share), curve_points);
     return {name, fine.x, fine.mean};
 }
@@ -55,7 +66,7 @@ PageChart evidence_chart(const DiagnosisWork& work, const Finding& finding, std:
     chart.y_label = std::string("error (").append(unit_of(work, finding)).append(")");
     chart.points = {"samples", thinned(x, most_dots), thinned(error, most_dots)};
     chart.bins = binned("mean and spread", to_vector(x), to_vector(error), bins);
-    chart.lines.push_back(fitted_curve(over, x, share));
+    chart.lines.push_back(fitted_curve(over, work.signals->measured, finding));
     return {"finding_" + std::to_string(number), chart.title, xy_chart(chart)};
 }
 
@@ -64,11 +75,12 @@ ReportTable parameter_table(const Finding& finding) {
     for (const FoundParameter& parameter : finding.parameters) {
         const bool measured = parameter.low < parameter.high;
         const std::optional<std::string> axis = axis_of(parameter);
+        const bool date = parameter.unit == "s" && is_epoch_time(parameter.value);
+        const auto text = [date](double value) { return date ? instant_text(value) : rounded_text(value); };
         table.rows.push_back(
-            {parameter.name, axis.value_or(rounded_text(parameter.value)),
-             measured ? rounded_text(parameter.low).append(" … ").append(rounded_text(parameter.high))
-                      : std::string("–"),
-             parameter.unit == "1" ? "" : parameter.unit});
+            {parameter.name, axis.value_or(text(parameter.value)),
+             measured ? text(parameter.low).append(" … ").append(text(parameter.high)) : std::string("–"),
+             parameter.unit == "1" || date ? "" : parameter.unit});
     }
     return table;
 }

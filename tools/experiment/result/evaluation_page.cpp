@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/experiment/result/evaluation_page.hpp"
 
-#include "tools/base/system/atomic_file.hpp"
+#include "tools/base/system/file_set.hpp"
 #include "tools/build_flags.hpp"
 #include "tools/experiment/result/comparison.hpp"
 #include "tools/experiment/result/error_curve.hpp"
@@ -220,21 +220,23 @@ class EvaluationPage {
 
 void write_evaluation(const std::filesystem::path& folder, const Plan& plan, const PlanData& data,
                       const EvaluationResults& results) {
-    make_folder(folder / "pictures");
+    FileSet files;
+    files.add_folder(folder / "pictures");
     const EvaluationPage evaluation(plan, data, results);
     const FigurePage page = evaluation.page();
     std::ostringstream csv;
     write_results_csv(csv, plan, results.units, results.opponents, data.start.output.names);
-    write_file(folder / "results.csv", csv.str());
-    write_file(folder / "tables.md", evaluation.tables_markdown());
-    write_file(folder / "report.html", render_figure_page(page));
-    write_file(folder / "findings.md", figure_page_markdown(page));
-    write_file(folder / "verdicts.md", figure_page_markdown(evaluation.verdicts()));
+    files.add(folder / "results.csv", csv.str());
+    files.add(folder / "tables.md", evaluation.tables_markdown());
+    files.add(folder / "report.html", render_figure_page(page));
+    files.add(folder / "findings.md", figure_page_markdown(page));
+    files.add(folder / "verdicts.md", figure_page_markdown(evaluation.verdicts()));
     for (const PageSection& section : page.sections) {
         for (const PageChart& chart : section.charts) {
-            write_file(folder / "pictures" / (chart.name + ".svg"), standalone_chart(chart.svg));
+            files.add(folder / "pictures" / (chart.name + ".svg"), standalone_chart(chart.svg));
         }
     }
+    files.commit();
 }
 
 } // namespace dfdyn::tools

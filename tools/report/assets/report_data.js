@@ -4,8 +4,6 @@
 // Turns what the program put into the page (base64 of little-endian numbers) into the arrays that the charts
 // draw. What is not finite becomes null, which the charts show as a gap.
 
-const gap_in_sample_times = 10;
-
 function decode_bytes(base64) {
     const text = atob(base64);
     const bytes = new Uint8Array(text.length);
@@ -13,23 +11,6 @@ function decode_bytes(base64) {
         bytes[i] = text.charCodeAt(i);
     }
     return bytes.buffer;
-}
-
-function median(values) {
-    return values.slice().sort((a, b) => a - b)[values.length >> 1];
-}
-
-function time_steps(time) {
-    return Array.from(time.subarray(1), (t, i) => t - time[i]);
-}
-
-// The rows before which every line is interrupted: where a recording begins, and where rows are missing.
-function break_rows(time, recordings) {
-    const steps = time_steps(time);
-    const longest = gap_in_sample_times * median(steps);
-    const starts = recordings.map(recording => recording.start_s);
-    const crosses_start = i => starts.some(start => time[i] < start && start <= time[i + 1]);
-    return steps.flatMap((step, i) => (step > longest || crosses_start(i) ? [i + 1] : []));
 }
 
 // `values` with `filler(row)` inserted before each of the rows `breaks`.
@@ -86,12 +67,12 @@ function decode_innovation(innovation, decode) {
 function decode_report(text) {
     const packed = JSON.parse(text);
     const time = new Float64Array(decode_bytes(packed.time_s));
-    const breaks = break_rows(time, packed.recordings);
+    const breaks = packed.breaks; // rows before which every line is interrupted
     const decode = base64 =>
         insert_at_breaks(new Float32Array(decode_bytes(base64)), breaks, () => null).map(finite_or_null);
     return {
         time: insert_at_breaks(time, breaks, row => (time[row - 1] + time[row]) / 2),
-        sample_time: time.length > 1 ? median(time_steps(time)) : 1,
+        sample_time: packed.sample_time_s,
         outputs: packed.series.map(series => decode_output(series, decode)),
         innovation: packed.innovation === null ? null : decode_innovation(packed.innovation, decode),
         intervals: packed.intervals,

@@ -56,6 +56,14 @@ std::string one_line(std::string text) {
 
 void parse_xml(const std::string& content, const std::string& file, tinyxml2::XMLDocument& document) {
     if (document.Parse(content.data(), content.size()) != tinyxml2::XML_SUCCESS) {
+        const std::size_t begin = content.find_first_not_of(" \t\r\n");
+        if (begin == std::string::npos || content[begin] != '<') {
+            throw InputError(
+                file + ": expected a URDF, which begins with <, found " +
+                (begin == std::string::npos
+                     ? "an empty file"
+                     : in_quotes(one_line(content.substr(begin, content.find('\n', begin) - begin)))));
+        }
         throw InputError(file + ":" + std::to_string(std::max(1, document.ErrorLineNum())) +
                          ": expected XML, found a fault that tinyxml2 calls " +
                          tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()));

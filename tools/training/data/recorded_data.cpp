@@ -32,6 +32,7 @@ std::vector<double> sample_times_s(std::span<const Recording> recordings) {
 TrainingData gather_training_data(std::span<const Recording> recordings) {
     TrainingData data;
     data.sample_period_s = sample_period_s(recordings);
+    data.steady = steady_stride(recordings);
     data.output_names = recordings.front().output.names;
     const auto rows = index(total_rows(recordings));
     data.positions.resize(rows, index(recordings.front().joint_count()));

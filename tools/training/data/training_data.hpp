@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/base/recording/sample_grid.hpp"
 #include "tools/model/model.hpp"
 
 #include <Eigen/Core>
@@ -21,6 +22,7 @@ struct TrainingData {
     std::vector<std::uint8_t> gap_before;
     std::vector<std::string> output_names; ///< m column names
     double sample_period_s = 0;            ///< copied into the model
+    SteadyStride steady;                   ///< for a message about gaps
 };
 
 /// Throws InputError with row and column unless all shapes agree and every number that `kind` uses is finite.

@@ -32,10 +32,15 @@ std::string gaps_text(const TrainingData& data) {
         run = gap ? 1 : run + 1;
         longest = std::max(longest, run);
     }
+    const std::string advice =
+        data.steady.rows == 0 ? ""
+                              : "; one row in " + std::to_string(data.steady.rows) +
+                                    " has constant steps of " + rounded_text(1e3 * data.steady.period_s) +
+                                    " ms: --rows ::" + std::to_string(data.steady.rows);
     return gaps == 0 ? ""
                      : "; the time steps are not constant: " + std::to_string(gaps) +
                            " gaps at a sample period of " + rounded_text(1e3 * data.sample_period_s) +
-                           " ms, at most " + std::to_string(longest) + " rows without one";
+                           " ms, at most " + std::to_string(longest) + " rows without one" + advice;
 }
 
 } // namespace

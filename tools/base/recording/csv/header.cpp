@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <set>
 #include <system_error>
 #include <unordered_map>
@@ -82,7 +83,8 @@ std::optional<std::size_t> joint_number(const std::string& name) {
 }
 
 /// Returns N if the joint positions are q1..qN; 0 if there are none.
-std::size_t count_joints(const Names& columns, const std::string& where) {
+/// `assigned`: --columns names columns.
+std::size_t count_joints(const Names& columns, const std::string& where, bool assigned) {
     std::set<std::size_t> numbers;
     for (const std::string& name : columns) {
         if (const auto number = joint_number(name)) {
@@ -94,7 +96,8 @@ std::size_t count_joints(const Names& columns, const std::string& where) {
         if (number != expected) {
             throw InputError(where + ": expected joint positions q1, q2, ... without a hole, found q" +
                              std::to_string(number) +
-                             (number == 0 ? "" : " but no q" + std::to_string(expected)));
+                             (number == 0 ? "" : " but no q" + std::to_string(expected)) +
+                             (assigned ? ", as --columns assigns them" : ""));
         }
         ++expected;
     }
@@ -103,8 +106,9 @@ std::size_t count_joints(const Names& columns, const std::string& where) {
 
 class Builder {
   public:
-    Builder(Header& header, std::string where, std::unordered_map<std::string, std::size_t> index)
-        : header_(header), where_(std::move(where)), index_(std::move(index)) {}
+    /// `roles`: the program's names of the columns, which --columns may have changed.
+    Builder(Header& header, const Names& roles, std::string where)
+        : header_(header), roles_(roles), where_(std::move(where)), index_(index_columns(roles, where_)) {}
 
     /// Assigns the next places to the columns `names`, in their order.
     Names place(Names names) {
@@ -129,15 +133,30 @@ class Builder {
         std::copy_if(names.begin(), names.end(), std::back_inserter(missing),
                      [this](const std::string& name) { return !index_.contains(name); });
         if (!missing.empty()) {
+            const std::string assigned = assigned_elsewhere(missing);
             throw MissingColumns(where_ + ": expected columns " + listed(names) + ", found no " +
                                  listed(missing) + nearest(missing, names) + "; the header has " +
                                  listed(labels(header_.columns)) +
-                                 " (--columns assigns columns to quantities)");
+                                 (assigned.empty() ? " (--columns assigns columns to quantities)"
+                                                   : "; --columns has assigned " + assigned));
         }
     }
 
   private:
-    /// Returns ` (did you mean "Q1" for q1?)` for the first missing name with a close one in the header.
+    /// Returns `q1 to i1` for the first of the names that the header has, but as another quantity.
+    std::string assigned_elsewhere(const Names& missing) const {
+        for (const std::string& name : missing) {
+            const auto column = std::ranges::find(header_.columns, name);
+            if (column != header_.columns.end()) {
+                const std::string& role = roles_[static_cast<std::size_t>(column - header_.columns.begin())];
+                return name + " to " + (role.empty() ? "nothing" : role);
+            }
+        }
+        return "";
+    }
+
+    /// Returns ` (did you mean "Q1" for q1: --columns q=Q*?)` for the first missing name of each quantity
+    /// with a close one in the header.
     std::string nearest(const Names& missing, const Names& names) const {
         Names unused;
         for (std::size_t column = 0; column < header_.columns.size(); ++column) {
@@ -146,15 +165,37 @@ class Builder {
                 unused.push_back(name);
             }
         }
+        std::map<std::string, std::string> patterns; // by quantity
+        std::string pairs;
         for (const std::string& name : missing) {
-            if (const auto found = nearest_name(name, unused)) {
-                return " (did you mean " + in_quotes(*found) + " for " + name + "?)";
+            const auto found = nearest_name(name, unused);
+            if (found && patterns.emplace(without_number(name), pattern_of(*found, name)).second) {
+                pairs += (pairs.empty() ? "" : ", ") + in_quotes(*found) + " for " + name;
             }
         }
-        return "";
+        std::string columns;
+        for (const auto& [quantity, pattern] : patterns) {
+            if (std::ranges::count(missing, quantity, without_number) ==
+                std::ranges::count(names, quantity, without_number)) { // else a single column is misspelt
+                columns += (columns.empty() ? ": --columns " : ",") + quantity + "=" + listed(Names{pattern});
+            }
+        }
+        return pairs.empty() ? "" : " (did you mean " + pairs + columns + "?)";
+    }
+
+    static std::string without_number(const std::string& name) {
+        return name.substr(0, name.find_last_not_of("0123456789") + 1);
+    }
+
+    /// Returns the pattern of the columns like `column`, which may be meant for `name`: `Q*` for Q1 and q1.
+    static std::string pattern_of(const std::string& column, const std::string& name) {
+        const std::string number = name.substr(without_number(name).size());
+        const std::size_t at = number.empty() ? std::string::npos : column.rfind(number);
+        return at == std::string::npos ? column : std::string(column).replace(at, number.size(), "*");
     }
 
     Header& header_;
+    const Names& roles_;
     std::string where_;
     std::unordered_map<std::string, std::size_t> index_;
     std::size_t next_ = 0;
@@ -229,8 +270,8 @@ Header parse_header(std::string_view line, const std::string& where, const ReadO
     require_separators(header.columns, where);
     index_columns(header.columns, where);
     const Names roles = column_roles(header.columns, options.columns, options.joint_names, where);
-    Builder builder(header, where, index_columns(roles, where));
-    const std::size_t found = count_joints(roles, where);
+    Builder builder(header, roles, where);
+    const std::size_t found = count_joints(roles, where, !options.columns.empty());
     require_chain(found, where, options);
     const std::size_t joint_count = std::max({found, options.joint_count, std::size_t{1}});
     builder.require(needed_columns(joint_count, options));

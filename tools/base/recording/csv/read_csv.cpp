@@ -112,7 +112,7 @@ class Reader {
 
     void take_row(std::string_view line, std::size_t line_number) {
         const std::size_t row = row_++;
-        if (row < options_.rows.first || (options_.rows.last && row >= *options_.rows.last)) {
+        if (!options_.rows.has(row)) {
             return;
         }
         if (const auto fault = parse_row(line)) {
