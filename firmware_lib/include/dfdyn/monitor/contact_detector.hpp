@@ -36,7 +36,7 @@ struct ContactLimits {
 /// - A model's error is partly proportional to what it predicts. The change of the prediction within
 ///   `baseline_s` times `relative` is added to the limit of the motion, as the root of the sum of squares.
 /// - Beyond the speeds and accelerations of the training, the limits of all joints grow in proportion to the
-///   largest ratio, and decrease again within `range_s`.
+///   largest ratio, at most `most_range`, and decrease again within `range_s`.
 /// - Where deviations are larger than in training, a limit grows in proportion to their median, at most by
 ///   `most_growth`. Contacts do not change a median much, unless they fill half of the time.
 ///
@@ -82,6 +82,7 @@ class ContactDetector {
     static constexpr Scalar median_s = 20; ///< time in which a median doubles or halves, at least
     static constexpr Scalar most_growth = 4;
     static constexpr Scalar range_s = Scalar(0.3);
+    static constexpr Scalar most_range = 20;      ///< so that an encoder's jump blinds for a second only
     static constexpr Scalar still = Scalar(0.02); ///< rad/s, largest speed of a standing joint
     static constexpr int cost = 40;               ///< multiply-adds per joint of `tick`, at most
 
@@ -219,7 +220,7 @@ class ContactDetector {
             range = std::max(
                 {range, speed(k) / limits_[k].speed, this->acceleration(k) / limits_[k].acceleration});
         }
-        range_ = std::max(range, range_ + steps.range * (1 - range_));
+        range_ = std::max(std::min(range, most_range), range_ + steps.range * (1 - range_));
     }
 
     /// Returns the magnitude of the deviation in units of its limit.
