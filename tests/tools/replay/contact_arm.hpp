@@ -22,14 +22,15 @@ inline tools::Robot contact_robot(const std::string& urdf, const std::string& ti
     return tools::read_robot(std::string(DFDYN_TEST_DATA_DIR) + "/robots/" + urdf, options);
 }
 
-/// Rigid body and friction with the limits of contacts, as `dfdyn train` computes them.
+/// Rigid body and friction with the limits of contacts, as `dfdyn train --starts` computes them.
 inline tools::TrainedModel contact_model(std::span<const tools::Recording> recordings,
-                                         const tools::Robot& robot, tools::OutputKind outputs) {
+                                         const tools::Robot& robot, tools::OutputKind outputs, int starts) {
     tools::ModelTraining training;
     training.options.model = &tools::structures::P;
     training.options.input = tools::InputKind::DFR;
     training.options.lags = 10;
     training.options.likelihood_rows = 600;
+    training.options.starts = starts;
     training.physics = tools::RobotPhysics{
         robot, {"viscous_friction", "coulomb_friction", "rotor_inertia", "torque_offset"}, 0.05, {}};
     tools::TrainedModel model =

@@ -264,7 +264,7 @@ void print(const std::string& name, Score score) {
 /// Prints the scores of an arm and checks that the default limits have no false contact. Returns the pushes
 /// found with limits that are silent without contact, by the detector and by the threshold.
 std::pair<int, int> compare(const RealArm& arm) {
-    const TrainedModel model = contact_model(arm.training, arm.robot, arm.outputs);
+    const TrainedModel model = contact_model(arm.training, arm.robot, arm.outputs, 6);
     const Threshold threshold(arm, model);
     const auto at_rate = [&](double per_hour) {
         return [&model, per_hour](const Recording& recording, double scale) {
