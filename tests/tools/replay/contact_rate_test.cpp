@@ -150,7 +150,8 @@ void add_contacts(const TrainedModel& model, const Recording& recording, Counts&
               });
 }
 
-TEST_CASE("fewer than one false contact in ten hours of a simulated arm", "[.long][contact-rate]") {
+TEST_CASE("the rate of false contacts of a simulated arm is held within a factor of five",
+          "[.long][contact-rate]") {
     constexpr double duration_s = 300;
     constexpr std::uint64_t first_seed = 1001;
     constexpr int recordings = 240;
@@ -169,7 +170,9 @@ TEST_CASE("fewer than one false contact in ten hours of a simulated arm", "[.lon
             std::cout << std::endl;
         }
     }
-    CHECK(counts.front() < 2);
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        CHECK(counts[i] <= 5 * rates_per_hour[i] * recordings * duration_s / 3600);
+    }
 }
 
 /// Pushes of twice the joint's Coulomb friction, with an abrupt start, in random seconds.
