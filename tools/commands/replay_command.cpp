@@ -88,6 +88,8 @@ void check_usage(const ReplayOptions& options) {
            "--duration, --record: expected --can, found a recording");
     refuse(!options.monitor.wanted() && options.monitor.has_choice(),
            "--false-alarms, --robot: expected --monitor or --changes, found neither");
+    refuse(!options.contacts.wanted() && options.contacts.rate_per_hour,
+           "--contact-rate: expected --contacts or --contact-list, found neither");
 }
 
 /// The estimator of the replay, with its contact detector and its monitor if there are any.
@@ -117,7 +119,7 @@ Replaying make_replaying(const ReplayOptions& options, std::span<const TrainedMo
     }
     if (options.contacts.wanted()) {
         auto watched = with_contacts(std::move(replaying.estimator),
-                                     ContactOptions::limits(models.front(), shown(options.models.front())));
+                                     options.contacts.limits(models.front(), shown(options.models.front())));
         replaying.detector = watched.get();
         replaying.estimator = std::move(watched);
     }

@@ -56,9 +56,18 @@ struct OutputModel {
 /// Deviations of joints without contact (see dfdyn::ContactDetector), m x 3: per joint standing, changing,
 /// moving. Empty: not measured, because the outputs are a wrench or by an older version.
 struct ContactModel {
-    std::vector<double> limit; ///< smallest deviation of a contact, > 0
-    std::vector<double> usual; ///< median, >= 0
+    std::vector<double> limit;          ///< smallest deviation of a contact, > 0
+    std::vector<double> usual;          ///< median, >= 0
+    std::vector<double> relative{};     ///< m: added limit per change of the prediction, >= 0
+    std::vector<double> speed{};        ///< m: largest usual, rad/s
+    std::vector<double> acceleration{}; ///< m: largest usual, rad/s²
+    /// Relative decrease of all limits per factor e of the rate of false contacts, from
+    /// `contact_rate_per_hour` on. 0: unknown, the model is of an older version.
+    double rate_slope = 0;
 };
+
+/// Rate of false contacts, per hour, at the limits of a ContactModel.
+inline constexpr double contact_rate_per_hour = 0.1;
 
 /// Plausible range of the sensors; samples beyond it are rejected.
 struct LimitModel {

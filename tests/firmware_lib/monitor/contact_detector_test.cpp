@@ -3,6 +3,7 @@
 
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -14,7 +15,8 @@ using Detector = dfdyn::ContactDetector<double, 2>;
 
 constexpr std::int64_t period_ns = 2'000'000;
 constexpr double period_s = 0.002;
-constexpr dfdyn::ContactLimits<double> limit{{1, 1, 1}, {0.1, 0.1, 0.1}};
+constexpr double any = 1e6;
+constexpr dfdyn::ContactLimits<double> limit{{1, 1, 1}, {0.1, 0.1, 0.1}, 0, any, any};
 constexpr dfdyn::ContactLimits<double> limits[2]{limit, limit};
 
 /// Function of the time in seconds.
@@ -29,14 +31,17 @@ struct Arm {
 
     double time_s() const { return 1e-9 * static_cast<double>(time_ns); }
 
-    void run(double duration_s, const Signal& position, const Signal& error) {
+    void run(
+        double duration_s, const Signal& position, const Signal& error,
+        const Signal& prediction = [](double) { return 0; }) {
         const double end_s = time_s() + duration_s;
         while (time_s() < end_s) {
             time_ns += period_ns;
             const double q[2]{position(time_s()), 0};
             const double e[2]{error(time_s()), 0};
+            const double p[2]{prediction(time_s()), 0};
             const bool before = detector.contact();
-            const bool now = detector.tick(time_ns, q, e);
+            const bool now = detector.tick(time_ns, q, e, p);
             contacts += now && !before ? 1 : 0;
             first_s = now && first_s < 0 ? time_s() : first_s;
             last_s = now ? time_s() : last_s;
@@ -85,13 +90,13 @@ TEST_CASE("deviations of several joints add to one contact", "[contacts]") {
         for (int i = 0; i < 1200; ++i) {
             const double q[2]{};
             const double e[2]{i < 1000 ? 0 : first, i < 1000 ? 0 : second};
-            found = detector.tick(i * period_ns, q, e) || found;
+            found = detector.tick(i * period_ns, q, e, q) || found;
         }
         return found;
     };
     CHECK_FALSE(contact(0.9, 0));
     CHECK_FALSE(contact(0.5, 0.5));
-    CHECK(contact(0.9, -0.9));
+    CHECK(contact(0.95, -0.95));
 }
 
 TEST_CASE("errors that change slowly are no contact however large they become", "[contacts]") {
@@ -131,6 +136,68 @@ TEST_CASE("noise and a hundred pushes in it do not raise the limits of an arm", 
     CHECK(arm.contacts == std::lround(500 / period) - 1); // none in the first 2 s
 }
 
+/// A detector of one joint that has these limits.
+struct LimitedArm {
+    dfdyn::ContactLimits<double> limits[2];
+    Arm arm;
+
+    LimitedArm(double relative, double acceleration)
+        : limits{{{1, 1, 1}, {0.1, 0.1, 0.1}, relative, any, acceleration}, limit}, arm{{{}, limits}} {}
+};
+
+TEST_CASE("an error that is the usual share of a change of the prediction is no contact", "[contacts]") {
+    const auto contacts = [](double relative) {
+        LimitedArm one(relative, any);
+        const auto jump = [](double t) { return t < 2 ? 0.0 : 4.0; };
+        one.arm.run(
+            6, moving, [&](double t) { return 0.4 * jump(t); }, jump);
+        return one.arm.contacts;
+    };
+    CHECK(contacts(0) == 1);
+    CHECK(contacts(0.5) == 0);
+    LimitedArm pushed(0.5, any); // long after the change
+    pushed.arm.run(
+        9, moving, [](double t) { return t < 7 ? 0.0 : 1.6; }, [](double t) { return t < 2 ? 0.0 : 4.0; });
+    CHECK(pushed.arm.contacts == 1);
+}
+
+TEST_CASE("an error at an acceleration far above those of the training is no contact, later it is one",
+          "[contacts]") {
+    const auto contacts = [](double usual_acceleration, double at_s) {
+        LimitedArm one(0, usual_acceleration);
+        // 0.1 s of 10 rad/s²
+        const auto position = [](double t) {
+            const double since = std::clamp(t - 3, 0.0, 0.1);
+            return 0.5 * t + 5 * since * since + (t > 3.1 ? t - 3.1 : 0.0);
+        };
+        one.arm.run(6, position, [=](double t) { return t >= at_s && t < at_s + 0.3 ? 2.0 : 0.0; });
+        return one.arm.contacts;
+    };
+    CHECK(contacts(20, 3.03) == 1);
+    CHECK(contacts(1, 3.03) == 0);
+    CHECK(contacts(1, 5) == 1);
+}
+
+TEST_CASE("a jump of an encoder hides contacts for a second only", "[contacts]") {
+    LimitedArm one(0, 1);
+    one.arm.run(
+        5, [](double t) { return t >= 2 && t < 2.002 ? 1e6 : 0.0; },
+        [](double t) { return t >= 3.2 && t < 3.6 ? 3.0 : 0.0; });
+    CHECK(one.arm.contacts == 1);
+    CHECK(one.arm.first_s == Approx(3.25).margin(0.05));
+}
+
+TEST_CASE("a second push is a contact of its own if the error of the model remains between them",
+          "[contacts]") {
+    const double sign = GENERATE(-1.0, 1.0);
+    Arm arm;
+    arm.run(6, moving, [sign](double t) {
+        const bool pushed = (t >= 2 && t < 2.4) || (t >= 3.2 && t < 3.6);
+        return t < 2 ? 0.0 : sign * (pushed ? 4.0 : 1.3);
+    });
+    CHECK(arm.contacts == 2);
+}
+
 TEST_CASE("nothing that is not finite, late or early becomes a contact or blinds the detector",
           "[contacts]") {
     using Limits = std::numeric_limits<double>;
@@ -140,16 +207,17 @@ TEST_CASE("nothing that is not finite, late or early becomes a contact or blinds
         arm.run(2, still, still);
         const double q[2]{};
         const double e[2]{bad, 0};
-        CHECK_FALSE(arm.detector.tick(arm.time_ns + period_ns, q, e));
-        CHECK_FALSE(arm.detector.tick(arm.time_ns + period_ns, e, q));
+        CHECK_FALSE(arm.detector.tick(arm.time_ns + period_ns, q, e, q));
+        CHECK_FALSE(arm.detector.tick(arm.time_ns + period_ns, q, q, e));
+        CHECK_FALSE(arm.detector.tick(arm.time_ns + period_ns, e, q, q));
         CHECK_FALSE(arm.detector.running());
         arm.time_ns += 10'000'000'000; // a gap
         const double start_s = arm.time_s();
         arm.run(3, still, [start_s](double t) { return t >= start_s + 1 && t < start_s + 1.5 ? 2.0 : 0.0; });
         CHECK(arm.contacts == 1);
         CHECK(arm.first_s == Approx(start_s + 1.05).margin(0.05));
-        CHECK_FALSE(arm.detector.tick(arm.time_ns, q, q));     // the same stamp again
-        CHECK_FALSE(arm.detector.tick(arm.time_ns - 5, q, q)); // back
+        CHECK_FALSE(arm.detector.tick(arm.time_ns, q, q, q));     // the same stamp again
+        CHECK_FALSE(arm.detector.tick(arm.time_ns - 5, q, q, q)); // back
     }
 }
 

@@ -144,6 +144,30 @@ TEST_CASE("the extrapolation data of a model read back and a model without them 
     CHECK(refusal(model_to_json(model)).has_value());
 }
 
+TEST_CASE("the limits of contacts read back, also those of older files without a rate") {
+    std::mt19937_64 engine(1);
+    TrainedModel model = small_model(engine, InputKind::DFSR);
+    const std::size_t outputs = model.outputs.names.size();
+    model.contact.limit.assign(3 * outputs, 1.5);
+    model.contact.usual.assign(3 * outputs, 0.25);
+    CHECK(model_to_json(model).find("rate_slope") == std::string::npos);
+    CHECK(model_from_json(model_to_json(model), "m.json").contact.rate_slope == 0);
+    model.contact.relative.assign(outputs, 0.5);
+    model.contact.speed.assign(outputs, 2);
+    model.contact.acceleration.assign(outputs, 8);
+    model.contact.rate_slope = 0.125;
+    const ContactModel read = model_from_json(model_to_json(model), "m.json").contact;
+    CHECK(read.limit == model.contact.limit);
+    CHECK(read.usual == model.contact.usual);
+    CHECK(read.relative == model.contact.relative);
+    CHECK(read.speed == model.contact.speed);
+    CHECK(read.acceleration == model.contact.acceleration);
+    CHECK(read.rate_slope == model.contact.rate_slope);
+    model.contact.relative[1] = -0.5;
+    CHECK(refusal(model_to_json(model)) ==
+          "m.json: contact.relative: expected numbers of at least 0, found \"-0.5\"");
+}
+
 TEST_CASE("the prediction limits of a model read back and a model without them is unchanged") {
     std::mt19937_64 engine(1);
     TrainedModel model = small_model(engine, InputKind::DFR);

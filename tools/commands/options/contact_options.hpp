@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -16,14 +17,16 @@ namespace dfdyn::tools {
 /// The options of a replay with contact detection.
 struct ContactOptions {
     bool chosen = false;
-    std::filesystem::path file; ///< contacts.json; empty: none
+    std::filesystem::path file;          ///< contacts.json; empty: none
+    std::optional<double> rate_per_hour; ///< of false contacts
 
     bool wanted() const { return chosen || !file.empty(); }
 
     void add_to(CLI::App& command);
 
-    /// Returns the limits of the first model. Throws InputError, naming `source`, if it has none.
-    static const ContactModel& limits(const TrainedModel& model, const std::string& source);
+    /// Returns the limits of the first model for the chosen rate of false contacts. Throws InputError, naming
+    /// `source`, if it has none.
+    ContactModel limits(const TrainedModel& model, const std::string& source) const;
 
     /// Prints the contacts.
     void show(std::span<const RecordedContacts> contacts, std::span<const std::string> outputs) const;

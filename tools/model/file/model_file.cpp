@@ -31,6 +31,7 @@ constexpr int largest_joint_count = 64;
 constexpr int largest_feature_count = 5000;
 constexpr int largest_output_count = 64;
 constexpr double largest_parameter_variance_factor = 1e9;
+constexpr double largest_rate_slope = 1;
 
 ordered_json features_to_json(const FeatureModel& features) {
     return {{"orthogonal", features.orthogonal},
@@ -38,6 +39,17 @@ ordered_json features_to_json(const FeatureModel& features) {
             {"seed", features.seed},
             {"length_scale", features.length_scale},
             {"omega", singles(features.omega)}};
+}
+
+ordered_json contact_to_json(const ContactModel& contact) {
+    ordered_json json{{"limit", singles(contact.limit)}, {"usual", singles(contact.usual)}};
+    if (contact.rate_slope > 0) { // absent from older files
+        json["relative"] = singles(contact.relative);
+        json["speed"] = singles(contact.speed);
+        json["acceleration"] = singles(contact.acceleration);
+        json["rate_slope"] = single(contact.rate_slope);
+    }
+    return json;
 }
 
 ordered_json extrapolation_to_json(const ExtrapolationModel& extrapolation, const Structure& structure) {
@@ -105,7 +117,7 @@ ordered_json model_json(const TrainedModel& model) {
         json["limits"]["prediction"] = singles(model.limits.prediction);
     }
     if (!model.contact.limit.empty()) {
-        json["contact"] = {{"limit", singles(model.contact.limit)}, {"usual", singles(model.contact.usual)}};
+        json["contact"] = contact_to_json(model.contact);
     }
     if (model.extrapolation) {
         json["extrapolation"] = extrapolation_to_json(*model.extrapolation, structure_of(model));
@@ -160,13 +172,25 @@ ExtrapolationModel read_extrapolation(const JsonReader& reader, int outputs, con
     return extrapolation;
 }
 
-ContactModel read_contact(const JsonReader& reader, int outputs) {
-    ContactModel contact{reader.positive_numbers("limit", joint_motion_count * outputs),
-                         reader.numbers("usual", joint_motion_count * outputs)};
-    for (const double value : contact.usual) {
+void check_not_negative(const JsonReader& reader, const char* name, const std::vector<double>& values) {
+    for (const double value : values) {
         if (value < 0) {
-            throw reader.error("usual", "numbers of at least 0", in_quotes(number_text(value)));
+            throw reader.error(name, "numbers of at least 0", in_quotes(number_text(value)));
         }
+    }
+}
+
+ContactModel read_contact(const JsonReader& reader, int outputs) {
+    ContactModel contact;
+    contact.limit = reader.positive_numbers("limit", joint_motion_count * outputs);
+    contact.usual = reader.numbers("usual", joint_motion_count * outputs);
+    check_not_negative(reader, "usual", contact.usual);
+    if (reader.has("rate_slope")) { // absent from older files
+        contact.relative = reader.numbers("relative", outputs);
+        check_not_negative(reader, "relative", contact.relative);
+        contact.speed = reader.positive_numbers("speed", outputs);
+        contact.acceleration = reader.positive_numbers("acceleration", outputs);
+        contact.rate_slope = reader.number_within("rate_slope", 0, largest_rate_slope);
     }
     return contact;
 }

@@ -11,7 +11,8 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr double unlimited = 1e30;
+constexpr float unlimited = 1e30F;
+constexpr double least_scale = 0.2; // of limits at a high rate
 
 void set_errors(const MeasuredSample& sample, const Tick& tick, std::span<float> error) {
     for (std::size_t k = 0; k < error.size(); ++k) {
@@ -26,7 +27,7 @@ class Watched final : public EstimatorDecorator<ContactEstimator> {
           position_(contact.limit.size() / joint_motion_count), error_(position_.size()), contacts_(kept) {}
 
     Tick tick(const MeasuredSample& sample, Budget budget) override {
-        const Tick tick = estimator().tick(sample, budget);
+        const Tick tick = estimator().tick(sample, informs() ? budget : Budget::predict_only());
         note(sample.time_ns, watch(sample, tick));
         return tick;
     }
@@ -54,6 +55,17 @@ class Watched final : public EstimatorDecorator<ContactEstimator> {
   private:
     static constexpr std::size_t kept = 4096;
 
+    /// Returns whether the last tick was of an untouched arm in motion. A contact is no property of the arm,
+    /// and the friction of an arm at rest holds torques that no other motion shows.
+    bool informs() const {
+        const ContactWatch::Detector& detector = watch_.detector();
+        bool moves = !detector.running();
+        for (int k = 0; k < detector.size(); ++k) {
+            moves = moves || detector.motion(k) != JointMotion::standing;
+        }
+        return moves && !detector.contact();
+    }
+
     bool watch(const MeasuredSample& sample, const Tick& tick) {
         if (!tick.status.predicted() || sample.output.empty()) {
             watch_.interrupt();
@@ -62,7 +74,7 @@ class Watched final : public EstimatorDecorator<ContactEstimator> {
         std::ranges::transform(sample.position, position_.begin(),
                                [](double x) { return static_cast<float>(x); });
         set_errors(sample, tick, error_);
-        return watch_.tick(sample.time_ns, position_, error_);
+        return watch_.tick(sample.time_ns, position_, error_, tick.prediction);
     }
 
     void note(std::int64_t time_ns, bool contact) {
@@ -95,6 +107,12 @@ std::vector<ContactLimits<float>> limits_of(const ContactModel& contact) {
         joint.limit[i % joint_motion_count] = static_cast<float>(contact.limit[i]);
         joint.usual[i % joint_motion_count] = static_cast<float>(contact.usual[i]);
     }
+    for (std::size_t k = 0; k < limits.size(); ++k) {
+        limits[k].relative = contact.relative.empty() ? 0 : static_cast<float>(contact.relative[k]);
+        limits[k].speed = contact.speed.empty() ? unlimited : static_cast<float>(contact.speed[k]);
+        limits[k].acceleration =
+            contact.acceleration.empty() ? unlimited : static_cast<float>(contact.acceleration[k]);
+    }
     return limits;
 }
 
@@ -107,6 +125,20 @@ ContactWatch::ContactWatch(const ContactModel& contact)
 ContactModel unlimited_contact(std::size_t joints) {
     return {std::vector<double>(joints * joint_motion_count, unlimited),
             std::vector<double>(joints * joint_motion_count, 0)};
+}
+
+ContactModel scaled_contact(ContactModel contact, double factor) {
+    for (std::vector<double>* values : {&contact.limit, &contact.relative}) {
+        for (double& value : *values) {
+            value *= factor;
+        }
+    }
+    return contact;
+}
+
+ContactModel contact_at_rate(const ContactModel& contact, double per_hour) {
+    const double scale = 1 - contact.rate_slope * std::log(per_hour / contact_rate_per_hour);
+    return scaled_contact(contact, std::max(scale, least_scale));
 }
 
 std::vector<float> prediction_errors(const MeasuredSample& sample, const Tick& tick) {

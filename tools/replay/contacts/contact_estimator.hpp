@@ -32,8 +32,9 @@ class ContactWatch {
     ContactWatch& operator=(const ContactWatch&) = delete;
 
     /// Adds a tick. Returns true during a contact. Allocates nothing.
-    bool tick(std::int64_t time_ns, std::span<const float> position, std::span<const float> error) {
-        return detector_.tick(time_ns, position.data(), error.data());
+    bool tick(std::int64_t time_ns, std::span<const float> position, std::span<const float> error,
+              std::span<const float> prediction) {
+        return detector_.tick(time_ns, position.data(), error.data(), prediction.data());
     }
     void interrupt() { detector_.interrupt(); }
     const Detector& detector() const { return detector_; }
@@ -46,6 +47,12 @@ class ContactWatch {
 /// Limits that no deviation reaches.
 ContactModel unlimited_contact(std::size_t joints);
 
+/// Returns `contact` with limits `factor` times as large.
+ContactModel scaled_contact(ContactModel contact, double factor);
+
+/// Returns `contact` with limits for this rate of false contacts per hour, > 0. Requires a `rate_slope`.
+ContactModel contact_at_rate(const ContactModel& contact, double per_hour);
+
 /// Returns measured - predicted of each output. Requires both.
 std::vector<float> prediction_errors(const MeasuredSample& sample, const Tick& tick);
 
@@ -56,7 +63,8 @@ class ContactEstimator : public HostEstimator {
     virtual std::vector<DetectedContact> take_contacts() = 0;
 };
 
-/// `contact`: with limits.
+/// Returns an estimator that detects contacts with the limits `contact`. It learns neither during a contact
+/// nor while all joints are at rest.
 std::unique_ptr<ContactEstimator> with_contacts(std::unique_ptr<HostEstimator> estimator,
                                                 const ContactModel& contact);
 

@@ -9,35 +9,46 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <limits>
 
 namespace dfdyn::tools {
 
 namespace {
 
 constexpr std::size_t block_count = 4;
-constexpr int any_motion = -1;
-constexpr double tail_share = 0.995;
+constexpr double envelope_share = 0.999;
 constexpr double floor_share = 0.9;
-constexpr double tail_factor = 2.64;
-constexpr double largest_factor = 1.375;
-constexpr double excess_factor = 1.2;
-constexpr double standing_share = 1.0 / 3;
-constexpr double least_limit = 1e-6; // in units of noise_std
+constexpr double range_share = 0.995;
+constexpr double standing_share = 0.5;
+constexpr double least_limit = 1e-6;           // in units of noise_std
+constexpr double speed_allowance = 0.05;       // rad/s
+constexpr double acceleration_allowance = 0.2; // rad/s²
+constexpr std::size_t fewest_values = 20;      // of a motion, for its own envelope
+constexpr std::array relative_choices{0.0, 0.03, 0.05, 0.08, 0.12, 0.18, 0.25, 0.35, 0.5, 0.7};
+constexpr double out_of_reach = 1e3; // factor of limits with which nothing is a contact
+constexpr std::int64_t peak_interval_ns = 1'000'000'000;
+constexpr double hour_s = 3600;
+constexpr std::size_t tail_part = 10; // one in so many peaks
+constexpr std::size_t least_tail = 10;
+constexpr double new_motion_factor = 1.2;
+constexpr double least_rate_slope = 1e-3;
 
-/// Magnitude of a joint's deviation in a tick.
+/// What a joint does in a tick.
 struct Deviation {
     int motion = 0;
-    double size = 0;
+    double size = 0;   ///< magnitude of the deviation
+    double change = 0; ///< magnitude of the prediction's recent change
+    double speed = 0, acceleration = 0;
 };
 
-/// Magnitudes of all joints, by joint.
-using Deviations = std::vector<std::vector<Deviation>>;
+using Deviations = std::vector<Deviation>; ///< of a joint
 
 /// A row with the error of its prediction.
 struct PredictedRow {
     std::int64_t time_ns = 0;
     bool begins = false; ///< does not follow the row before
-    std::vector<float> position, error;
+    std::vector<float> position, error, prediction;
 };
 
 /// Appends the rows from `first` to `last` that are predicted, without learning.
@@ -51,7 +62,8 @@ void predict_rows(HostEstimator& estimator, std::span<const Recording> recording
                       predicted.push_back({sample.time_ns,
                                            !follows,
                                            {sample.position.begin(), sample.position.end()},
-                                           prediction_errors(sample, tick)});
+                                           prediction_errors(sample, tick),
+                                           {tick.prediction.begin(), tick.prediction.end()}});
                       follows = true;
                   }
               });
@@ -79,7 +91,7 @@ std::vector<PredictedRow> calibration_rows(const TrainedModel& model, std::span<
     return predicted;
 }
 
-/// Runs a detector over the rows; calls `use(detector)` after each but the first of a recording.
+/// Runs a detector over the rows; calls `use(row, detector)` after each.
 template <class Use>
 void detect(std::span<const PredictedRow> rows, const ContactModel& contact, Use use) {
     ContactWatch watch(contact);
@@ -87,78 +99,150 @@ void detect(std::span<const PredictedRow> rows, const ContactModel& contact, Use
         if (row.begins) {
             watch.interrupt();
         }
-        watch.tick(row.time_ns, row.position, row.error);
-        use(watch.detector());
+        watch.tick(row.time_ns, row.position, row.error, row.prediction);
+        use(row, watch.detector());
     }
 }
 
-/// Returns the deviations of `joints` without limits.
-Deviations deviations_of(std::span<const PredictedRow> rows, std::size_t joints) {
-    Deviations deviations(joints);
-    detect(rows, unlimited_contact(joints), [&](const ContactWatch::Detector& detector) {
+/// Returns the deviations of each joint without limits.
+std::vector<Deviations> deviations_of(std::span<const PredictedRow> rows, std::size_t joints) {
+    std::vector<Deviations> deviations(joints);
+    detect(rows, unlimited_contact(joints), [&](const PredictedRow&, const ContactWatch::Detector& detector) {
         for (std::size_t k = 0; k < joints; ++k) {
             const int joint = static_cast<int>(k);
-            deviations[k].push_back({static_cast<int>(detector.motion(joint)),
-                                     std::abs(static_cast<double>(detector.deviation(joint)))});
+            const auto magnitude = [](float value) { return std::abs(static_cast<double>(value)); };
+            deviations[k].push_back(
+                {static_cast<int>(detector.motion(joint)), magnitude(detector.deviation(joint)),
+                 magnitude(detector.predicted_change(joint)), magnitude(detector.speed(joint)),
+                 magnitude(detector.acceleration(joint))});
         }
     });
     return deviations;
 }
 
-/// Returns the largest excess of a detector with these limits.
-double largest_excess(std::span<const PredictedRow> rows, const ContactModel& contact) {
-    double largest = 0;
-    detect(rows, contact, [&largest](const ContactWatch::Detector& detector) {
-        largest = std::max(largest, static_cast<double>(detector.excess()));
-    });
-    return largest;
-}
-
-/// Returns the sizes of the deviations in one motion, or in all: `any_motion`.
-std::vector<double> sizes_of(const std::vector<Deviation>& deviations, int motion) {
-    std::vector<double> sizes;
+/// Returns `value(deviation)` of those that `chosen` accepts.
+template <class Value, class Chosen>
+std::vector<double> values_of(const Deviations& deviations, Value value, Chosen chosen) {
+    std::vector<double> values;
     for (const Deviation& one : deviations) {
-        if (motion == any_motion || one.motion == motion) {
-            sizes.push_back(one.size);
+        if (chosen(one)) {
+            values.push_back(std::invoke(value, one));
         }
     }
-    return sizes;
+    return values;
 }
 
-std::array<double, joint_motion_count> limits_of_joint(const std::vector<Deviation>& deviations,
-                                                       double least) {
-    const std::vector<double> all = sizes_of(deviations, any_motion);
-    const double floor = all.empty() ? least : std::max(quantile(all, floor_share), least);
-    std::array<double, joint_motion_count> limits{};
-    for (int motion = 0; motion < joint_motion_count; ++motion) {
-        const std::vector<double> sizes = sizes_of(deviations, motion);
-        const double tail = sizes.empty() ? 0 : quantile(sizes, tail_share);
-        const double largest = sizes.empty() ? 0 : *std::ranges::max_element(sizes);
-        limits[static_cast<std::size_t>(motion)] =
-            std::max(tail_factor * std::max(tail, floor), largest_factor * largest);
+constexpr auto in_any_motion = [](const Deviation&) { return true; };
+
+auto in_motion(int motion) {
+    return [motion](const Deviation& one) { return one.motion == motion; };
+}
+
+/// Limits of a joint that hold nearly all of its deviations.
+struct Envelope {
+    std::array<double, joint_motion_count> limit{};
+    double relative = 0;
+
+    double at(const Deviation& one) const {
+        return std::hypot(limit[static_cast<std::size_t>(one.motion)], relative * one.change);
     }
-    limits[0] = std::max(limits[0], standing_share * limits[1]);
-    return limits;
+};
+
+Envelope envelope_with(const Deviations& deviations, double relative, double floor) {
+    Envelope envelope{{}, relative};
+    const auto unexplained = [relative](const Deviation& one) {
+        const double explained = relative * one.change;
+        return std::sqrt(std::max(one.size * one.size - explained * explained, 0.0));
+    };
+    for (int motion = 0; motion < joint_motion_count; ++motion) {
+        const std::vector<double> sizes = values_of(deviations, unexplained, in_motion(motion));
+        const double tail = sizes.size() < fewest_values ? 0 : quantile(sizes, envelope_share);
+        envelope.limit[static_cast<std::size_t>(motion)] = std::max(tail, floor);
+    }
+    envelope.limit[0] = std::max(envelope.limit[0], standing_share * envelope.limit[1]);
+    return envelope;
+}
+
+/// Returns the envelope with the smallest geometric mean of its limits.
+Envelope tightest_envelope(const Deviations& deviations, double least) {
+    const std::vector<double> sizes = values_of(deviations, &Deviation::size, in_any_motion);
+    const double floor = sizes.empty() ? least : std::max(quantile(sizes, floor_share), least);
+    Envelope tightest;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const double relative : relative_choices) {
+        const Envelope envelope = envelope_with(deviations, relative, floor);
+        double sum = 0;
+        for (const Deviation& one : deviations) {
+            sum += std::log(envelope.at(one));
+        }
+        if (sum < smallest) {
+            smallest = sum;
+            tightest = envelope;
+        }
+    }
+    return tightest;
+}
+
+/// Appends the limits of a joint.
+void add_joint(ContactModel& contact, const Deviations& deviations, double least) {
+    const Envelope envelope = tightest_envelope(deviations, least);
+    contact.limit.insert(contact.limit.end(), envelope.limit.begin(), envelope.limit.end());
+    contact.relative.push_back(envelope.relative);
+    for (int motion = 0; motion < joint_motion_count; ++motion) {
+        const std::vector<double> sizes = values_of(deviations, &Deviation::size, in_motion(motion));
+        contact.usual.push_back(sizes.empty() ? 0 : median(sizes));
+    }
+    const auto largest_usual = [&](double Deviation::*value) {
+        return deviations.empty() ? 0 : quantile(values_of(deviations, value, in_any_motion), range_share);
+    };
+    contact.speed.push_back(largest_usual(&Deviation::speed) + speed_allowance);
+    contact.acceleration.push_back(largest_usual(&Deviation::acceleration) + acceleration_allowance);
+}
+
+/// Returns the largest excess of each second, in descending order.
+std::vector<double> excess_peaks(std::span<const PredictedRow> rows, const ContactModel& contact) {
+    std::vector<double> peaks;
+    std::int64_t begin_ns = 0;
+    detect(rows, scaled_contact(contact, out_of_reach),
+           [&](const PredictedRow& row, const ContactWatch::Detector& detector) {
+               if (peaks.empty() || row.begins || row.time_ns - begin_ns >= peak_interval_ns) {
+                   peaks.push_back(0);
+                   begin_ns = row.time_ns;
+               }
+               peaks.back() = std::max(peaks.back(), out_of_reach * static_cast<double>(detector.excess()));
+           });
+    std::ranges::sort(peaks, std::greater{});
+    return peaks;
+}
+
+/// Sets the limits to those that are exceeded `contact_rate_per_hour` times on average. The largest tenth of
+/// the peaks has an exponential tail.
+void set_rate(ContactModel& contact, const std::vector<double>& peaks) {
+    const std::size_t tail = std::max(std::min(peaks.size() / 2, least_tail), peaks.size() / tail_part);
+    if (tail == 0) {
+        return;
+    }
+    const double threshold = peaks[tail];
+    double mean = 0;
+    for (std::size_t i = 0; i < tail; ++i) {
+        mean += (peaks[i] - threshold) / static_cast<double>(tail);
+    }
+    const double per_hour = hour_s * static_cast<double>(tail) / static_cast<double>(peaks.size());
+    const double level = std::max(threshold + mean * std::log(per_hour / contact_rate_per_hour), 1.0);
+    contact = scaled_contact(contact, new_motion_factor * level);
+    contact.rate_slope = std::max(mean / level, least_rate_slope);
 }
 
 } // namespace
 
 ContactModel measure_contact_limits(const TrainedModel& model, std::span<const Recording> recordings) {
     const std::vector<PredictedRow> rows = calibration_rows(model, recordings);
-    const Deviations deviations = deviations_of(rows, model.outputs.names.size());
+    const std::vector<Deviations> deviations = deviations_of(rows, model.outputs.names.size());
     ContactModel contact;
     for (std::size_t k = 0; k < deviations.size(); ++k) {
-        const auto limits = limits_of_joint(deviations[k], least_limit * model.outputs.noise_std[k]);
-        contact.limit.insert(contact.limit.end(), limits.begin(), limits.end());
-        for (int motion = 0; motion < joint_motion_count; ++motion) {
-            const std::vector<double> sizes = sizes_of(deviations[k], motion);
-            contact.usual.push_back(sizes.empty() ? 0 : median(sizes));
-        }
+        add_joint(contact, deviations[k], least_limit * model.outputs.noise_std[k]);
     }
-    const double factor = std::max(1.0, excess_factor * largest_excess(rows, contact));
-    for (double& limit : contact.limit) {
-        limit *= factor;
-    }
+    set_rate(contact, excess_peaks(rows, contact));
     return contact;
 }
 

@@ -12,11 +12,17 @@ namespace dfdyn::tools {
 /// be joint torques or currents, and nobody may touch the arm in `recordings`, those of the training.
 ///
 /// Each of four blocks of time is predicted by a frozen estimator that has learned the others from the prior,
-/// and all rows by the frozen model, because the errors of both differ. A joint's limit for a JointMotion is
-/// the larger of 2.64 times the 99.5 % quantile of its deviations (at least the 90 % quantile of all motions)
-/// and 1.375 times the largest of them. A standing joint's limit is at least a third of that of a changing
-/// one, because its friction bears any torque up to the break-away torque. Then all limits grow in proportion
-/// until no row has an excess above 1 / 1.2. The factors were chosen on the UR5 recordings No5 to No9. Cost:
+/// and all rows by the frozen model, because the errors of both differ.
+///
+/// A joint's limits for the three JointMotions are the 99.9 % quantiles of its deviations, or the 90 %
+/// quantile of all motions if that is larger. A part of them is in proportion to the change of the
+/// prediction, by the factor that makes the limits smallest. A standing joint's limit is at least half of
+/// that of a changing one, because its friction bears any torque up to the break-away torque. Speeds and
+/// accelerations are usual up to their 99.5 % quantile.
+///
+/// Then all limits are scaled to the excess that is exceeded `contact_rate_per_hour` times, from an
+/// exponential tail of its largest values in each second, times 1.2 for motions that the training did not
+/// have. The shares and factors were chosen on the UR5 recordings No5 to No9 and one simulated UR5. Cost:
 /// five ticks per row.
 ContactModel measure_contact_limits(const TrainedModel& model, std::span<const Recording> recordings);
 
