@@ -3,8 +3,8 @@
 # run_vcan_tests.sh PROGRAM [ARGUMENT...]: runs PROGRAM as root with the CAN interface vcan0 for its exclusive use. It runs in a
 # network namespace of its own if this machine's kernel supports one with a virtual CAN interface. Otherwise it runs in a user-mode
 # Linux that is booted for it, for at most DFDYN_VCAN_SECONDS (170). With DFDYN_VIRTUAL_TIME=KERNEL (virtual_time/build_kernel.sh)
-# it runs in that kernel, whose time stops while programs run and jumps over sleeps. Prints the output of PROGRAM and ends with its
-# exit status; a missing status is a failure.
+# it runs in that kernel, whose time stops while programs run and jumps over sleeps. DFDYN_UML_PRELOAD: library of large_xstate.cpp.
+# Prints the output of PROGRAM and ends with its exit status; a missing status is a failure.
 set -euo pipefail
 
 boot_and_run_s=${DFDYN_VCAN_SECONDS:-170}
@@ -19,7 +19,8 @@ printf '%q ' "$@" >"$scratch/command"
 boot() {
     local core
     core=$(taskset --cpu-list --pid $$ | sed -E 's/.*[^0-9]([0-9]+)$/\1/')
-    timeout --kill-after=5 "$boot_and_run_s" taskset --cpu-list "$core" "$1" mem=512M \
+    timeout --kill-after=5 "$boot_and_run_s" taskset --cpu-list "$core" \
+        env LD_PRELOAD="${DFDYN_UML_PRELOAD:-}" "$1" mem=512M \
         rootfstype=hostfs rootflags=/ rw "init=$here/uml_init.sh" "DFDYN_VCAN_SCRATCH=$scratch" con=null con0=null,fd:1 \
         quiet "uml_dir=$scratch/uml/" "${@:2}" </dev/null >"$scratch/console" 2>&1 || true
 }

@@ -17,9 +17,8 @@ struct PageCurves {
 
 /// Returns the report with at most `most_report_ticks` ticks: of more, those with the extremes of each output
 /// and of its error in stretches of equal length, and those at gaps. A gap is where a recording begins and
-/// where the time between two ticks exceeds ten times the median; gaps are searched in all ticks. Cost
-/// O(ticks
-/// * series).
+/// where the time between two ticks exceeds ten times the median; gaps are searched in all ticks. Cost:
+/// ticks times series.
 PageCurves page_curves(const Report& report);
 
 } // namespace dfdyn::tools

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """run_page.py BUILD PAGE: runs the commands of a documentation page in a new folder, in their order. The folder has links to the
-repository's tests, tools and examples, and to the build as build/release.
+repository's tests, tools and firmware_lib, and to the build as build/release.
 
     ```sh                     a script; it must end with status 0
     ```sh status 1            a script that must end with this status

@@ -147,9 +147,9 @@ PageSection comparison_section(const DiagnosisWork& work, const std::string& ful
                     "all named effects, fitted to the whole recording. The first 20 s of the ") +
         (has_held_out(work.diagnosis) ? "held-out time" : "recording") + " are shown.");
     if (!full_data.empty()) {
-        section.paragraphs.push_back("Curves have at most " + std::to_string(most_points) +
-                                     " points. The file " + full_data +
-                                     " beside this page has every row of the whole recording.");
+        section.paragraphs.push_back(
+            "Curves have at most " + std::to_string(most_points) + " points. The file " + full_data +
+            " beside this page has every row that the diagnosis used, at its own rate.");
     }
     const MeasuredMotion& motion = work.signals->measured;
     const std::string time_label = time_axis(motion).label;

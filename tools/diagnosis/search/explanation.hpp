@@ -38,7 +38,7 @@ struct Explanation {
                             const std::function<bool(const Candidate&)>& wanted) const;
     /// Returns the contribution (T x m) of all effects and nuisance parameters, by `fit`.
     Eigen::MatrixXd all(const DiagnosisSignals& signals) const;
-    /// Returns the contribution (T x m) of the named effects and nuisance parameters, by `named`.
+    /// Returns the contribution (T x m) of the named effects and nuisance parameters, by `values`.
     Eigen::MatrixXd model(const DiagnosisSignals& signals) const;
     /// Coefficients of a chosen named candidate's shape, and their covariance, by `values`.
     Eigen::VectorXd coefficients(std::size_t chosen_index) const;

@@ -93,7 +93,8 @@ class Refit {
 
 /// Returns whether noise cannot explain the difference of two fits. `even`: the one with the larger variance.
 bool contradict(const EffectFit& fit, const EffectFit& even, const std::vector<Index>& columns) {
-    // the squared distance per column, 1 if the effects are right: docs/results/diagnosis-panel.md
+    // the squared distance per column, at most 1 on average if the effects are right; of 91 outputs of
+    // simulated arms (panel of seeds 331000 to 331119) 3 exceed 2, of the six of a real TX40 all
     constexpr double far = 2;
     const VectorXd apart = even.coefficients(columns) - fit.coefficients(columns);
     return apart.dot(even.covariance(columns, columns).ldlt().solve(apart)) >

@@ -42,13 +42,12 @@ struct ContactLimits {
 ///
 /// A contact begins when the excess reaches 1: the fourth root of the sum of the fourth powers of all
 /// deviations in units of their limits. It is close to the largest one, and larger if several joints deviate.
-/// The baseline follows at most `clip` limits. During a contact it is the whole
-/// interval between its value before and the value that it has followed to, so that the return of the error
-/// is no second contact. A contact ends when for `release_s` the excess has been below `release`, or the
-/// deviation of its joint below `release_share` of its largest value. So a push after another one is a
-/// contact of its own where the model's error remains. After `longest_s` it ends as a change of the arm: the
-/// errors at that time become the baseline. The first `settling_s` after an interruption or a gap of
-/// `longest_gap_s` have no contact.
+/// The baseline follows at most `clip` limits. During a contact it is the whole interval between its value
+/// before and the value that it has followed to, so that the return of the error is no second contact. A
+/// contact ends when for `release_s` the excess has been below `release`, or the deviation of its joint below
+/// `release_share` of its largest value. So a push after another one is a contact of its own where the
+/// model's error remains. After `longest_s` it ends as a change of the arm: the errors at that time become
+/// the baseline. The first `settling_s` after an interruption or a gap of `longest_gap_s` have no contact.
 ///
 /// It is a detector, not a safety function: contacts below the limits or slower than the baseline are not
 /// detected. The constants were chosen on the UR5 recordings No5 to No9 and on pushes of a simulated UR5
@@ -62,7 +61,7 @@ struct ContactLimits {
 ///     }
 ///
 /// `joints` positions, errors and predictions, in the same order. No heap. Cost: `cost` per joint and tick,
-/// and four exponentials. Memory: 19 numbers per joint.
+/// and four exponentials. Memory: 18 numbers per joint.
 template <class Scalar, int joints>
 class ContactDetector {
   public:
