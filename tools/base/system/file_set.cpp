@@ -2,6 +2,7 @@
 #include "tools/base/system/file_set.hpp"
 
 #include "tools/base/system/atomic_file.hpp"
+#include "tools/base/system/file_place.hpp"
 #include "tools/base/system/remove_on_signal.hpp"
 #include "tools/base/text/text.hpp"
 
@@ -39,14 +40,6 @@ class SignalsHeld {
   private:
     sigset_t before_{};
 };
-
-/// Returns the path as an absolute one, with links followed.
-fs::path place_in_file_system(const fs::path& path) {
-    std::error_code without_place;
-    fs::path place = fs::weakly_canonical(fs::absolute(path), without_place);
-    place = without_place ? fs::absolute(path) : place;
-    return place.has_filename() ? place : place.parent_path();
-}
 
 /// Returns the path of `place` in `folder`; empty unless it is in there.
 fs::path path_within(const fs::path& place, const fs::path& folder) {
@@ -131,7 +124,7 @@ class NewFolder {
 class FileSet::Implementation {
   public:
     void add_folder(const fs::path& folder) {
-        const fs::path place = file_set::place_in_file_system(folder);
+        const fs::path place = place_in_file_system(folder);
         if (file_set::NewFolder* const around = new_folder_around(place)) {
             around->make(file_set::path_within(place, around->target()));
             return;
@@ -154,7 +147,7 @@ class FileSet::Implementation {
         std::error_code ignored;
         if (fs::is_other(target, ignored)) {
             check_writable(target);
-            const fs::path place = file_set::place_in_file_system(target);
+            const fs::path place = place_in_file_system(target);
             forget(place);
             files_.push_back({place, false, nullptr, target, std::string(content)});
             return;
@@ -212,7 +205,7 @@ class FileSet::Implementation {
     }
 
     Entry& add(const fs::path& target) {
-        const fs::path place = file_set::place_in_file_system(target);
+        const fs::path place = place_in_file_system(target);
         forget(place);
         file_set::NewFolder* const around = new_folder_around(place);
         const fs::path written =
