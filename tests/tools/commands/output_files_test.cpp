@@ -123,4 +123,16 @@ TEST_CASE("two outputs of one place are refused however they are named") {
     CHECK(fs::is_empty(results.path()));
 }
 
+TEST_CASE("a command writes files of any ending") {
+    const TemporaryDirectory results;
+    const TemporaryDirectory directory;
+    CHECK(run_program(directory,
+                      "simulate" + small_arm + " --scenario " + data +
+                          "/scenarios/small_arm.json -o run.json --truth truth.html",
+                      results.path())
+              .status == 0);
+    CHECK(fs::exists(results.path() / "run.json"));
+    CHECK(fs::exists(results.path() / "truth.html"));
+}
+
 } // namespace output_files_test
