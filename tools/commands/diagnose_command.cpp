@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/system/atomic_file.hpp"
+#include "tools/base/system/file_place.hpp"
 #include "tools/base/system/file_set.hpp"
 #include "tools/base/system/progress.hpp"
 #include "tools/base/system/quiet.hpp"
@@ -142,10 +143,7 @@ void check_folders(const DiagnoseOptions& options) {
         for_each_export(options,
                         [](const RobotFormat&, const std::filesystem::path& file) { check_writable(file); });
     }
-    const auto place_of = [](const std::filesystem::path& path) {
-        return std::filesystem::weakly_canonical(std::filesystem::current_path() / path / "");
-    };
-    if (!options.header.empty() && place_of(options.header.parent_path()) != place_of(options.folder)) {
+    if (!options.header.empty() && !in_same_folder(options.header, options.page())) {
         check_writable(options.header);
     }
 }

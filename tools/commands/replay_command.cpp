@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/bag/bag.hpp"
+#include "tools/base/system/file_place.hpp"
 #include "tools/base/system/file_set.hpp"
 #include "tools/base/system/progress.hpp"
 #include "tools/base/text/error.hpp"
@@ -60,7 +61,7 @@ struct ReplayOptions {
                                !std::filesystem::is_regular_file(report, ignored))) {
             return {}; // a pipe has no place for a file beside it
         }
-        return !csv.empty() && csv.parent_path() == report.parent_path()
+        return !csv.empty() && in_same_folder(csv, report)
                    ? csv
                    : std::filesystem::path(report).replace_extension(".ticks.csv");
     }
@@ -211,8 +212,12 @@ void write_files(const ReplayOptions& options, const TrainedModel& model, const 
         Report report = make_replay_report(model, replayed, summary);
         const std::filesystem::path full_data = options.full_data();
         report.full_data = full_data.filename().string();
-        if (has_thinned_page(report) && !full_data.empty() && full_data != options.csv) {
-            write_replay_csv(files.add(full_data), model, replayed);
+        if (!full_data.empty() && full_data != options.csv) {
+            if (has_thinned_page(report)) {
+                write_replay_csv(files.add(full_data), model, replayed);
+            } else {
+                files.remove(full_data); // of an earlier run
+            }
         }
         files.add(options.report, render_report(report));
     }
@@ -283,10 +288,11 @@ int run(const ReplayOptions& options) {
     inputs.push_back(options.bus);
     std::vector<std::filesystem::path> outputs{options.csv, options.report, options.can.record,
                                                options.monitor.file, options.contacts.file};
-    if (options.full_data() != options.csv) {
+    check_outputs(outputs, inputs);
+    if (options.full_data() != options.csv) { // is written only if the page is thinned
         outputs.push_back(options.full_data());
+        check_distinct(outputs, std::move(inputs));
     }
-    check_outputs(outputs, std::move(inputs));
     const std::vector<TrainedModel> models = read_models(options.models);
     Replaying replaying = make_replaying(options, models);
     if (options.bus.empty()) {

@@ -35,6 +35,7 @@
 #include <memory>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -146,7 +147,7 @@ void diagnose_robot(const Arm& arm, const SplitRecordings& split, const StartOpt
     if (answered) {
         std::ostringstream table;
         write_comparison_csv(table, work);
-        files[curves] = table.str();
+        files[curves] = std::move(table).str(); // may be large
         const Activity activity("building the extended model");
         candidates.push_back(
             {"the robot with the causes found", extended_model(extension, split.training), {}, 0});
@@ -232,7 +233,7 @@ void replay_held_out(const TrainedModel& model, const SplitRecordings& split, Fo
         report.full_data = "report.ticks.csv";
         std::ostringstream ticks;
         write_replay_csv(ticks, model, replayed);
-        files[report.full_data] = ticks.str();
+        files[report.full_data] = std::move(ticks).str(); // may be large
     }
     files["report.html"] = render_report(report);
     print_summary(std::cout, summary);

@@ -99,11 +99,40 @@ TEST_CASE("a thinned report has its full data beside it and a complete one has n
                ContainsSubstring("ticks are in <a href=\"./r.ticks.csv\">r.ticks.csv</a>"));
     const std::string ticks = file_content(results.path() / "r.ticks.csv");
     CHECK(std::count(ticks.begin(), ticks.end(), '\n') > 60'000);
-    fs::remove(results.path() / "r.ticks.csv");
-    REQUIRE(run_program(directory, many + " --report r.html -o all.csv", results.path()).status == 0);
+    REQUIRE(run_program(directory, replay + " --report r.html", results.path()).status == 0);
+    CHECK_FALSE(fs::exists(results.path() / "r.ticks.csv")); // of the earlier page
+    REQUIRE(run_program(directory, many + " --report ./r.html -o all.csv", results.path()).status == 0);
     CHECK_THAT(file_content(results.path() / "r.html"), ContainsSubstring("href=\"./all.csv\""));
     CHECK_FALSE(fs::exists(results.path() / "r.ticks.csv"));
     CHECK(file_content(results.path() / "all.csv") == ticks);
+    fs::create_directory(results.path() / "r.ticks.csv");
+    CHECK(run_program(directory, replay + " --report r.html", results.path()).status == 0);
+    CHECK(run_program(directory, many + " --report r.html", results.path()).status == 2);
+    CHECK(fs::is_directory(results.path() / "r.ticks.csv"));
+}
+
+TEST_CASE("two outputs of one place are refused however they are named") {
+    const TemporaryDirectory results;
+    const TemporaryDirectory directory;
+    const Outcome outcome = run_program(directory,
+                                        "simulate" + small_arm + " --scenario " + data +
+                                            "/scenarios/small_arm.json -o run.csv --truth ./run.csv",
+                                        results.path());
+    CHECK(outcome.status == 2);
+    CHECK_THAT(outcome.error, ContainsSubstring("expected a file of its own"));
+    CHECK(fs::is_empty(results.path()));
+}
+
+TEST_CASE("a command writes files of any ending") {
+    const TemporaryDirectory results;
+    const TemporaryDirectory directory;
+    CHECK(run_program(directory,
+                      "simulate" + small_arm + " --scenario " + data +
+                          "/scenarios/small_arm.json -o run.json --truth truth.html",
+                      results.path())
+              .status == 0);
+    CHECK(fs::exists(results.path() / "run.json"));
+    CHECK(fs::exists(results.path() / "truth.html"));
 }
 
 } // namespace output_files_test

@@ -2,6 +2,7 @@
 #include "tools/base/system/file_set.hpp"
 
 #include "tools/base/system/atomic_file.hpp"
+#include "tools/base/system/file_place.hpp"
 #include "tools/base/system/remove_on_signal.hpp"
 #include "tools/base/text/text.hpp"
 
@@ -39,14 +40,6 @@ class SignalsHeld {
   private:
     sigset_t before_{};
 };
-
-/// Returns the path as an absolute one, with links followed.
-fs::path place_in_file_system(const fs::path& path) {
-    std::error_code without_place;
-    fs::path place = fs::weakly_canonical(fs::absolute(path), without_place);
-    place = without_place ? fs::absolute(path) : place;
-    return place.has_filename() ? place : place.parent_path();
-}
 
 /// Returns the path of `place` in `folder`; empty unless it is in there.
 fs::path path_within(const fs::path& place, const fs::path& folder) {
@@ -131,7 +124,7 @@ class NewFolder {
 class FileSet::Implementation {
   public:
     void add_folder(const fs::path& folder) {
-        const fs::path place = file_set::place_in_file_system(folder);
+        const fs::path place = place_in_file_system(folder);
         if (file_set::NewFolder* const around = new_folder_around(place)) {
             around->make(file_set::path_within(place, around->target()));
             return;
@@ -148,13 +141,18 @@ class FileSet::Implementation {
         folders_.emplace_back(missing, folder).make(file_set::path_within(place, missing));
     }
 
-    /// Keeps the content of a pipe or device until the other files are complete.
+    /// Keeps the content of a pipe or device until the other files are complete, and opens it only then: to
+    /// open a named pipe is to wait for its reader, which may be busy with an earlier one.
     void add(const fs::path& target, std::string_view content) {
-        Entry& entry = add(target);
-        if (entry.file->is_direct()) {
-            entry.late = content;
+        std::error_code ignored;
+        if (fs::is_other(target, ignored)) {
+            check_writable(target);
+            const fs::path place = place_in_file_system(target);
+            forget(place);
+            files_.push_back({place, false, nullptr, target, std::string(content)});
             return;
         }
+        Entry& entry = add(target);
         write(*entry.file, content);
         entry.file->finish(); // a set may have more files than a process may hold open
     }
@@ -165,10 +163,9 @@ class FileSet::Implementation {
 
     void commit() {
         for (const bool direct : {false, true}) {
-            for (const Entry& entry : files_) {
-                if (entry.file->is_direct() == direct) {
-                    write(*entry.file, entry.late);
-                    entry.in_new_folder ? entry.file->commit() : entry.file->finish();
+            for (Entry& entry : files_) {
+                if ((entry.file == nullptr || entry.file->is_direct()) == direct) {
+                    complete(entry);
                 }
             }
         }
@@ -186,21 +183,35 @@ class FileSet::Implementation {
     struct Entry {
         fs::path place;
         bool in_new_folder;
-        std::unique_ptr<AtomicFile> file;
+        std::unique_ptr<AtomicFile> file; ///< null until `commit` for a pipe or device with its content here
+        fs::path target;
         std::string late; ///< written when all ordinary files are complete
     };
+
+    static void complete(Entry& entry) {
+        if (entry.file == nullptr) {
+            entry.file = std::make_unique<AtomicFile>(entry.target);
+            write(*entry.file, entry.late);
+        }
+        entry.in_new_folder ? entry.file->commit() : entry.file->finish();
+    }
 
     static void write(AtomicFile& file, std::string_view content) {
         file.stream().write(content.data(), static_cast<std::streamsize>(content.size()));
     }
 
-    Entry& add(const fs::path& target) {
-        const fs::path place = file_set::place_in_file_system(target);
+    void forget(const fs::path& place) {
         std::erase_if(files_, [&](const Entry& entry) { return entry.place == place; });
+    }
+
+    Entry& add(const fs::path& target) {
+        const fs::path place = place_in_file_system(target);
+        forget(place);
         file_set::NewFolder* const around = new_folder_around(place);
         const fs::path written =
             around == nullptr ? target : around->place_of(file_set::path_within(place, around->target()));
-        files_.push_back({place, around != nullptr, std::make_unique<AtomicFile>(written, target), {}});
+        files_.push_back(
+            {place, around != nullptr, std::make_unique<AtomicFile>(written, target), target, {}});
         return files_.back();
     }
 
@@ -239,7 +250,9 @@ class FileSet::Implementation {
         }
         std::error_code ignored;
         for (const fs::path& target : removed_) {
-            fs::remove(target, ignored);
+            if (!fs::is_directory(target, ignored)) {
+                fs::remove(target, ignored);
+            }
         }
     }
 

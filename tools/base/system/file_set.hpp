@@ -28,10 +28,10 @@ class FileSet {
     /// AtomicFile.
     std::ostream& add(const std::filesystem::path& target);
 
-    /// Adds a file with this content.
+    /// Adds a file with this content. A named pipe is opened by `commit`, which waits for its reader.
     void add(const std::filesystem::path& target, std::string_view content);
 
-    /// Lets `commit` remove the file if it exists.
+    /// Lets `commit` remove the file if it exists; folders remain.
     void remove(const std::filesystem::path& target);
 
     /// Completes all files, then renames them. Targets that are no ordinary files (pipes, devices) are

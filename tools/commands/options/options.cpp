@@ -2,6 +2,7 @@
 #include "tools/commands/options/options.hpp"
 
 #include "tools/base/system/atomic_file.hpp"
+#include "tools/base/system/file_place.hpp"
 #include "tools/base/system/quiet.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/text.hpp"
@@ -9,17 +10,6 @@
 #include <iostream>
 
 namespace dfdyn::tools {
-
-namespace {
-
-/// Returns the path with its links followed, as far as it leads to files: a pipe of the shell has no place.
-std::filesystem::path place_of(const std::filesystem::path& path) {
-    std::error_code without_place;
-    const std::filesystem::path place = std::filesystem::weakly_canonical(path, without_place);
-    return without_place ? path : place;
-}
-
-} // namespace
 
 void RecordingOptions::add_to(CLI::App& command) {
     command
@@ -88,7 +78,7 @@ void check_distinct(const std::vector<std::filesystem::path>& outputs,
             continue;
         }
         for (const std::filesystem::path& other : inputs) {
-            if (place_of(output) == place_of(other)) {
+            if (place_in_file_system(output) == place_in_file_system(other)) {
                 throw InputError(shown(output) +
                                  ": expected a file of its own, found one that another option names");
             }

@@ -72,23 +72,36 @@ bool takes_files(const CLI::Option& option, const std::string& ending) {
     return type.find(ending) != std::string::npos || (ending == ".mcap" && option.get_name() == "--log");
 }
 
-/// Returns the first option that names files with the ending of `argument`; null if there is none.
+/// Returns whether the option names a file to write. Its ending is the user's choice.
+bool writes_file(const CLI::Option& option) {
+    constexpr std::array<std::string_view, 8> names{"--output",  "--header",       "--report",  "--record",
+                                                    "--changes", "--contact-list", "--candump", "--truth"};
+    return std::ranges::any_of(
+        names, [&](std::string_view name) { return option.check_lname(std::string(name.substr(2))); });
+}
+
+/// Returns the first option that names files with the ending of `argument`, inputs before outputs; null if
+/// there is none.
 const CLI::Option* option_of_file(const CLI::App& command, const std::string& argument) {
     const std::string ending = std::filesystem::path(argument).extension().string();
     if (!tells_option(ending)) {
         return nullptr;
     }
-    const std::vector<const CLI::Option*> options = command.get_options();
+    std::vector<const CLI::Option*> options = command.get_options();
+    std::ranges::stable_partition(options, [](const CLI::Option* option) { return !writes_file(*option); });
     const auto found = std::ranges::find_if(
         options, [&](const CLI::Option* option) { return takes_files(*option, ending); });
     return found == options.end() ? nullptr : *found;
 }
 
+/// Refuses an existing file that the option would read, but that another option reads by its ending.
 void refuse_file_of_other_option(const CLI::App& command, const CLI::Option& option) {
+    const bool reads_files = option.get_type_name().find('.') != std::string::npos && !writes_file(option);
     for (const std::string& value : option.results()) {
         const CLI::Option* const other = option_of_file(command, value);
-        const bool names_files = option.get_type_name().find('.') != std::string::npos;
-        if (other != nullptr && names_files &&
+        std::error_code ignored;
+        if (reads_files && other != nullptr && !writes_file(*other) &&
+            std::filesystem::exists(value, ignored) &&
             !takes_files(option, std::filesystem::path(value).extension().string())) {
             throw InputError(with_value(option) + ": expected a file of that kind, found " +
                              shown(std::filesystem::path(value)) + ", which fits " + with_value(*other) +

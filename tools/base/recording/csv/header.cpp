@@ -6,6 +6,7 @@
 #include "tools/base/text/text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <map>
 #include <set>
@@ -16,6 +17,9 @@ namespace dfdyn::tools {
 namespace {
 
 using Names = std::vector<std::string>;
+
+constexpr std::array<OutputKind, 3> output_kinds{OutputKind::joint_torque, OutputKind::motor_current,
+                                                 OutputKind::wrench};
 
 std::string column_label(const Names& columns, std::size_t index) {
     return columns[index].empty() ? "column " + std::to_string(index + 1) + " (unnamed)" : columns[index];
@@ -104,6 +108,33 @@ std::size_t count_joints(const Names& columns, const std::string& where, bool as
     return numbers.size();
 }
 
+std::string without_number(const std::string& name) {
+    return name.substr(0, name.find_last_not_of("0123456789") + 1);
+}
+
+/// Returns whether a column of this name is no misspelling: it is a quantity that the program knows, or
+/// (taur1) the torque of the controller's own model.
+bool has_own_meaning(const std::string& name) {
+    const Names wrench = output_names(OutputKind::wrench, 1);
+    const Names numbered{"q", "qd", "qdd", "tau", "taur", "i"};
+    const std::string quantity = without_number(name);
+    return name == "t" || std::ranges::find(wrench, name) != wrench.end() ||
+           (quantity != name && std::ranges::find(numbered, quantity) != numbered.end());
+}
+
+/// Returns the quantity of outputs of this kind in `--units` and `--outputs`.
+std::string quantity_of(OutputKind kind) {
+    switch (kind) {
+    case OutputKind::joint_torque:
+        return "tau";
+    case OutputKind::motor_current:
+        return "i";
+    case OutputKind::wrench:
+        return "wrench";
+    }
+    return "";
+}
+
 class Builder {
   public:
     /// `roles`: the program's names of the columns, which --columns may have changed.
@@ -135,8 +166,8 @@ class Builder {
         if (!missing.empty()) {
             const std::string assigned = assigned_elsewhere(missing);
             throw MissingColumns(where_ + ": expected columns " + listed(names) + ", found no " +
-                                 listed(missing) + nearest(missing, names) + "; the header has " +
-                                 listed(labels(header_.columns)) +
+                                 listed(missing) + other_outputs(missing) + nearest(missing, names) +
+                                 "; the header has " + listed(labels(header_.columns)) +
                                  (assigned.empty() ? " (--columns assigns columns to quantities)"
                                                    : "; --columns has assigned " + assigned));
         }
@@ -155,13 +186,34 @@ class Builder {
         return "";
     }
 
+    /// Returns `, but those of --outputs i` if torques are missing and the header has motor currents, or the
+    /// like for other outputs.
+    std::string other_outputs(const Names& missing) const {
+        const auto has = [this](const std::string& name) { return index_.contains(name); };
+        for (const OutputKind wanted : output_kinds) {
+            const auto count = std::ranges::count(missing, quantity_of(wanted), without_number);
+            const Names all =
+                output_names(wanted, static_cast<std::size_t>(std::max<std::ptrdiff_t>(count, 1)));
+            if (std::ranges::search(missing, all).empty()) {
+                continue;
+            }
+            for (const OutputKind other : output_kinds) {
+                if (std::ranges::all_of(output_names(other, all.size()), has)) {
+                    return ", but those of --outputs " + quantity_of(other);
+                }
+            }
+        }
+        return "";
+    }
+
     /// Returns ` (did you mean "Q1" for q1: --columns q=Q*?)` for the first missing name of each quantity
     /// with a close one in the header.
     std::string nearest(const Names& missing, const Names& names) const {
         Names unused;
         for (std::size_t column = 0; column < header_.columns.size(); ++column) {
             const std::string& name = header_.columns[column];
-            if (!header_.slot[column] && std::ranges::find(names, name) == names.end()) {
+            if (!header_.slot[column] && !has_own_meaning(name) &&
+                std::ranges::find(names, name) == names.end()) {
                 unused.push_back(name);
             }
         }
@@ -181,10 +233,6 @@ class Builder {
             }
         }
         return pairs.empty() ? "" : " (did you mean " + pairs + columns + "?)";
-    }
-
-    static std::string without_number(const std::string& name) {
-        return name.substr(0, name.find_last_not_of("0123456789") + 1);
     }
 
     /// Returns the pattern of the columns like `column`, which may be meant for `name`: `Q*` for Q1 and q1.
@@ -216,19 +264,6 @@ void require_chain(std::size_t joint_count, const std::string& where, const Read
         throw InputError(where + ": expected " + std::to_string(options.joint_count) +
                          " joint positions, as the chain has joints, found " + std::to_string(joint_count));
     }
-}
-
-/// Returns the quantity of outputs of this kind in `--units`.
-std::string quantity_of(OutputKind kind) {
-    switch (kind) {
-    case OutputKind::joint_torque:
-        return "tau";
-    case OutputKind::motor_current:
-        return "i";
-    case OutputKind::wrench:
-        return "wrench";
-    }
-    return "";
 }
 
 void set_factors(Header& header, const ReadOptions& options) {
