@@ -88,7 +88,8 @@ const CLI::Option* option_of_file(const CLI::App& command, const std::string& ar
         return nullptr;
     }
     std::vector<const CLI::Option*> options = command.get_options();
-    std::ranges::stable_partition(options, [](const CLI::Option* option) { return !writes_file(*option); });
+    std::stable_partition(options.begin(), options.end(),
+                          [](const CLI::Option* option) { return !writes_file(*option); });
     const auto found = std::ranges::find_if(
         options, [&](const CLI::Option* option) { return takes_files(*option, ending); });
     return found == options.end() ? nullptr : *found;

@@ -29,15 +29,15 @@ struct RobotFormat {
     const char* file;
     /// Returns the file's text: joints, inertias about the centres of mass, limits, and the tip's frame.
     /// Shapes are not part of it.
-    std::string (*text)(const RobotExport& robot);
+    std::string (*text)(const RobotExport& exported);
 };
 
 /// URDF. Gravity is along −z of the root link; a fixed joint turns the base if necessary. It has no armature.
-std::string urdf_text(const RobotExport& robot);
+std::string urdf_text(const RobotExport& exported);
 /// MJCF of the simulator MuJoCo.
-std::string mjcf_text(const RobotExport& robot);
+std::string mjcf_text(const RobotExport& exported);
 /// JSON of schema `dfdyn.robot/1`, for scripts.
-std::string robot_json_text(const RobotExport& robot);
+std::string robot_json_text(const RobotExport& exported);
 
 /// Returns all formats.
 const std::vector<RobotFormat>& robot_formats();
