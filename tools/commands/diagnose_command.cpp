@@ -5,9 +5,9 @@
 #include "tools/base/system/progress.hpp"
 #include "tools/base/system/quiet.hpp"
 #include "tools/base/text/error.hpp"
-#include "tools/base/text/text.hpp"
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/json_output.hpp"
+#include "tools/commands/options/model_files.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/robot_options.hpp"
 #include "tools/commands/options/value_checks.hpp"
@@ -19,8 +19,6 @@
 #include "tools/diagnosis/output/diagnosis_page.hpp"
 #include "tools/diagnosis/output/diagnosis_summary.hpp"
 #include "tools/diagnosis/output/error_sections.hpp"
-#include "tools/model/file/model_file.hpp"
-#include "tools/model/header/model_header.hpp"
 
 #include <algorithm>
 #include <iostream>
@@ -77,25 +75,11 @@ DiagnosisWork run_diagnosis(const Robot& robot, const std::vector<Recording>& re
     return diagnose(robot, joined_recording(recordings), how);
 }
 
-/// Returns whether the results of the diagnosis suffice for a model.
-bool answered(const DiagnosisWork& work) {
-    return work.signals != nullptr && !work.explanation.candidates.empty();
-}
-
 /// Makes the model from the original recordings, with their gaps, instead of the joined one.
 std::optional<TrainedModel> make_model(const DiagnosisWork& work, const Extension& extension,
                                        const std::vector<Recording>& recordings) {
     const Progress progress("building the extended model", 0);
     return answered(work) ? std::optional(extended_model(extension, recordings)) : std::nullopt;
-}
-
-void add_model(const DiagnoseOptions& options, const TrainedModel& model, FileSet& files) {
-    const std::string json = model_to_json(model);
-    model_from_json(json, shown(options.model())); // nothing is written that `replay` would reject
-    files.add(options.model(), json);
-    if (!options.header.empty()) {
-        files.add(options.header, model_to_header(model, to_identifier(options.header.stem().string())));
-    }
 }
 
 /// Calls `use` with each wanted format of the corrected robot and its file.
@@ -167,13 +151,14 @@ int run(const DiagnoseOptions& options) {
     FileSet files;
     files.add_folder(options.folder);
     files.add(options.findings(), findings.dump(2) + '\n');
-    files.add(options.page(), diagnosis_page({robot, recordings, work, extension, online, "curves.csv"}));
+    files.add(options.page(), diagnosis_page({robot, recordings, work, extension, online,
+                                              options.curves().filename().string()}));
     if (answered(work)) {
         write_comparison_csv(files.add(options.curves()), work);
     }
     remove_earlier(options, model.has_value(), files);
     if (model) {
-        add_model(options, *model, files);
+        add_model(files, *model, options.model(), options.header);
         add_exports(options, extension, files);
     }
     files.commit();

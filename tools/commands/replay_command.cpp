@@ -53,8 +53,8 @@ struct ReplayOptions {
     InterfaceOptions can;
 
     bool live() const { return !can.interface.empty(); }
-    /// File of all ticks beside the report, for a page that has only a part: the output if it is beside the
-    /// page.
+    /// Returns the table of all ticks beside the page, for a page that has only a part of them: the output,
+    /// if it is in the page's folder.
     std::filesystem::path full_data() const {
         std::error_code ignored;
         if (report.empty() || (std::filesystem::exists(report, ignored) &&
@@ -312,6 +312,33 @@ int run(const ReplayOptions& options) {
     return exit_status(replayed, true);
 }
 
+/// Adds the options for what the replay writes and how it learns.
+void add_result_options(CLI::App& command, ReplayOptions& options) {
+    command
+        .add_option(
+            "-o,--output", options.csv,
+            "One row per tick: measured, predicted, deviation, nis, learned, status. With --can it is "
+            "written as the ticks come, and there at any time")
+        ->type_name("OUT.csv");
+    command
+        .add_option(
+            "--report", options.report,
+            "Self-contained page with curves and figures. Of more than 60000 ticks it has the extremes, and "
+            "R.ticks.csv beside it has all, unless -o writes them there")
+        ->type_name("R.html");
+    command
+        .add_option("--horizon", options.horizon,
+                    "Samples T of the paper's index epsilon; 0: none; without: 25, with --can none")
+        ->check(whole_number_in(0, 10000));
+    command.add_flag("--from-prior", options.from_prior,
+                     "Start with nothing learned: keep the hyperparameters, drop the trained start");
+    command
+        .add_flag("--frozen", options.frozen,
+                  "Predict without learning: nothing of the recording's outputs reaches the model; errors "
+                  "and innovations are reported as always")
+        ->excludes("--from-prior");
+}
+
 } // namespace
 
 void add_replay_command(CLI::App& app, Command& chosen) {
@@ -343,29 +370,7 @@ void add_replay_command(CLI::App& app, Command& chosen) {
         ->check(number_in(0.0, 1e9))
         ->type_name("S");
     command->add_option("--record", options->can.record, "Log of what --can receives")->type_name("L.log");
-    command
-        ->add_option(
-            "-o,--output", options->csv,
-            "One row per tick: measured, predicted, deviation, nis, learned, status. With --can it is "
-            "written as the ticks come, and there at any time")
-        ->type_name("OUT.csv");
-    command
-        ->add_option(
-            "--report", options->report,
-            "Self-contained page with curves and figures. Of more than 60000 ticks it has the extremes, and "
-            "R.ticks.csv beside it has all, unless -o writes them there")
-        ->type_name("R.html");
-    command
-        ->add_option("--horizon", options->horizon,
-                     "Samples T of the paper's index epsilon; 0: none; without: 25, with --can none")
-        ->check(whole_number_in(0, 10000));
-    command->add_flag("--from-prior", options->from_prior,
-                      "Start with nothing learned: keep the hyperparameters, drop the trained start");
-    command
-        ->add_flag("--frozen", options->frozen,
-                   "Predict without learning: nothing of the recording's outputs reaches the model; errors "
-                   "and innovations are reported as always")
-        ->excludes("--from-prior");
+    add_result_options(*command, *options);
     options->contacts.add_to(*command);
     options->monitor.add_to(*command);
     add_json_option(*command, options->json);

@@ -137,14 +137,13 @@ void diagnose_robot(const Arm& arm, const SplitRecordings& split, const StartOpt
     how.progress = [&](int) { progress->update(++rounds); };
     const DiagnosisWork work = diagnose(*arm.robot, joined_recording(split.training), how);
     progress.reset();
-    const bool answered = work.signals != nullptr && !work.explanation.candidates.empty();
-    const Extension extension = answered ? extension_of(work) : Extension{};
+    const Extension extension = answered(work) ? extension_of(work) : Extension{};
     files["diagnosis.json"] = diagnosis_json(work.diagnosis).dump(2) + '\n';
     const std::string curves = "diagnosis_curves.csv";
     files["diagnosis.html"] =
         diagnosis_page({*arm.robot, split.training, work, extension, OnlineView{}, curves});
     print_diagnosis(std::cout, work.diagnosis, extension.carried);
-    if (answered) {
+    if (answered(work)) {
         std::ostringstream table;
         write_comparison_csv(table, work);
         files[curves] = std::move(table).str(); // may be large

@@ -8,6 +8,7 @@
 #include "tools/commands/command.hpp"
 #include "tools/commands/options/clock_options.hpp"
 #include "tools/commands/options/json_output.hpp"
+#include "tools/commands/options/model_files.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/robot_options.hpp"
 #include "tools/commands/options/setup_options.hpp"
@@ -15,8 +16,6 @@
 #include "tools/commands/options/value_checks.hpp"
 #include "tools/commands/train_outcome.hpp"
 #include "tools/model/effects.hpp"
-#include "tools/model/file/model_file.hpp"
-#include "tools/model/header/model_header.hpp"
 #include "tools/model/inputs/input_description.hpp"
 #include "tools/model/structure.hpp"
 #include "tools/replay/contacts/contact_limits.hpp"
@@ -247,17 +246,6 @@ void fit_rigid_body_of(TrainedModel& model, const ModelTraining& training,
     }
 }
 
-void write_model(const TrainOptions& options, const TrainedModel& model) {
-    const std::string json = model_to_json(model);
-    model_from_json(json, shown(options.model)); // nothing is written that `replay` would reject
-    FileSet files;
-    files.add(options.model, json);
-    if (!options.header.empty()) {
-        files.add(options.header, model_to_header(model, to_identifier(options.header.stem().string())));
-    }
-    files.commit();
-}
-
 int run(const TrainOptions& options) {
     const JsonOutput output(options.json);
     check_outputs({options.model, options.header}, options.recordings.logs);
@@ -287,7 +275,9 @@ int run(const TrainOptions& options) {
         }
     }
     fit_rigid_body_of(model, training, recordings);
-    write_model(options, model);
+    FileSet files;
+    add_model(files, model, options.model, options.header);
+    files.commit();
     output.print(outcome_json(result, find_target(options.sizes.target)));
     print_outcome(result, trained_on);
     std::cout << describe_clock(training.options, period_s) << '\n';

@@ -130,6 +130,11 @@ struct DiagnosisWork {
     Diagnosis diagnosis;
 };
 
+/// Returns whether the recording could answer: there are effects to choose from, and a model can be made.
+inline bool answered(const DiagnosisWork& work) {
+    return work.signals != nullptr && !work.explanation.candidates.empty();
+}
+
 /// Diagnoses a recording. Throws InputError if the recording is too short or does not match the robot.
 DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const DiagnosisOptions& options);
 

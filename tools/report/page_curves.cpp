@@ -81,7 +81,7 @@ Ticks kept_ticks(const Report& report, const Ticks& breaks) {
         }
     }
     std::ranges::sort(kept);
-    kept.erase(std::ranges::unique(kept).begin(), kept.end());
+    kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
     return kept;
 }
 

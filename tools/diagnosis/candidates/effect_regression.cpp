@@ -2,7 +2,6 @@
 #include "tools/diagnosis/candidates/effect_regression.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <numeric>
 
 namespace dfdyn::tools {
@@ -51,15 +50,18 @@ Eigen::VectorXd EffectRegression::weighed(const Eigen::MatrixXd& rows, Eigen::In
 void EffectRegression::add_sums(WeighedSums& sums, Eigen::Index output,
                                 const std::vector<Eigen::Index>& columns, Eigen::Index first,
                                 Eigen::Index count) const {
-    std::vector<Eigen::Index> acting;
-    std::ranges::copy_if(columns, std::back_inserter(acting), [&](Eigen::Index column) {
-        return columns_[static_cast<std::size_t>(column)]->on(output) != nullptr;
-    });
-    const auto size = static_cast<Eigen::Index>(acting.size());
+    std::vector<Eigen::Index> acting; // positions in `columns`
+    std::vector<const Eigen::MatrixXd*> rows;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        if (const auto* const on = columns_[static_cast<std::size_t>(columns[i])]->on(output)) {
+            acting.push_back(static_cast<Eigen::Index>(i));
+            rows.push_back(on);
+        }
+    }
+    const auto size = std::ssize(rows);
     Eigen::MatrixXd matrix(rows_.bins() * count, size);
     for (Eigen::Index i = 0; i < size; ++i) {
-        const auto column = static_cast<std::size_t>(acting[static_cast<std::size_t>(i)]);
-        matrix.col(i) = weighed(*columns_[column]->on(output), output, first, count);
+        matrix.col(i) = weighed(*rows[static_cast<std::size_t>(i)], output, first, count);
     }
     const Eigen::VectorXd wanted = weighed(target_[static_cast<std::size_t>(output)], output, first, count);
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(size, size);
@@ -82,7 +84,7 @@ WeighedSums EffectRegression::weighed_sums(Eigen::Index first, Eigen::Index coun
 
 WeighedSums EffectRegression::sums_of_output(Eigen::Index output,
                                              const std::vector<Eigen::Index>& columns) const {
-    WeighedSums sums = WeighedSums::zero(this->columns());
+    WeighedSums sums = WeighedSums::zero(std::ssize(columns));
     add_sums(sums, output, columns, 0, fitted_frames_);
     return sums;
 }

@@ -60,7 +60,7 @@ class EffectRegression {
     WeighedSums weighed_sums() const { return weighed_sums(0, fitted_frames_); }
     /// Returns the sums over `count` frames from `first` on.
     WeighedSums weighed_sums(Eigen::Index first, Eigen::Index count) const;
-    /// Returns the sums over one output and all fitted frames. Columns that are not in `columns` have zeros.
+    /// Returns the sums of `columns`, in their order, over one output and all fitted frames.
     WeighedSums sums_of_output(Eigen::Index output, const std::vector<Eigen::Index>& columns) const;
 
     /// Returns an output's weights of squares (bins x fitted frames).
@@ -79,6 +79,7 @@ class EffectRegression {
                           const Eigen::MatrixXd& covariance) const;
 
   private:
+    /// Adds the sums of `columns` over one output: `sums` has one row for each of them.
     void add_sums(WeighedSums& sums, Eigen::Index output, const std::vector<Eigen::Index>& columns,
                   Eigen::Index first, Eigen::Index count) const;
     Eigen::VectorXd weighed(const Eigen::MatrixXd& rows, Eigen::Index output, Eigen::Index first,

@@ -279,7 +279,7 @@ std::string diagnosis_page(const DiagnosisCase& one) {
     if (!diagnosis.suspicions.empty()) {
         page.sections.push_back(suspicion_section(diagnosis));
     }
-    if (!one.work.explanation.candidates.empty()) {
+    if (answered(one.work)) {
         page.sections.push_back(overview_section(one));
         page.sections.push_back(comparison_section(one.work, one.full_data));
         for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {

@@ -27,7 +27,7 @@ struct Explanation {
     SearchProblem problem;
     EffectFit fit;    ///< fit of all chosen effects
     EffectFit named;  ///< fit of the named effects only, without influence of the unnamed ones
-    EffectFit values; ///< of the named effects: the coefficients that are reported (`robust_values`)
+    EffectFit values; ///< of the named effects: the coefficients that are reported (`make_robust`)
     /// Number of links with uncertain mass, the first nuisance parameters: all or none.
     Eigen::Index uncertain_masses = 0;
     Eigen::MatrixXd noise; ///< bins x m: spectra of the residual

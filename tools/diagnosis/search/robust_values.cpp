@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/diagnosis/search/robust_values.hpp"
 
+#include "tools/diagnosis/search/settle_explanation.hpp"
+
 #include <algorithm>
 #include <iterator>
 #include <optional>
@@ -14,49 +16,54 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Sums over one output, and the covariance of their moments for noise with its own spectrum.
-struct OutputSums {
-    WeighedSums sums;
-    MatrixXd scatter;
-};
+/// Returns the problem of the named effects alone. Its columns are those of `at.named`, numbered from 0.
+SearchProblem problem_of_named(const Explanation& at) {
+    std::vector<Index> position(static_cast<std::size_t>(at.problem.sums.gram.rows()));
+    for (std::size_t i = 0; i < at.named.columns.size(); ++i) {
+        position[static_cast<std::size_t>(at.named.columns[i])] = static_cast<Index>(i);
+    }
+    const auto renumber = [&](Index& column) { column = position[static_cast<std::size_t>(column)]; };
+    SearchProblem problem{{}, at.problem.candidates, at.problem.nuisance};
+    for (NuisanceColumn& nuisance : problem.nuisance) {
+        renumber(nuisance.column);
+    }
+    for (const ChosenShape& one : at.named_effects()) {
+        std::ranges::for_each(problem.candidates[one.candidate].shapes[one.shape].columns, renumber);
+    }
+    return problem;
+}
 
 /// Fits of the named effects. Each output has the weights of its noise, or the same weight for all
 /// frequencies.
 class Refit {
   public:
     Refit(const Explanation& at, EffectRegression& regression)
-        : columns_(at.named.columns), problem_(at.problem) {
+        : problem_(problem_of_named(at)), by_noise_(sums_of_outputs(at, regression)) {
         const MatrixXd even = at.noise.colwise().mean().replicate(at.noise.rows(), 1);
         std::vector<MatrixXd> precision;
         std::vector<MatrixXd> ones;
         for (Index output = 0; output < regression.outputs(); ++output) {
-            by_noise_.push_back(sums_of(regression, output));
-            by_noise_.back().scatter = by_noise_.back().sums.gram;
             precision.push_back(regression.weight(output));
-            ones.push_back(MatrixXd::Ones(precision.back().rows(), precision.back().cols()));
+            ones.emplace_back(MatrixXd::Ones(precision.back().rows(), precision.back().cols()));
         }
         regression.set_noise(even, ones);
-        for (Index output = 0; output < regression.outputs(); ++output) {
-            evenly_.push_back(sums_of(regression, output));
-        }
+        evenly_ = sums_of_outputs(at, regression);
         regression.set_noise(even.array().square(), precision);
-        for (Index output = 0; output < regression.outputs(); ++output) {
-            evenly_[static_cast<std::size_t>(output)].scatter = sums_of(regression, output).sums.gram;
-        }
+        scatter_ = sums_of_outputs(at, regression);
     }
 
     Index outputs() const { return std::ssize(evenly_); }
 
     /// `even`: per output, whether all frequencies have the same weight.
     EffectFit fit(const std::vector<ChosenShape>& chosen, const std::vector<bool>& even) {
-        const Index all = problem_.sums.gram.rows();
+        const Index all = by_noise_.front().gram.rows();
         problem_.sums = WeighedSums::zero(all);
-        MatrixXd scatter = MatrixXd::Zero(all, all);
+        MatrixXd scatter = MatrixXd::Zero(all, all); // covariance of the moments
         for (std::size_t output = 0; output < even.size(); ++output) {
-            const OutputSums& own = even[output] ? evenly_[output] : by_noise_[output];
-            problem_.sums.gram += own.sums.gram;
-            problem_.sums.moment += own.sums.moment;
-            scatter += own.scatter;
+            const WeighedSums& own = even[output] ? evenly_[output] : by_noise_[output];
+            problem_.sums.gram += own.gram;
+            problem_.sums.moment += own.moment;
+            scatter += even[output] ? scatter_[output].gram : own.gram;
         }
         for (const NuisanceColumn& nuisance : problem_.nuisance) {
             scatter(nuisance.column, nuisance.column) += 1 / (nuisance.deviation * nuisance.deviation);
@@ -72,7 +79,7 @@ class Refit {
         std::vector<Index> result;
         for (Index i = 0; i < std::ssize(fit.columns); ++i) {
             const Index column = fit.columns[static_cast<std::size_t>(i)];
-            const auto acts = [column](const OutputSums& one) { return one.sums.gram(column, column) > 0; };
+            const auto acts = [column](const WeighedSums& one) { return one.gram(column, column) > 0; };
             if (acts(evenly_[static_cast<std::size_t>(output)]) &&
                 std::ranges::count_if(evenly_, acts) == 1) {
                 result.push_back(i);
@@ -82,13 +89,18 @@ class Refit {
     }
 
   private:
-    OutputSums sums_of(const EffectRegression& regression, Index output) const {
-        return {regression.sums_of_output(output, columns_), {}};
+    static std::vector<WeighedSums> sums_of_outputs(const Explanation& at,
+                                                    const EffectRegression& regression) {
+        std::vector<WeighedSums> sums;
+        for (Index output = 0; output < regression.outputs(); ++output) {
+            sums.push_back(regression.sums_of_output(output, at.named.columns));
+        }
+        return sums;
     }
 
-    std::vector<Index> columns_;
     SearchProblem problem_;
-    std::vector<OutputSums> by_noise_, evenly_;
+    std::vector<WeighedSums> by_noise_, evenly_; ///< per output, with these weights
+    std::vector<WeighedSums> scatter_;           ///< covariances of the moments of `evenly_`
 };
 
 /// Returns whether noise cannot explain the difference of two fits. `even`: the one with the larger variance.
@@ -134,9 +146,10 @@ std::optional<std::size_t> choose_values(Explanation& at, Refit& refit) {
     const EffectFit all_even = refit.fit(at.named_effects(), std::vector<bool>(outputs, true));
     std::vector<bool> even;
     for (Index output = 0; output < refit.outputs(); ++output) {
-        even.push_back(contradict(at.named, all_even, refit.columns_of(at.named, output)));
+        even.push_back(contradict(at.named, all_even, refit.columns_of(all_even, output)));
     }
     at.values = refit.fit(at.named_effects(), even);
+    at.values.columns = at.named.columns;
     return unsupported(at, even);
 }
 
@@ -146,8 +159,7 @@ void make_robust(Explanation& at, EffectRegression& regression) {
     Refit refit(at, regression);
     while (const std::optional<std::size_t> effect = choose_values(at, refit)) {
         at.chosen = without(at.chosen, *effect);
-        at.fit = fit_effects(at.problem, at.chosen);
-        at.named = fit_effects(at.problem, at.named_effects());
+        fit_named(at);
     }
 }
 

@@ -112,14 +112,6 @@ bool keep_what_predicts(Explanation& at, const EffectRegression& regression, Sea
     return dropped;
 }
 
-void fit_named(Explanation& at) {
-    std::stable_partition(at.chosen.begin(), at.chosen.end(),
-                          [&at](const ChosenShape& one) { return at.candidates[one.candidate].named(); });
-    at.fit = fit_effects(at.problem, at.chosen);
-    at.named = fit_effects(at.problem, at.named_effects());
-    at.values = at.named;
-}
-
 /// Removes, one by one, named effects whose coefficients are inadmissible in the fit without unnamed effects.
 /// A removed effect is no longer a candidate of `promising` or of the model's problem. Returns true if any
 /// effect was removed.
@@ -139,6 +131,14 @@ bool keep_what_is_allowed(Explanation& at, SearchProblem& promising) {
 }
 
 } // namespace
+
+void fit_named(Explanation& at) {
+    std::stable_partition(at.chosen.begin(), at.chosen.end(),
+                          [&at](const ChosenShape& one) { return at.candidates[one.candidate].named(); });
+    at.fit = fit_effects(at.problem, at.chosen);
+    at.named = fit_effects(at.problem, at.named_effects());
+    at.values = at.named;
+}
 
 void settle(Explanation& at, const EffectRegression& regression) {
     decide_masses(at, regression);

@@ -11,4 +11,7 @@ namespace dfdyn::tools {
 /// explanation's problem. Also fits the named effects alone. Cost: one search after each removal.
 void settle(Explanation& at, const EffectRegression& regression);
 
+/// Fits the chosen effects, and the named ones alone: `fit` and `named`, which `values` become.
+void fit_named(Explanation& at);
+
 } // namespace dfdyn::tools

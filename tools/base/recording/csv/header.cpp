@@ -194,7 +194,7 @@ class Builder {
             const auto count = std::ranges::count(missing, quantity_of(wanted), without_number);
             const Names all =
                 output_names(wanted, static_cast<std::size_t>(std::max<std::ptrdiff_t>(count, 1)));
-            if (std::ranges::search(missing, all).empty()) {
+            if (std::search(missing.begin(), missing.end(), all.begin(), all.end()) == missing.end()) {
                 continue;
             }
             for (const OutputKind other : output_kinds) {
