@@ -6,7 +6,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
-#include "tests/tools/simulation/read_faults.hpp"
+#include "tests/tools/simulation/faults/read_faults.hpp"
 #include "tools/commands/options/robot_options.hpp"
 #include "tools/control/closed_loop.hpp"
 
