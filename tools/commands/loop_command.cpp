@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/commands/command.hpp"
 #include "tools/commands/loop_run.hpp"
+#include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/value_checks.hpp"
 #include "tools/simulation/faults/fault_kind.hpp"

@@ -2,7 +2,6 @@
 #include "tools/commands/replay_run.hpp"
 
 #include "tools/base/bag/bag.hpp"
-#include "tools/base/system/file_place.hpp"
 #include "tools/base/system/file_set.hpp"
 #include "tools/base/system/progress.hpp"
 #include "tools/base/text/error.hpp"

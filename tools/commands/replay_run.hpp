@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "tools/base/system/file_place.hpp"
 #include "tools/commands/options/contact_options.hpp"
 #include "tools/commands/options/monitor_options.hpp"
 #include "tools/commands/options/options.hpp"
