@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/base/system/quiet.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/text.hpp"
-#include "tools/build_flags.hpp"
-#include "tools/commands/command.hpp"
-#include "tools/commands/options/json_output.hpp"
-#include "tools/commands/options/usage_error.hpp"
+#include "tools/commands/program.hpp"
 
 #include <exception>
 #include <filesystem>
@@ -16,54 +12,6 @@
 #endif
 
 namespace {
-
-/// Adds all subcommands, each with the option --quiet.
-void add_commands(CLI::App& app, dfdyn::tools::Command& command) {
-    dfdyn::tools::add_start_command(app, command);
-    dfdyn::tools::add_train_command(app, command);
-    dfdyn::tools::add_footprint_command(app, command);
-    dfdyn::tools::add_replay_command(app, command);
-    dfdyn::tools::add_identify_command(app, command);
-    dfdyn::tools::add_evaluate_command(app, command);
-    dfdyn::tools::add_simulate_command(app, command);
-    dfdyn::tools::add_convert_command(app, command);
-    dfdyn::tools::add_play_command(app, command);
-    dfdyn::tools::add_loop_command(app, command);
-    dfdyn::tools::add_plant_command(app, command);
-    dfdyn::tools::add_buscheck_command(app, command);
-    dfdyn::tools::add_diagnose_command(app, command);
-    dfdyn::tools::add_bench_command(app, command);
-    dfdyn::tools::add_man_command(app, command);
-    dfdyn::tools::add_completion_command(app, command);
-    for (CLI::App* const subcommand : app.get_subcommands([](const CLI::App*) { return true; })) {
-        subcommand->add_flag_callback(
-            "--quiet", dfdyn::tools::be_quiet,
-            "No progress and no notes on standard error; warnings and errors remain");
-    }
-}
-
-int run(int argc, char** argv) {
-    CLI::App app("Learns a robot arm's inverse dynamics from joint positions, tick by tick, in fixed memory.",
-                 "dfdyn");
-    app.require_subcommand(1);
-    app.set_version_flag("--version", dfdyn::tools::build_flags());
-    dfdyn::tools::Command command;
-    add_commands(app, command);
-    dfdyn::tools::refuse_missing_values(app, {argv, static_cast<std::size_t>(argc)});
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::Success& request) {
-        const int done = app.exit(request); // --help, --version
-        dfdyn::tools::flush_standard_output(std::cout);
-        return done;
-    } catch (const CLI::ParseError& failure) {
-        throw dfdyn::tools::InputError(dfdyn::tools::usage_message(app, failure));
-    }
-    dfdyn::tools::refuse_wrong_values(app);
-    const int status = command();
-    dfdyn::tools::flush_standard_output(std::cout);
-    return status;
-}
 
 /// Keeps freed memory instead of returning it to the system at once. Training allocates and frees matrices of
 /// megabytes for each evaluation; by default glibc maps and unmaps them, and the page faults of the next use
@@ -84,7 +32,7 @@ void keep_freed_memory() {
 int main(int argc, char** argv) {
     keep_freed_memory();
     try {
-        return run(argc, argv);
+        return dfdyn::tools::run_program(argc, argv);
     } catch (const dfdyn::tools::InputError& error) {
         std::cerr << "dfdyn: " << error.what() << '\n';
         return 2;

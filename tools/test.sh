@@ -34,8 +34,8 @@ run_tests() {
 
 build_release() { build release; }
 test_units() { run_tests release --label-regex '^(firmware|hal|tools|embedding|truth|headers|panel)$'; }
-test_promises() { run_tests release --label-regex '^acceptance$'; }
-test_can() { run_tests release --label-regex '^vcan$'; }
+# The kernel with a virtual CAN uses one core only.
+test_promises() { run_tests release --label-regex '^(acceptance|vcan)$'; }
 test_elsewhere() { run_tests release --label-regex '^(consumer|packaging|cortex_m|realtime)$' --verbose; }
 # Every plan of the experiment, with one draw and few rows.
 test_experiment() { tools/reproduce.sh --quick; }
@@ -44,7 +44,8 @@ test_long() { ctest --test-dir build/release --label-regex '^long$' --parallel "
 # clang++ has the sanitizers: it builds them in about three quarters of the time that g++ takes, and is the second compiler.
 test_sanitized() {
     build asan-ubsan dfdyn_embedding dfdyn_linux_loop dfdyn_firmware_tests dfdyn_hal_tests
-    run_tests asan-ubsan --label-regex '^(firmware|hal|embedding)$'
+    # What is compiled for bare metal has no sanitizer, and was tested above.
+    run_tests asan-ubsan --label-regex '^(firmware|hal|embedding)$' --exclude-regex '^hal\.bare_metal$'
 }
 test_sanitized_tools() {
     build asan-ubsan dfdyn_tools_tests
@@ -72,8 +73,7 @@ steps=(
     "check_style:formatting and scripts"
     "build_release:release build"
     "test_units:unit tests and firmware headers"
-    "test_promises:promises on real recordings (the demo)"
-    "test_can:CAN backend and dfdyn play on a kernel's virtual CAN, against can-utils"
+    "test_promises:promises on real recordings (the demo); CAN backend and dfdyn play on a kernel's virtual CAN, against can-utils"
     "test_elsewhere:use by another project, on bare Cortex-M cores under QEMU, and that nothing in the loop blocks"
     "test_sanitized:firmware and bus layer by clang++, address and undefined-behaviour sanitizers"
     "analyse_firmware:static analysis of the firmware and the bus layer"

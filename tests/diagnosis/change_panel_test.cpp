@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Changes hidden in simulated arms, found by the monitor of the learner. The panel has many more cases.
-#include "tests/diagnosis/change_panel.hpp"
+#include "tests/diagnosis/panel/changes/change_panel.hpp"
 
 #include "tests/support/catch.hpp"
 

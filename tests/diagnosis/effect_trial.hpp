@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "tests/diagnosis/panel_effect.hpp"
+#include "tests/diagnosis/panel/effects/panel_effect.hpp"
 #include "tools/simulation/simulation.hpp"
 
 #include <string>

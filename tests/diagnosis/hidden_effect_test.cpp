@@ -2,7 +2,7 @@
 // Each effect of the catalogue is hidden alone in a short recording, by the simulation's physics, and has to
 // be found with place and parameters. A broken effect has to fail its own test.
 #include "tests/diagnosis/broken_effect.hpp"
-#include "tests/diagnosis/panel_case.hpp"
+#include "tests/diagnosis/panel/recording/panel_case.hpp"
 #include "tests/support/catch.hpp"
 #include "tools/diagnosis/diagnosis.hpp"
 #include "tools/diagnosis/effects/effect_catalogue.hpp"

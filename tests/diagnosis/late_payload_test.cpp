@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/diagnosis/run_panel.hpp"
+#include "tests/diagnosis/panel/score/run_panel.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace dfdyn::tests;

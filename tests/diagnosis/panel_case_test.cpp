@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/diagnosis/panel_case.hpp"
+#include "tests/diagnosis/panel/recording/panel_case.hpp"
 
-#include "tests/diagnosis/panel_files.hpp"
-#include "tests/diagnosis/panel_run.hpp"
+#include "tests/diagnosis/panel/recording/panel_files.hpp"
+#include "tests/diagnosis/panel/recording/panel_run.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/temporary_directory.hpp"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes recordings with hidden effects and their answers, and scores the diagnosis on them.
-#include "tests/diagnosis/change_panel.hpp"
-#include "tests/diagnosis/panel_files.hpp"
-#include "tests/diagnosis/panel_table.hpp"
-#include "tests/diagnosis/push_panel.hpp"
-#include "tests/diagnosis/run_panel.hpp"
+#include "tests/diagnosis/panel/changes/change_panel.hpp"
+#include "tests/diagnosis/panel/changes/push_panel.hpp"
+#include "tests/diagnosis/panel/recording/panel_files.hpp"
+#include "tests/diagnosis/panel/score/panel_table.hpp"
+#include "tests/diagnosis/panel/score/run_panel.hpp"
 #include "tools/base/system/atomic_file.hpp"
 
 #include <CLI/CLI.hpp>

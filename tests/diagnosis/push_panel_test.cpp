@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Arms that are pushed at rest: the recordings are simulated, and the diagnosis sees nothing else.
-#include "tests/diagnosis/push_panel.hpp"
+#include "tests/diagnosis/panel/changes/push_panel.hpp"
 
 #include "tests/support/catch.hpp"
 

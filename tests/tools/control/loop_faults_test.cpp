@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faults of bus and timing: frames lost between devices and loop, late ticks, and clocks that jump.
 #include "tests/support/catch.hpp"
+#include "tests/tools/control/bus/scripted_bus.hpp"
 #include "tests/tools/control/pendulum.hpp"
-#include "tests/tools/control/scripted_bus.hpp"
-#include "tests/tools/simulation/read_faults.hpp"
+#include "tests/tools/simulation/faults/read_faults.hpp"
 #include "tools/base/system/pace.hpp"
 #include "tools/control/closed_loop.hpp"
 

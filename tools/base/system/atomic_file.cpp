@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/system/atomic_file.hpp"
 
+#include "tools/base/system/output_stream.hpp"
 #include "tools/base/system/remove_on_signal.hpp"
 #include "tools/base/text/text.hpp"
 
@@ -22,77 +23,7 @@ namespace dfdyn::tools {
 
 namespace fs = std::filesystem;
 
-/// Buffer for a file descriptor. Throws InputError about `path` if the system rejects a write.
-class DescriptorBuffer : public std::streambuf {
-  public:
-    explicit DescriptorBuffer(fs::path path) : path_(std::move(path)) { reset(); }
-
-    void attach(int descriptor) noexcept { descriptor_ = descriptor; }
-
-  protected:
-    int_type overflow(int_type character) override {
-        drain();
-        if (!traits_type::eq_int_type(character, traits_type::eof())) {
-            sputc(traits_type::to_char_type(character));
-        }
-        return traits_type::not_eof(character);
-    }
-
-    int sync() override {
-        drain();
-        return 0;
-    }
-
-  private:
-    void reset() { setp(buffer_.data(), buffer_.data() + buffer_.size()); }
-
-    void drain() {
-        const char* from = pbase();
-        const char* const to = pptr();
-        reset();
-        while (from != to) {
-            const ssize_t count = ::write(descriptor_, from, static_cast<std::size_t>(to - from));
-            if (count < 0 && errno != EINTR) {
-                throw system_error(path_, "cannot write", errno);
-            }
-            from += count < 0 ? 0 : count;
-        }
-    }
-
-    fs::path path_;
-    int descriptor_ = -1;
-    std::array<char, 1U << 16U> buffer_{};
-};
-
 namespace {
-
-/// Without this, the kernel ends the program when a file reaches `ulimit -f`; with it, the write fails with a
-/// reason.
-void ignore_file_size_signal() {
-    struct sigaction action {};
-    if (::sigaction(SIGXFSZ, nullptr, &action) == 0 && action.sa_handler == SIG_DFL) {
-        action.sa_handler = SIG_IGN;
-        ::sigaction(SIGXFSZ, &action, nullptr);
-    }
-}
-
-/// Recordings are read from `-`, but nothing is written to it.
-void refuse_dash(const fs::path& target) {
-    if (target == "-") {
-        throw InputError("-: expected a name, found -; standard output is /dev/stdout");
-    }
-}
-
-/// Throws InputError if there is no folder for the file `target`.
-void require_parent(const fs::path& target) {
-    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-    std::error_code ignored;
-    const fs::file_type found = fs::status(folder, ignored).type();
-    if (found != fs::file_type::directory && found != fs::file_type::none) { // none: the system cannot tell
-        throw InputError(shown(target) + ": expected an existing folder " + shown(folder) + ", found " +
-                         (found == fs::file_type::not_found ? "none" : "a file"));
-    }
-}
 
 /// Throws InputError if `name`, a part of `path`, is longer than file systems allow.
 void require_valid_name(const fs::path& name, const fs::path& path) {

@@ -2,153 +2,15 @@
 #include "tools/can/description/dbc.hpp"
 
 #include "tools/base/system/read_file.hpp"
-#include "tools/base/text/error.hpp"
-#include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
+#include "tools/can/description/text_cursor.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 namespace dfdyn::tools {
 
 namespace {
-
-constexpr std::string_view blanks = " \t";
-
-/// Reads a text token by token and keeps the position.
-class Cursor {
-  public:
-    Cursor(std::string_view text, std::string source) : rest_(text), source_(std::move(source)) {}
-
-    bool at_end() const { return rest_.empty(); }
-    bool at_line_end() const { return rest_.empty() || rest_.front() == '\n' || rest_.front() == '\r'; }
-    std::string_view rest() const { return rest_; }
-
-    void skip_blanks() { skip(std::min(rest_.find_first_not_of(blanks), rest_.size())); }
-
-    /// Position of the next token.
-    Cursor here() {
-        skip_blanks();
-        return *this;
-    }
-
-    /// Moves to the beginning of the next line. Quoted strings may contain line ends. A quote after a
-    /// backslash belongs to the string, unless the statement ends directly after it: a string may also end
-    /// with a backslash.
-    void skip_line() {
-        Cursor quote = *this;
-        for (bool quoted = false; !at_end();) {
-            const char character = rest_.front();
-            if (quoted && rest_.starts_with("\\\"") && !ends_statement(rest_.substr(2))) {
-                skip(2);
-                continue;
-            }
-            if (character == '"') {
-                quoted = !quoted;
-                quote = *this;
-            }
-            skip(1);
-            if (character == '\n' && !quoted) {
-                return;
-            }
-            if (at_end() && quoted) {
-                quote.refuse("a text that ends with \"", "the end of the file");
-            }
-        }
-    }
-
-    bool accept(std::string_view token) {
-        skip_blanks();
-        if (!rest_.starts_with(token)) {
-            return false;
-        }
-        skip(token.size());
-        return true;
-    }
-    void expect(std::string_view token) {
-        if (!accept(token)) {
-            refuse(in_quotes(token));
-        }
-    }
-
-    /// Reads a name with the syntax of a C identifier.
-    std::string name(const char* what) {
-        skip_blanks();
-        const auto part = [](char c) {
-            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-        };
-        const auto end = std::ranges::find_if_not(rest_, part);
-        const std::string_view word = rest_.substr(0, static_cast<std::size_t>(end - rest_.begin()));
-        if (word.empty() || (word.front() >= '0' && word.front() <= '9')) {
-            refuse(what);
-        }
-        skip(word.size());
-        return std::string(word);
-    }
-
-    std::uint64_t whole(const std::string& what, std::uint64_t highest) {
-        skip_blanks();
-        std::uint64_t value = 0;
-        const auto [end, fault] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
-        if (fault != std::errc() || value > highest) {
-            refuse(what + " from 0 to " + std::to_string(highest));
-        }
-        skip(static_cast<std::size_t>(end - rest_.data()));
-        return value;
-    }
-
-    double number(const char* what) {
-        skip_blanks();
-        const std::string_view word = rest_.substr(0, rest_.find_first_of(",)|]\r\n"));
-        const ParsedNumber parsed = parse_number(trimmed(word));
-        if (parsed.fault != NumberFault::none) {
-            refuse(what);
-        }
-        skip(word.size());
-        return parsed.value;
-    }
-
-    std::string quoted() {
-        expect("\"");
-        const std::size_t end = rest_.find_first_of("\"\n");
-        if (end == std::string_view::npos || rest_[end] != '"') {
-            refuse("a text that ends with \" in its line");
-        }
-        std::string text(rest_.substr(0, end));
-        skip(end + 1);
-        return text;
-    }
-
-    [[noreturn]] void refuse(const std::string& expected) const {
-        const std::string_view word = rest_.substr(0, rest_.find_first_of(" \t\r\n"));
-        refuse(expected, at_end()        ? "the end of the file"
-                         : at_line_end() ? "the end of the line"
-                                         : in_quotes(word));
-    }
-    [[noreturn]] void refuse(const std::string& expected, const std::string& found) const {
-        throw InputError(source_ + ":" + std::to_string(line_) + ":" + std::to_string(column_) +
-                         ": expected " + expected + ", found " + found);
-    }
-
-  private:
-    static bool ends_statement(std::string_view text) {
-        return text.starts_with(';') && (text.size() == 1 || text[1] == '\n' || text[1] == '\r');
-    }
-
-    void skip(std::size_t count) {
-        for (const char character : rest_.substr(0, count)) {
-            column_ = character == '\n' ? 1 : column_ + 1;
-            line_ += character == '\n' ? 1U : 0U;
-        }
-        rest_.remove_prefix(count);
-    }
-
-    std::string_view rest_;
-    std::string source_;
-    std::size_t line_ = 1;
-    std::size_t column_ = 1;
-};
 
 constexpr std::uint32_t extended_bit = 1U << 31U;
 
@@ -177,7 +39,7 @@ class Parser {
     /// `BO_ 641 NAME: 8 SENDER`
     void message() {
         DbcMessage message;
-        const Cursor at_id = cursor_.here();
+        const TextCursor at_id = cursor_.here();
         message.id = static_cast<std::uint32_t>(cursor_.whole("an identifier", 0xFFFFFFFF));
         message.name = cursor_.name("a message's name");
         message.extended = (message.id & extended_bit) != 0;
@@ -207,7 +69,7 @@ class Parser {
             cursor_.refuse("a message before its signals");
         }
         DbcMessage& message = dbc_.messages.back();
-        const Cursor at_name = cursor_.here();
+        const TextCursor at_name = cursor_.here();
         DbcSignal read;
         read.name = cursor_.name("a signal's name");
         if (message.find(read.name) != nullptr) {
@@ -254,7 +116,7 @@ class Parser {
     }
 
     void layout(const DbcMessage& message, hal::Signal& signal) {
-        const Cursor at_layout = cursor_.here();
+        const TextCursor at_layout = cursor_.here();
         signal.start_bit = static_cast<int>(cursor_.whole("a start bit", 511));
         cursor_.expect("|");
         signal.length = static_cast<int>(cursor_.whole("a number of bits", 64));
@@ -273,7 +135,7 @@ class Parser {
 
     void scaling(DbcSignal& read) {
         cursor_.expect("(");
-        const Cursor at_factor = cursor_.here();
+        const TextCursor at_factor = cursor_.here();
         read.signal.factor = cursor_.number("a factor");
         if (read.signal.factor == 0) {
             at_factor.refuse("a factor that is not 0");
@@ -296,7 +158,7 @@ class Parser {
         if (cursor_.at_line_end()) {
             return;
         }
-        const Cursor at_id = cursor_.here();
+        const TextCursor at_id = cursor_.here();
         const auto id = static_cast<std::uint32_t>(cursor_.whole("an identifier", 0xFFFFFFFF));
         const std::string name = cursor_.name("a signal's name");
         cursor_.accept(":");
@@ -327,7 +189,7 @@ class Parser {
         return found == dbc_.messages.end() ? nullptr : &*found;
     }
 
-    Cursor cursor_;
+    TextCursor cursor_;
     Dbc dbc_;
     bool current_ = true; ///< signals belong to the last message
 };

@@ -88,13 +88,25 @@ void print_moving_joint(XMLPrinter& out, const RobotJoint& joint, const JointDyn
         .set("friction", number_text(dynamics.friction));
 }
 
+/// Returns the shortest rotation from `direction` to -z; from z, half a turn about x. Eigen's FromTwoVectors
+/// does the same with a singular value decomposition, which takes seconds to compile.
+Eigen::Matrix3d turn_to_negative_z(const Eigen::Vector3d& direction) {
+    const Eigen::Vector3d from = direction.normalized();
+    const double cosine = -from.z();
+    if (cosine < -1 + 1e-12) {
+        return Eigen::Quaterniond(0, -1, 0, 0).toRotationMatrix();
+    }
+    const double scale = std::sqrt(2 * (1 + cosine));
+    const Eigen::Vector3d axis = from.cross(-Eigen::Vector3d::UnitZ()) * (1 / scale);
+    return Eigen::Quaterniond(scale / 2, axis.x(), axis.y(), axis.z()).toRotationMatrix();
+}
+
 /// Prints a root link whose z axis points up, if that of the robot's base does not.
 void print_gravity_frame(XMLPrinter& out, const Robot& robot) {
     const Eigen::Vector3d down = robot.gravity.normalized();
     if (robot.gravity.norm() > 0 && (down + Eigen::Vector3d::UnitZ()).norm() > 1e-12) {
         Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();
-        turned.linear() =
-            Eigen::Quaterniond::FromTwoVectors(down, -Eigen::Vector3d::UnitZ()).toRotationMatrix();
+        turned.linear() = turn_to_negative_z(down);
         print_link(out, "gravity_frame", InertialParameters::Zero());
         print_fixed_joint(out, "gravity_frame", robot.base, turned);
     }
