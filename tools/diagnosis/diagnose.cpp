@@ -6,6 +6,7 @@
 #include "tools/diagnosis/verdict/granted.hpp"
 #include "tools/diagnosis/verdict/joint_units.hpp"
 #include "tools/diagnosis/verdict/plausibility.hpp"
+#include "tools/diagnosis/verdict/textbook_findings.hpp"
 #include "tools/diagnosis/verdict/unexplained.hpp"
 #include "tools/setup_check/setup_check.hpp"
 #include "tools/training/physics/torque_constants.hpp"
@@ -84,6 +85,7 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
         options.outputs != OutputKind::motor_current || !options.torque_constants.empty();
     if (suspect(work.diagnosis, suspicions_of_motion(*signals, work.measured, recording))) {
         measure_from(work, 0, work.explanation); // without effects
+        work.extended = signals->nominal;
         return work;
     }
     ExplanationOptions how{gains_known, 1, options.progress, options.effects};
@@ -95,16 +97,17 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     }
     work.diagnosis.findings =
         findings_of(*signals, work.explanation, work.pushes, work.rest, work.diagnosis.output_names);
-    work.diagnosis.granted = granted_quantities(*signals, work.explanation, work.torque_gains);
-    use_units_of_joints(work.diagnosis, robot);
-    work.diagnosis.unexplained = unnamed_dependences(*signals, work.measured, work.explanation);
-    add_rest(work.diagnosis.unexplained,
-             unexplained_rest(*signals, work.measured, work.rest, work.explanation.noise));
     if (options.measure) {
         measure_on_held_out(work, how);
     } else {
         measure_from(work, 0, work.explanation);
     }
+    name_by_least_squares(work, gains_known);
+    work.diagnosis.granted = granted_quantities(*signals, work.explanation, work.torque_gains);
+    use_units_of_joints(work.diagnosis, robot);
+    work.diagnosis.unexplained = unnamed_dependences(*signals, work.measured, work.explanation);
+    add_rest(work.diagnosis.unexplained,
+             unexplained_rest(*signals, work.measured, work.rest, work.explanation.noise));
     doubt_useless_findings(work.diagnosis);
     return work;
 }

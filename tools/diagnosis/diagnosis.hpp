@@ -89,6 +89,8 @@ struct Diagnosis {
     ErrorMeasure nominal, extended;
     ErrorMeasure causes;        ///< of the causes found, also where plain least squares replaces them
     ErrorMeasure least_squares; ///< of plain least squares for each output (`textbook_fit`)
+    /// 5 x m: plain least squares of the moving rows of the whole recording, as in `TextbookFit`
+    Eigen::MatrixXd textbook;
     /// Per output: plain least squares is the extended model, because the causes found err more.
     std::vector<bool> by_least_squares;
     Eigen::VectorXd standing_share; ///< m: share of the rows of these errors that `moving_nrmse` excludes
@@ -128,6 +130,7 @@ struct DiagnosisWork {
     RawSamples samples;                  ///< of the recording; without rows: errors are those of `measured`
     Eigen::MatrixXd rest; ///< T x m: residual after the explanation and the contacts, as `measured`
     Diagnosis diagnosis;
+    Eigen::MatrixXd extended = {}; ///< T x m: outputs of the extended model, as `measured`
 };
 
 /// Returns whether the recording could answer: there are effects to choose from, and a model can be made.

@@ -33,6 +33,12 @@ std::vector<Index> moving_rows(const RobotMotion& motion, Index joint) {
     return rows;
 }
 
+/// Returns the share of its degrees of freedom that a fit of `columns` leaves. Of rows 10 ms apart every
+/// other one counts, because their derivatives share most of a window.
+double free_share(std::size_t rows, Index columns) {
+    return 1 - 2 * static_cast<double>(columns) / static_cast<double>(std::max<std::size_t>(rows, 1));
+}
+
 VectorXd deviations(const MatrixXd& columns) {
     return (columns.rowwise() - columns.colwise().mean()).colwise().norm();
 }
@@ -45,6 +51,7 @@ SetupFindings check_robot_match(const ArmRecording& arm) {
     constexpr double far_better = 1.2;
     constexpr double much = 0.06;
     constexpr int turns = 2;
+    constexpr double least_free = 0.5; // with fewer rows so many functions fit anything
     const RobotMotion& motion = arm.recorded.motion;
     if (arm.wrench()) {
         return {};
@@ -60,10 +67,15 @@ SetupFindings check_robot_match(const ArmRecording& arm) {
             continue;
         }
         const std::vector<Index> rows = moving_rows(motion, k);
+        const double free = free_share(rows.size(), smooth.cols());
+        if (free < least_free) {
+            continue;
+        }
         const VectorXd output = arm.output(k)(rows);
         const double by_robot = left_by(output, expected_columns(arm, motion, parts, k)(rows, Eigen::all));
         const double by_any =
-            fit_signed(output, smooth(rows, Eigen::all), friction_columns(motion, k)(rows, Eigen::all)).left;
+            fit_signed(output, smooth(rows, Eigen::all), friction_columns(motion, k)(rows, Eigen::all)).left /
+            free;
         ratio += std::log(std::max(by_robot, least_share) / std::max(by_any, least_share));
         left += by_robot;
         columns.push_back(arm.recording.output.names[static_cast<std::size_t>(k)]);

@@ -180,3 +180,28 @@ TEST_CASE(
     }
     CHECK(std::ranges::none_of(diagnosis.findings, is_contact));
 }
+
+TEST_CASE("dry friction of a real arm is the same in four of its recordings", "[.long]") {
+    DiagnosisOptions how;
+    how.outputs = OutputKind::motor_current;
+    how.torque_constants = {8.2, 11.4, 9.4, 7.0, 11.0, 1.3}; // of No6 by itself
+    std::vector<Diagnosis> diagnoses;
+    for (const char* const run : {"No5_Acc_slow_no_disturbance", "No6_Acc_slow_Verify_Model",
+                                  "No7_Acc_slow_Verify_Model_short", "No9_Singularity_Free_NoDist"}) {
+        diagnoses.push_back(diagnose(dfdyn::tests::ur5(), currents({run}), how).diagnosis);
+    }
+    for (const char* const joint : {"joint1", "joint3", "joint5"}) {
+        CAPTURE(joint);
+        std::vector<double> levels;
+        for (const Diagnosis& diagnosis : diagnoses) {
+            const auto found = std::ranges::find_if(diagnosis.findings, [joint](const Finding& finding) {
+                return finding.effect == "coulomb_friction" && finding.where == joint &&
+                       finding.confidence >= 0.5;
+            });
+            REQUIRE(found != diagnosis.findings.end());
+            levels.push_back(found->parameters.front().value);
+        }
+        const auto [least, most] = std::ranges::minmax(levels);
+        CHECK(most < 1.4 * least);
+    }
+}

@@ -58,6 +58,14 @@ TEST_CASE("a correct recording is accepted however it is cut with and without a 
     }
 }
 
+TEST_CASE("a few seconds of an uneven recording are not taken for another robot's") {
+    const Robot robot = ur5();
+    for (const Cut& one : cuts_of(currents("ur5_kufieta/Movement_No3_Acc.csv"))) {
+        CAPTURE(one.name);
+        CHECK(mistakes_in(one.recording, {OutputKind::motor_current, &robot}) == "");
+    }
+}
+
 /// Checks correct recordings of random arms, motions and loads.
 void check_right_runs(int count, std::mt19937_64& engine) {
     const std::vector<Robot> robots{ur5(),

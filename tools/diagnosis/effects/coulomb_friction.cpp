@@ -54,6 +54,7 @@ Effect effects::coulomb_friction() {
                           "differ by twice this value",
             .in_extended_model = "adapting (two levels: a level and an offset)",
             .friction = true,
+            .textbook = TextbookTerm::dry,
             .each = Each::torque_joint,
             .candidates = coulomb_candidates,
             .plotted_over = over_velocity,

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -36,6 +37,9 @@ enum class Each : std::uint8_t {
     body,         ///< every link on which the outputs depend
     joint,        ///< every joint, regardless of the measured quantity
 };
+
+/// Terms of plain least squares of one output, in the order of its coefficients (`textbook_fit`).
+enum class TextbookTerm : std::uint8_t { gain, inertia, viscous, dry, offset };
 
 /// Quantities of a fitted model. Candidates that depend on them are made again after each fit.
 struct FittedModel {
@@ -92,6 +96,9 @@ struct Effect {
     bool interval = false;
     /// log-odds subtracted from its findings, because real noise has similar bursts
     double burst_evidence = 0;
+
+    /// The term of plain least squares that is its main parameter; empty: none is.
+    std::optional<TextbookTerm> textbook = {};
 
     Each each = Each::arm;
     /// Returns the candidates at one place. Null: the effect has none of this kind. `number`: index of the

@@ -15,6 +15,7 @@ Effect effects::rotor_inertia() {
             .experiment = "swing this joint alone with growing frequency in two postures: the extra inertia "
                           "is the same in both",
             .in_extended_model = "adapting",
+            .textbook = TextbookTerm::inertia,
             .each = Each::torque_joint,
             .candidates =
                 [](const DiagnosisSignals& signals, std::size_t number) {

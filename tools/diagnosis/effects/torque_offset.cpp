@@ -15,6 +15,7 @@ Effect effects::torque_offset() {
             .experiment = "hold the arm still in postures where this joint carries no load and read the "
                           "torque",
             .in_extended_model = "adapting",
+            .textbook = TextbookTerm::offset,
             .each = Each::torque_joint,
             .candidates =
                 [](const DiagnosisSignals& signals, std::size_t number) {

@@ -16,6 +16,7 @@ Effect effects::viscous_friction() {
                           "mean rises linearly with speed",
             .in_extended_model = "adapting",
             .friction = true,
+            .textbook = TextbookTerm::viscous,
             .each = Each::torque_joint,
             .candidates =
                 [](const DiagnosisSignals& signals, std::size_t number) {

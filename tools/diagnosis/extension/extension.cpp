@@ -40,7 +40,8 @@ void take_least_squares(Extension& extension, const DiagnosisWork& work, Eigen::
                   [output](const ExtensionColumn& column) { return column.effect.row == output; });
     for (CarriedFinding& carried : extension.carried) {
         if (carried.where == joint) {
-            carried.how = EffectDisposition::left_out;
+            const bool fitted = effect_named(carried.effect).textbook.has_value();
+            carried.how = fitted ? EffectDisposition::adapting : EffectDisposition::left_out;
         }
     }
     const double gain = std::max(coefficients[0], least_gain);

@@ -77,6 +77,21 @@ ordered_json to_json(const Finding& finding, const std::string& output) {
         {"confirm", finding.confirm}};
 }
 
+/// The errors of plain least squares, and its coefficients for each output.
+ordered_json textbook_json(const Diagnosis& diagnosis) {
+    ordered_json json = to_json(diagnosis.least_squares);
+    ordered_json coefficients = ordered_json::array();
+    for (Eigen::Index output = 0; output < diagnosis.textbook.cols(); ++output) {
+        const auto of = diagnosis.textbook.col(output);
+        coefficients.push_back(
+            {{"gain", of[0]}, {"inertia", of[1]}, {"viscous", of[2]}, {"coulomb", of[3]}, {"offset", of[4]}});
+    }
+    if (!coefficients.empty()) {
+        json["coefficients"] = std::move(coefficients);
+    }
+    return json;
+}
+
 ordered_json texts(const std::vector<Suspicion>& suspicions) {
     ordered_json json = ordered_json::array();
     for (const Suspicion& suspicion : suspicions) {
@@ -106,7 +121,7 @@ ordered_json diagnosis_json(const Diagnosis& diagnosis) {
         {"refusals", refusals(diagnosis.suspicions)},
         {"nominal", to_json(diagnosis.nominal)},
         {"extended", to_json(diagnosis.extended)},
-        {"least_squares", to_json(diagnosis.least_squares)},
+        {"least_squares", textbook_json(diagnosis)},
         {"extended_by_least_squares", diagnosis.by_least_squares},
         {"heldout",
          {{"from", diagnosis.heldout_from_s},

@@ -118,8 +118,7 @@ ReportTable unexplained_table(const Diagnosis& diagnosis) {
 
 ComparedOutputs compared_outputs(const DiagnosisWork& work) {
     const Eigen::MatrixXd simulated = in_output_units(work, work.signals->nominal);
-    return {in_output_units(work, work.measured), simulated,
-            simulated + in_output_units(work, work.explanation.model(*work.signals))};
+    return {in_output_units(work, work.measured), simulated, in_output_units(work, work.extended)};
 }
 
 void write_comparison_csv(std::ostream& out, const DiagnosisWork& work) {
@@ -178,7 +177,7 @@ PageSection comparison_section(const DiagnosisWork& work, const std::string& ful
 PageSection rest_section(const DiagnosisWork& work) {
     PageSection section{"What is left", {}, {}, {}};
     const Eigen::MatrixXd nominal = in_output_units(work, work.measured - work.signals->nominal);
-    const Eigen::MatrixXd rest = nominal - in_output_units(work, work.explanation.model(*work.signals));
+    const Eigen::MatrixXd rest = in_output_units(work, work.measured - work.extended);
     section.tables.push_back(rest_table(work, rest));
     section.paragraphs.emplace_back(
         work.diagnosis.unexplained.empty()

@@ -81,7 +81,8 @@ void take_better(Diagnosis& diagnosis) {
         diagnosis.suspicions.push_back({"at " + names +
                                         " the causes found err more than plain least squares per joint "
                                         "(gain, inertia, viscous and dry friction, "
-                                        "offset), which the extended model has there instead"});
+                                        "offset): the extended model and the list of causes have its "
+                                        "values there instead"});
     }
 }
 

@@ -153,11 +153,6 @@ bool same_contact(const Finding& one, const Finding& other) {
            start_s(other) < end_s(one) + apart_s;
 }
 
-void sort_by_gain(std::vector<Finding>& findings) {
-    std::ranges::sort(findings, std::greater<>{},
-                      [](const Finding& finding) { return finding.rms_before / finding.rms_after; });
-}
-
 /// A contact appears on several axes and in several pulses. Keeps the one with the largest gain.
 std::vector<Finding> without_repeated_contacts(std::vector<Finding> findings) {
     sort_by_gain(findings);
@@ -184,6 +179,11 @@ void add_push(std::vector<Finding>& findings, Finding push) {
 }
 
 } // namespace
+
+void sort_by_gain(std::vector<Finding>& findings) {
+    std::ranges::sort(findings, std::greater<>{},
+                      [](const Finding& finding) { return finding.rms_before / finding.rms_after; });
+}
 
 double calibrated_confidence(const Finding& finding, double duration_s) {
     // Logistic regression on correct and wrong findings in simulated recordings of 50 s and of 200 s:

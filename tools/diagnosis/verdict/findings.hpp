@@ -12,6 +12,8 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
                                  const std::vector<StandingContact>& pushes, const Eigen::MatrixXd& rest,
                                  const std::vector<std::string>& output_names);
 
+void sort_by_gain(std::vector<Finding>& findings);
+
 /// Calibrated probability from the finding's margin, its effect and the recording's length.
 double calibrated_confidence(const Finding& finding, double duration_s);
 

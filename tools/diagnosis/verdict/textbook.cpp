@@ -25,19 +25,24 @@ VectorXd damped_least_squares(const MatrixXd& columns, const VectorXd& right) {
 
 } // namespace
 
+MatrixXd textbook_columns(const DiagnosisSignals& signals, const VectorXd& rigid, Index output) {
+    const RobotMotion& motion = signals.measured.motion;
+    MatrixXd columns = MatrixXd::Zero(rigid.size(), 5);
+    columns.col(0) = rigid;
+    if (!signals.wrench()) {
+        columns.col(1) = motion.acceleration.col(output);
+        columns.col(2) = motion.velocity.col(output);
+        columns.col(3) = signals.direction(output);
+    }
+    columns.col(4).setOnes();
+    return columns;
+}
+
 TextbookFit textbook_fit(const DiagnosisSignals& signals, const MatrixXd& measured, const MatrixXd& rigid,
                          Index rows) {
-    const RobotMotion& motion = signals.measured.motion;
     TextbookFit fit{MatrixXd::Zero(5, measured.cols()), MatrixXd(measured.rows(), measured.cols())};
     for (Index output = 0; output < measured.cols(); ++output) {
-        MatrixXd columns = MatrixXd::Zero(measured.rows(), 5);
-        columns.col(0) = rigid.col(output);
-        if (!signals.wrench()) {
-            columns.col(1) = motion.acceleration.col(output);
-            columns.col(2) = motion.velocity.col(output);
-            columns.col(3) = signals.direction(output);
-        }
-        columns.col(4).setOnes();
+        const MatrixXd columns = textbook_columns(signals, rigid.col(output), output);
         fit.coefficients.col(output) =
             damped_least_squares(columns.topRows(rows), measured.col(output).head(rows));
         fit.prediction.col(output) = columns * fit.coefficients.col(output);

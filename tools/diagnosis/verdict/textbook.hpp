@@ -16,6 +16,10 @@ struct TextbookFit {
     Eigen::MatrixXd prediction; ///< T x m, N·m (N)
 };
 
+/// Returns the columns (T x 5) of an output, in the order of `TextbookTerm`. `rigid` (T): the rigid body's.
+Eigen::MatrixXd textbook_columns(const DiagnosisSignals& signals, const Eigen::VectorXd& rigid,
+                                 Eigen::Index output);
+
 /// Fits the first `rows` rows of `measured`, T x m, with the rigid body's outputs `rigid`, T x m. All rows
 /// have the same weight. Cost: O(25 T m).
 TextbookFit textbook_fit(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,

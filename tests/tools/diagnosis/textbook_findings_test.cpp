@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// What plain least squares names at a joint where it errs less than the causes found.
+#include "tools/diagnosis/verdict/textbook_findings.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/diagnosis/small_explanation.hpp"
+#include "tests/tools/robot/arms.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace textbook_findings_test {
+
+using namespace dfdyn::tools;
+using namespace dfdyn::tests;
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double dry = 2;     // N·m
+constexpr double viscous = 5; // N·m·s/rad
+
+/// Noise that is correlated over half a second.
+VectorXd slow_noise(Index rows, double deviation, std::mt19937_64& engine) {
+    constexpr double kept = 0.98;
+    std::normal_distribution<double> normal(0, deviation * std::sqrt(1 - kept * kept));
+    VectorXd noise(rows);
+    double value = 0;
+    for (double& one : noise) {
+        one = value = kept * value + normal(engine);
+    }
+    return noise;
+}
+
+/// A UR5 with friction at joint 1, for which nothing was found, and plain least squares there.
+DiagnosisWork work_with_friction(std::mt19937_64& engine, double noise) {
+    auto signals = std::make_shared<DiagnosisSignals>(signals_of(ur5(), OutputKind::joint_torque));
+    DiagnosisWork work;
+    work.signals = signals;
+    work.torque_gains = VectorXd::Ones(6);
+    work.measured = signals->nominal;
+    work.measured.col(0) += viscous * signals->measured.motion.velocity.col(0) + dry * signals->direction(0) +
+                            slow_noise(signals->rows(), noise, engine);
+    work.rest = work.measured - signals->nominal;
+    work.explanation = explanation_of({}, 0, random_series(*signals, engine));
+    work.diagnosis.output_names = {"tau1", "tau2", "tau3", "tau4", "tau5", "tau6"};
+    work.diagnosis.by_least_squares = {true, false, false, false, false, false};
+    return work;
+}
+
+Finding finding(const std::string& effect, const std::string& where, double confidence) {
+    Finding one;
+    one.effect = effect;
+    one.where = where;
+    one.confidence = confidence;
+    one.parameters = {{"start", "s", 1, 1, 1}, {"end", "s", 2, 2, 2}};
+    one.rms_before = 2;
+    one.rms_after = 1;
+    return one;
+}
+
+const Finding* found(const DiagnosisWork& work, const std::string& effect, const std::string& where) {
+    const auto& findings = work.diagnosis.findings;
+    const auto at = std::ranges::find_if(
+        findings, [&](const Finding& one) { return one.effect == effect && one.where == where; });
+    return at == findings.end() ? nullptr : &*at;
+}
+
+TEST_CASE("where plain least squares errs less its friction is named and other causes there are unlikely") {
+    DFDYN_SEEDED_ENGINE(engine);
+    DiagnosisWork work = work_with_friction(engine, 0.3);
+    work.diagnosis.findings = {finding("presliding_hysteresis", "joint1", 0.9),
+                               finding("coulomb_friction", "joint1", 0.9), finding("delay", "actuator1", 0.8),
+                               finding("external_contact", "joint1", 0.9),
+                               finding("coulomb_friction", "joint2", 0.9)};
+
+    name_by_least_squares(work, true);
+
+    for (const auto& [effect, truth] : {std::pair{"coulomb_friction", dry}, {"viscous_friction", viscous}}) {
+        CAPTURE(effect);
+        const Finding* const one = found(work, effect, "joint1");
+        REQUIRE(one != nullptr);
+        CHECK(one->confidence >= 0.5);
+        CHECK(one->parameters.front().low < truth);
+        CHECK(one->parameters.front().high > truth);
+        CHECK(one->rms_after < one->rms_before);
+    }
+    CHECK(found(work, "rotor_inertia", "joint1") == nullptr); // there is none
+    CHECK(found(work, "presliding_hysteresis", "joint1")->confidence < 0.5);
+    CHECK(found(work, "delay", "actuator1")->confidence < 0.5);
+    CHECK(found(work, "external_contact", "joint1")->confidence == 0.9); // an event
+    CHECK(found(work, "coulomb_friction", "joint2")->confidence == 0.9);
+    CHECK(work.rest.col(0).norm() < 0.1 * work.measured.col(0).norm());
+    CHECK((work.extended.col(1) - work.signals->nominal.col(1)).norm() == 0);
+}
+
+TEST_CASE("the intervals of plain least squares hold the truth under slow noise") {
+    DFDYN_SEEDED_ENGINE(engine);
+    constexpr int runs = 100;
+    int dry_held = 0;
+    int viscous_held = 0;
+    for (int run = 0; run < runs; ++run) {
+        DiagnosisWork work = work_with_friction(engine, 1);
+        name_by_least_squares(work, true);
+        const auto holds = [&](const char* effect, double truth) {
+            const Finding* const one = found(work, effect, "joint1");
+            return one != nullptr && one->parameters.front().low < truth &&
+                   truth < one->parameters.front().high;
+        };
+        dry_held += holds("coulomb_friction", dry) ? 1 : 0;
+        viscous_held += holds("viscous_friction", viscous) ? 1 : 0;
+    }
+    CAPTURE(dry_held, viscous_held);
+    CHECK(viscous_held >= 90);
+    CHECK(dry_held >= 90);
+}
+
+} // namespace textbook_findings_test
