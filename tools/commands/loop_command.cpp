@@ -7,6 +7,7 @@
 #include "tools/base/text/number.hpp"
 #include "tools/base/text/text.hpp"
 #include "tools/commands/command.hpp"
+#include "tools/commands/options/contact_options.hpp"
 #include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/robot_options.hpp"
@@ -26,6 +27,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -42,6 +44,7 @@ struct LoopOptions {
     double window_s = 5;
     LoopLimits limits;
     std::vector<std::string> on_finding; ///< cause=action
+    std::string on_contact;
 };
 
 struct LoopParts {
@@ -188,12 +191,14 @@ SimulatedRun simulate_run(const LoopParts& parts, const LoopOptions& options, co
     add_recording(options, name, recording, files);
     std::cout << name << ' ';
     print_loop(std::cout, loop.loop());
+    print_reactions(std::cout, loop.reactions());
     print_peaks(std::cout, peaks);
     show_changes(options, loop.loop(), files);
     if (contender.name == contenders(options).back().name) {
         save_learned(options, loop.loop(), files);
     }
     SimulatedRun result{std::nullopt, loop_json(name, loop.loop(), peaks)};
+    result.loop["reactions"] = reactions_json(loop.reactions());
     if (loop.loop().state() == LoopState::running) {
         result.tracking = TrackingRun{name, tracking.windows()};
     }
@@ -260,8 +265,17 @@ int run_on_bus(const LoopOptions& options) {
 
 int run(LoopOptions& options) {
     options.limits.actions = FindingActions(options.on_finding, "--on-finding");
-    if (options.model.empty() && !options.on_finding.empty()) {
-        throw InputError("loop: --on-finding: expected --model, found none");
+    if (!options.on_contact.empty()) {
+        options.limits.on_contact = contact_action(options.on_contact, "--on-contact");
+    }
+    for (const auto& [name, given] : {std::pair("--on-finding", !options.on_finding.empty()),
+                                      std::pair("--on-contact", !options.on_contact.empty())}) {
+        if (options.model.empty() && given) {
+            throw InputError(std::string("loop: ") + name + ": expected --model, found none");
+        }
+    }
+    if (options.on_contact.empty() && options.limits.contact_rate_per_hour) {
+        throw InputError("loop: --contact-rate: expected --on-contact, found none");
     }
     if (options.model.empty() && !(options.restored.empty() && options.saved.empty())) {
         throw InputError("loop: --restore and --save: expected --model, found none");
@@ -299,6 +313,15 @@ void add_model(CLI::App& command, LoopOptions& options) {
                     "default), relearn, compensate (bias_moved) or stop; causes: docs/guide/control.md")
         ->delimiter(',')
         ->type_name("CAUSE=ACTION");
+    command
+        .add_option(
+            "--on-contact", options.on_contact,
+            "What to do when something touches the arm: stop (the safe stop), hold (stops on the path, "
+            "gravity torque and feedback; continues) or yield (gravity torque alone; returns and "
+            "continues). Without it contacts are not detected. Not a safety function: "
+            "docs/guide/contacts.md")
+        ->type_name("stop|hold|yield");
+    add_contact_rate(command, options.limits.contact_rate_per_hour, "Of --on-contact");
 }
 
 /// Adds the options of the loop's limits.
