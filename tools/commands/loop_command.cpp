@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/commands/command.hpp"
 #include "tools/commands/loop_run.hpp"
+#include "tools/commands/options/contact_options.hpp"
 #include "tools/commands/options/json_output.hpp"
 #include "tools/commands/options/options.hpp"
 #include "tools/commands/options/value_checks.hpp"
@@ -29,6 +30,15 @@ void add_model(CLI::App& command, LoopOptions& options) {
                     "default), relearn, compensate (bias_moved) or stop; causes: docs/guide/control.md")
         ->delimiter(',')
         ->type_name("CAUSE=ACTION");
+    command
+        .add_option(
+            "--on-contact", options.on_contact,
+            "What to do when something touches the arm: stop (the safe stop), hold (stops on the path, "
+            "gravity torque and feedback; continues) or yield (gravity torque alone; returns and "
+            "continues). Without it contacts are not detected. Not a safety function: "
+            "docs/guide/contacts.md")
+        ->type_name("stop|hold|yield");
+    add_contact_rate(command, options.limits.contact_rate_per_hour, "Of --on-contact");
 }
 
 /// Adds the options of the loop's limits.

@@ -24,6 +24,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace dfdyn::tools {
 
@@ -173,12 +174,14 @@ SimulatedRun simulate_run(const LoopParts& parts, const LoopOptions& options, co
     add_recording(options, name, recording, files);
     std::cout << name << ' ';
     print_loop(std::cout, loop.loop());
+    print_reactions(std::cout, loop.reactions());
     print_peaks(std::cout, peaks);
     show_changes(options, loop.loop(), files);
     if (contender.name == contenders(options).back().name) {
         save_learned(options, loop.loop(), files);
     }
     SimulatedRun result{std::nullopt, loop_json(name, loop.loop(), peaks)};
+    result.loop["reactions"] = reactions_json(loop.reactions());
     if (loop.loop().state() == LoopState::running) {
         result.tracking = TrackingRun{name, tracking.windows()};
     }
@@ -247,8 +250,17 @@ int run_on_bus(const LoopOptions& options) {
 
 int run_loop_command(LoopOptions& options) {
     options.limits.actions = FindingActions(options.on_finding, "--on-finding");
-    if (options.model.empty() && !options.on_finding.empty()) {
-        throw InputError("loop: --on-finding: expected --model, found none");
+    if (!options.on_contact.empty()) {
+        options.limits.on_contact = contact_action(options.on_contact, "--on-contact");
+    }
+    for (const auto& [name, given] : {std::pair("--on-finding", !options.on_finding.empty()),
+                                      std::pair("--on-contact", !options.on_contact.empty())}) {
+        if (options.model.empty() && given) {
+            throw InputError(std::string("loop: ") + name + ": expected --model, found none");
+        }
+    }
+    if (options.on_contact.empty() && options.limits.contact_rate_per_hour) {
+        throw InputError("loop: --contact-rate: expected --on-contact, found none");
     }
     if (options.model.empty() && !(options.restored.empty() && options.saved.empty())) {
         throw InputError("loop: --restore and --save: expected --model, found none");

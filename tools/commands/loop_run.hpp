@@ -21,6 +21,7 @@ struct LoopOptions {
     double window_s = 5;
     LoopLimits limits;
     std::vector<std::string> on_finding; ///< cause=action
+    std::string on_contact;
 };
 
 /// Runs the loop in a simulation or on a bus, and writes what the options ask for. Returns the exit status.

@@ -98,6 +98,20 @@ void ClosedLoop::command(std::int64_t now_ns, const JointVector& torque) {
     plant_.apply(link_->plant.torque(now_ns));
 }
 
+void ClosedLoop::note_reaction(double time_s) {
+    faults_.go_to(time_s);
+    const ArmFaults& arm = faults_.now().arm;
+    const bool pushed = !arm.pushes.empty() || !arm.load.isZero(0);
+    push_s_ = pushed && !pushed_ ? time_s : push_s_;
+    pushed_ = pushed;
+    for (; known_actions_ < loop_->actions().size(); ++known_actions_) {
+        const bool contact = loop_->actions()[known_actions_].cause == Cause::contact;
+        if (contact && time_s - push_s_ <= longest_reaction_s) {
+            reactions_.push_back({push_s_, time_s - push_s_});
+        }
+    }
+}
+
 void ClosedLoop::run_to(double time_s, const std::function<void(const ClosedLoopInstant&)>& on_tick) {
     while (motion_time(tick_) < time_s && loop_->state() != LoopState::stopped) {
         ClosedLoopInstant instant;
@@ -120,6 +134,7 @@ void ClosedLoop::run_to(double time_s, const std::function<void(const ClosedLoop
             check_waiting();
             continue;
         }
+        note_reaction(instant.time_s);
         on_tick(instant);
         command(now_ns, instant.command);
     }

@@ -22,6 +22,12 @@ struct ClosedLoopInstant {
     JointVector command; ///< N·m
 };
 
+/// Time from a simulated push to the loop's reaction to the contact.
+struct PushReaction {
+    double push_s = 0;  ///< begin of the push, since the beginning of the motion
+    double after_s = 0; ///< from there to the first command of the reaction
+};
+
 /// A loop and the arm of a scenario in one thread, in simulated time. Equal inputs give bit-identical
 /// results.
 ///
@@ -42,6 +48,8 @@ class ClosedLoop {
     void run_to(double time_s, const std::function<void(const ClosedLoopInstant&)>& on_tick);
 
     const ControlLoop& loop() const noexcept { return *loop_; }
+    /// Returns the reactions to contacts within `longest_reaction_s` after the begin of a push.
+    const std::vector<PushReaction>& reactions() const noexcept { return reactions_; }
     /// Enables or disables the learned torque; see FeedForward.
     void enable_learned(bool on) noexcept { loop_->enable_learned(on); }
     SimulatedPlant& plant() noexcept { return plant_; }
@@ -69,6 +77,8 @@ class ClosedLoop {
     std::int64_t pace_ns(std::int64_t tick) const;
     const LinkFaults& faults_at(double motion_time_s);
     std::int64_t begin_ns();
+    /// Follows the pushes, and what the loop has done about them.
+    void note_reaction(double time_s);
     void measure();
     LoopInput sense(std::int64_t due_ns, std::int64_t now_ns);
     void command(std::int64_t now_ns, const JointVector& torque);
@@ -80,6 +90,12 @@ class ClosedLoop {
     SimulatedPlant plant_;
     FaultSchedule faults_;
     Losses losses_; ///< used without a bus
+    static constexpr double longest_reaction_s = 3;
+
+    std::vector<PushReaction> reactions_;
+    std::size_t known_actions_ = 0;
+    bool pushed_ = false;
+    double push_s_ = -longest_reaction_s; ///< begin of the last push
     Readings readings_;
     std::int64_t bus_set_ns_ = 0; ///< offset of the loop's clock from the clock that schedules the ticks
     std::int64_t tick_ = 0, waited_ = 0;        ///< all ticks, and those before the motion

@@ -185,6 +185,7 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
                            : given_bandwidth(limits.observer_bandwidth, robot, controller.rate_hz);
     config.safe_stop.mode = limits.mode;
     config.actions = limits.actions;
+    config.on_contact = limits.on_contact;
     if (!limits.following_error.empty()) {
         config.safe_stop.following_error = per_joint(limits.following_error, robot, "--following-error");
     }
@@ -196,8 +197,13 @@ std::unique_ptr<ControlLoop> make_control_loop(const Robot& robot, const Scenari
     if (learned != nullptr) {
         config.knot_ticks = knot_ticks(config.period_s, learned->model.sample_period_s, learned->source);
         const MonitorSetup monitor = monitor_setup(learned->model, &robot, learned->source);
+        const std::optional<ContactModel> contact =
+            limits.on_contact == FindingAction::report
+                ? std::nullopt
+                : std::optional(
+                      contact_limits(learned->model, limits.contact_rate_per_hour, learned->source));
         model.emplace(learned->model, learned->from_prior, joints, config.knot_ticks, learned->source,
-                      &monitor);
+                      &monitor, contact ? &*contact : nullptr);
         if (!learned->learned.empty() && !model->restore(learned->learned)) {
             throw InputError(learned->learned_source + ": expected what " + learned->source +
                              " has learned, whole, found something else");

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,8 @@ struct LoopLimits {
     std::vector<double> observer_bandwidth{}; ///< rad/s; 0: no observer
     std::vector<double> learned_limit{};      ///< limit of the learned torque, as shares of the torque limit
     FindingActions actions{};
+    FindingAction on_contact = FindingAction::report;
+    std::optional<double> contact_rate_per_hour{}; ///< of false contacts; none: the model's
 };
 
 /// Returns the default limits of a loop with these gains and torque limits:

@@ -5,6 +5,7 @@
 #include "tools/model/structure.hpp"
 #include "tools/replay/contacts/contact_estimator.hpp"
 #include "tools/replay/contacts/contact_limits.hpp"
+#include "tools/replay/contradiction.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/robot/urdf/read_robot.hpp"
 #include "tools/training/model_training.hpp"
@@ -35,6 +36,7 @@ inline tools::TrainedModel contact_model(std::span<const tools::Recording> recor
         robot, {"viscous_friction", "coulomb_friction", "rotor_inertia", "torque_offset"}, 0.05, {}};
     tools::TrainedModel model =
         train_model(prepare_training(recordings, training), outputs, training, {}).model;
+    calibrate_innovation_limit(model, recordings);
     model.contact = measure_contact_limits(model, recordings);
     return model;
 }

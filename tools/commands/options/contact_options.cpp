@@ -11,34 +11,26 @@
 
 namespace dfdyn::tools {
 
+void add_contact_rate(CLI::App& command, std::optional<double>& rate_per_hour, const std::string& of) {
+    command
+        .add_option("--contact-rate", rate_per_hour,
+                    of + ": false contacts per hour, on motions like those of the training; default: 0.1. A "
+                         "higher rate detects smaller contacts, sooner")
+        ->check(number_in(0.001, 100))
+        ->type_name("PER_HOUR");
+}
+
 void ContactOptions::add_to(CLI::App& command) {
     command.add_flag("--contacts", chosen,
                      "Detect contacts from the errors of joint torques or currents, within some 0.1 s "
                      "(docs/guide/contacts.md); not a safety function");
     command.add_option("--contact-list", file, "Likewise, and write the contacts here")
         ->type_name("CONTACTS.json");
-    command
-        .add_option(
-            "--contact-rate", rate_per_hour,
-            "Of --contacts: false contacts per hour, on motions like those of the training; default: 0.1. A "
-            "higher rate detects smaller contacts, sooner")
-        ->check(number_in(0.001, 100))
-        ->type_name("PER_HOUR");
+    add_contact_rate(command, rate_per_hour, "Of --contacts");
 }
 
 ContactModel ContactOptions::limits(const TrainedModel& model, const std::string& source) const {
-    if (model.contact.limit.empty()) {
-        throw InputError(source + ": contact detection: expected a model with limits of contacts (field " +
-                         "contact, which `dfdyn train` writes for --outputs tau and i), found none");
-    }
-    if (!rate_per_hour) {
-        return model.contact;
-    }
-    if (model.contact.rate_slope == 0) {
-        throw InputError(source + ": --contact-rate: expected a model with field contact.rate_slope, which " +
-                         "`dfdyn train` writes, found a model of an older version");
-    }
-    return contact_at_rate(model.contact, *rate_per_hour);
+    return contact_limits(model, rate_per_hour, source);
 }
 
 void ContactOptions::show(std::span<const RecordedContacts> contacts,

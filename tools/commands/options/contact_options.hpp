@@ -14,6 +14,9 @@
 
 namespace dfdyn::tools {
 
+/// Adds the option --contact-rate. `of`: the option that it belongs to.
+void add_contact_rate(CLI::App& command, std::optional<double>& rate_per_hour, const std::string& of);
+
 /// The options of a replay with contact detection.
 struct ContactOptions {
     bool chosen = false;

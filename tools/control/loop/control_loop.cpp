@@ -43,11 +43,11 @@ ControlLoop::ControlLoop(LoopConfig config, FeedForward feed_forward, std::uniqu
                 {config_.safe_stop.speed_limit, config_.safe_stop.acceleration}),
       clock_(std::llround(config_.period_s * 1e9)),
       watch_(config_.safe_stop, config_.period_s, config_.filter.noise_bound), safe_stop_(config_.safe_stop),
-      task_(std::move(task)), observer_(make_observer(config_)),
+      task_(std::move(task), config_.period_s), observer_(make_observer(config_)),
       zero_(JointVector::Zero(config_.torque_limit.size())), error_(zero_), command_(zero_), excess_(zero_),
       feedback_torque_(zero_), missing_(static_cast<std::size_t>(zero_.size())), blind_(missing_.size()) {
     references_.resize(std::size_t{1} + static_cast<std::size_t>(config_.delay_ticks) + SampleClock::max_age);
-    references_.front() = task_->next();
+    references_.front() = task_.next();
     commands_.resize(static_cast<std::size_t>(config_.delay_ticks) + 1);
     actions_.reserve(most_actions + 1); // including the one that stops the loop
 }
@@ -63,7 +63,7 @@ const JointVector& ControlLoop::tick(const LoopInput& input) {
     position_tick_ = has_position(input) ? counters_.ticks : position_tick_;
     if (state() == LoopState::running) { // the reference advances with time, not with measurements
         ++tick_;
-        references_[tick_ % references_.size()] = task_->next();
+        references_[tick_ % references_.size()] = next_reference();
     }
     sense(input);
     if (feedback_.position().size() > 0) {
@@ -127,14 +127,20 @@ void ControlLoop::follow() {
     }
     ++counters_.running;
     const JointVector forward = feed_forward_.update(reference());
-    const JointVector wanted = feedback_.torque() + disturbance();
-    command_ = forward + after_gap(wanted);
+    JointVector unlimited;
+    if (touched_) {
+        command_ = unlimited = slowly(compliant_torque());
+    } else {
+        const JointVector wanted = feedback_.torque() + disturbance();
+        command_ = forward + after_gap(wanted);
+        unlimited = forward + wanted;
+    }
     limit();
-    excess_ = forward + wanted - command_;
+    excess_ = unlimited - command_;
     feedback_torque_ = command_ - forward;
     // the command equals the torque of the motion
     const bool full = excess_.isZero(0) && feedback_.regular();
-    if (full) {
+    if (full && !touched_) {
         feed_forward_.commanded(command_);
     }
     const auto period_ns = static_cast<double>(config_.period_s * 1e9);
@@ -142,6 +148,48 @@ void ControlLoop::follow() {
                            exact_ ? &feedback_.position() : nullptr, command_then());
     commands_[tick_ % commands_.size()] = full ? command_ : JointVector();
     act();
+    meet_contact();
+}
+
+void ControlLoop::note(Cause cause, int joint, FindingAction action) {
+    if (actions_.size() < most_actions || action == FindingAction::stop) {
+        actions_.push_back({config_.period_s * static_cast<double>(tick_), cause, joint, action});
+    }
+}
+
+void ControlLoop::meet_contact() {
+    const int joint = feed_forward_.contact_joint();
+    if (joint >= 0 && !touched_ && config_.on_contact != FindingAction::report) {
+        note(Cause::contact, joint, config_.on_contact);
+        touched_ = config_.on_contact != FindingAction::stop;
+        task_.pause();
+    }
+    calm_for_s_ = joint >= 0 ? 0 : calm_for_s_ + config_.period_s;
+    if (touched_ && calm_for_s_ >= calm_s) {
+        touched_ = false;
+        task_.resume(config_.on_contact == FindingAction::yield ? feedback_.position()
+                                                                : reference().position);
+        observer_.restart();
+        recovery_ = recovery_ticks;
+    }
+}
+
+Reference ControlLoop::next_reference() {
+    if (touched_ && config_.on_contact == FindingAction::yield) {
+        return {feedback_.position(), zero_, zero_};
+    }
+    return task_.next();
+}
+
+JointVector ControlLoop::compliant_torque() {
+    const JointVector gravity = feed_forward_.gravity(feedback_.position());
+    const bool yields = config_.on_contact == FindingAction::yield && calm_for_s_ == 0;
+    return yields ? gravity : JointVector(gravity + feedback_.torque());
+}
+
+JointVector ControlLoop::slowly(const JointVector& torque) const {
+    const JointVector step = config_.period_s / stop_time_s * config_.torque_limit;
+    return torque.cwiseMin(command_ + step).cwiseMax(command_ - step);
 }
 
 void ControlLoop::act() {
@@ -157,10 +205,7 @@ void ControlLoop::act() {
     }
     acted_number_ = verdict->number;
     acted_on_ = verdict->cause;
-    if (actions_.size() < most_actions || action == FindingAction::stop) {
-        const double time_s = config_.period_s * static_cast<double>(tick_);
-        actions_.push_back({time_s, verdict->cause, verdict->joint, action});
-    }
+    note(verdict->cause, verdict->joint, action);
     if (action == FindingAction::relearn) {
         feed_forward_.relearn();
     } else if (action == FindingAction::compensate) {
@@ -198,9 +243,7 @@ JointVector ControlLoop::after_gap(const JointVector& wanted) {
 
 void ControlLoop::hold() {
     request_brakes();
-    const JointVector target = limp() ? zero_ : holding_torque();
-    const JointVector step = config_.period_s / stop_time_s * config_.torque_limit;
-    command_ = target.cwiseMin(command_ + step).cwiseMax(command_ - step);
+    command_ = slowly(limp() ? zero_ : holding_torque());
 }
 
 void ControlLoop::begin_braking(Eigen::Index joint) {

@@ -5,6 +5,7 @@
 #include "tools/control/loop/feed_forward.hpp"
 #include "tools/control/loop/finding_actions.hpp"
 #include "tools/control/loop/joint_watch.hpp"
+#include "tools/control/loop/pausable_task.hpp"
 #include "tools/control/loop/position_feedback.hpp"
 #include "tools/control/loop/safe_stop.hpp"
 #include "tools/control/loop/sample_clock.hpp"
@@ -25,7 +26,8 @@ struct LoopConfig {
     JointVector torque_limit; ///< N·m, limit of every command
     JointVector bandwidth;    ///< disturbance observer's bandwidth, rad/s, per joint; 0: no observer
     SafeStopConfig safe_stop;
-    FindingActions actions; ///< reactions to findings of the learner's monitor
+    FindingActions actions;                           ///< reactions to findings of the learner's monitor
+    FindingAction on_contact = FindingAction::report; ///< reaction to a contact; report: none
 };
 
 /// Measurements and events of one tick.
@@ -63,6 +65,12 @@ struct LoopCounters {
 /// regular ticks that did not need it. It blends in the correction at the first reading after a gap. It acts
 /// for a few ticks only and does not change the loop's gain and phase while ticks are regular.
 ///
+/// A contact (LoopConfig::on_contact) pauses the motion. The command changes, by at most a torque limit per
+/// `stop_time_s`, to the nominal gravity torque at the measured position, and for `hold` that of the gains
+/// about the stopped reference. Observer, learned torque and friction add nothing. After
+/// the end of the contact `yield` brakes the arm with the velocity gain. `calm_s` after the end of
+/// the contact the observer starts again at zero, and the motion continues (PausableTask).
+///
 /// Stopping: every joint receives a reference that brakes from its present position and velocity to rest
 /// within `stop_time_s`. The command changes, by at most a torque limit per `stop_time_s`, to the sum of
 /// - the torque for this braking and against gravity, by the nominal rigid body and the learned part
@@ -90,6 +98,7 @@ class ControlLoop {
     static constexpr double spring_share = 0.5;
     static constexpr double brake_timeout_s = 1;
     static constexpr double give_up_s = 1;
+    static constexpr double calm_s = 0.5;
 
     ControlLoop(LoopConfig config, FeedForward feed_forward, std::unique_ptr<Task> task);
 
@@ -100,7 +109,7 @@ class ControlLoop {
     StopCause cause() const noexcept { return safe_stop_.cause(); }
     /// Joint (from 0) that caused overspeed, torque_limit or frozen_encoder.
     Eigen::Index stopped_by() const noexcept { return watch_.joint(); }
-    /// Reactions to findings except `report`; the first 64.
+    /// Reactions to findings and contacts except `report`; the first 64.
     const std::vector<TakenAction>& actions() const noexcept { return actions_; }
     /// Returns whether the program should close the arm's brakes; stays true.
     bool brake_requested() const noexcept { return brake_tick_.has_value(); }
@@ -135,6 +144,16 @@ class ControlLoop {
     void follow();
     /// Reacts to the monitor's findings, once per change and cause.
     void act();
+    /// Adds to the list of reactions.
+    void note(Cause cause, int joint, FindingAction action);
+    /// Begins or ends the reaction to a contact.
+    void meet_contact();
+    /// Returns the next reference: that of the task, or the arm's position while it yields.
+    Reference next_reference();
+    /// Returns the torque during a contact.
+    JointVector compliant_torque();
+    /// Returns `torque`, limited to a change of a torque limit per `stop_time_s` since the last command.
+    JointVector slowly(const JointVector& torque) const;
     /// Limits the change of the feedback and observer torque `wanted` after a gap.
     JointVector after_gap(const JointVector& wanted);
     JointVector disturbance();
@@ -158,7 +177,7 @@ class ControlLoop {
     SampleClock clock_;
     JointWatch watch_;
     SafeStop safe_stop_;
-    std::unique_ptr<Task> task_;
+    PausableTask task_;
     std::vector<Reference> references_; ///< ring: from the oldest measurement in use to this tick
     /// ring over the same ticks; empty: the command differs from the torque of the motion
     std::vector<JointVector> commands_;
@@ -177,6 +196,8 @@ class ControlLoop {
     std::optional<std::uint64_t> stopped_tick_, brake_tick_;
     std::uint64_t position_tick_ = 0; ///< tick of the last sample
     bool told_ = false;               ///< whether a stop was requested
+    bool touched_ = false;            ///< the motion is paused because of a contact
+    double calm_for_s_ = 0;           ///< since the end of the contact
     std::vector<TakenAction> actions_;
     std::size_t acted_number_ = 0;    ///< number of the last change with a reaction …
     Cause acted_on_ = Cause::unknown; ///< … and its cause

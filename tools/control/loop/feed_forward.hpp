@@ -53,6 +53,9 @@ class FeedForward {
     /// Returns the monitor's last verdict, once; null if there is none.
     const Verdict* take_verdict() { return learned_ ? learned_->take_verdict() : nullptr; }
 
+    /// Returns the joint (from 0) of the present contact; -1: none, or contacts are not detected.
+    int contact_joint() const { return learned_ ? learned_->contact_joint() : -1; }
+
     /// Resets the learner's covariance, so that it quickly follows new measurements.
     void relearn() {
         if (learned_) {

@@ -70,8 +70,21 @@ const char* name(FindingAction action) noexcept {
         return "compensate";
     case FindingAction::stop:
         return "stop";
+    case FindingAction::hold:
+        return "hold";
+    case FindingAction::yield:
+        return "yield";
     }
     return "unknown";
+}
+
+FindingAction contact_action(const std::string& text, const std::string& option) {
+    for (const FindingAction action : {FindingAction::stop, FindingAction::hold, FindingAction::yield}) {
+        if (text == name(action)) {
+            return action;
+        }
+    }
+    throw InputError(option + ": expected stop, hold or yield, found " + in_quotes(text));
 }
 
 FindingActions::FindingActions(const std::vector<std::string>& choices, const std::string& option)

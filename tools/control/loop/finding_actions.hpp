@@ -10,15 +10,21 @@
 
 namespace dfdyn::tools {
 
-/// Reaction of a loop to a change that the learner's monitor has identified.
+/// Reaction of a loop to a change that the learner's monitor has identified, or to a contact.
 enum class FindingAction : std::uint8_t {
     report,     ///< no reaction: the change appears in the report
     relearn,    ///< resets the learner's covariance to the prior, so that it quickly follows new measurements
     compensate, ///< adds the estimated offset to the nominal torque
     stop,       ///< stops the loop, see StopCause::finding
+    hold,       ///< of a contact: stops on the path, with gravity torque and feedback; continues after it
+    yield,      ///< of a contact: gravity torque alone; returns to the path after it
 };
 
 const char* name(FindingAction action) noexcept;
+
+/// Returns the reaction to a contact with this name: stop, hold or yield. Throws InputError, naming `option`,
+/// for any other text.
+FindingAction contact_action(const std::string& text, const std::string& option);
 
 /// One action for each cause; the default is `report`.
 class FindingActions {

@@ -44,7 +44,8 @@ Budget share_of(const Cost& cost, int ticks) {
 } // namespace
 
 LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prior, int joints, int ticks,
-                                       const std::string& source, const MonitorSetup* monitor)
+                                       const std::string& source, const MonitorSetup* monitor,
+                                       const ContactModel* contact)
     : sample_period_ns_(std::llround(model.sample_period_s * 1e9)),
       lags_(std::max(model.input.lags, model.physics ? model.physics->motion.lags : 0)) {
     check_model(model, joints, source);
@@ -52,6 +53,11 @@ LearnedFeedForward::LearnedFeedForward(const TrainedModel& model, bool from_prio
     if (monitor != nullptr) {
         auto watched = monitored(std::move(learner_), *monitor);
         monitor_ = watched.get();
+        learner_ = std::move(watched);
+    }
+    if (contact != nullptr) {
+        auto watched = with_contacts(std::move(learner_), *contact);
+        contacts_ = watched.get();
         learner_ = std::move(watched);
     }
     follower_ = make_estimator(model, from_prior);

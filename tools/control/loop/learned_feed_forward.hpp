@@ -3,6 +3,7 @@
 
 #include "tools/base/numerics/dynamic_storage.hpp"
 #include "tools/monitor/monitored_estimator.hpp"
+#include "tools/replay/contacts/contact_estimator.hpp"
 #include "tools/robot/dynamics/joint_vector.hpp"
 
 #include <cstddef>
@@ -37,10 +38,12 @@ class LearnedFeedForward {
     static constexpr int outputs = dynamic;
 
     /// `from_prior`: ignores the initial weights from training. `ticks`: control ticks per sample. `monitor`:
-    /// monitors the learner; null for none. Throws InputError, naming `source`, for a model that does not
-    /// describe the torques of `joints` joints, or that needs measured derivatives.
+    /// monitors the learner; null for none. `contact`: limits for the detection of contacts, in which nothing
+    /// is learned; null for none. Throws InputError, naming `source`, for a model that does not describe the
+    /// torques of `joints` joints, or that needs measured derivatives.
     LearnedFeedForward(const TrainedModel& model, bool from_prior, int joints, int ticks,
-                       const std::string& source, const MonitorSetup* monitor = nullptr);
+                       const std::string& source, const MonitorSetup* monitor = nullptr,
+                       const ContactModel* contact = nullptr);
 
     Extent<dynamic> output_count() const noexcept { return {static_cast<int>(prediction_.size())}; }
 
@@ -74,6 +77,10 @@ class LearnedFeedForward {
     const LearningCounters& counters() const noexcept { return counters_; }
     /// Returns the monitor's last verdict, once; null if there is none.
     const Verdict* take_verdict() { return monitor_ != nullptr ? monitor_->take_verdict() : nullptr; }
+    /// Returns the joint (from 0) of the present contact; -1: none, or contacts are not detected.
+    int contact_joint() const {
+        return contacts_ != nullptr && contacts_->detector().contact() ? contacts_->detector().joint() : -1;
+    }
     /// Resets the covariance after a change of the arm: see HostEstimator::relearn.
     void relearn() { learner_->relearn(); }
     /// Returns the monitor's findings so far, with times since `begin`.
@@ -89,6 +96,7 @@ class LearnedFeedForward {
     int lags_;
     std::unique_ptr<HostEstimator> learner_, follower_;
     MonitoredEstimator* monitor_ = nullptr; ///< the learner, if it is monitored
+    ContactEstimator* contacts_ = nullptr;  ///< the learner, if contacts are detected
     Budget share_;                          ///< budget of a control tick
     std::int64_t begin_ns_ = 0;
     bool in_progress_ = false; ///< the learner has weights that are newer than `weights_`

@@ -57,6 +57,21 @@ void print_loop(std::ostream& out, const ControlLoop& loop) {
     print_actions(out, loop.actions());
 }
 
+void print_reactions(std::ostream& out, const std::vector<PushReaction>& reactions) {
+    for (const PushReaction& reaction : reactions) {
+        out << "reaction: " << std::lround(1000 * reaction.after_s) << " ms after the push at "
+            << formatted("%.2f", reaction.push_s) << " s\n";
+    }
+}
+
+nlohmann::ordered_json reactions_json(const std::vector<PushReaction>& reactions) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const PushReaction& reaction : reactions) {
+        json.push_back({{"push_s", reaction.push_s}, {"after_s", reaction.after_s}});
+    }
+    return json;
+}
+
 void print_port(std::ostream& out, const PortCounters& counters) {
     out << "bus: " << counters.received << " frames, at most " << counters.most_in_tick << " in a tick, "
         << counters.overfull_ticks << " ticks left some; " << counters.incomplete

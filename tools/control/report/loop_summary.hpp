@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tools/control/bus/loop_port.hpp"
+#include "tools/control/closed_loop.hpp"
 #include "tools/control/loop/control_loop.hpp"
 #include "tools/control/real_time_run.hpp"
 #include "tools/control/report/loop_peaks.hpp"
@@ -10,6 +11,7 @@
 
 #include <ostream>
 #include <string>
+#include <vector>
 
 namespace dfdyn::tools {
 
@@ -19,6 +21,12 @@ void print_loop(std::ostream& out, const ControlLoop& loop);
 
 /// Prints the traffic of the bus and its errors: one line.
 void print_port(std::ostream& out, const PortCounters& counters);
+
+/// Prints the times from simulated pushes to the reactions.
+void print_reactions(std::ostream& out, const std::vector<PushReaction>& reactions);
+
+/// Returns the figures of print_reactions.
+nlohmann::ordered_json reactions_json(const std::vector<PushReaction>& reactions);
 
 /// Returns the figures of print_loop and print_peaks of the run `name`. Joints count from 1; null: no joint.
 nlohmann::ordered_json loop_json(const std::string& name, const ControlLoop& loop, const LoopPeaks& peaks);

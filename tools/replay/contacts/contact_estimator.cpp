@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/replay/contacts/contact_estimator.hpp"
 
+#include "tools/base/text/error.hpp"
 #include "tools/model/run_time/estimator_decorator.hpp"
 
 #include <algorithm>
@@ -52,18 +53,20 @@ class Watched final : public EstimatorDecorator<ContactEstimator> {
         return taken;
     }
 
+    const ContactWatch::Detector& detector() const override { return watch_.detector(); }
+
   private:
     static constexpr std::size_t kept = 4096;
 
-    /// Returns whether the last tick was of an untouched arm in motion. A contact is no property of the arm,
-    /// and the friction of an arm at rest holds torques that no other motion shows.
+    /// Returns whether the last tick was of an untouched arm in motion. A contact, or what may become one, is
+    /// no property of the arm, and the friction of an arm at rest holds torques that no other motion shows.
     bool informs() const {
         const ContactWatch::Detector& detector = watch_.detector();
         bool moves = !detector.running();
         for (int k = 0; k < detector.size(); ++k) {
             moves = moves || detector.motion(k) != JointMotion::standing;
         }
-        return moves && !detector.contact();
+        return moves && !(detector.running() && detector.suspected());
     }
 
     bool watch(const MeasuredSample& sample, const Tick& tick) {
@@ -139,6 +142,22 @@ ContactModel scaled_contact(ContactModel contact, double factor) {
 ContactModel contact_at_rate(const ContactModel& contact, double per_hour) {
     const double scale = 1 - contact.rate_slope * std::log(per_hour / contact_rate_per_hour);
     return scaled_contact(contact, std::max(scale, least_scale));
+}
+
+ContactModel contact_limits(const TrainedModel& model, std::optional<double> per_hour,
+                            const std::string& source) {
+    if (model.contact.limit.empty()) {
+        throw InputError(source + ": contact detection: expected a model with limits of contacts (field " +
+                         "contact, which `dfdyn train` writes for --outputs tau and i), found none");
+    }
+    if (!per_hour) {
+        return model.contact;
+    }
+    if (model.contact.rate_slope == 0) {
+        throw InputError(source + ": --contact-rate: expected a model with field contact.rate_slope, which " +
+                         "`dfdyn train` writes, found a model of an older version");
+    }
+    return contact_at_rate(model.contact, *per_hour);
 }
 
 std::vector<float> prediction_errors(const MeasuredSample& sample, const Tick& tick) {

@@ -8,7 +8,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace dfdyn::tools {
@@ -53,6 +55,11 @@ ContactModel scaled_contact(ContactModel contact, double factor);
 /// Returns `contact` with limits for this rate of false contacts per hour, > 0. Requires a `rate_slope`.
 ContactModel contact_at_rate(const ContactModel& contact, double per_hour);
 
+/// Returns the limits of `model` for a rate of false contacts per hour; none: that of the training. Throws
+/// InputError, naming `source`, if the model has no limits, or if they have no other rate.
+ContactModel contact_limits(const TrainedModel& model, std::optional<double> per_hour,
+                            const std::string& source);
+
 /// Returns measured - predicted of each output. Requires both.
 std::vector<float> prediction_errors(const MeasuredSample& sample, const Tick& tick);
 
@@ -61,6 +68,8 @@ class ContactEstimator : public HostEstimator {
   public:
     /// Returns the newest 4096 contacts since the last call, and removes them.
     virtual std::vector<DetectedContact> take_contacts() = 0;
+    /// Returns the detector's state after the last tick. Allocates nothing.
+    virtual const ContactWatch::Detector& detector() const = 0;
 };
 
 /// Returns an estimator that detects contacts with the limits `contact`. It learns neither during a contact

@@ -10,13 +10,15 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <limits>
+#include <optional>
 
 namespace dfdyn::tools {
 
 namespace {
 
-constexpr std::size_t block_count = 4;
+constexpr std::size_t block_count = 8; // held out in turn; the last pass of all is the trained model's
 constexpr double envelope_share = 0.999;
 constexpr double floor_share = 0.9;
 constexpr double range_share = 0.995;
@@ -25,6 +27,7 @@ constexpr double least_limit = 1e-6;           // in units of noise_std
 constexpr double speed_allowance = 0.05;       // rad/s
 constexpr double acceleration_allowance = 0.2; // rad/s²
 constexpr std::size_t fewest_values = 20;      // of a motion, for its own envelope
+constexpr std::size_t fewest_peaks = 5;        // of a pass, for its share of the tail
 constexpr std::array relative_choices{0.0, 0.03, 0.05, 0.08, 0.12, 0.18, 0.25, 0.35, 0.5, 0.7};
 constexpr double out_of_reach = 1e3; // factor of limits with which nothing is a contact
 constexpr std::int64_t peak_interval_ns = 1'000'000'000;
@@ -36,6 +39,7 @@ constexpr double least_rate_slope = 1e-3;
 
 /// What a joint does in a tick.
 struct Deviation {
+    std::size_t pass = 0;
     int motion = 0;
     double size = 0;   ///< magnitude of the deviation
     double change = 0; ///< magnitude of the prediction's recent change
@@ -44,8 +48,9 @@ struct Deviation {
 
 using Deviations = std::vector<Deviation>; ///< of a joint
 
-/// A row with the error of its prediction.
+/// A row with the error of its prediction. `pass`: number of the held-out block, or `block_count`.
 struct PredictedRow {
+    std::size_t pass = 0;
     std::int64_t time_ns = 0;
     bool begins = false; ///< does not follow the row before
     std::vector<float> position, error, prediction;
@@ -53,13 +58,14 @@ struct PredictedRow {
 
 /// Appends the rows from `first` to `last` that are predicted, without learning.
 void predict_rows(HostEstimator& estimator, std::span<const Recording> recordings, std::size_t first,
-                  std::size_t last, std::vector<PredictedRow>& predicted) {
+                  std::size_t last, std::size_t pass, std::vector<PredictedRow>& predicted) {
     bool follows = false;
     tick_rows(estimator, recordings, first, last, Budget::predict_only(),
               [&](const MeasuredSample& sample, const Tick& tick, bool begins) {
                   follows = follows && !begins && tick.status.predicted();
                   if (tick.status.predicted()) {
-                      predicted.push_back({sample.time_ns,
+                      predicted.push_back({pass,
+                                           sample.time_ns,
                                            !follows,
                                            {sample.position.begin(), sample.position.end()},
                                            prediction_errors(sample, tick),
@@ -85,9 +91,9 @@ std::vector<PredictedRow> calibration_rows(const TrainedModel& model, std::span<
         const auto estimator = make_estimator(model, true);
         learn_rows_of(*estimator, recordings, 0, first);
         learn_rows_of(*estimator, recordings, last, rows);
-        predict_rows(*estimator, recordings, first, last, predicted);
+        predict_rows(*estimator, recordings, first, last, block, predicted);
     }
-    predict_rows(*make_estimator(model, false), recordings, 0, rows, predicted);
+    predict_rows(*make_estimator(model, false), recordings, 0, rows, block_count, predicted);
     return predicted;
 }
 
@@ -107,16 +113,17 @@ void detect(std::span<const PredictedRow> rows, const ContactModel& contact, Use
 /// Returns the deviations of each joint without limits.
 std::vector<Deviations> deviations_of(std::span<const PredictedRow> rows, std::size_t joints) {
     std::vector<Deviations> deviations(joints);
-    detect(rows, unlimited_contact(joints), [&](const PredictedRow&, const ContactWatch::Detector& detector) {
-        for (std::size_t k = 0; k < joints; ++k) {
-            const int joint = static_cast<int>(k);
-            const auto magnitude = [](float value) { return std::abs(static_cast<double>(value)); };
-            deviations[k].push_back(
-                {static_cast<int>(detector.motion(joint)), magnitude(detector.deviation(joint)),
-                 magnitude(detector.predicted_change(joint)), magnitude(detector.speed(joint)),
-                 magnitude(detector.acceleration(joint))});
-        }
-    });
+    detect(rows, unlimited_contact(joints),
+           [&](const PredictedRow& row, const ContactWatch::Detector& detector) {
+               for (std::size_t k = 0; k < joints; ++k) {
+                   const int joint = static_cast<int>(k);
+                   const auto magnitude = [](float value) { return std::abs(static_cast<double>(value)); };
+                   deviations[k].push_back(
+                       {row.pass, static_cast<int>(detector.motion(joint)),
+                        magnitude(detector.deviation(joint)), magnitude(detector.predicted_change(joint)),
+                        magnitude(detector.speed(joint)), magnitude(detector.acceleration(joint))});
+               }
+           });
     return deviations;
 }
 
@@ -138,6 +145,34 @@ auto in_motion(int motion) {
     return [motion](const Deviation& one) { return one.motion == motion; };
 }
 
+/// Returns the larger one of a figure of the trained model's pass and of the median over all passes. Some
+/// held-out blocks have a motion that the others do not determine: their errors are not those of the model.
+double typical(const std::vector<double>& of_passes, std::optional<double> trained) {
+    return std::max(median(of_passes), trained.value_or(0));
+}
+
+/// Returns the typical quantile of `value(deviation)` over those that `chosen` accepts; 0 if there are few.
+template <class Value, class Chosen>
+double typical_quantile(const Deviations& deviations, Value value, Chosen chosen, double share) {
+    std::array<std::vector<double>, block_count + 1> values;
+    std::size_t count = 0;
+    for (const Deviation& one : deviations) {
+        if (chosen(one)) {
+            values[one.pass].push_back(std::invoke(value, one));
+            ++count;
+        }
+    }
+    std::vector<double> quantiles;
+    std::optional<double> trained;
+    for (std::size_t pass = 0; pass <= block_count; ++pass) {
+        if (values[pass].size() >= fewest_values) {
+            quantiles.push_back(quantile(values[pass], share));
+            trained = pass == block_count ? std::optional(quantiles.back()) : std::nullopt;
+        }
+    }
+    return quantiles.empty() || count < fewest_values ? 0 : typical(quantiles, trained);
+}
+
 /// Limits of a joint that hold nearly all of its deviations.
 struct Envelope {
     std::array<double, joint_motion_count> limit{};
@@ -155,8 +190,7 @@ Envelope envelope_with(const Deviations& deviations, double relative, double flo
         return std::sqrt(std::max(one.size * one.size - explained * explained, 0.0));
     };
     for (int motion = 0; motion < joint_motion_count; ++motion) {
-        const std::vector<double> sizes = values_of(deviations, unexplained, in_motion(motion));
-        const double tail = sizes.size() < fewest_values ? 0 : quantile(sizes, envelope_share);
+        const double tail = typical_quantile(deviations, unexplained, in_motion(motion), envelope_share);
         envelope.limit[static_cast<std::size_t>(motion)] = std::max(tail, floor);
     }
     envelope.limit[0] = std::max(envelope.limit[0], standing_share * envelope.limit[1]);
@@ -165,8 +199,8 @@ Envelope envelope_with(const Deviations& deviations, double relative, double flo
 
 /// Returns the envelope with the smallest geometric mean of its limits.
 Envelope tightest_envelope(const Deviations& deviations, double least) {
-    const std::vector<double> sizes = values_of(deviations, &Deviation::size, in_any_motion);
-    const double floor = sizes.empty() ? least : std::max(quantile(sizes, floor_share), least);
+    const double floor =
+        std::max(typical_quantile(deviations, &Deviation::size, in_any_motion, floor_share), least);
     Envelope tightest;
     double smallest = std::numeric_limits<double>::infinity();
     for (const double relative : relative_choices) {
@@ -199,24 +233,56 @@ void add_joint(ContactModel& contact, const Deviations& deviations, double least
     contact.acceleration.push_back(largest_usual(&Deviation::acceleration) + acceleration_allowance);
 }
 
-/// Returns the largest excess of each second, in descending order.
-std::vector<double> excess_peaks(std::span<const PredictedRow> rows, const ContactModel& contact) {
-    std::vector<double> peaks;
+/// Returns the largest excess of each second, in each pass.
+std::array<std::vector<double>, block_count + 1> excess_peaks(std::span<const PredictedRow> rows,
+                                                              const ContactModel& contact) {
+    std::array<std::vector<double>, block_count + 1> peaks;
     std::int64_t begin_ns = 0;
     detect(rows, scaled_contact(contact, out_of_reach),
            [&](const PredictedRow& row, const ContactWatch::Detector& detector) {
-               if (peaks.empty() || row.begins || row.time_ns - begin_ns >= peak_interval_ns) {
-                   peaks.push_back(0);
+               std::vector<double>& now = peaks[row.pass];
+               if (now.empty() || row.begins || row.time_ns - begin_ns >= peak_interval_ns) {
+                   now.push_back(0);
                    begin_ns = row.time_ns;
                }
-               peaks.back() = std::max(peaks.back(), out_of_reach * static_cast<double>(detector.excess()));
+               now.back() = std::max(now.back(), out_of_reach * static_cast<double>(detector.excess()));
            });
+    return peaks;
+}
+
+/// Returns the peaks of all passes in descending order. Those of passes with a larger median than is typical
+/// are scaled to it.
+std::vector<double> comparable_peaks(const std::array<std::vector<double>, block_count + 1>& passes) {
+    std::vector<double> medians;
+    for (const std::vector<double>& pass : passes) {
+        if (pass.size() >= fewest_peaks || &pass == &passes.back()) {
+            medians.push_back(pass.empty() ? 0 : median(pass));
+        }
+    }
+    const double usual = typical(medians, medians.back());
+    std::vector<double> peaks;
+    for (const std::vector<double>& pass : passes) {
+        if (pass.size() >= fewest_peaks || &pass == &passes.back()) {
+            const double own = pass.empty() ? usual : median(pass);
+            const double factor = own > usual ? usual / own : 1;
+            std::ranges::transform(pass, std::back_inserter(peaks),
+                                   [factor](double peak) { return factor * peak; });
+        }
+    }
     std::ranges::sort(peaks, std::greater{});
     return peaks;
 }
 
-/// Sets the limits to those that are exceeded `contact_rate_per_hour` times on average. The largest tenth of
-/// the peaks has an exponential tail.
+/// Returns the factor from the mean of `count` exponential values to the upper limit of its 90 % confidence
+/// interval, by the approximation of Wilson and Hilferty (1931).
+double upper_mean(std::size_t count) {
+    constexpr double deviation = 1.2816; // of the normal distribution's 10 % quantile
+    const double part = 1.0 / (9 * static_cast<double>(count));
+    return std::pow(1 - part - deviation * std::sqrt(part), -3);
+}
+
+/// Sets the limits to those that are exceeded at most `contact_rate_per_hour` times on average. The largest
+/// tenth of the peaks has an exponential tail, whose mean is less certain the fewer peaks there are.
 void set_rate(ContactModel& contact, const std::vector<double>& peaks) {
     const std::size_t tail = std::max(std::min(peaks.size() / 2, least_tail), peaks.size() / tail_part);
     if (tail == 0) {
@@ -227,6 +293,7 @@ void set_rate(ContactModel& contact, const std::vector<double>& peaks) {
     for (std::size_t i = 0; i < tail; ++i) {
         mean += (peaks[i] - threshold) / static_cast<double>(tail);
     }
+    mean *= upper_mean(tail);
     const double per_hour = hour_s * static_cast<double>(tail) / static_cast<double>(peaks.size());
     const double level = std::max(threshold + mean * std::log(per_hour / contact_rate_per_hour), 1.0);
     contact = scaled_contact(contact, new_motion_factor * level);
@@ -242,7 +309,7 @@ ContactModel measure_contact_limits(const TrainedModel& model, std::span<const R
     for (std::size_t k = 0; k < deviations.size(); ++k) {
         add_joint(contact, deviations[k], least_limit * model.outputs.noise_std[k]);
     }
-    set_rate(contact, excess_peaks(rows, contact));
+    set_rate(contact, comparable_peaks(excess_peaks(rows, contact)));
     return contact;
 }
 

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace dfdyn {
+
+/// Motion of a joint, as friction depends on it. `changing`: it started, stopped or reversed a moment ago, or
+/// moves slowly.
+enum class JointMotion : std::uint8_t { standing, changing, moving };
+inline constexpr int joint_motion_count = 3;
+
+/// Properties of one joint's deviation (see JointDeviation) without contact, for each JointMotion, in the
+/// output's unit. `dfdyn train` measures them.
+template <class Scalar>
+struct ContactLimits {
+    Scalar limit[joint_motion_count]; ///< smallest deviation of a contact at this joint alone, > 0
+    Scalar usual[joint_motion_count]; ///< median of the magnitude, >= 0
+    Scalar relative;                  ///< added limit per recent change of the prediction, >= 0
+    Scalar speed;                     ///< rad/s, largest usual, > 0
+    Scalar acceleration;              ///< rad/s², largest usual, low-pass filtered, > 0
+};
+
+/// Deviation of one joint's torque or current from its prediction, and the limit for it.
+///
+/// The deviation is the error (measured - predicted) after a low-pass filter with two poles, minus a baseline
+/// that follows the error with the time constant `baseline_s`. So errors of weight, temperature or payload,
+/// which change slowly, are not contacts. Friction jumps when a joint starts, stops or reverses. In the
+/// `change_s` after that, the baseline is the whole interval between its last value and zero, the error of an
+/// accurate model in motion. The baseline follows at most `clip` limits. During a contact it is the whole
+/// interval between its value before and the value that it has followed to, so that the return of the error
+/// is no second contact.
+///
+/// The limit grows in two ways:
+/// - A model's error is partly proportional to what it predicts. The change of the prediction within
+///   `baseline_s` times `relative` is added to the limit of the motion, as the root of the sum of squares.
+/// - Where deviations are larger than in training, the limit grows in proportion to their median, at most by
+///   `most_growth`. Contacts do not change a median much, unless they fill half of the time.
+template <class Scalar>
+class JointDeviation {
+  public:
+    static constexpr Scalar filter_s = Scalar(0.02);          ///< time constant of each pole of the error, s
+    static constexpr Scalar velocity_filter_s = Scalar(0.01); ///< time constant of the velocity's pole, s
+    static constexpr Scalar baseline_s = Scalar(0.7);         ///< time constant of the baseline, s
+    static constexpr Scalar range_s = Scalar(0.3); ///< time constant of the growth beyond the training, s
+    /// A joint whose deceleration brings it to rest within this time is about to stop, s.
+    static constexpr Scalar stop_s = Scalar(0.1);
+    static constexpr Scalar change_s = Scalar(0.2);     ///< for which a change of the motion lasts, s
+    static constexpr Scalar clip = Scalar(0.6);         ///< deviation that the baseline follows, in limits
+    static constexpr Scalar contact_clip = Scalar(0.1); ///< the same during a contact
+    static constexpr Scalar median_s = 20;        ///< time in which a median doubles or halves, at least
+    static constexpr Scalar most_growth = 4;      ///< largest factor by which a limit grows with its median
+    static constexpr Scalar still = Scalar(0.02); ///< rad/s, largest speed of a standing joint
+    /// Speed below which dry friction still rises towards stiction (Stribeck effect), rad/s.
+    static constexpr Scalar slow = Scalar(0.08);
+
+    /// Shares of the present values in the filters of all joints, for one tick.
+    struct Steps {
+        explicit Steps(Scalar period_s) noexcept
+            : dt(period_s), filter(1 - std::exp(-dt / filter_s)),
+              velocity(1 - std::exp(-dt / velocity_filter_s)), baseline(1 - std::exp(-dt / baseline_s)),
+              range(1 - std::exp(-dt / range_s)), median(dt / median_s) {}
+        Scalar dt, filter, velocity, baseline, range, median;
+    };
+
+    /// Sets the medians to those of the training.
+    void reset(const ContactLimits<Scalar>& limits) noexcept {
+        std::copy_n(limits.usual, joint_motion_count, usual_);
+    }
+
+    /// Starts at a position (rad) with an error and a prediction (the output's unit). Keeps the medians.
+    void begin(Scalar position, Scalar error, Scalar prediction) noexcept {
+        position_ = position;
+        velocity_ = earlier_velocity_ = acceleration_ = 0;
+        first_prediction_pole_ = second_prediction_pole_ = earlier_prediction_ = prediction;
+        first_pole_ = second_pole_ = low_ = high_ = error;
+        deviation_ = 0;
+        direction_ = 0;
+        since_change_s_ = change_s;
+        motion_ = JointMotion::standing;
+    }
+
+    /// Follows the position (rad). Returns speed or acceleration in units of the largest usual one.
+    Scalar follow_motion(Scalar position, const ContactLimits<Scalar>& limits, const Steps& steps) noexcept {
+        velocity_ += steps.velocity * ((position - position_) / steps.dt - velocity_);
+        position_ = position;
+        earlier_velocity_ += steps.filter * (velocity_ - earlier_velocity_);
+        const Scalar present = (velocity_ - earlier_velocity_) / filter_s;
+        acceleration_ += steps.filter * (present - acceleration_);
+        return std::max(speed() / limits.speed, acceleration() / limits.acceleration);
+    }
+
+    /// Follows the error. `range`: factor of the limit, >= 1. Returns the magnitude of the deviation in units
+    /// of its limit, at most `largest_share`.
+    Scalar follow(Scalar error, Scalar prediction, const ContactLimits<Scalar>& limits, Scalar range,
+                  bool contact, const Steps& steps) noexcept {
+        first_pole_ += steps.filter * (error - first_pole_);
+        second_pole_ += steps.filter * (first_pole_ - second_pole_);
+        first_prediction_pole_ += steps.filter * (prediction - first_prediction_pole_);
+        second_prediction_pole_ += steps.filter * (first_prediction_pole_ - second_prediction_pole_);
+        earlier_prediction_ += steps.baseline * (second_prediction_pole_ - earlier_prediction_);
+        classify(steps.dt);
+        deviation_ = second_pole_ - std::clamp(second_pole_, low_, high_);
+        const Scalar limit = range * limit_from(limits);
+        follow_baseline(limit, contact, steps);
+        if (!contact) {
+            follow_usual(steps);
+        }
+        return std::min(std::abs(deviation_) / limit, largest_share);
+    }
+
+    /// Ends a contact: the baseline has the errors before the contact and the present ones.
+    void end() noexcept {
+        low_ = std::min(low_, second_pole_);
+        high_ = std::max(high_, second_pole_);
+    }
+
+    /// Takes the present error as the baseline.
+    void accept() noexcept { low_ = high_ = second_pole_; }
+
+    /// Returns the deviation in this tick, in the output's unit.
+    [[nodiscard]] Scalar deviation() const noexcept { return deviation_; }
+    /// Returns the change of the prediction within `baseline_s`, in the output's unit.
+    [[nodiscard]] Scalar predicted_change() const noexcept {
+        return second_prediction_pole_ - earlier_prediction_;
+    }
+    /// Returns the speed in rad/s, low-pass filtered.
+    [[nodiscard]] Scalar speed() const noexcept { return std::abs(velocity_); }
+    /// Returns the magnitude of the acceleration in rad/s², low-pass filtered.
+    [[nodiscard]] Scalar acceleration() const noexcept { return std::abs(acceleration_); }
+    /// Returns the motion in this tick.
+    [[nodiscard]] JointMotion motion() const noexcept { return motion_; }
+
+  private:
+    void classify(Scalar dt) noexcept {
+        const int direction = std::abs(velocity_) < still ? 0 : (velocity_ > 0 ? 1 : -1);
+        since_change_s_ = std::min(since_change_s_ + dt, change_s);
+        if (direction != direction_ || (direction != 0 && stops_soon())) {
+            low_ = std::min(low_, Scalar(0));
+            high_ = std::max(high_, Scalar(0));
+            direction_ = direction;
+            since_change_s_ = 0;
+        }
+        const bool crawling = direction != 0 && std::abs(velocity_) < slow;
+        if (changed() || crawling) {
+            motion_ = JointMotion::changing;
+            return;
+        }
+        motion_ = direction == 0 ? JointMotion::standing : JointMotion::moving;
+    }
+
+    /// Returns whether the joint started, stopped or reversed within `change_s`.
+    [[nodiscard]] bool changed() const noexcept { return since_change_s_ < change_s; }
+
+    /// Returns whether the present deceleration brings the joint to rest within `stop_s`.
+    [[nodiscard]] bool stops_soon() const noexcept {
+        const Scalar deceleration = (earlier_velocity_ - velocity_) / filter_s;
+        return velocity_ * (deceleration * stop_s - velocity_) > 0;
+    }
+
+    void follow_baseline(Scalar limit, bool contact, const Steps& steps) noexcept {
+        const Scalar most = (contact ? contact_clip : clip) * limit;
+        const Scalar step = steps.baseline * std::clamp(deviation_, -most, most);
+        if (changed() || contact) {
+            low_ += std::min(step, Scalar(0));
+            high_ += std::max(step, Scalar(0));
+        } else {
+            approach(step, steps.baseline);
+        }
+    }
+
+    /// Moves the baseline towards the error: by `step` the edge that the error is beyond, by a share of its
+    /// distance the other one.
+    void approach(Scalar step, Scalar share) noexcept {
+        const Scalar low = low_ + share * (second_pole_ - low_);
+        const Scalar high = high_ + share * (second_pole_ - high_);
+        if (step > 0) {
+            high_ += step;
+            low_ = std::min(low, high_);
+        } else if (step < 0) {
+            low_ += step;
+            high_ = std::max(high, low_);
+        } else {
+            low_ = low;
+            high_ = high;
+        }
+    }
+
+    void follow_usual(const Steps& steps) noexcept {
+        Scalar& usual = usual_[static_cast<int>(motion_)];
+        usual *= std::abs(deviation_) > usual ? 1 + steps.median : 1 - steps.median;
+        usual = std::clamp(usual, least_usual, largest_usual);
+    }
+
+    [[nodiscard]] Scalar limit_from(const ContactLimits<Scalar>& limits) const noexcept {
+        const int motion = static_cast<int>(motion_);
+        const Scalar trained = limits.usual[motion];
+        const Scalar growth = trained > 0 ? usual_[motion] / trained : Scalar(1);
+        const Scalar constant = limits.limit[motion] * std::clamp(growth, Scalar(1), most_growth);
+        const Scalar proportional = limits.relative * predicted_change();
+        return std::sqrt(constant * constant + proportional * proportional);
+    }
+
+    static constexpr Scalar largest_share = Scalar(1e6);
+    static constexpr Scalar least_usual = Scalar(1e-12);
+    static constexpr Scalar largest_usual = Scalar(1e12);
+
+    Scalar position_, velocity_;      ///< rad, rad/s
+    Scalar earlier_velocity_;         ///< rad/s, low-pass filtered
+    Scalar acceleration_;             ///< rad/s²
+    Scalar first_pole_, second_pole_; ///< of the error
+    Scalar first_prediction_pole_, second_prediction_pole_, earlier_prediction_;
+    Scalar low_, high_; ///< baseline; equal unless the motion changes
+    Scalar deviation_;
+    Scalar usual_[joint_motion_count];
+    Scalar since_change_s_;
+    int direction_; ///< -1, 0, 1
+    JointMotion motion_;
+};
+
+} // namespace dfdyn

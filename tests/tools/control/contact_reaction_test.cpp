@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reactions of a loop to contacts that the learner's errors show.
+#include "tests/support/catch.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/tools/can/bus_support.hpp"
+#include "tests/tools/control/pendulum.hpp"
+#include "tests/tools/simulation/read_faults.hpp"
+#include "tools/base/text/error.hpp"
+#include "tools/control/closed_loop.hpp"
+#include "tools/control/loop/pausable_task.hpp"
+#include "tools/control/report/loop_summary.hpp"
+
+#include <cmath>
+#include <sstream>
+#include <string>
+
+namespace contact_reaction_test {
+
+using namespace dfdyn::tools;
+using namespace dfdyn::tests;
+
+constexpr double learned_s = 20;      ///< before the runs with a push
+constexpr double accurate_rad = 1e-4; ///< a push of 2.5 N·m moves the arm by 0.05 rad
+constexpr double push_s = 6, push_nm = 2.5;
+
+Scenario scenario_with(const std::string& fault) {
+    Scenario scenario = pendulum_scenario();
+    scenario.task =
+        MultisineTask{JointVector::Constant(1, 0.3), JointVector::Constant(1, 0.9), 0.1, 0.8, 6, 2};
+    scenario.faults = faults_of(fault, 1);
+    return scenario;
+}
+
+/// A model that has learned the pendulum, with limits of contacts of 1 N·m.
+LoopModel learned_model() {
+    DFDYN_SEEDED_ENGINE(engine);
+    LoopModel model{unlearned_model(engine, 1, 0.008, {"tau1"}, 40), "model", true};
+    model.model.contact = {{1, 1, 1}, {0.1, 0.1, 0.1}, {0.1}, {10}, {1000}, 0.05};
+    ClosedLoop loop(test_pendulum(), scenario_with("[]"), "test", &model);
+    loop.run_to(learned_s, [](const ClosedLoopInstant&) {});
+    model.learned = loop.loop().feed_forward().learned()->snapshot();
+    return model;
+}
+
+/// What happens from a push on.
+struct Outcome {
+    std::vector<TakenAction> actions;
+    std::vector<PushReaction> reactions;
+    LoopState state = LoopState::waiting;
+    StopCause cause = StopCause::none;
+    double after = 0;        ///< root mean square of the error, rad, from 5 s after the push
+    double moved = 0;        ///< rad, by the push
+    double error_at_end = 0; ///< rad, of the reference at the end of the push
+    double command = 0;      ///< N·m, in the last 0.1 s of the push, mean
+    double gravity = 0;      ///< N·m, likewise
+    std::uint64_t learned_in_contact = 0;
+    std::string summary;
+};
+
+Outcome run(FindingAction reaction, double size_nm = push_nm, double for_s = 0.3) {
+    const double end_s = push_s + for_s;
+    const std::string fault = R"([{"kind": "push", "joint": 1, "torque_nm": )" + std::to_string(size_nm) +
+                              R"(, "from_s": 6, "for_s": )" + std::to_string(for_s) + "}]";
+    LoopModel model = learned_model();
+    LoopLimits limits;
+    limits.on_contact = reaction;
+    ClosedLoop loop(test_pendulum(), scenario_with(fault), "test", &model, nullptr, limits);
+    Outcome outcome;
+    double at_push = 0;
+    int after = 0, pressed = 0;
+    std::uint64_t learned = 0;
+    loop.run_to(16, [&](const ClosedLoopInstant& instant) {
+        const double t = instant.time_s, q = loop.plant().truth().position[0];
+        const std::uint64_t samples = loop.loop().feed_forward().learned()->counters().learned;
+        if (t < push_s) {
+            at_push = q;
+        } else if (t < end_s) {
+            outcome.moved = std::max(outcome.moved, std::abs(q - at_push));
+            outcome.error_at_end = std::abs(instant.error[0]);
+            learned = t < push_s + 0.15 ? samples : learned;
+            outcome.learned_in_contact = samples - learned;
+            if (t >= end_s - 0.1) {
+                outcome.command += instant.command[0];
+                outcome.gravity += weight(q);
+                ++pressed;
+            }
+        } else if (t >= 11) {
+            outcome.after += instant.error.squaredNorm();
+            ++after;
+        }
+    });
+    outcome.after = after > 0 ? std::sqrt(outcome.after / after) : 0;
+    outcome.command /= std::max(pressed, 1);
+    outcome.gravity /= std::max(pressed, 1);
+    outcome.actions = loop.loop().actions();
+    outcome.reactions = loop.reactions();
+    outcome.state = loop.loop().state();
+    outcome.cause = loop.loop().cause();
+    std::ostringstream text;
+    print_loop(text, loop.loop());
+    print_reactions(text, loop.reactions());
+    outcome.summary = text.str();
+    return outcome;
+}
+
+void check_detected(const Outcome& outcome, FindingAction reaction) {
+    REQUIRE(outcome.actions.size() == 1);
+    CHECK(outcome.actions.front().action == reaction);
+    CHECK(outcome.actions.front().cause == dfdyn::Cause::contact);
+    CHECK(outcome.actions.front().joint == 0);
+    REQUIRE(outcome.reactions.size() == 1);
+    CHECK(outcome.reactions.front().push_s == Approx(push_s).margin(0.002));
+    CHECK(outcome.reactions.front().after_s < 0.1);
+    CHECK(outcome.summary.find("ms after the push at 6.00 s") != std::string::npos);
+}
+
+TEST_CASE("a loop that stops at a contact stops within a tenth of a second and names it", "[contacts]") {
+    const Outcome outcome = run(FindingAction::stop);
+    check_detected(outcome, FindingAction::stop);
+    CHECK(outcome.state == LoopState::stopped);
+    CHECK(outcome.cause == StopCause::finding);
+    CHECK(outcome.summary.find("finding: external_contact at joint 1") != std::string::npos);
+}
+
+TEST_CASE("a loop that holds at a contact stays on its path and continues accurately", "[contacts]") {
+    const Outcome outcome = run(FindingAction::hold, push_nm, 0.8);
+    check_detected(outcome, FindingAction::hold);
+    CHECK(outcome.state == LoopState::running);
+    CHECK(outcome.learned_in_contact == 0);
+    CHECK(outcome.error_at_end ==
+          Approx(push_nm / 50).epsilon(0.05)); // the position gain alone bears the push
+    CHECK(outcome.after < accurate_rad);
+}
+
+TEST_CASE("a loop that yields at a contact has gravity torque alone and returns to its path", "[contacts]") {
+    const Outcome outcome = run(FindingAction::yield);
+    check_detected(outcome, FindingAction::yield);
+    CHECK(outcome.state == LoopState::running);
+    CHECK(outcome.learned_in_contact == 0);
+    CHECK(outcome.command == Approx(outcome.gravity).margin(0.05));
+    CHECK(outcome.moved > 2 * run(FindingAction::hold).moved);
+    CHECK(outcome.after < accurate_rad);
+}
+
+TEST_CASE("without a push, or without a chosen reaction, a loop does nothing about contacts", "[contacts]") {
+    CHECK(run(FindingAction::hold, 0).actions.empty());
+    const Outcome outcome = run(FindingAction::report);
+    CHECK(outcome.actions.empty());
+    CHECK(outcome.state == LoopState::running);
+}
+
+TEST_CASE("a loop with a reaction to contacts refuses a model without limits of contacts", "[contacts]") {
+    LoopModel model = learned_model();
+    model.model.contact = {};
+    LoopLimits limits;
+    limits.on_contact = FindingAction::hold;
+    CHECK_THROWS_AS(ClosedLoop(test_pendulum(), scenario_with("[]"), "test", &model, nullptr, limits),
+                    InputError);
+    CHECK_THROWS_AS(contact_action("wait", "--on-contact"), InputError);
+    CHECK(contact_action("yield", "--on-contact") == FindingAction::yield);
+}
+
+std::unique_ptr<Task> sine_task() {
+    return make_task(
+        MultisineTask{JointVector::Constant(1, 0.3), JointVector::Constant(1, 0.9), 0.1, 0.8, 6, 2},
+        test_pendulum(), 0.002, 5);
+}
+
+/// Checks that velocities and accelerations are the differences of positions and velocities.
+void check_smooth(const std::vector<Reference>& path) {
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        const double velocity = (path[i].position[0] - path[i - 1].position[0]) / 0.002;
+        REQUIRE(velocity == Approx((path[i].velocity[0] + path[i - 1].velocity[0]) / 2).margin(0.02));
+    }
+}
+
+TEST_CASE("a task that nobody pauses is unchanged", "[contacts]") {
+    const std::unique_ptr<Task> plain = sine_task();
+    PausableTask task(sine_task(), 0.002);
+    for (int i = 0; i < 5000; ++i) {
+        const Reference expected = plain->next(), found = task.next();
+        REQUIRE(found.position == expected.position);
+        REQUIRE(found.velocity == expected.velocity);
+        REQUIRE(found.acceleration == expected.acceleration);
+    }
+}
+
+TEST_CASE("a paused task rests on its path and continues smoothly from another position", "[contacts]") {
+    PausableTask task(sine_task(), 0.002);
+    std::vector<Reference> path;
+    const auto go = [&](double duration_s) {
+        for (int i = 0; i < std::lround(duration_s / 0.002); ++i) {
+            path.push_back(task.next());
+        }
+    };
+    go(5);
+    task.pause();
+    go(1);
+    CHECK(path.back().velocity[0] == 0);
+    CHECK(path.back().acceleration[0] == 0);
+    check_smooth(path);
+    const JointVector elsewhere = path.back().position + JointVector::Constant(1, 0.4);
+    task.resume(elsewhere);
+    path.clear();
+    go(10);
+    CHECK(path.front().position[0] == Approx(elsewhere[0]).margin(1e-6));
+    check_smooth(path);
+    const std::unique_ptr<Task> plain = sine_task(); // the same motion, later
+    double nearest = 1;
+    for (int i = 0; i < 8000; ++i) {
+        nearest = std::min(nearest, std::abs(plain->next().position[0] - path.back().position[0]));
+    }
+    CHECK(nearest < 1e-3);
+}
+
+} // namespace contact_reaction_test
