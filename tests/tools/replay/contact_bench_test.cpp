@@ -306,7 +306,7 @@ TEST_CASE("pushes added to runs of real arms are found, and compared with least 
                  ur5_coulomb(),
                  10});
     CHECK(chosen.first > chosen.second);
-    // These chose no constant. On the TX40 the threshold finds more: docs/guide/contacts.md.
+    // These chose no constant, but were in sight when the limits became those of typical blocks.
     const auto nist_found = compare({"UR5 of NIST, first 32 s, tested on the rest",
                                      ur5,
                                      OutputKind::motor_current,
@@ -314,14 +314,15 @@ TEST_CASE("pushes added to runs of real arms are found, and compared with least 
                                      {read_rows(nist, OutputKind::motor_current, {4000, {}})},
                                      ur5_coulomb(),
                                      10});
-    compare({"TX40, first 4 s, tested on the rest",
-             tx40,
-             OutputKind::joint_torque,
-             {read_rows(staubli, OutputKind::joint_torque, {0, 20000}, 10)},
-             {read_rows(staubli, OutputKind::joint_torque, {20000, {}}, 10)},
-             {7.14, 8.26, 6.34, 2.48, 3.03, 1},
-             1});
-    CHECK(10 * nist_found.first > 9 * nist_found.second);
+    const auto tx40_found = compare({"TX40, first 4 s, tested on the rest",
+                                     tx40,
+                                     OutputKind::joint_torque,
+                                     {read_rows(staubli, OutputKind::joint_torque, {0, 20000}, 10)},
+                                     {read_rows(staubli, OutputKind::joint_torque, {20000, {}}, 10)},
+                                     {7.14, 8.26, 6.34, 2.48, 3.03, 1},
+                                     1});
+    CHECK(nist_found.first > nist_found.second);
+    CHECK(tx40_found.first > tx40_found.second);
 }
 
 } // namespace contact_bench_test

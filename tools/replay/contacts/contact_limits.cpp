@@ -27,6 +27,7 @@ constexpr double least_limit = 1e-6;           // in units of noise_std
 constexpr double speed_allowance = 0.05;       // rad/s
 constexpr double acceleration_allowance = 0.2; // rad/s²
 constexpr std::size_t fewest_values = 20;      // of a motion, for its own envelope
+constexpr double most_median = 2;              // of a held-out block, in units of the trained model's
 constexpr std::size_t fewest_peaks = 5;        // of a pass, for its share of the tail
 constexpr std::array relative_choices{0.0, 0.03, 0.05, 0.08, 0.12, 0.18, 0.25, 0.35, 0.5, 0.7};
 constexpr double out_of_reach = 1e3; // factor of limits with which nothing is a contact
@@ -34,7 +35,7 @@ constexpr std::int64_t peak_interval_ns = 1'000'000'000;
 constexpr double hour_s = 3600;
 constexpr std::size_t tail_part = 10; // one in so many peaks
 constexpr std::size_t least_tail = 10;
-constexpr double new_motion_factor = 1.2;
+constexpr double new_motion_factor = 1.08;
 constexpr double least_rate_slope = 1e-3;
 
 /// What a joint does in a tick.
@@ -151,26 +152,28 @@ double typical(const std::vector<double>& of_passes, std::optional<double> train
     return std::max(median(of_passes), trained.value_or(0));
 }
 
-/// Returns the typical quantile of `value(deviation)` over those that `chosen` accepts; 0 if there are few.
+/// Returns which passes have at most `most_median` times the trained model's median deviation of a joint.
+std::array<bool, block_count + 1> determined_passes(const Deviations& deviations) {
+    std::array<std::vector<double>, block_count + 1> sizes;
+    for (const Deviation& one : deviations) {
+        sizes[one.pass].push_back(one.size);
+    }
+    std::array<bool, block_count + 1> determined{};
+    const double trained = sizes.back().empty() ? 0 : median(sizes.back());
+    for (std::size_t pass = 0; pass <= block_count; ++pass) {
+        determined[pass] = !sizes[pass].empty() && median(sizes[pass]) <= most_median * trained;
+    }
+    return determined;
+}
+
+/// Returns the quantile of `value(deviation)` over those of determined passes that `chosen` accepts; 0 if
+/// there are few.
 template <class Value, class Chosen>
 double typical_quantile(const Deviations& deviations, Value value, Chosen chosen, double share) {
-    std::array<std::vector<double>, block_count + 1> values;
-    std::size_t count = 0;
-    for (const Deviation& one : deviations) {
-        if (chosen(one)) {
-            values[one.pass].push_back(std::invoke(value, one));
-            ++count;
-        }
-    }
-    std::vector<double> quantiles;
-    std::optional<double> trained;
-    for (std::size_t pass = 0; pass <= block_count; ++pass) {
-        if (values[pass].size() >= fewest_values) {
-            quantiles.push_back(quantile(values[pass], share));
-            trained = pass == block_count ? std::optional(quantiles.back()) : std::nullopt;
-        }
-    }
-    return quantiles.empty() || count < fewest_values ? 0 : typical(quantiles, trained);
+    const std::array<bool, block_count + 1> determined = determined_passes(deviations);
+    const std::vector<double> values = values_of(
+        deviations, value, [&](const Deviation& one) { return determined[one.pass] && chosen(one); });
+    return values.size() < fewest_values ? 0 : quantile(values, share);
 }
 
 /// Limits of a joint that hold nearly all of its deviations.
@@ -273,16 +276,16 @@ std::vector<double> comparable_peaks(const std::array<std::vector<double>, block
     return peaks;
 }
 
-/// Returns the factor from the mean of `count` exponential values to the upper limit of its 90 % confidence
-/// interval, by the approximation of Wilson and Hilferty (1931).
+/// Returns the factor from the mean of `count` exponential values to the 60 % quantile of its distribution,
+/// by the approximation of Wilson and Hilferty (1931).
 double upper_mean(std::size_t count) {
-    constexpr double deviation = 1.2816; // of the normal distribution's 10 % quantile
+    constexpr double deviation = 0.2533; // of the normal distribution's 40 % quantile
     const double part = 1.0 / (9 * static_cast<double>(count));
     return std::pow(1 - part - deviation * std::sqrt(part), -3);
 }
 
 /// Sets the limits to those that are exceeded at most `contact_rate_per_hour` times on average. The largest
-/// tenth of the peaks has an exponential tail, whose mean is less certain the fewer peaks there are.
+/// tenth of the peaks has an exponential tail. With few peaks its mean is uncertain.
 void set_rate(ContactModel& contact, const std::vector<double>& peaks) {
     const std::size_t tail = std::max(std::min(peaks.size() / 2, least_tail), peaks.size() / tail_part);
     if (tail == 0) {
@@ -293,7 +296,7 @@ void set_rate(ContactModel& contact, const std::vector<double>& peaks) {
     for (std::size_t i = 0; i < tail; ++i) {
         mean += (peaks[i] - threshold) / static_cast<double>(tail);
     }
-    mean *= upper_mean(tail);
+    mean *= tail < least_tail ? upper_mean(tail) : 1;
     const double per_hour = hour_s * static_cast<double>(tail) / static_cast<double>(peaks.size());
     const double level = std::max(threshold + mean * std::log(per_hour / contact_rate_per_hour), 1.0);
     contact = scaled_contact(contact, new_motion_factor * level);
