@@ -4,7 +4,7 @@
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
 #include "tests/tools/control/pendulum.hpp"
-#include "tests/tools/simulation/read_faults.hpp"
+#include "tests/tools/simulation/faults/read_faults.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/control/closed_loop.hpp"
 #include "tools/control/loop/pausable_task.hpp"
