@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/hal/gate/motion_run.hpp"
 #include "dfdyn/hal/gate/qualification.hpp"
 #include "dfdyn/hal/gate/range.hpp"
+#include "dfdyn/hal/gate/run_comparison.hpp"
+#include "dfdyn/hal/gate/zero_watch.hpp"
 #include "dfdyn/hal/reason.hpp"
 
 #include <algorithm>
@@ -51,8 +52,9 @@ class MotionGate {
     };
 
     explicit constexpr MotionGate(const Config& config) noexcept
-        : config_(config), tolerance_{config.limits, config.period_ns, seconds_between(0, config.jitter_ns)} {
-    }
+        : config_(config), tolerance_{config.limits, config.period_ns, seconds_between(0, config.jitter_ns)},
+          comparison_(tolerance_, config.max_age_ns, config.jitter_ns),
+          zero_(config.limits.velocity, config.period_ns) {}
 
     /// Takes a reading; stamps must increase.
     constexpr Verdict take(EncoderReading reading) noexcept {
@@ -93,11 +95,10 @@ class MotionGate {
         const bool far = magnitude(reading.position_rad - trusted_.last().position_rad) >
                          tolerance_.reach(seconds_between(0, config_.max_age_ns), reading.step_rad);
         MotionLine motion = trusted_.end_line(0, config_.period_ns);
-        motion.velocity = zero_seen_ ? config_.limits.velocity : motion.velocity;
+        motion.velocity = zero_.seen() ? config_.limits.velocity : motion.velocity;
         if (!trusted_.empty() && far && begins_at_zero(reading, motion)) {
             zero_lost_ = zero_lost_ || !reading.zero;
-            zero_seen_ = true;
-            zero_ns_ = reading.stamp_ns;
+            zero_.saw(reading.stamp_ns);
         }
     }
 
@@ -121,9 +122,10 @@ class MotionGate {
         MotionLine before = trusted_.end_line(0, config_.period_ns);
         before.begin_ns += step_ns;
         before.end_ns += step_ns;
-        const bool follows = near(before.end_ns, refused_.first().stamp_ns);
+        const bool follows = comparison_.near(before.end_ns, refused_.first().stamp_ns);
         if (follows && !zero_lost_ &&
-            meets(before, refused_.begin_line(0, config_.period_ns), refused_.first())) {
+            comparison_.meets(before, refused_.begin_line(0, config_.period_ns), refused_.first(),
+                              longest_s(), ShareAtZero{*this, refused_.first()})) {
             believe(MotionRun(refused_));
         }
     }
@@ -139,11 +141,9 @@ class MotionGate {
   private:
     static constexpr int times_when_lost = 20;
 
-    [[nodiscard]] constexpr bool near(std::int64_t from_ns, std::int64_t to_ns) const noexcept {
-        return to_ns - from_ns <= config_.max_age_ns + 2 * config_.jitter_ns;
-    }
     [[nodiscard]] constexpr bool fresh(std::int64_t stamp_ns) const noexcept {
-        return !trusted_.empty() && !interrupted_ && time_known_ && near(trusted_.last().stamp_ns, stamp_ns);
+        return !trusted_.empty() && !interrupted_ && time_known_ &&
+               comparison_.near(trusted_.last().stamp_ns, stamp_ns);
     }
     /// After a jump, the time that passes does not make the positions that it led to more likely: from here
     /// on it allows no larger distance.
@@ -154,14 +154,11 @@ class MotionGate {
     [[nodiscard]] constexpr bool leads_from_trusted(const EncoderReading& reading) const noexcept {
         return trusted_.leads_to(reading, tolerance_, longest_s());
     }
-    [[nodiscard]] constexpr bool continues(const MotionRun& run, const EncoderReading& to) const noexcept {
-        return !run.empty() && near(run.last().stamp_ns, to.stamp_ns) && run.leads_to(to, tolerance_);
-    }
     /// Whether a reading belongs to those that are refused, in whichever turn: tightly while they are recent,
     /// after a silence if it can. Takes it.
     constexpr bool still_lost(EncoderReading reading) noexcept {
         unwrap_near(reading, refused_.last().position_rad);
-        if (near(refused_.last().stamp_ns, reading.stamp_ns)) {
+        if (comparison_.near(refused_.last().stamp_ns, reading.stamp_ns)) {
             const bool leads = refused_.leads_to(reading, tolerance_);
             if (leads) {
                 refused_.extend(reading, tolerance_);
@@ -170,8 +167,8 @@ class MotionGate {
         }
         const bool can_be = has_lost_zero() ? tolerance_.reaches(refused_.last(), reading)
                                             : recently(refused_.last().stamp_ns, reading.stamp_ns) &&
-                                                  comes_from_motion(refused_, reading);
-        const bool goes_on = can_be && !continues(run_, reading);
+                                                  comparison_.reaches_after_silence(refused_, reading);
+        const bool goes_on = can_be && !comparison_.continues(run_, reading);
         if (goes_on) {
             refused_.resume(reading, tolerance_);
         }
@@ -216,7 +213,7 @@ class MotionGate {
     }
 
     constexpr Verdict take_beyond_range(const EncoderReading& reading) noexcept {
-        if (continues(run_, reading)) { // it is no better when it comes back, or round
+        if (comparison_.continues(run_, reading)) { // it is no better when it comes back, or round
             refused_ = run_;
             refused_.extend(reading, tolerance_);
         }
@@ -230,7 +227,7 @@ class MotionGate {
         trusted_.extend(reading, tolerance_);
         refused_ = {};
         disturbed_ = false;
-        zero_seen_ = false;
+        zero_.forget();
         return settled(reading);
     }
 
@@ -249,20 +246,20 @@ class MotionGate {
         refused_ = {};
         interrupted_ = false;
         disturbed_ = false;
-        zero_seen_ = false;
+        zero_.forget();
         time_known_ = true;
     }
 
     /// Counts a reading that is not trusted yet; trusts it where it ends a run that is long enough.
     constexpr Verdict follow(const EncoderReading& reading, Reason reason) noexcept {
-        const bool continued = continues(run_, reading);
+        const bool continued = comparison_.continues(run_, reading);
         note(!continued);
-        const bool recent = !run_.empty() && near(run_.last().stamp_ns, reading.stamp_ns);
+        const bool recent = !run_.empty() && comparison_.near(run_.last().stamp_ns, reading.stamp_ns);
         if (!continued && recent && !changes_over(reading)) {
             return refuse(reading, reason);
         }
         if (!continued && !recent) {
-            begin_run(continues(other_, reading) ? MotionRun(other_) : MotionRun(), reading);
+            begin_run(comparison_.continues(other_, reading) ? MotionRun(other_) : MotionRun(), reading);
         }
         if (continued) {
             other_ = {};
@@ -292,7 +289,7 @@ class MotionGate {
     /// one that is off does not end a run.
     constexpr bool changes_over(const EncoderReading& reading) noexcept {
         constexpr int enough = 2; // and this one
-        if (other_.empty() || !continues(other_, reading)) {
+        if (other_.empty() || !comparison_.continues(other_, reading)) {
             other_ = {};
             other_.extend(reading, tolerance_);
             return false;
@@ -308,10 +305,10 @@ class MotionGate {
     /// Takes over a run, which may be empty, that goes on with this reading.
     constexpr void begin_run(const MotionRun& run, const EncoderReading& reading) noexcept {
         const EncoderReading& first = run.empty() ? reading : run.first();
-        const bool recent = near(trusted_.last().stamp_ns, first.stamp_ns);
+        const bool recent = comparison_.near(trusted_.last().stamp_ns, first.stamp_ns);
         suspected_ = !trusted_.empty() && (recent || trusted_.moves(tolerance_)) &&
                      (!stood_at(first) || trusted_.repeats(first, tolerance_));
-        note_zero(first);
+        zero_.note(first);
         run_ = run;
         other_ = {};
     }
@@ -345,7 +342,7 @@ class MotionGate {
             return least;
         }
         const std::int64_t silence_ns = run_.first().stamp_ns - trusted_.last().stamp_ns;
-        const bool disturbed = (!time_known_ && !comes_from_motion(trusted_, run_.first())) ||
+        const bool disturbed = (!time_known_ && !comparison_.reaches_after_silence(trusted_, run_.first())) ||
                                (disturbed_ && silence_ns > 2 * config_.max_age_ns + 2 * config_.jitter_ns);
         return lost() || disturbed ? most_readings() : least;
     }
@@ -360,90 +357,39 @@ class MotionGate {
     /// Whether a joint can have come from the end of one run to the begin of the next.
     [[nodiscard]] constexpr bool connects(const MotionRun& before, const MotionRun& run) const noexcept {
         const std::int64_t disturbed_ns = disturbed_ || lost() ? config_.max_age_ns : 0;
-        if (near(before.last().stamp_ns + disturbed_ns, run.first().stamp_ns)) {
-            return meets(before, run);
+        if (comparison_.near(before.last().stamp_ns + disturbed_ns, run.first().stamp_ns)) {
+            return comparison_.meets(before, run, longest_s(), ShareAtZero{*this, run.first()});
         }
-        return tolerance_.reaches(before.last(), run.first()) && comes_from_motion(before, run.first());
+        return tolerance_.reaches(before.last(), run.first()) &&
+               comparison_.reaches_after_silence(before, run.first());
     }
 
     /// Whether a run is still of the encoder whose readings are refused: a small jump, or a clock that was
     /// set by a few milliseconds, does not bring its zero back.
     [[nodiscard]] constexpr bool goes_on_from_refused(const MotionRun& run) const noexcept {
-        const bool small_jump = near(refused_.last().stamp_ns, run.first().stamp_ns) &&
+        const bool small_jump = comparison_.near(refused_.last().stamp_ns, run.first().stamp_ns) &&
                                 tolerance_.reaches(refused_.last(), run.first());
         return small_jump || connects(refused_, run);
     }
 
-    /// Whether the motions before and after a jump meet in between. Either may have one reading that is off.
-    [[nodiscard]] constexpr bool meets(const MotionRun& before, const MotionRun& run) const noexcept {
-        const std::int64_t period_ns = config_.period_ns;
-        const MotionLine from = before.end_line(0, period_ns);
-        const MotionLine to = run.begin_line(0, period_ns);
-        return meets(before.end_line(1, period_ns), to, run.first()) ||
-               meets(from, run.begin_line(1, period_ns), run.first()) || meets(from, to, run.first());
-    }
-    [[nodiscard]] constexpr bool meets(const MotionLine& from, const MotionLine& to,
-                                       const EncoderReading& first) const noexcept {
-        if (from.span_s <= 0 || to.span_s <= 0) {
-            return false;
-        }
-        const double dt_s = std::min(seconds_between(from.end_ns, to.begin_ns), longest_s());
-        const double before = to.at(from.end_ns) - from.end_rad;
-        const double after = to.at(to.begin_ns) - from.at(to.begin_ns);
-        const double limit =
-            0.5 * (tolerance_.error(from, dt_s, first.step_rad) + tolerance_.error(to, dt_s, first.step_rad));
-        const double fastest =
-            magnitude(from.velocity) + config_.limits.acceleration * (dt_s + from.span_s + to.span_s);
-        if (magnitude(to.velocity) > fastest) { // an impact takes velocity, and turns it round
-            return false;
-        }
-        const double nearest = std::min(magnitude(before), magnitude(after));
-        return before * after <= 0 || nearest <= (begins_at_zero(first, to) ? 0.25 : 1) * limit;
-    }
+    /// The part of the limits that is allowed for a jump to a run: less where that begins at the encoder's
+    /// zero.
+    struct ShareAtZero {
+        const MotionGate& gate;
+        const EncoderReading& first;
 
-    /// Whether the acceleration limit may have taken the joint there during a silence.
-    [[nodiscard]] constexpr bool comes_from_motion(const MotionRun& before,
-                                                   const EncoderReading& to) const noexcept {
-        constexpr double share_of_limits = 0.8; // no joint accelerates with all its might for so long
-        bool reached = false;
-        for (const int skip : {0, 1}) {
-            const MotionLine line = before.end_line(skip, config_.period_ns);
-            const double dt_s = seconds_between(line.end_ns, to.stamp_ns);
-            const double off = magnitude(to.position_rad - line.at(to.stamp_ns));
-            reached = reached || line.span_s <= 0 ||
-                      off <= share_of_limits * tolerance_.error(line, dt_s, to.step_rad);
+        [[nodiscard]] constexpr double operator()(const MotionLine& begin) const noexcept {
+            return gate.begins_at_zero(first, begin) ? 0.25 : 1.0;
         }
-        return reached;
-    }
+    };
 
-    /// Whether a run begins where an encoder does that was switched on: at its own zero, or as far from it as
-    /// the joint goes in a few periods.
+    /// Whether a run begins where an encoder does that was switched on.
     [[nodiscard]] constexpr bool begins_at_zero(const EncoderReading& first,
                                                 const MotionLine& begin) const noexcept {
-        constexpr double periods = 1.5;
         constexpr double clock_s = 0.05; // in which frames are left out while the clock is set
-        const bool hidden = !time_known_ && !comes_from_motion(trusted_, first);
-        const double since_s = (hidden ? clock_s : 0) + since_zero_s(first.stamp_ns);
-        const double velocity =
-            std::max(magnitude(begin.velocity),
-                     since_s > 0 ? magnitude(trusted_.end_line(0, config_.period_ns).velocity) : 0);
-        const double moved = velocity * (since_s + periods * seconds_between(0, config_.period_ns));
-        return magnitude(first.from_zero_rad) <= moved + 3 * first.step_rad;
-    }
-
-    /// Time (s) since a reading at the device's zero that did not come from the motion; 0: there was none.
-    [[nodiscard]] constexpr double since_zero_s(std::int64_t now_ns) const noexcept {
-        constexpr double memory_s = 0.05; // a board shows its zero at the end of its start
-        const double since_s = seconds_between(zero_ns_, now_ns);
-        return zero_seen_ && since_s >= 0 && since_s <= memory_s ? since_s : 0; // < 0: the clock was set
-    }
-    /// A run begins with this reading.
-    constexpr void note_zero(const EncoderReading& first) noexcept {
-        const double moved = config_.limits.velocity * seconds_between(0, config_.period_ns);
-        if (magnitude(first.from_zero_rad) <= moved + 3 * first.step_rad) {
-            zero_seen_ = true;
-            zero_ns_ = first.stamp_ns;
-        }
+        const bool hidden = !time_known_ && !comparison_.reaches_after_silence(trusted_, first);
+        return zero_.is_begin(first, begin.velocity, trusted_.end_line(0, config_.period_ns).velocity,
+                              hidden ? clock_s : 0);
     }
 
     /// Whether a run after a silence begins at the device's zero; a joint that stood there before may stand
@@ -458,6 +404,8 @@ class MotionGate {
 
     Config config_;
     MotionTolerance tolerance_;
+    RunComparison comparison_;
+    ZeroWatch zero_;
     MotionRun trusted_;
     MotionRun run_;          ///< of readings that qualify
     MotionRun other_;        ///< of readings that do not continue the run
@@ -466,10 +414,8 @@ class MotionGate {
     bool suspected_ = false; ///< the run may be of a frozen encoder
     bool disturbed_ = false; ///< a jump has come since the last trusted reading
     bool interrupted_ = false;
-    bool time_known_ = true;   ///< since the last trusted reading
-    bool zero_lost_ = false;   ///< the refused readings began at the device's zero
-    bool zero_seen_ = false;   ///< since the last trusted reading one was at the device's zero
-    std::int64_t zero_ns_ = 0; ///< stamp of that one
+    bool time_known_ = true; ///< since the last trusted reading
+    bool zero_lost_ = false; ///< the refused readings began at the device's zero
     std::uint64_t refusals_ = 0;
     std::uint64_t restarts_ = 0;
     std::uint64_t beyond_ = 0;
