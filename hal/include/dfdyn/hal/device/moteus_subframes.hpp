@@ -19,16 +19,19 @@ namespace dfdyn::hal {
 /// - 0x50 nothing.
 class MoteusSubframes {
   public:
+    /// What a sub-frame does with a register.
     enum class Kind : std::uint8_t { end, write, read, reply, malformed, unknown };
 
+    /// One register of a frame.
     struct Item {
-        Kind kind = Kind::end;
-        std::uint32_t reg = 0;
+        Kind kind = Kind::end;    ///< what is done with it
+        std::uint32_t reg = 0;    ///< its number
         int type = 0;             ///< 0 int8, 1 int16, 2 int32, 3 float
         std::int32_t integer = 0; ///< of types 0 … 2
         float real = 0;           ///< of type 3
     };
 
+    /// Reads this frame, which must live as long.
     explicit constexpr MoteusSubframes(const Frame& frame) noexcept : frame_(frame) {}
 
     /// Returns the next register that is written, read or replied. O(remaining bytes).
@@ -137,6 +140,7 @@ class MoteusSubframes {
 /// Appends bytes to a frame, which is padded with 0x50 to a length of CAN FD.
 class MoteusWriter {
   public:
+    /// Starts an empty frame with this identifier.
     explicit constexpr MoteusWriter(std::uint32_t id) noexcept {
         frame_ = make_frame(id, 0);
         frame_.extended = id > 0x7FF;

@@ -8,55 +8,106 @@
 
 namespace dfdyn::hal {
 
-/// Recognises an encoder that counts from where it was switched on: its readings begin at its own zero. O(1).
+/// Recognises an encoder that counts from where it was switched on: its readings begin at its own zero.
+/// Follows the run that goes on from the last reading at the zero to which the joint's motion did not lead.
+/// It takes all readings, also those that are of no use as positions. O(1).
 class ZeroWatch {
   public:
-    /// `velocity`: largest velocity of the joint (rad/s); `period_ns`: of the readings.
-    constexpr ZeroWatch(double velocity, std::int64_t period_ns) noexcept
-        : velocity_(velocity), period_s_(seconds_between(0, period_ns)) {}
+    /// `max_age_ns`: how far apart consecutive readings may be.
+    constexpr ZeroWatch(const MotionTolerance& tolerance, std::int64_t max_age_ns) noexcept
+        : tolerance_(tolerance), max_age_ns_(max_age_ns) {}
 
-    /// Accepts the first reading of a run.
-    constexpr void note(const EncoderReading& first) noexcept {
-        if (magnitude(first.from_zero_rad) <= velocity_ * period_s_ + 3 * first.step_rad) {
-            saw(first.stamp_ns);
+    /// Accepts a reading that is trusted.
+    constexpr void forget() noexcept { counted_ = {}; }
+
+    /// Accepts a reading that is not trusted, whatever its reason. `expected`: a motion that was seen shortly
+    /// before may lead to it.
+    constexpr void take(const EncoderReading& reading, bool expected) noexcept {
+        const bool recent = !counted_.empty() && reading.stamp_ns - counted_.last().stamp_ns <= max_age_ns_;
+        const bool repeats = reading.position_rad == counted_.first().position_rad;
+        if (recent && repeats && counted_.still()) { // it is not ready yet
+            counted_ = {};
+            counted_.extend(reading, tolerance_);
+        } else if (recent && counted_.leads_to(reading, tolerance_)) {
+            counted_.extend(reading, tolerance_);
+        } else if (is_near_zero(reading) && !expected && !follows_better(reading)) {
+            counted_ = {};
+            counted_.extend(reading, tolerance_);
         }
     }
 
-    /// Accepts the stamp of a reading at the zero.
-    constexpr void saw(std::int64_t stamp_ns) noexcept {
-        seen_ = true;
-        stamp_ns_ = stamp_ns;
-    }
-
-    /// Forgets the zero that was seen: a reading is trusted.
-    constexpr void forget() noexcept { seen_ = false; }
-
-    [[nodiscard]] constexpr bool seen() const noexcept { return seen_; }
-
-    /// Returns true if a run of this `velocity` that starts with `first` begins at the zero, or as far from
-    /// it as the joint goes in a few periods. `trusted_velocity`: of the joint when it was last trusted;
+    /// Returns true if a run begins at the zero, or as far from it as the joint goes in a few periods, or
+    /// goes on from readings that began there. `trusted_velocity`: of the joint when it was last trusted;
     /// `hidden_s`: time before the run of which no reading is known.
-    [[nodiscard]] constexpr bool is_begin(const EncoderReading& first, double velocity,
+    [[nodiscard]] constexpr bool explains(const EncoderReading& first, const MotionLine& begin,
                                           double trusted_velocity, double hidden_s) const noexcept {
-        constexpr double periods = 1.5;
-        const double since_s = hidden_s + time_since_s(first.stamp_ns);
-        const double fastest = std::max(magnitude(velocity), since_s > 0 ? magnitude(trusted_velocity) : 0);
-        const double moved = fastest * (since_s + periods * period_s_);
-        return magnitude(first.from_zero_rad) <= moved + 3 * first.step_rad;
+        if (magnitude(first.from_zero_rad) <= travel(first, begin, trusted_velocity, hidden_s)) {
+            return true;
+        }
+        if (counted_.empty() || magnitude(counted_.first().from_zero_rad) >
+                                    travel(counted_.first(), begin, trusted_velocity, hidden_s)) {
+            return false;
+        }
+        return goes_on(first, begin, trusted_velocity);
     }
+
+    /// The readings that go on from one at the zero.
+    [[nodiscard]] constexpr const MotionRun& counted() const noexcept { return counted_; }
 
   private:
-    /// Time (s) since a reading at the zero that did not come from the motion; 0: there was none.
-    [[nodiscard]] constexpr double time_since_s(std::int64_t now_ns) const noexcept {
-        constexpr double memory_s = 0.05; // a board shows its zero at the end of its start
-        const double since_s = seconds_between(stamp_ns_, now_ns);
-        return seen_ && since_s >= 0 && since_s <= memory_s ? since_s : 0; // < 0: the clock was set
+    static constexpr int enough = 5; ///< readings that are no accident
+
+    /// Whether a run goes on from the readings that began at the zero: it is of them, or its line leads back
+    /// to the first or the last of them.
+    [[nodiscard]] constexpr bool goes_on(const EncoderReading& first, const MotionLine& begin,
+                                         double trusted_velocity) const noexcept {
+        const bool within = first.stamp_ns >= counted_.first().stamp_ns &&
+                            first.stamp_ns <= counted_.last().stamp_ns && counted_.readings() >= enough;
+        return within || leads_back(first, begin, trusted_velocity, counted_.first()) ||
+               leads_back(first, begin, trusted_velocity, counted_.last());
+    }
+    [[nodiscard]] constexpr bool leads_back(const EncoderReading& first, const MotionLine& begin,
+                                            double trusted_velocity,
+                                            const EncoderReading& to) const noexcept {
+        const double since_s = seconds_between(to.stamp_ns, first.stamp_ns);
+        if (since_s <= 0 || since_s > memory_s) { // < 0: the clock was set
+            return false;
+        }
+        const double off = magnitude(first.from_zero_rad - to.from_zero_rad);
+        const double back_rad = first.from_zero_rad - begin.velocity * since_s - to.from_zero_rad;
+        return off <= travel(first, begin, trusted_velocity, since_s) &&
+               (begin.span_s <= 0 || magnitude(back_rad) <= tolerance_.error(begin, since_s, first.step_rad));
     }
 
-    double velocity_;
-    double period_s_;
-    std::int64_t stamp_ns_ = 0;
-    bool seen_ = false; ///< since the last trusted reading
+    /// Whether the readings that are followed began closer to the zero than this one.
+    [[nodiscard]] constexpr bool follows_better(const EncoderReading& reading) const noexcept {
+        if (counted_.empty()) {
+            return false;
+        }
+        const double since_s = seconds_between(counted_.last().stamp_ns, reading.stamp_ns);
+        const bool closer = magnitude(counted_.first().from_zero_rad) < magnitude(reading.from_zero_rad);
+        return since_s >= 0 && since_s <= memory_s && (closer || counted_.readings() >= enough);
+    }
+
+    /// How far from the zero a joint is after `since_s` and the time until its first reading.
+    [[nodiscard]] constexpr double travel(const EncoderReading& first, const MotionLine& begin,
+                                          double trusted_velocity, double since_s) const noexcept {
+        constexpr double periods = 1.5;
+        const double fastest =
+            std::max(magnitude(begin.velocity), since_s > 0 ? magnitude(trusted_velocity) : 0);
+        return fastest * (since_s + periods * seconds_between(0, tolerance_.period_ns)) + 3 * first.step_rad;
+    }
+
+    [[nodiscard]] constexpr bool is_near_zero(const EncoderReading& reading) const noexcept {
+        const double moved = tolerance_.limits.velocity * seconds_between(0, tolerance_.period_ns);
+        return magnitude(reading.from_zero_rad) <= moved + 3 * reading.step_rad;
+    }
+
+    static constexpr double memory_s = 0.05; // a board shows its zero at the end of its start
+
+    MotionTolerance tolerance_;
+    std::int64_t max_age_ns_;
+    MotionRun counted_; ///< from the zero
 };
 
 } // namespace dfdyn::hal
