@@ -21,6 +21,7 @@ void zero_positions(FaultSite& site) {
     const std::size_t joint = site.pick_joint();
     site.change([&](Sent& sent) {
         if (site.has_position(sent, joint)) {
+            sent.frozen = true;
             site.show_position(sent, joint, site.arm.zero_rad[joint]);
         }
     });
@@ -37,6 +38,7 @@ void restart_absolute(FaultSite& site) {
     silent.remove([&](const Sent& sent) { return site.is_joint(sent, joint); });
     zero.change([&](Sent& sent) {
         if (site.has_position(sent, joint)) {
+            sent.frozen = true;
             site.show_position(sent, joint, site.arm.zero_rad[joint]);
         }
     });
@@ -50,7 +52,8 @@ void restart_incremental(FaultSite& site) {
     });
     std::optional<double> begin_rad;
     for (Sent& sent : site.traffic) {
-        if (site.has_position(sent, joint) && sent.true_ns >= back_ns) {
+        const bool begun = begin_rad.has_value() || !sent.other_sender;
+        if (site.has_position(sent, joint) && sent.true_ns >= back_ns && begun) {
             const double now_rad = sent.shown[joint].position_rad;
             begin_rad = begin_rad.value_or(now_rad);
             site.show_position(sent, joint, now_rad - *begin_rad + site.arm.zero_rad[joint]);
@@ -120,6 +123,7 @@ void second_joint(FaultSite& site) {
         if (site.has_position(sent, joint)) {
             more.push_back(sent);
             move(more.back(), behind_ns);
+            more.back().other_sender = true;
             const double position_rad = zero_rad - 0.7 * (sent.shown[joint].position_rad - zero_rad);
             site.show_position(more.back(), joint, position_rad);
         }

@@ -34,7 +34,8 @@ struct Sent {
     wire::Joints shown{};      ///< by a frame of joints
     std::int64_t clock_ns = 0; ///< by which the clock of the stamps had been set
     bool corrupted = false;    ///< a bit of its data is flipped
-    bool frozen = false;       ///< it repeats a position, which says nothing of the joint
+    bool frozen = false;       ///< it repeats a position, or has none yet, which says nothing of the joint
+    bool other_sender = false; ///< of a second sender: not of the joint's own encoder
 };
 using Traffic = std::vector<Sent>;
 

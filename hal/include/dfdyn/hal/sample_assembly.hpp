@@ -10,7 +10,6 @@
 #include "dfdyn/hal/bus.hpp"
 #include "dfdyn/sample.hpp"
 
-#include <algorithm>
 #include <limits>
 #include <optional>
 #include <span>
@@ -155,7 +154,7 @@ class SampleAssembly {
         result.sample.output_valid = result.valid() && result.report.output == Reason::ok;
         result.report.output_origin =
             result.sample.output_valid ? output_.origin(instant_ns) : ValueOrigin::none;
-        count(result);
+        counters_.add(result);
         return result;
     }
 
@@ -278,7 +277,7 @@ class SampleAssembly {
         Reason first = Reason::ok;
         for (std::size_t i = 0; i < used(); ++i) {
             const Measurement<1> measured = position_[i].at(sample.time_ns, now_ns);
-            report.joint_reason[i] = explain(measured.reason, 0);
+            report.joint_reason[i] = watch_[0].explain(measured.reason);
             if (measured.reason == Reason::ok) {
                 sample.position[static_cast<int>(i)] = static_cast<Scalar>(measured.value[0]);
                 report.position_origin[i] = position_[i].origin(sample.time_ns);
@@ -312,37 +311,12 @@ class SampleAssembly {
             return down;
         }
         if (measured.reason != Reason::ok) {
-            return explain(measured.reason, output_bus_);
+            return watch_[static_cast<std::size_t>(output_bus_)].explain(measured.reason);
         }
         if (loss) {
             return Reason::frames_lost;
         }
         return measured.stamp_ns > last_output_ns_ ? Reason::ok : Reason::output_not_new;
-    }
-
-    /// A source that is missing because its bus' stamps are not believed.
-    [[nodiscard]] constexpr Reason explain(Reason reason, int bus) const noexcept {
-        const bool missing = reason == Reason::position_stale || reason == Reason::output_stale ||
-                             reason == Reason::waiting_for_position || reason == Reason::waiting_for_output ||
-                             reason == Reason::position_missing || reason == Reason::output_missing;
-        const bool doubtful = watch_[static_cast<std::size_t>(bus)].clock.doubtful();
-        return missing && doubtful ? Reason::clock_jumped : reason;
-    }
-
-    constexpr void count(const Assembled& result) noexcept {
-        ++counters_.calls;
-        counters_.samples += result.valid() ? 1U : 0U;
-        counters_.outputs += result.sample.output_valid ? 1U : 0U;
-        const auto bridged = [](ValueOrigin origin) { return origin == ValueOrigin::bridged; };
-        counters_.bridged += result.valid() && (bridged(result.report.output_origin) ||
-                                                std::ranges::any_of(result.report.position_origin, bridged))
-                                 ? 1U
-                                 : 0U;
-        if (!result.valid()) {
-            ++counters_.positions_refused[static_cast<std::size_t>(result.report.position)];
-        } else if (!result.sample.output_valid) {
-            ++counters_.outputs_refused[static_cast<std::size_t>(result.report.output)];
-        }
     }
 
     [[no_unique_address]] Extent<n> joints_;

@@ -18,6 +18,15 @@ struct BusWatch {
     std::uint64_t own = 0; ///< our own frames, which the socket returns: ignored
     std::uint64_t from_host =
         0; ///< from another program of this host: a simulation, or a replay on a live bus
+
+    /// Returns clock_jumped for a source that is missing because its bus' stamps are not believed; any other
+    /// reason as it is.
+    [[nodiscard]] constexpr Reason explain(Reason reason) const noexcept {
+        const bool missing = reason == Reason::position_stale || reason == Reason::output_stale ||
+                             reason == Reason::waiting_for_position || reason == Reason::waiting_for_output ||
+                             reason == Reason::position_missing || reason == Reason::output_missing;
+        return missing && clock.doubtful() ? Reason::clock_jumped : reason;
+    }
 };
 
 } // namespace dfdyn::hal

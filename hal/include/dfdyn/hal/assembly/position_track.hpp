@@ -34,13 +34,16 @@ class PositionTrack {
         }
         MotionGate::Verdict verdict{value.position_reason};
         const bool collides = rated_ && collision_.seen(rate_.too_soon(value.stamp_ns));
+        if (collides) {
+            motion_.contradict();
+        }
         if (value.position_reason == Reason::ok) {
             verdict = motion_.take(reading_of(value));
             verdict.reason = collides ? Reason::id_collision : verdict.reason;
         } else if (value.position_reason == Reason::sync_unknown) { // which says nothing about the device
             motion_.glance(reading_of(value));
         } else {
-            motion_.interrupt();
+            motion_.interrupt(reading_of(value));
         }
         track_.push(value.stamp_ns, verdict.reason, {verdict.position_rad}, false);
         return verdict.reason;

@@ -7,6 +7,7 @@
 #include "dfdyn/hal/reason.hpp"
 #include "dfdyn/sample.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -64,6 +65,23 @@ struct AssemblyCounters {
     std::uint64_t bridged = 0;                                   ///< samples: with a value over a missing one
     std::array<std::uint64_t, reason_count> positions_refused{}; ///< by the reason's number
     std::array<std::uint64_t, reason_count> outputs_refused{};   ///< of calls with positions
+
+    /// Counts a call of `assemble` by what came of it.
+    template <class Scalar, int n, int m>
+    constexpr void add(const AssembledSample<Scalar, n, m>& result) noexcept {
+        const auto is_bridged = [](ValueOrigin origin) { return origin == ValueOrigin::bridged; };
+        const bool any_bridged = is_bridged(result.report.output_origin) ||
+                                 std::ranges::any_of(result.report.position_origin, is_bridged);
+        ++calls;
+        samples += result.valid() ? 1U : 0U;
+        outputs += result.sample.output_valid ? 1U : 0U;
+        bridged += result.valid() && any_bridged ? 1U : 0U;
+        if (!result.valid()) {
+            ++positions_refused[static_cast<std::size_t>(result.report.position)];
+        } else if (!result.sample.output_valid) {
+            ++outputs_refused[static_cast<std::size_t>(result.report.output)];
+        }
+    }
 };
 
 } // namespace dfdyn::hal

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/hal/gate/motion_run.hpp"
-#include "dfdyn/hal/gate/qualification.hpp"
-#include "dfdyn/hal/gate/range.hpp"
+#include "dfdyn/hal/gate/motion_evidence.hpp"
 #include "dfdyn/hal/reason.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <optional>
 
 namespace dfdyn::hal {
 
@@ -21,10 +20,10 @@ namespace dfdyn::hal {
 /// - Otherwise (start, silence, jump) it takes `qualification.readings` consecutive readings that lead from
 ///   one to the next. They also must connect with the last trusted position. After a jump between two
 ///   readings: velocity may change at once (an impact), position may not. After a silence: no further than
-///   the limits allow, and not beginning at the device's own zero, unless the joint stood there. Where the
-///   clock was set, it takes twenty times as many readings, unless the joint's motion leads there.
-/// - A run that begins at the device's zero, away from the joint, is of an encoder that counts from where it
-///   was switched on. It does not get its zero back by itself: no position is trusted any more
+///   the limits allow. It takes twenty times as many readings where the readings contradicted each other, or
+///   where the clock was set and the joint's motion does not lead there.
+/// - A run that began at the device's zero, where no motion led, is of an encoder that counts from where it
+///   was switched on (ZeroWatch). It does not get its zero back by itself: no position is trusted any more
 ///   (`position_lost`) until the program starts again.
 /// - Another run that does not connect is refused for as long as its readings lead from one to the next. A
 ///   jump or a silence that leads to where the joint can be ends it, after twenty times as many readings. So
@@ -34,33 +33,120 @@ namespace dfdyn::hal {
 ///   was at rest and still is where it was.
 ///
 /// An integer that wraps is unwrapped where a single turn can be meant. O(1).
-class MotionGate {
+class MotionGate : private MotionEvidence {
   public:
-    struct Config {
-        MotionLimits limits;
-        Range range{-7, 7}; ///< rad
-        std::int64_t max_age_ns = 0;
-        std::int64_t period_ns = 0; ///< of the readings; 0: not known
-        std::int64_t jitter_ns = 0; ///< largest lateness of a stamp against another one
-        QualificationGate::Config qualification;
-    };
+    using MotionEvidence::Config; ///< limits and times of the joint
+    using MotionEvidence::lost;   ///< whether readings are refused that do not connect
 
+    /// What a reading is worth.
     struct Verdict {
-        Reason reason = Reason::ok;
-        double position_rad = 0; ///< unwrapped
+        Reason reason = Reason::ok; ///< ok: trusted
+        double position_rad = 0;    ///< unwrapped
     };
 
-    explicit constexpr MotionGate(const Config& config) noexcept
-        : config_(config), tolerance_{config.limits, config.period_ns, seconds_between(0, config.jitter_ns)} {
-    }
+    /// Starts without readings.
+    explicit constexpr MotionGate(const Config& config) noexcept : MotionEvidence(config) {}
 
     /// Takes a reading; stamps must increase.
-    constexpr Verdict take(EncoderReading reading) noexcept {
+    constexpr Verdict take(const EncoderReading& reading) noexcept {
+        const bool expected = is_expected(reading);
+        const Verdict verdict = judge(reading);
+        EncoderReading unwrapped = reading;
+        unwrapped.position_rad = verdict.position_rad;
+        if (verdict.reason == Reason::ok) {
+            zero_.forget();
+        } else {
+            zero_.take(unwrapped, expected);
+            lose_if_counting();
+        }
+        return verdict;
+    }
+
+    /// Takes a reading of unknown time. It is not compared, but it shows an encoder that counts from its own
+    /// zero, far from where the joint was.
+    constexpr void glance(EncoderReading reading) noexcept {
+        unwrap_near(reading, trusted_.last().position_rad);
+        const EncoderReading before = unfit_.value_or(trusted_.last());
+        const std::int64_t since_ns = reading.stamp_ns - before.stamp_ns;
+        const double dt_s = seconds_between(0, std::clamp(since_ns, std::int64_t{0}, config_.max_age_ns)) +
+                            seconds_between(0, config_.period_ns);
+        const bool far =
+            magnitude(reading.position_rad - before.position_rad) > tolerance_.reach(dt_s, reading.step_rad);
+        if (far) {
+            counts_from_zero_ =
+                !trusted_.empty() && begins_at_zero(reading, trusted_.end_line(0, config_.period_ns));
+        }
+        zero_lost_ = zero_lost_ || (counts_from_zero_ && !reading.zero);
+        unfit_ = reading;
+    }
+
+    /// The readings contradict each other: more of them are needed.
+    constexpr void contradict() noexcept { candidate_.contradict(); }
+
+    /// The device was not itself when it sent this reading: it must qualify again.
+    constexpr void interrupt(const EncoderReading& reading) noexcept {
+        restarts_ += !trusted_.empty() && !interrupted_ ? 1U : 0U;
+        interrupted_ = true;
+        candidate_.interrupt();
+        if (unfit_ && comparison_.near(unfit_->stamp_ns, reading.stamp_ns) &&
+            !tolerance_.reaches(*unfit_, reading)) {
+            candidate_.contradict();
+        }
+        unfit_ = reading;
+        zero_.take(reading, is_expected(reading));
+    }
+
+    /// The time since the last trusted reading is not known any more: the clock of the stamps was set.
+    constexpr void forget_time() noexcept {
+        time_known_ = trusted_.empty() || disturbed_ || lost();
+        refused_time_known_ = !lost();
+    }
+
+    /// Believes the readings of a lost joint, if a clock that was set by this much explains where they are:
+    /// they follow at once after the last trusted reading, by the clock as it was set. After a silence
+    /// nothing shows that. To be called only where other sources show that the clock was set.
+    constexpr void explain_by_clock(std::int64_t step_ns) noexcept {
+        if (!lost()) {
+            return;
+        }
+        MotionLine before = trusted_.end_line(0, config_.period_ns);
+        before.begin_ns += step_ns;
+        before.end_ns += step_ns;
+        const bool follows = comparison_.near(before.end_ns, refused_.first().stamp_ns);
+        if (follows && !zero_lost_ &&
+            comparison_.meets(before, refused_.begin_line(0, config_.period_ns), refused_.first(),
+                              longest_s(), ShareAtZero{*this, refused_.first()})) {
+            believe(MotionRun(refused_));
+        }
+    }
+
+    /// The last trusted position; 0 before the first.
+    [[nodiscard]] constexpr double position_rad() const noexcept { return trusted_.last().position_rad; }
+
+    /// Number of readings that were refused.
+    [[nodiscard]] constexpr std::uint64_t refusals() const noexcept { return refusals_; }
+    /// How often the device was not itself after it had been trusted.
+    [[nodiscard]] constexpr std::uint64_t restarts() const noexcept { return restarts_; }
+    /// Number of readings beyond the joint's range.
+    [[nodiscard]] constexpr std::uint64_t beyond() const noexcept { return beyond_; }
+
+  private:
+    /// Gives the joint up where many readings count from the zero, whatever came in between.
+    constexpr void lose_if_counting() noexcept {
+        const MotionRun& counted = zero_.counted();
+        if (!zero_lost_ && !trusted_.empty() && counted.readings() >= 2 * config_.qualification.readings &&
+            !counted.still() && restarted_at_zero(counted)) {
+            zero_lost_ = true;
+            refused_ = counted;
+        }
+    }
+
+    constexpr Verdict judge(EncoderReading reading) noexcept {
         if (zero_lost_) {
             return refuse(reading, Reason::position_lost);
         }
         if (lost() && still_lost(reading)) {
-            run_ = {};
+            candidate_.interrupt();
             if (jumped_little() && refused_.readings() >= most_readings()) {
                 believe(MotionRun(refused_));
             }
@@ -75,7 +161,7 @@ class MotionGate {
         }
         if (fresh(reading.stamp_ns)) {
             if (leads_from_trusted(reading)) {
-                run_ = {};
+                candidate_.clear();
                 note(false);
                 return trust(reading);
             }
@@ -86,128 +172,27 @@ class MotionGate {
         return follow(reading, disturbed_ ? Reason::position_jump : Reason::qualifying);
     }
 
-    /// Takes a reading of unknown time. It is not compared, but it shows an encoder that counts from its own
-    /// zero, far from where the joint was.
-    constexpr void glance(EncoderReading reading) noexcept {
-        unwrap_near(reading, trusted_.last().position_rad);
-        const bool far = magnitude(reading.position_rad - trusted_.last().position_rad) >
-                         tolerance_.reach(seconds_between(0, config_.max_age_ns), reading.step_rad);
-        MotionLine motion = trusted_.end_line(0, config_.period_ns);
-        motion.velocity = zero_seen_ ? config_.limits.velocity : motion.velocity;
-        if (!trusted_.empty() && far && begins_at_zero(reading, motion)) {
-            zero_lost_ = zero_lost_ || !reading.zero;
-            zero_seen_ = true;
-            zero_ns_ = reading.stamp_ns;
-        }
-    }
-
-    /// The device was not itself: it must qualify again.
-    constexpr void interrupt() noexcept {
-        restarts_ += !trusted_.empty() && !interrupted_ ? 1U : 0U;
-        interrupted_ = true;
-        run_ = {};
-    }
-
-    /// The time since the last trusted reading is not known any more: the clock of the stamps was set.
-    constexpr void forget_time() noexcept { time_known_ = trusted_.empty() || disturbed_ || lost(); }
-
-    /// Believes the readings of a lost joint, if a clock that was set by this much explains where they are:
-    /// they follow at once after the last trusted reading, by the clock as it was set. After a silence
-    /// nothing shows that. To be called only where other sources show that the clock was set.
-    constexpr void explain_by_clock(std::int64_t step_ns) noexcept {
-        if (!lost()) {
-            return;
-        }
-        MotionLine before = trusted_.end_line(0, config_.period_ns);
-        before.begin_ns += step_ns;
-        before.end_ns += step_ns;
-        const bool follows = near(before.end_ns, refused_.first().stamp_ns);
-        if (follows && !zero_lost_ &&
-            meets(before, refused_.begin_line(0, config_.period_ns), refused_.first())) {
-            believe(MotionRun(refused_));
-        }
-    }
-
-    /// The last trusted position; 0 before the first.
-    [[nodiscard]] constexpr double position_rad() const noexcept { return trusted_.last().position_rad; }
-
-    [[nodiscard]] constexpr bool lost() const noexcept { return !refused_.empty(); }
-    [[nodiscard]] constexpr std::uint64_t refusals() const noexcept { return refusals_; }
-    [[nodiscard]] constexpr std::uint64_t restarts() const noexcept { return restarts_; }
-    [[nodiscard]] constexpr std::uint64_t beyond() const noexcept { return beyond_; }
-
-  private:
-    static constexpr int times_when_lost = 20;
-
-    [[nodiscard]] constexpr bool near(std::int64_t from_ns, std::int64_t to_ns) const noexcept {
-        return to_ns - from_ns <= config_.max_age_ns + 2 * config_.jitter_ns;
-    }
-    [[nodiscard]] constexpr bool fresh(std::int64_t stamp_ns) const noexcept {
-        return !trusted_.empty() && !interrupted_ && time_known_ && near(trusted_.last().stamp_ns, stamp_ns);
-    }
-    /// After a jump, the time that passes does not make the positions that it led to more likely: from here
-    /// on it allows no larger distance.
-    [[nodiscard]] constexpr double longest_s() const noexcept {
-        return disturbed_ && config_.period_ns > 0 ? 1.5 * seconds_between(0, config_.period_ns)
-                                                   : MotionRun::unlimited_s;
-    }
-    [[nodiscard]] constexpr bool leads_from_trusted(const EncoderReading& reading) const noexcept {
-        return trusted_.leads_to(reading, tolerance_, longest_s());
-    }
-    [[nodiscard]] constexpr bool continues(const MotionRun& run, const EncoderReading& to) const noexcept {
-        return !run.empty() && near(run.last().stamp_ns, to.stamp_ns) && run.leads_to(to, tolerance_);
-    }
     /// Whether a reading belongs to those that are refused, in whichever turn: tightly while they are recent,
     /// after a silence if it can. Takes it.
     constexpr bool still_lost(EncoderReading reading) noexcept {
         unwrap_near(reading, refused_.last().position_rad);
-        if (near(refused_.last().stamp_ns, reading.stamp_ns)) {
+        if (refused_time_known_ && comparison_.near(refused_.last().stamp_ns, reading.stamp_ns)) {
             const bool leads = refused_.leads_to(reading, tolerance_);
             if (leads) {
                 refused_.extend(reading, tolerance_);
             }
             return leads;
         }
-        const bool can_be = has_lost_zero() ? tolerance_.reaches(refused_.last(), reading)
-                                            : recently(refused_.last().stamp_ns, reading.stamp_ns) &&
-                                                  comes_from_motion(refused_, reading);
-        const bool goes_on = can_be && !continues(run_, reading);
+        const bool can_be = has_lost_zero()
+                                ? !refused_time_known_ || tolerance_.reaches(refused_.last(), reading)
+                                : recently(refused_.last().stamp_ns, reading.stamp_ns) &&
+                                      comparison_.reaches_after_silence(refused_, reading);
+        const bool goes_on = can_be && !comparison_.continues(run(), reading);
         if (goes_on) {
+            refused_time_known_ = true;
             refused_.resume(reading, tolerance_);
         }
         return goes_on;
-    }
-
-    /// Whether the velocity limit allows what the acceleration limit does not, from one reading to the next:
-    /// an impact, or a clock that was set by a few milliseconds.
-    [[nodiscard]] constexpr bool jumped_little() const noexcept {
-        return !zero_lost_ && tolerance_.reaches(trusted_.last(), refused_.first()) &&
-               refused_.first().stamp_ns - trusted_.last().stamp_ns <= 2 * config_.period_ns;
-    }
-
-    /// Whether the readings that are refused are those of an encoder that has lost its zero, not of a fault
-    /// that passes: they began at the device's zero, or are very many.
-    [[nodiscard]] constexpr bool has_lost_zero() const noexcept {
-        return zero_lost_ || refused_.readings() >= most_readings();
-    }
-    [[nodiscard]] constexpr bool recently(std::int64_t from_ns, std::int64_t to_ns) const noexcept {
-        return to_ns - from_ns <= 3 * config_.max_age_ns;
-    }
-
-    /// The turn that is meant, if it is clear: the range has room for one only, or the last reading is near.
-    /// The first reading is taken as it is.
-    [[nodiscard]] constexpr bool unwrap(EncoderReading& reading) const noexcept {
-        if (has_one_turn(config_.range, reading.wrap_rad)) {
-            unwrap_near(reading, 0.5 * (config_.range.highest + config_.range.lowest));
-            return true;
-        }
-        const MotionRun& known = run_.empty() ? trusted_ : run_;
-        if (known.empty() || !(reading.wrap_rad > 0)) {
-            return true;
-        }
-        unwrap_near(reading, known.last().position_rad);
-        const double dt_s = seconds_between(known.last().stamp_ns, reading.stamp_ns);
-        return tolerance_.reach(dt_s, reading.step_rad) < 0.5 * reading.wrap_rad;
     }
 
     constexpr Verdict refuse(const EncoderReading& reading, Reason reason) noexcept {
@@ -216,11 +201,11 @@ class MotionGate {
     }
 
     constexpr Verdict take_beyond_range(const EncoderReading& reading) noexcept {
-        if (continues(run_, reading)) { // it is no better when it comes back, or round
-            refused_ = run_;
+        if (comparison_.continues(run(), reading)) { // it is no better when it comes back, or round
+            refused_ = run();
             refused_.extend(reading, tolerance_);
         }
-        run_ = {};
+        candidate_.interrupt();
         note(true);
         ++beyond_;
         return refuse(reading, Reason::position_out_of_range);
@@ -230,7 +215,6 @@ class MotionGate {
         trusted_.extend(reading, tolerance_);
         refused_ = {};
         disturbed_ = false;
-        zero_seen_ = false;
         return settled(reading);
     }
 
@@ -245,231 +229,67 @@ class MotionGate {
 
     constexpr void believe(const MotionRun& run) noexcept {
         trusted_ = run;
-        run_ = {};
+        candidate_.clear();
+        unfit_.reset();
+        counts_from_zero_ = false;
         refused_ = {};
         interrupted_ = false;
         disturbed_ = false;
-        zero_seen_ = false;
         time_known_ = true;
     }
 
     /// Counts a reading that is not trusted yet; trusts it where it ends a run that is long enough.
     constexpr Verdict follow(const EncoderReading& reading, Reason reason) noexcept {
-        const bool continued = continues(run_, reading);
-        note(!continued);
-        const bool recent = !run_.empty() && near(run_.last().stamp_ns, reading.stamp_ns);
-        if (!continued && recent && !changes_over(reading)) {
-            return refuse(reading, reason);
-        }
-        if (!continued && !recent) {
-            begin_run(continues(other_, reading) ? MotionRun(other_) : MotionRun(), reading);
-        }
-        if (continued) {
-            other_ = {};
-        }
-        const bool repeats = !run_.empty() && reading.position_rad == run_.last().position_rad;
-        run_.extend(reading, tolerance_);
-        const bool enough = run_.readings() >= config_.qualification.readings;
-        if (enough && !trusted_.empty() && restarted_at_zero(run_)) {
+        const bool expected = is_expected(reading);
+        const bool repeats = !run().empty() && reading.position_rad == run().last().position_rad;
+        if (broke_off_at_zero(reading)) {
             return lose(reading);
         }
-        if (suspected_ && run_.still()) {
+        const CandidateRun::Step step = candidate_.take(reading, comparison_, tolerance_);
+        note(step != CandidateRun::Step::continues);
+        if (step == CandidateRun::Step::is_off) {
+            return refuse(reading, reason);
+        }
+        if (step == CandidateRun::Step::begins) {
+            suspected_ = may_be_frozen(run().first());
+            expected_ = expected && run().readings() == 1;
+        }
+        const bool enough = run().readings() >= config_.qualification.readings;
+        if (enough && !trusted_.empty() && !expected_ && restarted_at_zero(run())) {
+            return lose(reading);
+        }
+        if (suspected_ && run().still()) {
             return refuse(reading, repeats ? Reason::position_frozen : reason);
         }
-        const bool stands_at_zero = run_.zeros() >= config_.qualification.zero_readings;
+        const bool stands_at_zero = run().zeros() >= config_.qualification.zero_readings;
         if (!enough && !stands_at_zero) {
             return refuse(reading, reason);
         }
         if (!trusted_.empty() &&
-            (!comes_from_trusted(run_) || (has_lost_zero() && goes_on_from_refused(run_)))) {
+            (!comes_from_trusted(run(), expected_) || (has_lost_zero() && goes_on_from_refused(run())))) {
             return lose(reading);
         }
-        return run_.readings() >= needed_readings() || stands_at_zero ? settle(reading)
-                                                                      : refuse(reading, reason);
-    }
-
-    /// Whether this reading is one too many that does not continue the run: then those are the run. A single
-    /// one that is off does not end a run.
-    constexpr bool changes_over(const EncoderReading& reading) noexcept {
-        constexpr int enough = 2; // and this one
-        if (other_.empty() || !continues(other_, reading)) {
-            other_ = {};
-            other_.extend(reading, tolerance_);
-            return false;
-        }
-        if (other_.readings() + other_.zeros() < enough) {
-            other_.extend(reading, tolerance_);
-            return false;
-        }
-        begin_run(MotionRun(other_), reading);
-        return true;
-    }
-
-    /// Takes over a run, which may be empty, that goes on with this reading.
-    constexpr void begin_run(const MotionRun& run, const EncoderReading& reading) noexcept {
-        const EncoderReading& first = run.empty() ? reading : run.first();
-        const bool recent = near(trusted_.last().stamp_ns, first.stamp_ns);
-        suspected_ = !trusted_.empty() && (recent || trusted_.moves(tolerance_)) &&
-                     (!stood_at(first) || trusted_.repeats(first, tolerance_));
-        note_zero(first);
-        run_ = run;
-        other_ = {};
+        return run().readings() >= needed_readings() || stands_at_zero ? settle(reading)
+                                                                       : refuse(reading, reason);
     }
 
     /// Trusts the run that ends with this reading.
     constexpr Verdict settle(const EncoderReading& reading) noexcept {
-        believe(MotionRun(run_));
+        believe(MotionRun(run()));
         return settled(reading);
     }
 
     /// Refuses the run that ends with this reading, and what goes on from it.
     constexpr Verdict lose(const EncoderReading& reading) noexcept {
-        const bool new_here = !lost() || !connects(refused_, run_);
-        const bool at_zero = begins_at_zero(run_.first(), run_.begin_line(0, config_.period_ns));
+        const bool new_here = !lost() || !connects(refused_, run());
+        const bool at_zero = begins_at_zero(run().first(), run().begin_line(0, config_.period_ns));
         zero_lost_ = at_zero || (zero_lost_ && !new_here);
-        refused_ = run_;
-        run_ = {};
+        refused_ = run();
+        candidate_.interrupt();
         return refuse(reading, Reason::position_lost);
     }
 
-    /// Whether the joint was at rest at the last trusted reading, and is still there.
-    [[nodiscard]] constexpr bool stood_at(const EncoderReading& reading) const noexcept {
-        return !trusted_.moves(tolerance_) &&
-               magnitude(reading.position_rad - trusted_.last().position_rad) <= 2 * reading.step_rad;
-    }
-
-    /// How many readings of the run are enough to trust it.
-    [[nodiscard]] constexpr int needed_readings() const noexcept {
-        const int least = config_.qualification.readings;
-        if (trusted_.empty()) {
-            return least;
-        }
-        const std::int64_t silence_ns = run_.first().stamp_ns - trusted_.last().stamp_ns;
-        const bool disturbed = (!time_known_ && !comes_from_motion(trusted_, run_.first())) ||
-                               (disturbed_ && silence_ns > 2 * config_.max_age_ns + 2 * config_.jitter_ns);
-        return lost() || disturbed ? most_readings() : least;
-    }
-    [[nodiscard]] constexpr int most_readings() const noexcept {
-        return times_when_lost * config_.qualification.readings;
-    }
-
-    [[nodiscard]] constexpr bool comes_from_trusted(const MotionRun& run) const noexcept {
-        return (!time_known_ || connects(trusted_, run)) && !restarted_at_zero(run);
-    }
-
-    /// Whether a joint can have come from the end of one run to the begin of the next.
-    [[nodiscard]] constexpr bool connects(const MotionRun& before, const MotionRun& run) const noexcept {
-        const std::int64_t disturbed_ns = disturbed_ || lost() ? config_.max_age_ns : 0;
-        if (near(before.last().stamp_ns + disturbed_ns, run.first().stamp_ns)) {
-            return meets(before, run);
-        }
-        return tolerance_.reaches(before.last(), run.first()) && comes_from_motion(before, run.first());
-    }
-
-    /// Whether a run is still of the encoder whose readings are refused: a small jump, or a clock that was
-    /// set by a few milliseconds, does not bring its zero back.
-    [[nodiscard]] constexpr bool goes_on_from_refused(const MotionRun& run) const noexcept {
-        const bool small_jump = near(refused_.last().stamp_ns, run.first().stamp_ns) &&
-                                tolerance_.reaches(refused_.last(), run.first());
-        return small_jump || connects(refused_, run);
-    }
-
-    /// Whether the motions before and after a jump meet in between. Either may have one reading that is off.
-    [[nodiscard]] constexpr bool meets(const MotionRun& before, const MotionRun& run) const noexcept {
-        const std::int64_t period_ns = config_.period_ns;
-        const MotionLine from = before.end_line(0, period_ns);
-        const MotionLine to = run.begin_line(0, period_ns);
-        return meets(before.end_line(1, period_ns), to, run.first()) ||
-               meets(from, run.begin_line(1, period_ns), run.first()) || meets(from, to, run.first());
-    }
-    [[nodiscard]] constexpr bool meets(const MotionLine& from, const MotionLine& to,
-                                       const EncoderReading& first) const noexcept {
-        if (from.span_s <= 0 || to.span_s <= 0) {
-            return false;
-        }
-        const double dt_s = std::min(seconds_between(from.end_ns, to.begin_ns), longest_s());
-        const double before = to.at(from.end_ns) - from.end_rad;
-        const double after = to.at(to.begin_ns) - from.at(to.begin_ns);
-        const double limit =
-            0.5 * (tolerance_.error(from, dt_s, first.step_rad) + tolerance_.error(to, dt_s, first.step_rad));
-        const double fastest =
-            magnitude(from.velocity) + config_.limits.acceleration * (dt_s + from.span_s + to.span_s);
-        if (magnitude(to.velocity) > fastest) { // an impact takes velocity, and turns it round
-            return false;
-        }
-        const double nearest = std::min(magnitude(before), magnitude(after));
-        return before * after <= 0 || nearest <= (begins_at_zero(first, to) ? 0.25 : 1) * limit;
-    }
-
-    /// Whether the acceleration limit may have taken the joint there during a silence.
-    [[nodiscard]] constexpr bool comes_from_motion(const MotionRun& before,
-                                                   const EncoderReading& to) const noexcept {
-        constexpr double share_of_limits = 0.8; // no joint accelerates with all its might for so long
-        bool reached = false;
-        for (const int skip : {0, 1}) {
-            const MotionLine line = before.end_line(skip, config_.period_ns);
-            const double dt_s = seconds_between(line.end_ns, to.stamp_ns);
-            const double off = magnitude(to.position_rad - line.at(to.stamp_ns));
-            reached = reached || line.span_s <= 0 ||
-                      off <= share_of_limits * tolerance_.error(line, dt_s, to.step_rad);
-        }
-        return reached;
-    }
-
-    /// Whether a run begins where an encoder does that was switched on: at its own zero, or as far from it as
-    /// the joint goes in a few periods.
-    [[nodiscard]] constexpr bool begins_at_zero(const EncoderReading& first,
-                                                const MotionLine& begin) const noexcept {
-        constexpr double periods = 1.5;
-        constexpr double clock_s = 0.05; // in which frames are left out while the clock is set
-        const bool hidden = !time_known_ && !comes_from_motion(trusted_, first);
-        const double since_s = (hidden ? clock_s : 0) + since_zero_s(first.stamp_ns);
-        const double velocity =
-            std::max(magnitude(begin.velocity),
-                     since_s > 0 ? magnitude(trusted_.end_line(0, config_.period_ns).velocity) : 0);
-        const double moved = velocity * (since_s + periods * seconds_between(0, config_.period_ns));
-        return magnitude(first.from_zero_rad) <= moved + 3 * first.step_rad;
-    }
-
-    /// Time (s) since a reading at the device's zero that did not come from the motion; 0: there was none.
-    [[nodiscard]] constexpr double since_zero_s(std::int64_t now_ns) const noexcept {
-        constexpr double memory_s = 0.05; // a board shows its zero at the end of its start
-        const double since_s = seconds_between(zero_ns_, now_ns);
-        return zero_seen_ && since_s >= 0 && since_s <= memory_s ? since_s : 0; // < 0: the clock was set
-    }
-    /// A run begins with this reading.
-    constexpr void note_zero(const EncoderReading& first) noexcept {
-        const double moved = config_.limits.velocity * seconds_between(0, config_.period_ns);
-        if (magnitude(first.from_zero_rad) <= moved + 3 * first.step_rad) {
-            zero_seen_ = true;
-            zero_ns_ = first.stamp_ns;
-        }
-    }
-
-    /// Whether a run after a silence begins at the device's zero; a joint that stood there before may stand
-    /// there still.
-    [[nodiscard]] constexpr bool restarted_at_zero(const MotionRun& run) const noexcept {
-        constexpr double fastest_boot_s = 0.02;
-        const bool long_enough =
-            !time_known_ || seconds_between(trusted_.last().stamp_ns, run.first().stamp_ns) >= fastest_boot_s;
-        return long_enough && begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) &&
-               !stood_at(run.first());
-    }
-
-    Config config_;
-    MotionTolerance tolerance_;
-    MotionRun trusted_;
-    MotionRun run_;          ///< of readings that qualify
-    MotionRun other_;        ///< of readings that do not continue the run
-    MotionRun refused_;      ///< does not connect; while its readings go on they are refused
-    std::uint8_t off_ = 0;   ///< which of the last eight readings led from no other, a bit each
-    bool suspected_ = false; ///< the run may be of a frozen encoder
-    bool disturbed_ = false; ///< a jump has come since the last trusted reading
-    bool interrupted_ = false;
-    bool time_known_ = true;   ///< since the last trusted reading
-    bool zero_lost_ = false;   ///< the refused readings began at the device's zero
-    bool zero_seen_ = false;   ///< since the last trusted reading one was at the device's zero
-    std::int64_t zero_ns_ = 0; ///< stamp of that one
+    std::uint8_t off_ = 0; ///< which of the last eight readings led from no other, a bit each
     std::uint64_t refusals_ = 0;
     std::uint64_t restarts_ = 0;
     std::uint64_t beyond_ = 0;

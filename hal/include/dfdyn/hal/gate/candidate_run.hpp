@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/gate/run_comparison.hpp"
+
+#include <cstdint>
+
+namespace dfdyn::hal {
+
+/// Collects the readings that are not trusted yet into a run in which each leads to the next. A single
+/// reading that is off does not end the run; three that lead from one to the next do. O(1).
+class CandidateRun {
+  public:
+    /// What a reading is to the run.
+    enum class Step : std::uint8_t { continues, begins, is_off };
+
+    /// Accepts a reading, and returns what it is to the run.
+    constexpr Step take(const EncoderReading& reading, const RunComparison& comparison,
+                        const MotionTolerance& tolerance) noexcept {
+        if (comparison.continues(run_, reading)) {
+            other_ = {};
+            run_.extend(reading, tolerance);
+            return Step::continues;
+        }
+        const bool recent = !run_.empty() && comparison.near(run_.last().stamp_ns, reading.stamp_ns);
+        const bool other_goes_on = comparison.continues(other_, reading);
+        if (recent && !(other_goes_on && other_.readings() + other_.zeros() >= enough)) {
+            other_ = other_goes_on ? other_ : MotionRun();
+            other_.extend(reading, tolerance);
+            return Step::is_off;
+        }
+        const bool repeats = run_.first().position_rad == run_.last().position_rad; // shows nothing
+        contradicted_ = contradicted_ || (recent && !repeats && run_.readings() + run_.zeros() >= enough);
+        before_ = run_.empty() ? before_ : run_;
+        run_ = other_goes_on ? other_ : MotionRun();
+        other_ = {};
+        run_.extend(reading, tolerance);
+        return Step::begins;
+    }
+
+    /// Forgets the run, but not that runs contradicted each other.
+    constexpr void interrupt() noexcept {
+        before_ = run_.empty() ? before_ : run_;
+        run_ = {};
+    }
+
+    /// Notes that the device contradicts itself.
+    constexpr void contradict() noexcept { contradicted_ = true; }
+
+    /// Forgets everything: the joint is trusted.
+    constexpr void clear() noexcept { *this = {}; }
+
+    /// The run so far.
+    [[nodiscard]] constexpr const MotionRun& run() const noexcept { return run_; }
+
+    /// Readings that do not continue the run, but each other.
+    [[nodiscard]] constexpr const MotionRun& other() const noexcept { return other_; }
+
+    /// Returns the run before this one.
+    [[nodiscard]] constexpr const MotionRun& before() const noexcept { return before_; }
+
+    /// Returns true if the joint's readings changed from one run to another one without a silence.
+    [[nodiscard]] constexpr bool contradicted() const noexcept { return contradicted_; }
+
+  private:
+    static constexpr int enough = 2; ///< readings of a run that are no accident, and one more
+
+    MotionRun run_;
+    MotionRun before_; ///< the last run that ended
+    MotionRun other_;  ///< of the readings that do not continue the run
+    bool contradicted_ = false;
+};
+
+} // namespace dfdyn::hal

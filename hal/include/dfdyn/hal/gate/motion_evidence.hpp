@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/gate/candidate_run.hpp"
+#include "dfdyn/hal/gate/qualification.hpp"
+#include "dfdyn/hal/gate/range.hpp"
+#include "dfdyn/hal/gate/zero_watch.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+namespace dfdyn::hal {
+
+/// What the readings of a joint's encoder are evidence of: the joint's position (`trusted_`), an encoder that
+/// was switched on anew and counts from its zero (`zero_`), or one that is elsewhere (`refused_`).
+/// `candidate_` is what is not decided yet. Answers for MotionGate which of them explains a run. O(1).
+class MotionEvidence {
+  public:
+    /// Limits and times of a joint.
+    struct Config {
+        MotionLimits limits;                     ///< of the joint
+        Range range{-7, 7};                      ///< rad
+        std::int64_t max_age_ns = 0;             ///< for how long a reading is of use
+        std::int64_t period_ns = 0;              ///< of the readings; 0: not known
+        std::int64_t jitter_ns = 0;              ///< largest lateness of a stamp against another one
+        QualificationGate::Config qualification; ///< how many readings are needed
+    };
+
+  protected:
+    /// Starts without readings.
+    explicit constexpr MotionEvidence(const Config& config) noexcept
+        : config_(config), tolerance_{config.limits, config.period_ns, seconds_between(0, config.jitter_ns)},
+          comparison_(tolerance_, config.max_age_ns, config.jitter_ns),
+          zero_(tolerance_, config.max_age_ns + 2 * config.jitter_ns) {}
+
+    static constexpr int times_when_lost = 20; ///< as many readings are needed after a contradiction
+    static constexpr double clock_s = 0.05;    ///< in which frames are left out while the clock is set
+
+    /// Returns true while readings are refused that do not connect with the trusted ones.
+    [[nodiscard]] constexpr bool lost() const noexcept { return !refused_.empty(); }
+
+    /// The part of the limits that is allowed for a jump to a run: less where that begins at the encoder's
+    /// zero.
+    struct ShareAtZero {
+        const MotionEvidence& evidence; ///< of the joint
+        const EncoderReading& first;    ///< of the run
+
+        /// Returns the part of the limits.
+        [[nodiscard]] constexpr double operator()(const MotionLine& begin) const noexcept {
+            return evidence.begins_at_zero(first, begin) ? 0.25 : 1.0;
+        }
+    };
+
+    /// Whether a motion that was seen shortly before, trusted or not, may lead to this reading.
+    [[nodiscard]] constexpr bool is_expected(const EncoderReading& reading) const noexcept {
+        const auto leads = [&](const MotionRun& before, std::int64_t longest_ns) {
+            return !before.empty() && reading.stamp_ns - before.last().stamp_ns <= longest_ns &&
+                   tolerance_.reaches(before.last(), reading) &&
+                   comparison_.reaches_after_silence(before, reading);
+        };
+        const std::int64_t short_ns = 3 * config_.max_age_ns;
+        return leads(trusted_, short_ns) || leads(refused_, short_ns) || leads(candidate_.run(), short_ns) ||
+               leads(candidate_.other(), short_ns) || leads(candidate_.before(), 2 * short_ns);
+    }
+
+    /// Returns true if the last trusted reading is recent.
+    [[nodiscard]] constexpr bool fresh(std::int64_t stamp_ns) const noexcept {
+        return !trusted_.empty() && !interrupted_ && time_known_ &&
+               comparison_.near(trusted_.last().stamp_ns, stamp_ns);
+    }
+
+    /// After a jump, the time that passes does not make the positions that it led to more likely: from here
+    /// on it allows no larger distance.
+    [[nodiscard]] constexpr double longest_s() const noexcept {
+        return disturbed_ && config_.period_ns > 0 ? 1.5 * seconds_between(0, config_.period_ns)
+                                                   : MotionRun::unlimited_s;
+    }
+
+    /// Returns true if the motion of the trusted readings leads to this one.
+    [[nodiscard]] constexpr bool leads_from_trusted(const EncoderReading& reading) const noexcept {
+        return trusted_.leads_to(reading, tolerance_, longest_s());
+    }
+
+    /// Whether the velocity limit allows what the acceleration limit does not, from one reading to the next:
+    /// an impact, or a clock that was set by a few milliseconds.
+    [[nodiscard]] constexpr bool jumped_little() const noexcept {
+        return !zero_lost_ && recently(trusted_.last().stamp_ns, refused_.first().stamp_ns) &&
+               tolerance_.reaches(trusted_.last(), refused_.first());
+    }
+
+    /// Whether the readings that are refused are those of an encoder that has lost its zero, not of a fault
+    /// that passes: they began at the device's zero, or are very many.
+    [[nodiscard]] constexpr bool has_lost_zero() const noexcept {
+        return zero_lost_ || refused_.readings() >= most_readings();
+    }
+
+    /// Returns true for two stamps of a short silence.
+    [[nodiscard]] constexpr bool recently(std::int64_t from_ns, std::int64_t to_ns) const noexcept {
+        return to_ns - from_ns <= 3 * config_.max_age_ns;
+    }
+
+    /// The turn that is meant, if it is clear: the range has room for one only, or the last reading is near.
+    /// The first reading is taken as it is.
+    [[nodiscard]] constexpr bool unwrap(EncoderReading& reading) const noexcept {
+        if (has_one_turn(config_.range, reading.wrap_rad)) {
+            unwrap_near(reading, 0.5 * (config_.range.highest + config_.range.lowest));
+            return true;
+        }
+        const MotionRun& known = run().empty() ? trusted_ : run();
+        if (known.empty() || !(reading.wrap_rad > 0)) {
+            return true;
+        }
+        unwrap_near(reading, known.last().position_rad);
+        const double dt_s = seconds_between(known.last().stamp_ns, reading.stamp_ns);
+        return tolerance_.reach(dt_s, reading.step_rad) < 0.5 * reading.wrap_rad;
+    }
+
+    /// The run that is not decided yet.
+    [[nodiscard]] constexpr const MotionRun& run() const noexcept { return candidate_.run(); }
+
+    /// Whether a silence ends a run of an encoder that counts from its zero, too short to be judged.
+    [[nodiscard]] constexpr bool broke_off_at_zero(const EncoderReading& reading) const noexcept {
+        constexpr int enough = 3;
+        return !trusted_.empty() && run().readings() >= enough &&
+               !comparison_.near(run().last().stamp_ns, reading.stamp_ns) &&
+               begins_at_zero(run().first(), run().begin_line(0, config_.period_ns)) &&
+               !comes_from_trusted(run(), expected_);
+    }
+
+    /// Whether a run that begins with this reading may be of a frozen encoder.
+    [[nodiscard]] constexpr bool may_be_frozen(const EncoderReading& first) const noexcept {
+        const bool recent = comparison_.near(trusted_.last().stamp_ns, first.stamp_ns);
+        return !trusted_.empty() && (recent || trusted_.moves(tolerance_)) &&
+               (!stood_at(first) || trusted_.repeats(first, tolerance_));
+    }
+
+    /// Whether the joint was at rest at the last trusted reading, and is still there.
+    [[nodiscard]] constexpr bool stood_at(const EncoderReading& reading) const noexcept {
+        return !trusted_.moves(tolerance_) &&
+               magnitude(reading.position_rad - trusted_.last().position_rad) <= 2 * reading.step_rad;
+    }
+
+    /// How many readings of the run are enough to trust it.
+    [[nodiscard]] constexpr int needed_readings() const noexcept {
+        const int least = config_.qualification.readings;
+        if (trusted_.empty()) {
+            return least;
+        }
+        const std::int64_t silence_ns = run().first().stamp_ns - trusted_.last().stamp_ns;
+        const bool disturbed =
+            (!time_known_ && !comparison_.reaches_after_silence(trusted_, run().first())) ||
+            (disturbed_ && silence_ns > 2 * config_.max_age_ns + 2 * config_.jitter_ns);
+        return lost() || disturbed || candidate_.contradicted() ? most_readings() : least;
+    }
+
+    /// How many readings are needed after a contradiction.
+    [[nodiscard]] constexpr int most_readings() const noexcept {
+        return times_when_lost * config_.qualification.readings;
+    }
+
+    /// Returns true if the run goes on from the trusted readings, and is not of a restarted encoder.
+    [[nodiscard]] constexpr bool comes_from_trusted(const MotionRun& run, bool expected) const noexcept {
+        return (!time_known_ || connects(trusted_, run)) && (expected || !restarted_at_zero(run));
+    }
+
+    /// Whether a joint can have come from the end of one run to the begin of the next.
+    [[nodiscard]] constexpr bool connects(const MotionRun& before, const MotionRun& run) const noexcept {
+        const std::int64_t disturbed_ns = disturbed_ || lost() ? config_.max_age_ns : 0;
+        if (comparison_.near(before.last().stamp_ns + disturbed_ns, run.first().stamp_ns)) {
+            return comparison_.meets(before, run, longest_s(), ShareAtZero{*this, run.first()});
+        }
+        return tolerance_.reaches(before.last(), run.first()) &&
+               comparison_.reaches_after_silence(before, run.first());
+    }
+
+    /// Whether a run is still of the encoder whose readings are refused: a small jump, or a clock that was
+    /// set by a few milliseconds, does not bring its zero back.
+    [[nodiscard]] constexpr bool goes_on_from_refused(const MotionRun& run) const noexcept {
+        const bool small_jump = comparison_.near(refused_.last().stamp_ns, run.first().stamp_ns) &&
+                                tolerance_.reaches(refused_.last(), run.first());
+        return small_jump || connects(refused_, run);
+    }
+
+    /// Whether the motion of the joint leads to this reading within the time in which frames are left out
+    /// while the clock is set.
+    [[nodiscard]] constexpr bool comes_while_clock_is_set(const EncoderReading& to) const noexcept {
+        const MotionLine line = trusted_.end_line(0, config_.period_ns);
+        const double way = line.velocity * clock_s;
+        const double off = to.position_rad - line.end_rad;
+        const double error = tolerance_.error(line, clock_s, to.step_rad);
+        return line.span_s > 0 && off >= std::min(way, 0.0) - error && off <= std::max(way, 0.0) + error;
+    }
+
+    /// Whether a run begins where an encoder does that was switched on.
+    [[nodiscard]] constexpr bool begins_at_zero(const EncoderReading& first,
+                                                const MotionLine& begin) const noexcept {
+        const bool hidden = !time_known_ && !comes_while_clock_is_set(first);
+        return zero_.explains(first, begin, trusted_.end_line(0, config_.period_ns).velocity,
+                              hidden ? clock_s : 0);
+    }
+
+    /// Whether a run after a silence begins at the device's zero; a joint that stood there before may stand
+    /// there still.
+    [[nodiscard]] constexpr bool restarted_at_zero(const MotionRun& run) const noexcept {
+        constexpr double fastest_boot_s = 0.02;
+        const bool long_enough =
+            !time_known_ || seconds_between(trusted_.last().stamp_ns, run.first().stamp_ns) >= fastest_boot_s;
+        return long_enough && begins_at_zero(run.first(), run.begin_line(0, config_.period_ns)) &&
+               !stood_at(run.first());
+    }
+
+    // What MotionGate changes: NOLINTBEGIN(*-non-private-member-variables-in-classes)
+    Config config_;                       ///< of the joint
+    MotionTolerance tolerance_;           ///< of readings
+    RunComparison comparison_;            ///< of runs
+    ZeroWatch zero_;                      ///< readings that count from the zero
+    MotionRun trusted_;                   ///< the positions of the joint
+    std::optional<EncoderReading> unfit_; ///< the last reading of a device that was not itself
+    bool counts_from_zero_ = false;       ///< readings of unknown time began at the zero, far from the joint
+    CandidateRun candidate_;              ///< of readings that qualify
+    MotionRun refused_;                   ///< does not connect; while its readings go on they are refused
+    bool expected_ = false;               ///< a run that was seen shortly before led to the begin of the run
+    bool suspected_ = false;              ///< the run may be of a frozen encoder
+    bool disturbed_ = false;              ///< a jump has come since the last trusted reading
+    bool interrupted_ = false;            ///< the device was not itself since the last trusted reading
+    bool time_known_ = true;              ///< since the last trusted reading
+    bool refused_time_known_ = true;      ///< since the last refused reading
+    bool zero_lost_ = false;              ///< the refused readings began at the device's zero
+    // NOLINTEND(*-non-private-member-variables-in-classes)
+};
+
+} // namespace dfdyn::hal

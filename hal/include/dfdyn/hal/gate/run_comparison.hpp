@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/gate/motion_run.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace dfdyn::hal {
+
+/// Compares two runs of readings of one joint: whether its motion can lead from one to the other. O(1).
+class RunComparison {
+  public:
+    /// `max_age_ns`: how far apart consecutive readings may be; `jitter_ns`: largest lateness of a stamp.
+    constexpr RunComparison(const MotionTolerance& tolerance, std::int64_t max_age_ns,
+                            std::int64_t jitter_ns) noexcept
+        : tolerance_(tolerance), max_age_ns_(max_age_ns), jitter_ns_(jitter_ns) {}
+
+    /// Returns true if two readings are consecutive, with at most a few lost ones in between.
+    [[nodiscard]] constexpr bool near(std::int64_t from_ns, std::int64_t to_ns) const noexcept {
+        return to_ns - from_ns <= max_age_ns_ + 2 * jitter_ns_;
+    }
+
+    /// Returns true if the reading is the next of the run.
+    [[nodiscard]] constexpr bool continues(const MotionRun& run, const EncoderReading& to) const noexcept {
+        return !run.empty() && near(run.last().stamp_ns, to.stamp_ns) && run.leads_to(to, tolerance_);
+    }
+
+    /// Returns true if the acceleration limit allows the reading after a silence that follows the run.
+    [[nodiscard]] constexpr bool reaches_after_silence(const MotionRun& before,
+                                                       const EncoderReading& to) const noexcept {
+        constexpr double share_of_limits = 0.8; // no joint accelerates with all its might for so long
+        bool reached = false;
+        for (const int skip : {0, 1}) {
+            const MotionLine line = before.end_line(skip, tolerance_.period_ns);
+            const double dt_s = seconds_between(line.end_ns, to.stamp_ns);
+            const double off = magnitude(to.position_rad - line.at(to.stamp_ns));
+            reached = reached || line.span_s <= 0 ||
+                      off <= share_of_limits * tolerance_.error(line, dt_s, to.step_rad);
+        }
+        return reached;
+    }
+
+    /// Returns true if the motions before and after a jump meet in between. Either may have one reading that
+    /// is off. `longest_s`: a longer time between them allows no larger distance. `share(line)`: the part of
+    /// the limits that is allowed for a run that begins with this line.
+    template <class Share>
+    [[nodiscard]] constexpr bool meets(const MotionRun& before, const MotionRun& run, double longest_s,
+                                       Share share) const noexcept {
+        const std::int64_t period_ns = tolerance_.period_ns;
+        const MotionLine from = before.end_line(0, period_ns);
+        const MotionLine to = run.begin_line(0, period_ns);
+        return meets(before.end_line(1, period_ns), to, run.first(), longest_s, share) ||
+               meets(from, run.begin_line(1, period_ns), run.first(), longest_s, share) ||
+               meets(from, to, run.first(), longest_s, share);
+    }
+
+    /// Returns true if two lines meet in between; `first` is the first reading of the second.
+    template <class Share>
+    [[nodiscard]] constexpr bool meets(const MotionLine& from, const MotionLine& to,
+                                       const EncoderReading& first, double longest_s,
+                                       Share share) const noexcept {
+        if (from.span_s <= 0 || to.span_s <= 0) {
+            return false;
+        }
+        const double dt_s = std::min(seconds_between(from.end_ns, to.begin_ns), longest_s);
+        const double before = to.at(from.end_ns) - from.end_rad;
+        const double after = to.at(to.begin_ns) - from.at(to.begin_ns);
+        const double limit =
+            0.5 * (tolerance_.error(from, dt_s, first.step_rad) + tolerance_.error(to, dt_s, first.step_rad));
+        const double fastest =
+            magnitude(from.velocity) + tolerance_.limits.acceleration * (dt_s + from.span_s + to.span_s);
+        if (magnitude(to.velocity) > fastest) { // an impact takes velocity, and turns it round
+            return false;
+        }
+        const double nearest = std::min(magnitude(before), magnitude(after));
+        return before * after <= 0 || nearest <= share(to) * limit;
+    }
+
+  private:
+    MotionTolerance tolerance_;
+    std::int64_t max_age_ns_;
+    std::int64_t jitter_ns_;
+};
+
+} // namespace dfdyn::hal

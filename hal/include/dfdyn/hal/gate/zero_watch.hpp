@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "dfdyn/hal/gate/motion_run.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace dfdyn::hal {
+
+/// Recognises an encoder that counts from where it was switched on: its readings begin at its own zero.
+/// Follows the run that goes on from the last reading at the zero to which the joint's motion did not lead.
+/// It takes all readings, also those that are of no use as positions. O(1).
+class ZeroWatch {
+  public:
+    /// `max_age_ns`: how far apart consecutive readings may be.
+    constexpr ZeroWatch(const MotionTolerance& tolerance, std::int64_t max_age_ns) noexcept
+        : tolerance_(tolerance), max_age_ns_(max_age_ns) {}
+
+    /// Accepts a reading that is trusted.
+    constexpr void forget() noexcept { counted_ = {}; }
+
+    /// Accepts a reading that is not trusted, whatever its reason. `expected`: a motion that was seen shortly
+    /// before may lead to it.
+    constexpr void take(const EncoderReading& reading, bool expected) noexcept {
+        const bool recent = !counted_.empty() && reading.stamp_ns - counted_.last().stamp_ns <= max_age_ns_;
+        const bool repeats = reading.position_rad == counted_.first().position_rad;
+        if (recent && repeats && counted_.still()) { // it is not ready yet
+            counted_ = {};
+            counted_.extend(reading, tolerance_);
+        } else if (recent && counted_.leads_to(reading, tolerance_)) {
+            counted_.extend(reading, tolerance_);
+        } else if (is_near_zero(reading) && !expected && !follows_better(reading)) {
+            counted_ = {};
+            counted_.extend(reading, tolerance_);
+        }
+    }
+
+    /// Returns true if a run begins at the zero, or as far from it as the joint goes in a few periods, or
+    /// goes on from readings that began there. `trusted_velocity`: of the joint when it was last trusted;
+    /// `hidden_s`: time before the run of which no reading is known.
+    [[nodiscard]] constexpr bool explains(const EncoderReading& first, const MotionLine& begin,
+                                          double trusted_velocity, double hidden_s) const noexcept {
+        if (magnitude(first.from_zero_rad) <= travel(first, begin, trusted_velocity, hidden_s)) {
+            return true;
+        }
+        if (counted_.empty() || magnitude(counted_.first().from_zero_rad) >
+                                    travel(counted_.first(), begin, trusted_velocity, hidden_s)) {
+            return false;
+        }
+        return goes_on(first, begin, trusted_velocity);
+    }
+
+    /// The readings that go on from one at the zero.
+    [[nodiscard]] constexpr const MotionRun& counted() const noexcept { return counted_; }
+
+  private:
+    static constexpr int enough = 5; ///< readings that are no accident
+
+    /// Whether a run goes on from the readings that began at the zero: it is of them, or its line leads back
+    /// to the first or the last of them.
+    [[nodiscard]] constexpr bool goes_on(const EncoderReading& first, const MotionLine& begin,
+                                         double trusted_velocity) const noexcept {
+        const bool within = first.stamp_ns >= counted_.first().stamp_ns &&
+                            first.stamp_ns <= counted_.last().stamp_ns && counted_.readings() >= enough;
+        return within || leads_back(first, begin, trusted_velocity, counted_.first()) ||
+               leads_back(first, begin, trusted_velocity, counted_.last());
+    }
+    [[nodiscard]] constexpr bool leads_back(const EncoderReading& first, const MotionLine& begin,
+                                            double trusted_velocity,
+                                            const EncoderReading& to) const noexcept {
+        const double since_s = seconds_between(to.stamp_ns, first.stamp_ns);
+        if (since_s <= 0 || since_s > memory_s) { // < 0: the clock was set
+            return false;
+        }
+        const double off = magnitude(first.from_zero_rad - to.from_zero_rad);
+        const double back_rad = first.from_zero_rad - begin.velocity * since_s - to.from_zero_rad;
+        return off <= travel(first, begin, trusted_velocity, since_s) &&
+               (begin.span_s <= 0 || magnitude(back_rad) <= tolerance_.error(begin, since_s, first.step_rad));
+    }
+
+    /// Whether the readings that are followed began closer to the zero than this one.
+    [[nodiscard]] constexpr bool follows_better(const EncoderReading& reading) const noexcept {
+        if (counted_.empty()) {
+            return false;
+        }
+        const double since_s = seconds_between(counted_.last().stamp_ns, reading.stamp_ns);
+        const bool closer = magnitude(counted_.first().from_zero_rad) < magnitude(reading.from_zero_rad);
+        return since_s >= 0 && since_s <= memory_s && (closer || counted_.readings() >= enough);
+    }
+
+    /// How far from the zero a joint is after `since_s` and the time until its first reading.
+    [[nodiscard]] constexpr double travel(const EncoderReading& first, const MotionLine& begin,
+                                          double trusted_velocity, double since_s) const noexcept {
+        constexpr double periods = 1.5;
+        const double fastest =
+            std::max(magnitude(begin.velocity), since_s > 0 ? magnitude(trusted_velocity) : 0);
+        return fastest * (since_s + periods * seconds_between(0, tolerance_.period_ns)) + 3 * first.step_rad;
+    }
+
+    [[nodiscard]] constexpr bool is_near_zero(const EncoderReading& reading) const noexcept {
+        const double moved = tolerance_.limits.velocity * seconds_between(0, tolerance_.period_ns);
+        return magnitude(reading.from_zero_rad) <= moved + 3 * reading.step_rad;
+    }
+
+    static constexpr double memory_s = 0.05; // a board shows its zero at the end of its start
+
+    MotionTolerance tolerance_;
+    std::int64_t max_age_ns_;
+    MotionRun counted_; ///< from the zero
+};
+
+} // namespace dfdyn::hal
