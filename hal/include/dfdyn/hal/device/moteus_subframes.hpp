@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dfdyn/hal/bits.hpp"
+#include "dfdyn/hal/device/decoded.hpp"
 #include "dfdyn/hal/frame.hpp"
 
 #include <cstdint>
@@ -12,9 +13,8 @@ namespace dfdyn::hal {
 /// Reads the sub-frames of a moteus frame from front to back. Layout: mjbots/moteus, docs/protocol/can.md
 /// (db1a762); little-endian:
 /// - 0x00, 0x04, 0x08, 0x0C write, 0x10 … read, 0x20 … reply, as int8, int16, int32, float: number of
-/// registers
-///   (two lowest bits, or the next varuint if they are 0), first register (varuint), for write and reply the
-///   values.
+///   registers (two lowest bits, or the next varuint if they are 0), first register (varuint), for write and
+///   reply the values.
 /// - 0x30, 0x31 error: register, error (varuint). 0x40 … 0x42 a channel: number, length (varuint), bytes.
 /// - 0x50 nothing.
 class MoteusSubframes {
