@@ -142,6 +142,16 @@ TEST_CASE("a loop that yields at a contact has gravity torque alone and returns 
     CHECK(outcome.after < accurate_rad);
 }
 
+TEST_CASE("a contact that does not end becomes a safe stop", "[contacts]") {
+    const Outcome outcome = run(FindingAction::hold, 2 * push_nm, 8);
+    CHECK(outcome.state == LoopState::stopped);
+    CHECK(outcome.cause == StopCause::finding);
+    REQUIRE(outcome.actions.size() == 2);
+    CHECK(outcome.actions.front().action == FindingAction::hold);
+    CHECK(outcome.actions.back().action == FindingAction::stop);
+    CHECK(outcome.actions.back().time_s == Approx(push_s + ControlLoop::longest_contact_s).margin(0.2));
+}
+
 TEST_CASE("without a push, or without a chosen reaction, a loop does nothing about contacts", "[contacts]") {
     CHECK(run(FindingAction::hold, 0).actions.empty());
     const Outcome outcome = run(FindingAction::report);

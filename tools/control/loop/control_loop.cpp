@@ -165,6 +165,10 @@ void ControlLoop::meet_contact() {
         task_.pause();
     }
     calm_for_s_ = joint >= 0 ? 0 : calm_for_s_ + config_.period_s;
+    contact_for_s_ = joint >= 0 ? contact_for_s_ + config_.period_s : 0;
+    if (touched_ && contact_for_s_ >= longest_contact_s) {
+        note(Cause::contact, joint, FindingAction::stop);
+    }
     if (touched_ && calm_for_s_ >= calm_s) {
         touched_ = false;
         task_.resume(config_.on_contact == FindingAction::yield ? feedback_.position()

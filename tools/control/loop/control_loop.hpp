@@ -67,9 +67,10 @@ struct LoopCounters {
 ///
 /// A contact (LoopConfig::on_contact) pauses the motion. The command changes, by at most a torque limit per
 /// `stop_time_s`, to the nominal gravity torque at the measured position, and for `hold` that of the gains
-/// about the stopped reference. Observer, learned torque and friction add nothing. After
-/// the end of the contact `yield` brakes the arm with the velocity gain. `calm_s` after the end of
-/// the contact the observer starts again at zero, and the motion continues (PausableTask).
+/// about the stopped reference. Observer, learned torque and friction add nothing. After the end of the
+/// contact `yield` brakes the arm with the velocity gain. `calm_s` after the end of the contact the observer
+/// starts again at zero, and the motion continues (PausableTask). A contact that lasts for
+/// `longest_contact_s` ends in the safe stop: somebody may be caught by the arm.
 ///
 /// Stopping: every joint receives a reference that brakes from its present position and velocity to rest
 /// within `stop_time_s`. The command changes, by at most a torque limit per `stop_time_s`, to the sum of
@@ -99,6 +100,7 @@ class ControlLoop {
     static constexpr double brake_timeout_s = 1;
     static constexpr double give_up_s = 1;
     static constexpr double calm_s = 0.5;
+    static constexpr double longest_contact_s = 2.5; ///< before the detector takes it for a change of the arm
 
     ControlLoop(LoopConfig config, FeedForward feed_forward, std::unique_ptr<Task> task);
 
@@ -198,6 +200,7 @@ class ControlLoop {
     bool told_ = false;               ///< whether a stop was requested
     bool touched_ = false;            ///< the motion is paused because of a contact
     double calm_for_s_ = 0;           ///< since the end of the contact
+    double contact_for_s_ = 0;        ///< since the begin of the contact
     std::vector<TakenAction> actions_;
     std::size_t acted_number_ = 0;    ///< number of the last change with a reaction …
     Cause acted_on_ = Cause::unknown; ///< … and its cause

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/strict_math.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -58,11 +60,17 @@ class JointDeviation {
 
     /// Shares of the present values in the filters of all joints, for one tick.
     struct Steps {
+        /// Computes them for a period.
         explicit Steps(Scalar period_s) noexcept
             : dt(period_s), filter(1 - std::exp(-dt / filter_s)),
               velocity(1 - std::exp(-dt / velocity_filter_s)), baseline(1 - std::exp(-dt / baseline_s)),
               range(1 - std::exp(-dt / range_s)), median(dt / median_s) {}
-        Scalar dt, filter, velocity, baseline, range, median;
+        Scalar dt;       ///< s
+        Scalar filter;   ///< of the error, the prediction and the acceleration
+        Scalar velocity; ///< of the velocity
+        Scalar baseline; ///< of the baseline
+        Scalar range;    ///< of the growth beyond the training
+        Scalar median;   ///< relative change of a median
     };
 
     /// Sets the medians to those of the training.

@@ -30,7 +30,8 @@ class CandidateRun {
             return Step::is_off;
         }
         const bool repeats = run_.first().position_rad == run_.last().position_rad; // shows nothing
-        contradicted_ = contradicted_ || (recent && !repeats && run_.readings() + run_.zeros() >= enough);
+        const bool apart = recent && !repeats && !tolerance.reaches(run_.last(), reading);
+        contradicted_ = contradicted_ || (apart && run_.readings() + run_.zeros() >= enough);
         before_ = run_.empty() ? before_ : run_;
         run_ = other_goes_on ? other_ : MotionRun();
         other_ = {};
