@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """measure_repeats.py DFDYN [FOLDER]: diagnoses every recording of one UR5 that moves, with the same torque constants, and prints the tables of
 docs/results/diagnosis-cases.md: each joint's friction by run, how much it scatters beside plain least squares, how many intervals hold the mean
-of all runs, and how far the named causes agree (Jaccard index). FOLDER (build/repeats) receives the diagnoses; those already there are kept."""
+of all runs, and how far the named causes agree (Jaccard index). FOLDER (build/repeats) receives the diagnoses."""
 
 import csv
 import itertools
@@ -24,10 +24,12 @@ FRICTION = {"coulomb_friction": "coulomb", "viscous_friction": "viscous"}  # and
 
 def diagnosed(dfdyn, log, folder):
     """Returns the diagnosis of a recording."""
-    if not (folder / "diagnosis.json").exists():
-        subprocess.run(
-            [dfdyn, "diagnose", "--robot", ROBOT, "--tip", "ee_link", "--outputs", "i", "--skip-bad-rows", "--log", log,
-             "--torque-constants", TORQUE_CONSTANTS, "--quiet", "-o", folder], check=False, stdout=subprocess.DEVNULL)
+    command = [
+        dfdyn, "diagnose", "--robot", ROBOT, "--tip", "ee_link", "--outputs", "i", "--skip-bad-rows", "--log", log,
+        "--torque-constants", TORQUE_CONSTANTS, "--quiet", "-o", folder]
+    status = subprocess.run(command, check=False, stdout=subprocess.DEVNULL).returncode
+    if status not in (0, 1):  # 1: refused, with the reason in the diagnosis
+        sys.exit(f"measure_repeats.py: {log}: status {status}")
     return json.loads((folder / "diagnosis.json").read_text(encoding="utf-8"))
 
 

@@ -81,14 +81,13 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     work.samples = raw_samples(recording, signals->measured);
     work.torque_gains = torque_gains(*signals, options);
     work.measured = signals->measured.outputs * work.torque_gains.cwiseInverse().asDiagonal();
-    const bool gains_known =
-        options.outputs != OutputKind::motor_current || !options.torque_constants.empty();
+    work.gains_known = options.outputs != OutputKind::motor_current || !options.torque_constants.empty();
     if (suspect(work.diagnosis, suspicions_of_motion(*signals, work.measured, recording))) {
         measure_from(work, 0, work.explanation); // without effects
         work.extended = signals->nominal;
         return work;
     }
-    ExplanationOptions how{gains_known, 1, options.progress, options.effects};
+    ExplanationOptions how{work.gains_known, 1, options.progress, options.effects};
     work.explanation = explain(*signals, work.measured, how);
     work.rest = work.measured - signals->nominal - work.explanation.all(*signals);
     work.pushes = standing_contacts(*signals, work.explanation, work.measured, work.rest);
@@ -102,7 +101,7 @@ DiagnosisWork diagnose(const Robot& robot, const Recording& recording, const Dia
     } else {
         measure_from(work, 0, work.explanation);
     }
-    name_by_least_squares(work, gains_known);
+    name_by_least_squares(work);
     work.diagnosis.granted = granted_quantities(*signals, work.explanation, work.torque_gains);
     use_units_of_joints(work.diagnosis, robot);
     work.diagnosis.unexplained = unnamed_dependences(*signals, work.measured, work.explanation);

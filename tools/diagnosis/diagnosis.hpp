@@ -54,6 +54,7 @@ struct Finding {
     std::string evidence;
     std::vector<OtherCause> indistinguishable, alternatives;
     std::string confirm;
+    bool by_least_squares = false;                      ///< found by plain least squares, not by the search
     double margin_to_nothing = 0, margin_to_others = 0; ///< log-odds behind the confidence
 };
 
@@ -89,7 +90,7 @@ struct Diagnosis {
     ErrorMeasure nominal, extended;
     ErrorMeasure causes;        ///< of the causes found, also where plain least squares replaces them
     ErrorMeasure least_squares; ///< of plain least squares for each output (`textbook_fit`)
-    /// 5 x m: plain least squares of the moving rows of the whole recording, as in `TextbookFit`
+    /// 5 x m: plain least squares of the moving rows of the whole recording (`fit_moving_rows`)
     Eigen::MatrixXd textbook;
     /// Per output: plain least squares is the extended model, because the causes found err more.
     std::vector<bool> by_least_squares;
@@ -130,7 +131,10 @@ struct DiagnosisWork {
     RawSamples samples;                  ///< of the recording; without rows: errors are those of `measured`
     Eigen::MatrixXd rest; ///< T x m: residual after the explanation and the contacts, as `measured`
     Diagnosis diagnosis;
-    Eigen::MatrixXd extended = {}; ///< T x m: outputs of the extended model, as `measured`
+    /// T x m: outputs of the extended model of the whole recording, as `measured`; plain least squares beside
+    /// the body of the robot's file where that is better
+    Eigen::MatrixXd extended = {};
+    bool gains_known = true; ///< torques were measured, or the torque constants of currents are given
 };
 
 /// Returns whether the recording could answer: there are effects to choose from, and a model can be made.

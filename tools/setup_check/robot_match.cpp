@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,10 +34,37 @@ std::vector<Index> moving_rows(const RobotMotion& motion, Index joint) {
     return rows;
 }
 
-/// Returns the share of its degrees of freedom that a fit of `columns` leaves. Of rows 10 ms apart every
-/// other one counts, because their derivatives share most of a window.
-double free_share(std::size_t rows, Index columns) {
-    return 1 - 2 * static_cast<double>(columns) / static_cast<double>(std::max<std::size_t>(rows, 1));
+/// Returns how many rows of a recording are independent: the derivatives of rows within 0.04 s share two
+/// thirds of a window.
+double independent_rows(const ArmRecording& arm, std::size_t rows) {
+    constexpr double apart_s = 0.04;
+    const std::vector<double>& time_s = arm.recording.time_s;
+    const double step_s = (time_s.back() - time_s.front()) / static_cast<double>(arm.recorded.motion.rows());
+    return static_cast<double>(rows) * std::min(1.0, step_s / apart_s);
+}
+
+/// Shares of an output's variance that two models leave while the joint moves.
+struct Comparison {
+    double by_robot = 0; ///< the robot's body, with any payload and friction
+    double by_any = 0;   ///< smooth functions of the motion and friction, per degree of freedom that is left
+};
+
+/// Compares the models at a joint; empty if it moves for too few rows to tell so many functions from chance.
+std::optional<Comparison> compare(const ArmRecording& arm, const RigidParts& parts, const MatrixXd& smooth,
+                                  Index joint) {
+    constexpr double least_free = 0.5;
+    const RobotMotion& motion = arm.recorded.motion;
+    const std::vector<Index> rows = moving_rows(motion, joint);
+    const double free_share =
+        1 - static_cast<double>(smooth.cols()) / std::max(independent_rows(arm, rows.size()), 1.0);
+    if (free_share < least_free) {
+        return std::nullopt;
+    }
+    const VectorXd output = arm.output(joint)(rows);
+    const SignedFit any =
+        fit_signed(output, smooth(rows, Eigen::all), friction_columns(motion, joint)(rows, Eigen::all));
+    return Comparison{left_by(output, expected_columns(arm, motion, parts, joint)(rows, Eigen::all)),
+                      any.left / free_share};
 }
 
 VectorXd deviations(const MatrixXd& columns) {
@@ -51,7 +79,6 @@ SetupFindings check_robot_match(const ArmRecording& arm) {
     constexpr double far_better = 1.2;
     constexpr double much = 0.06;
     constexpr int turns = 2;
-    constexpr double least_free = 0.5; // with fewer rows so many functions fit anything
     const RobotMotion& motion = arm.recorded.motion;
     if (arm.wrench()) {
         return {};
@@ -66,18 +93,12 @@ SetupFindings check_robot_match(const ArmRecording& arm) {
         if (!(weight[k] > carries * weight.maxCoeff()) || !swings(motion, k, turns)) {
             continue;
         }
-        const std::vector<Index> rows = moving_rows(motion, k);
-        const double free = free_share(rows.size(), smooth.cols());
-        if (free < least_free) {
+        const std::optional<Comparison> found = compare(arm, parts, smooth, k);
+        if (!found) {
             continue;
         }
-        const VectorXd output = arm.output(k)(rows);
-        const double by_robot = left_by(output, expected_columns(arm, motion, parts, k)(rows, Eigen::all));
-        const double by_any =
-            fit_signed(output, smooth(rows, Eigen::all), friction_columns(motion, k)(rows, Eigen::all)).left /
-            free;
-        ratio += std::log(std::max(by_robot, least_share) / std::max(by_any, least_share));
-        left += by_robot;
+        ratio += std::log(std::max(found->by_robot, least_share) / std::max(found->by_any, least_share));
+        left += found->by_robot;
         columns.push_back(arm.recording.output.names[static_cast<std::size_t>(k)]);
     }
     const auto count = static_cast<double>(columns.size());

@@ -58,7 +58,7 @@ TEST_CASE("a correct recording is accepted however it is cut with and without a 
     }
 }
 
-TEST_CASE("a few seconds of an uneven recording are not taken for another robot's") {
+TEST_CASE("no part of a short recording with uneven steps is taken for another robot's") {
     const Robot robot = ur5();
     for (const Cut& one : cuts_of(currents("ur5_kufieta/Movement_No3_Acc.csv"))) {
         CAPTURE(one.name);

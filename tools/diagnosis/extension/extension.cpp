@@ -38,10 +38,17 @@ void take_least_squares(Extension& extension, const DiagnosisWork& work, Eigen::
     const std::string joint = numbered("joint", static_cast<std::size_t>(output));
     std::erase_if(extension.columns,
                   [output](const ExtensionColumn& column) { return column.effect.row == output; });
+    std::erase_if(extension.carried, [&joint](const CarriedFinding& carried) {
+        return carried.where == joint && effect_named(carried.effect).textbook.has_value();
+    });
     for (CarriedFinding& carried : extension.carried) {
         if (carried.where == joint) {
-            const bool fitted = effect_named(carried.effect).textbook.has_value();
-            carried.how = fitted ? EffectDisposition::adapting : EffectDisposition::left_out;
+            carried.how = EffectDisposition::left_out;
+        }
+    }
+    for (const Effect& effect : effect_catalogue()) {
+        if (effect.textbook && !work.signals->wrench()) {
+            extension.carried.push_back({effect.name, joint, EffectDisposition::adapting});
         }
     }
     const double gain = std::max(coefficients[0], least_gain);
@@ -72,12 +79,13 @@ void take_least_squares(Extension& extension, const DiagnosisWork& work) {
     const DiagnosisSignals& signals = *work.signals;
     const Eigen::VectorXd stacked =
         stacked_regressor(extension.robot, extension.kind, signals.measured.motion) * extension.bodies;
-    const TextbookFit fit =
-        textbook_fit(signals, work.measured, unstacked(stacked, signals.outputs()), signals.rows());
+    const Eigen::MatrixXd rigid = unstacked(stacked, signals.outputs());
     for (std::size_t output = 0; output < chosen.size(); ++output) {
         if (chosen[output]) {
             const auto at = static_cast<Eigen::Index>(output);
-            take_least_squares(extension, work, at, fit.coefficients.col(at));
+            const MovingFit fit =
+                fit_moving_rows(signals, work.measured.col(at), rigid.col(at), at, work.gains_known);
+            take_least_squares(extension, work, at, fit.values);
         }
     }
 }

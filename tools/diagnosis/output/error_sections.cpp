@@ -143,7 +143,8 @@ PageSection comparison_section(const DiagnosisWork& work, const std::string& ful
     PageSection section{"Measured, simulated, extended", {}, {}, {}};
     section.paragraphs.push_back(
         std::string("Simulated: the rigid body of the robot's file along the measured motion. Extended: with "
-                    "all named effects, fitted to the whole recording. The first 20 s of the ") +
+                    "all named effects, or plain least squares where that errs less, fitted to the whole "
+                    "recording. The first 20 s of the ") +
         (has_held_out(work.diagnosis) ? "held-out time" : "recording") + " are shown.");
     if (!full_data.empty()) {
         section.paragraphs.push_back(

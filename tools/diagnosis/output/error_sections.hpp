@@ -15,7 +15,7 @@ namespace dfdyn::tools {
 struct ComparedOutputs {
     Eigen::MatrixXd measured;
     Eigen::MatrixXd simulated; ///< by the rigid body of the robot's file
-    Eigen::MatrixXd extended;  ///< with all named effects
+    Eigen::MatrixXd extended;  ///< DiagnosisWork::extended
 };
 
 ComparedOutputs compared_outputs(const DiagnosisWork& work);

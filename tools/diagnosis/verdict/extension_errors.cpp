@@ -70,7 +70,7 @@ void take_better(Diagnosis& diagnosis) {
     std::string names;
     for (Eigen::Index output = 0; output < diagnosis.extended.rms.size(); ++output) {
         const bool better = diagnosis.extended.rms[output] > tolerance * diagnosis.least_squares.rms[output];
-        diagnosis.by_least_squares.push_back(better);
+        diagnosis.by_least_squares[static_cast<std::size_t>(output)] = better;
         if (better) {
             take(diagnosis.extended, diagnosis.least_squares, output);
             names.append(names.empty() ? "" : ", ")
@@ -81,8 +81,7 @@ void take_better(Diagnosis& diagnosis) {
         diagnosis.suspicions.push_back({"at " + names +
                                         " the causes found err more than plain least squares per joint "
                                         "(gain, inertia, viscous and dry friction, "
-                                        "offset): the extended model and the list of causes have its "
-                                        "values there instead"});
+                                        "offset), which the extended model has there instead"});
     }
 }
 
@@ -154,7 +153,7 @@ void measure_from(DiagnosisWork& work, Eigen::Index first, const Explanation& ex
     diagnosis.extended = diagnosis.causes;
     diagnosis.least_squares =
         measure(textbook_fit(signals, work.measured, signals.nominal, fitted).prediction);
-    diagnosis.by_least_squares.clear();
+    diagnosis.by_least_squares.assign(static_cast<std::size_t>(signals.outputs()), false);
     if (!explanation.candidates.empty()) {
         take_better(diagnosis);
     }

@@ -55,11 +55,6 @@ void weigh_alternatives(Finding& finding, const Explanation& explanation, const 
     }
 }
 
-/// Returns the experiment that would decide whether the effect is present.
-std::string confirmation(const Finding& finding) {
-    return finding.where + ": " + effect_named(finding.effect).experiment;
-}
-
 /// Returns a chosen named effect as a finding, without its gain.
 Finding of_cause(const Explanation& explanation, const Neighbours& near, std::size_t index,
                  double duration_s) {
@@ -180,6 +175,10 @@ void add_push(std::vector<Finding>& findings, Finding push) {
 
 } // namespace
 
+std::string confirmation(const Finding& finding) {
+    return finding.where + ": " + effect_named(finding.effect).experiment;
+}
+
 void sort_by_gain(std::vector<Finding>& findings) {
     std::ranges::sort(findings, std::greater<>{},
                       [](const Finding& finding) { return finding.rms_before / finding.rms_after; });
@@ -197,7 +196,6 @@ double calibrated_confidence(const Finding& finding, double duration_s) {
 }
 
 void doubt_useless_findings(Diagnosis& diagnosis) {
-    constexpr double unlikely = 0.49;
     constexpr double least_gain = 1.01;
     for (Finding& finding : diagnosis.findings) {
         const bool unexplained = diagnosis.extended.nrmse[finding.output] > 1;

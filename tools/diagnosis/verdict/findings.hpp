@@ -12,7 +12,14 @@ std::vector<Finding> findings_of(const DiagnosisSignals& signals, const Explanat
                                  const std::vector<StandingContact>& pushes, const Eigen::MatrixXd& rest,
                                  const std::vector<std::string>& output_names);
 
+/// Confidence of a finding that something contradicts, at most.
+inline constexpr double unlikely = 0.49;
+
+/// Sorts by the ratio of the errors without and with each finding, largest first.
 void sort_by_gain(std::vector<Finding>& findings);
+
+/// Returns the experiment that would decide whether the effect is present.
+std::string confirmation(const Finding& finding);
 
 /// Calibrated probability from the finding's margin, its effect and the recording's length.
 double calibrated_confidence(const Finding& finding, double duration_s);

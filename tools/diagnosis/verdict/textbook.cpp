@@ -3,6 +3,11 @@
 
 #include "tools/base/numerics/linear_algebra.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
 namespace dfdyn::tools {
 
 namespace {
@@ -10,20 +15,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// Least squares of columns that may be zero or combinations of each other.
-VectorXd damped_least_squares(const MatrixXd& columns, const VectorXd& right) {
-    constexpr double damping = 1e-8; // of the squared norm of each column
-    const VectorXd norm = columns.colwise().norm();
-    const VectorXd scale = (norm.array() > 0).select(norm.cwiseInverse(), 0);
-    const MatrixXd scaled = columns * scale.asDiagonal();
-    const Index count = columns.cols();
-    return scale.asDiagonal() *
-           solve_symmetric(MatrixXd(scaled.transpose() * scaled + damping * MatrixXd::Identity(count, count)),
-                           VectorXd(scaled.transpose() * right));
-}
-
-} // namespace
 
 MatrixXd textbook_columns(const DiagnosisSignals& signals, const VectorXd& rigid, Index output) {
     const RobotMotion& motion = signals.measured.motion;
@@ -38,14 +29,115 @@ MatrixXd textbook_columns(const DiagnosisSignals& signals, const VectorXd& rigid
     return columns;
 }
 
+/// Weighted least squares of columns that may be zero or combinations of each other.
+struct WeightedFit {
+    VectorXd scale;   ///< inverse weighted norms of the columns; 0 for a column of zeros
+    MatrixXd inverse; ///< of the normal equations of the scaled columns
+    VectorXd values;
+};
+
+WeightedFit weighted_fit(const MatrixXd& columns, const VectorXd& weight, const VectorXd& right) {
+    constexpr double damping = 1e-8; // of the squared norm of each column
+    const MatrixXd weighted = weight.asDiagonal() * columns;
+    const VectorXd norm = columns.cwiseProduct(weighted).colwise().sum().cwiseSqrt();
+    const VectorXd scale = (norm.array() > 0).select(norm.cwiseInverse(), 0);
+    const Index count = columns.cols();
+    const MatrixXd normal = scale.asDiagonal() * (columns.transpose() * weighted) * scale.asDiagonal();
+    const MatrixXd inverse = solve_symmetric(MatrixXd(normal + damping * MatrixXd::Identity(count, count)),
+                                             MatrixXd(MatrixXd::Identity(count, count)));
+    const VectorXd moment = scale.asDiagonal() * (weighted.transpose() * right);
+    return {scale, inverse, scale.asDiagonal() * (inverse * moment)};
+}
+
+/// Returns the sums over blocks of time of error times columns, p x blocks. Blocks without weight are left
+/// out.
+MatrixXd sums_of_blocks(const MatrixXd& columns, const VectorXd& weight, const VectorXd& error,
+                        const VectorXd& time_s) {
+    const double duration_s = time_s[time_s.size() - 1] - time_s[0];
+    const double block_s = std::clamp(duration_s / 20, 0.25, 1.0);
+    std::vector<VectorXd> sums;
+    double end_s = -std::numeric_limits<double>::infinity();
+    for (Index row = 0; row < error.size(); ++row) {
+        if (!(weight[row] > 0)) {
+            continue;
+        }
+        if (time_s[row] >= end_s) {
+            end_s = time_s[row] + block_s;
+            sums.emplace_back(VectorXd::Zero(columns.cols()));
+        }
+        sums.back() += weight[row] * error[row] * columns.row(row).transpose();
+    }
+    MatrixXd result(columns.cols(), std::ssize(sums));
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        result.col(static_cast<Index>(i)) = sums[i];
+    }
+    return result;
+}
+
+/// Returns the covariance of a fit from the sums of blocks, at least that of white noise.
+MatrixXd covariance_of(const WeightedFit& fit, const MatrixXd& sums, const VectorXd& weight,
+                       const VectorXd& error) {
+    const auto blocks = static_cast<double>(sums.cols());
+    const auto fitted = static_cast<double>((fit.scale.array() > 0).count());
+    const MatrixXd gradient = fit.scale.asDiagonal() * fit.inverse * fit.scale.asDiagonal() * sums;
+    MatrixXd covariance = blocks / std::max(blocks - fitted, 1.0) * (gradient * gradient.transpose()).eval();
+    const double variance = weight.dot(error.cwiseAbs2()) / std::max(weight.sum(), 1.0);
+    for (Index i = 0; i < covariance.rows(); ++i) {
+        const double white = variance * fit.scale[i] * fit.scale[i] * fit.inverse(i, i);
+        covariance(i, i) = std::max(covariance(i, i), white);
+    }
+    return covariance;
+}
+
+/// Takes into account that the rigid body's factor is near 1, unless the data contradict it.
+void expect_gain_of_one(MovingFit& fit) {
+    constexpr double deviation = 0.03; // of torque constants and masses that are given
+    constexpr double far = 3;
+    const double variance = fit.covariance(0, 0) + deviation * deviation;
+    const double apart = 1 - fit.values[0];
+    fit.another_gain = apart * apart > far * far * variance;
+    if (!fit.another_gain) {
+        const VectorXd along = fit.covariance.col(0) / variance;
+        fit.values += apart * along;
+        fit.covariance -= (variance * along * along.transpose()).eval();
+    }
+}
+
+} // namespace
+
 TextbookFit textbook_fit(const DiagnosisSignals& signals, const MatrixXd& measured, const MatrixXd& rigid,
                          Index rows) {
     TextbookFit fit{MatrixXd::Zero(5, measured.cols()), MatrixXd(measured.rows(), measured.cols())};
     for (Index output = 0; output < measured.cols(); ++output) {
         const MatrixXd columns = textbook_columns(signals, rigid.col(output), output);
         fit.coefficients.col(output) =
-            damped_least_squares(columns.topRows(rows), measured.col(output).head(rows));
+            weighted_fit(columns.topRows(rows), VectorXd::Ones(rows), measured.col(output).head(rows)).values;
         fit.prediction.col(output) = columns * fit.coefficients.col(output);
+    }
+    return fit;
+}
+
+MovingFit fit_moving_rows(const DiagnosisSignals& signals, const VectorXd& measured, const VectorXd& rigid,
+                          Index output, bool gain_known) {
+    constexpr double least_independent = 0.01; // share of the rigid body's column
+    MovingFit fit{textbook_columns(signals, rigid, output), VectorXd(5), MatrixXd::Zero(5, 5)};
+    VectorXd weight = VectorXd::Ones(signals.rows());
+    if (signals.measured.weight.size() > 0) {
+        weight = signals.measured.weight.col(output);
+    }
+    const WeightedFit all = weighted_fit(fit.columns, weight, measured);
+    const bool gain_seen = all.scale[0] > 0 && all.inverse(0, 0) * least_independent < 1;
+    const Index first = gain_seen ? 0 : 1;
+    const MatrixXd columns = fit.columns.rightCols(5 - first);
+    const VectorXd right = gain_seen ? measured : VectorXd(measured - rigid);
+    const WeightedFit found = gain_seen ? all : weighted_fit(columns, weight, right);
+    const VectorXd error = right - columns * found.values;
+    const MatrixXd sums = sums_of_blocks(columns, weight, error, signals.measured.time_s);
+    fit.blocks = sums.cols();
+    fit.values << VectorXd::Ones(first), found.values;
+    fit.covariance.bottomRightCorner(5 - first, 5 - first) = covariance_of(found, sums, weight, error);
+    if (gain_known && gain_seen) {
+        expect_gain_of_one(fit);
     }
     return fit;
 }

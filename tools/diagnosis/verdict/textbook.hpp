@@ -16,13 +16,27 @@ struct TextbookFit {
     Eigen::MatrixXd prediction; ///< T x m, N·m (N)
 };
 
-/// Returns the columns (T x 5) of an output, in the order of `TextbookTerm`. `rigid` (T): the rigid body's.
-Eigen::MatrixXd textbook_columns(const DiagnosisSignals& signals, const Eigen::VectorXd& rigid,
-                                 Eigen::Index output);
-
 /// Fits the first `rows` rows of `measured`, T x m, with the rigid body's outputs `rigid`, T x m. All rows
 /// have the same weight. Cost: O(25 T m).
 TextbookFit textbook_fit(const DiagnosisSignals& signals, const Eigen::MatrixXd& measured,
                          const Eigen::MatrixXd& rigid, Eigen::Index rows);
+
+/// Plain least squares of one output in the rows in which its joint moves, with its uncertainty.
+struct MovingFit {
+    Eigen::MatrixXd columns;    ///< T x 5, in the order of `TextbookTerm`
+    Eigen::VectorXd values;     ///< 5
+    Eigen::MatrixXd covariance; ///< 5 x 5
+    Eigen::Index blocks = 0;    ///< of time, whose sums show the covariance
+    bool another_gain = false;  ///< the rigid body's factor is known to be near 1, and is not
+};
+
+/// Fits `measured` (T), with the rigid body's output `rigid` (T) and the rows' weights
+/// (MeasuredMotion::weight). `gain_known`: the rigid body's factor is 1 ± 0.03, unless the data contradict it
+/// by three deviations. Where the other columns contain the rigid body's, the factor is 1.
+///
+/// The covariance is that of the sums over blocks of a second (a twentieth of a recording shorter than 20 s,
+/// at least 0.25 s), so that it includes noise with a shorter correlation. Cost: O(25 T).
+MovingFit fit_moving_rows(const DiagnosisSignals& signals, const Eigen::VectorXd& measured,
+                          const Eigen::VectorXd& rigid, Eigen::Index output, bool gain_known);
 
 } // namespace dfdyn::tools

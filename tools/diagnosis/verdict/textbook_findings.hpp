@@ -5,14 +5,11 @@
 
 namespace dfdyn::tools {
 
-/// Fits plain least squares to the moving rows of each output of the whole recording: `textbook`. Names what
-/// it finds at each joint where it is the extended model, because the causes found err more: its friction,
-/// rotor inertia and offset replace the findings at that joint, and what else was found there is unlikely.
-/// Sets `extended` and, at these outputs, `rest`. `gains_known`: torques were measured, or currents with
-/// given torque constants, so that the rigid body's factor is near 1.
-///
-/// All moving rows have the same weight. Deviations are those of the sums over each second, so that they
-/// include coloured noise and what changes during the recording. Cost: O(25 T) per output.
-void name_by_least_squares(DiagnosisWork& work, bool gains_known);
+/// Names what plain least squares finds (`fit_moving_rows`, on the whole recording) at each joint where it is
+/// the extended model. Its friction, rotor inertia and offset become the findings at that joint. What else
+/// was found at the joint or its actuator gets a confidence below 0.5, except contacts, and a gain of the
+/// actuator that least squares shows, too. Joints that hardly move, or for less than ten blocks of time, keep
+/// their findings. Sets `textbook` of the diagnosis and `extended`. Cost: O(25 T) per output.
+void name_by_least_squares(DiagnosisWork& work);
 
 } // namespace dfdyn::tools
