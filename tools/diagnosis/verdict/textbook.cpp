@@ -53,8 +53,9 @@ WeightedFit weighted_fit(const MatrixXd& columns, const VectorXd& weight, const 
 /// out.
 MatrixXd sums_of_blocks(const MatrixXd& columns, const VectorXd& weight, const VectorXd& error,
                         const VectorXd& time_s) {
-    const double duration_s = time_s[time_s.size() - 1] - time_s[0];
-    const double block_s = std::clamp(duration_s / 20, 0.25, 1.0);
+    const double moving_s =
+        (time_s[time_s.size() - 1] - time_s[0]) * weight.sum() / static_cast<double>(weight.size());
+    const double block_s = std::clamp(moving_s / 20, 0.25, 1.0);
     std::vector<VectorXd> sums;
     double end_s = -std::numeric_limits<double>::infinity();
     for (Index row = 0; row < error.size(); ++row) {

@@ -34,8 +34,9 @@ struct MovingFit {
 /// (MeasuredMotion::weight). `gain_known`: the rigid body's factor is 1 ± 0.03, unless the data contradict it
 /// by three deviations. Where the other columns contain the rigid body's, the factor is 1.
 ///
-/// The covariance is that of the sums over blocks of a second (a twentieth of a recording shorter than 20 s,
-/// at least 0.25 s), so that it includes noise with a shorter correlation. Cost: O(25 T).
+/// The covariance is that of the sums over blocks of a second (a twentieth of the time in which the joint
+/// moves, if that is shorter than 20 s; at least 0.25 s), so that it includes noise with a shorter
+/// correlation. Cost: O(25 T).
 MovingFit fit_moving_rows(const DiagnosisSignals& signals, const Eigen::VectorXd& measured,
                           const Eigen::VectorXd& rigid, Eigen::Index output, bool gain_known);
 

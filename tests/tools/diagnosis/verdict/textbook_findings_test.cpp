@@ -104,7 +104,7 @@ TEST_CASE("a joint that moves for a few seconds keeps what the search found") {
     DiagnosisWork work = work_with_friction(engine, 0.3);
     DiagnosisSignals signals = *work.signals;
     signals.measured.weight = Eigen::MatrixXd::Zero(signals.rows(), 6);
-    signals.measured.weight.topRows(200).setOnes(); // 2 s
+    signals.measured.weight.topRows(200).setOnes(); // 2 s: eight blocks
     work.signals = std::make_shared<DiagnosisSignals>(std::move(signals));
     work.diagnosis.findings = {finding("coulomb_friction", "joint1", 0.9)};
     name_by_least_squares(work);
