@@ -3,6 +3,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/tools/can/bus_support.hpp"
+#include "tests/tools/control/faulty_loop.hpp"
 #include "tests/tools/control/pendulum.hpp"
 #include "tests/tools/simulation/faults/read_faults.hpp"
 #include "tools/base/text/error.hpp"
@@ -118,6 +119,9 @@ void check_detected(const Outcome& outcome, FindingAction reaction) {
     REQUIRE(outcome.reactions.size() == 1);
     CHECK(outcome.reactions.front().push_s == Approx(push_s).margin(0.002));
     CHECK(outcome.reactions.front().after_s < 0.1);
+    const double first_command_s = outcome.actions.front().time_s + 0.001; // one period later
+    CHECK(outcome.reactions.front().after_s ==
+          Approx(first_command_s - outcome.reactions.front().push_s).margin(1e-6));
     CHECK(outcome.summary.find("ms after the push at 6.00 s") != std::string::npos);
 }
 
@@ -170,6 +174,25 @@ TEST_CASE("a contact that does not end lets the motion stand", "[contacts]") {
     CHECK(outcome.state == LoopState::running);
     CHECK(outcome.actions.size() == 1);
     CHECK(outcome.speed_after == 0);
+}
+
+TEST_CASE("a stop during a contact leaves the push out of the torque that holds the arm", "[contacts]") {
+    LoopModel model = learned_model();
+    LoopLimits limits;
+    limits.on_contact = FindingAction::hold;
+    FaultyLoop arm(
+        test_pendulum(),
+        scenario_with(R"([{"kind": "push", "joint": 1, "torque_nm": 2.5, "from_s": 6, "for_s": 9}])"),
+        one_drive(at_sync), &model, limits);
+    arm.run_to(6.7);
+    const double before = arm.plant().truth().position[0];
+    arm.run_to(8, [](int) {
+        LoopFault fault;
+        fault.given.stop_requested = true;
+        return fault;
+    });
+    const double moved = arm.plant().truth().position[0] - before;
+    CHECK(std::abs(moved) == Approx(push_nm / 50).epsilon(0.1)); // the position gain alone bears the push
 }
 
 TEST_CASE("without a push, or without a chosen reaction, a loop does nothing about contacts", "[contacts]") {
