@@ -33,10 +33,10 @@ void add_model(CLI::App& command, LoopOptions& options) {
     command
         .add_option(
             "--on-contact", options.on_contact,
-            "What to do when something touches the arm: stop (the safe stop), hold (stops on the path, "
-            "gravity torque and feedback; continues) or yield (gravity torque alone; returns and "
-            "continues). Without it contacts are not detected. Not a safety function: "
-            "docs/guide/contacts.md")
+            "What to do when something touches the arm: stop (the safe stop), hold (stops on the path and "
+            "stays there: gravity torque and feedback) or yield (gravity torque alone; holds after the "
+            "contact where the arm is then). The motion does not continue. Without it contacts are not "
+            "detected. Not a safety function: docs/guide/contacts.md")
         ->type_name("stop|hold|yield");
     add_contact_rate(command, options.limits.contact_rate_per_hour, "Of --on-contact");
 }

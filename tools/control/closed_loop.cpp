@@ -102,12 +102,17 @@ void ClosedLoop::note_reaction(double time_s) {
     faults_.go_to(time_s);
     const ArmFaults& arm = faults_.now().arm;
     const bool pushed = !arm.pushes.empty() || !arm.load.isZero(0);
-    push_s_ = pushed && !pushed_ ? time_s : push_s_;
+    if (pushed && !pushed_) {
+        push_s_ = time_s;
+        answered_ = false;
+    }
     pushed_ = pushed;
     for (; known_actions_ < loop_->actions().size(); ++known_actions_) {
         const bool contact = loop_->actions()[known_actions_].cause == Cause::contact;
-        if (contact && time_s - push_s_ <= longest_reaction_s) {
-            reactions_.push_back({push_s_, time_s - push_s_});
+        const double after_s = time_s + period_s_ - push_s_; // the next command is the first one of it
+        if (contact && !answered_ && after_s <= longest_reaction_s) {
+            reactions_.push_back({push_s_, after_s});
+            answered_ = true;
         }
     }
 }

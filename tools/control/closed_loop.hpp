@@ -48,7 +48,7 @@ class ClosedLoop {
     void run_to(double time_s, const std::function<void(const ClosedLoopInstant&)>& on_tick);
 
     const ControlLoop& loop() const noexcept { return *loop_; }
-    /// Returns the reactions to contacts within `longest_reaction_s` after the begin of a push.
+    /// Returns the first reaction to each push within 3 s after its begin.
     const std::vector<PushReaction>& reactions() const noexcept { return reactions_; }
     /// Enables or disables the learned torque; see FeedForward.
     void enable_learned(bool on) noexcept { loop_->enable_learned(on); }
@@ -95,6 +95,7 @@ class ClosedLoop {
     std::vector<PushReaction> reactions_;
     std::size_t known_actions_ = 0;
     bool pushed_ = false;
+    bool answered_ = true;                ///< there was a reaction to the last push
     double push_s_ = -longest_reaction_s; ///< begin of the last push
     Readings readings_;
     std::int64_t bus_set_ns_ = 0; ///< offset of the loop's clock from the clock that schedules the ticks

@@ -9,16 +9,14 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr std::size_t most_actions = 64;
-
 /// A position with a value that is not finite counts as missing.
 bool has_position(const LoopInput& input) { return input.position != nullptr && input.position->allFinite(); }
 
 /// Returns whether the last output of feedback and observer is unreliable because something blocked the arm
 /// or a reading was wrong.
-bool opposed(StopCause cause, const std::vector<TakenAction>& actions) {
-    const bool pushed = cause == StopCause::finding && !actions.empty() &&
-                        (actions.back().cause == Cause::contact || actions.back().cause == Cause::frozen);
+bool opposed(StopCause cause, const std::optional<TakenAction>& stop) {
+    const bool pushed = cause == StopCause::finding && stop &&
+                        (stop->cause == Cause::contact || stop->cause == Cause::frozen);
     return pushed || cause == StopCause::following_error || cause == StopCause::torque_limit ||
            cause == StopCause::frozen_encoder;
 }
@@ -49,7 +47,6 @@ ControlLoop::ControlLoop(LoopConfig config, FeedForward feed_forward, std::uniqu
     references_.resize(std::size_t{1} + static_cast<std::size_t>(config_.delay_ticks) + SampleClock::max_age);
     references_.front() = task_.next();
     commands_.resize(static_cast<std::size_t>(config_.delay_ticks) + 1);
-    actions_.reserve(most_actions + 1); // including the one that stops the loop
 }
 
 const Reference& ControlLoop::measured_reference(int ago) const noexcept {
@@ -63,19 +60,19 @@ const JointVector& ControlLoop::tick(const LoopInput& input) {
     position_tick_ = has_position(input) ? counters_.ticks : position_tick_;
     if (state() == LoopState::running) { // the reference advances with time, not with measurements
         ++tick_;
-        references_[tick_ % references_.size()] = next_reference();
+        references_[tick_ % references_.size()] = rest_.position.size() > 0 ? rest_ : task_.next();
     }
     sense(input);
     if (feedback_.position().size() > 0) {
         error_ = feedback_.error();
         watch_.move(feedback_, command_);
     }
-    const bool found = !actions_.empty() && actions_.back().action == FindingAction::stop;
+    const bool found = actions_.stop().has_value();
     const StopCause joint = watch_.cause() == StopCause::none && found ? StopCause::finding : watch_.cause();
     const LoopState state =
         safe_stop_.tick({feedback_.complete(), input.deadline_missed, input.bus_lost, input.stop_requested,
                          input.returning, joint, feedback_.longest_silence()},
-                        error_);
+                        yields_ ? zero_ : error_);
     if (state == LoopState::running) {
         follow();
     } else if (state != LoopState::waiting && moved()) {
@@ -151,44 +148,50 @@ void ControlLoop::follow() {
     meet_contact();
 }
 
-void ControlLoop::note(Cause cause, int joint, FindingAction action) {
-    if (actions_.size() < most_actions || action == FindingAction::stop) {
-        actions_.push_back({config_.period_s * static_cast<double>(tick_), cause, joint, action});
-    }
-}
-
 void ControlLoop::meet_contact() {
     const int joint = feed_forward_.contact_joint();
-    if (joint >= 0 && !touched_ && config_.on_contact != FindingAction::report) {
-        note(Cause::contact, joint, config_.on_contact);
-        touched_ = config_.on_contact != FindingAction::stop;
+    const bool contact = joint >= 0;
+    const FindingAction action = config_.on_contact;
+    calm_for_s_ = contact ? 0 : calm_for_s_ + config_.period_s;
+    const bool begins = action == FindingAction::yield ? !yields_ : !touched_;
+    if (contact && begins && action != FindingAction::report) {
+        actions_.add({time_s(), Cause::contact, joint, action});
+    }
+    if (contact && !touched_ && (action == FindingAction::hold || action == FindingAction::yield)) {
+        touched_ = true;
         task_.pause();
+        observer_.restart(); // its disturbance contains the push
     }
-    calm_for_s_ = joint >= 0 ? 0 : calm_for_s_ + config_.period_s;
-    contact_for_s_ = joint >= 0 ? contact_for_s_ + config_.period_s : 0;
-    if (touched_ && contact_for_s_ >= longest_contact_s) {
-        note(Cause::contact, joint, FindingAction::stop);
-    }
-    if (touched_ && calm_for_s_ >= calm_s) {
-        touched_ = false;
-        task_.resume(config_.on_contact == FindingAction::yield ? feedback_.position()
-                                                                : reference().position);
-        observer_.restart();
-        recovery_ = recovery_ticks;
+    if (action == FindingAction::yield) {
+        yield(contact);
     }
 }
 
-Reference ControlLoop::next_reference() {
-    if (touched_ && config_.on_contact == FindingAction::yield) {
-        return {feedback_.position(), zero_, zero_};
+void ControlLoop::yield(bool contact) {
+    if (yields_ && calm_for_s_ >= calm_s) {
+        rest_here();
     }
-    return task_.next();
+    yields_ = contact || (yields_ && calm_for_s_ < calm_s);
+}
+
+void ControlLoop::rest_here() {
+    const JointVector distance = feedback_.position() - reference().position;
+    for (Reference& reference : references_) { // the whole ring: the readings of a delay belong to it, too
+        reference.position += distance;
+    }
+    feedback_.move_reference(distance);
+    watch_.move_reference(distance);
+    rest_ = {reference().position, zero_, zero_};
 }
 
 JointVector ControlLoop::compliant_torque() {
-    const JointVector gravity = feed_forward_.gravity(feedback_.position());
-    const bool yields = config_.on_contact == FindingAction::yield && calm_for_s_ == 0;
-    return yields ? gravity : JointVector(gravity + feedback_.torque());
+    JointVector torque = feed_forward_.gravity(feedback_.position());
+    if (!yields_) {
+        torque += feedback_.torque();
+    } else if (calm_for_s_ > 0) { // the reference rests: this brakes the arm
+        torque += config_.gains.velocity.cwiseProduct(feedback_.error_rate());
+    }
+    return torque;
 }
 
 JointVector ControlLoop::slowly(const JointVector& torque) const {
@@ -209,7 +212,7 @@ void ControlLoop::act() {
     }
     acted_number_ = verdict->number;
     acted_on_ = verdict->cause;
-    note(verdict->cause, verdict->joint, action);
+    actions_.add({time_s(), verdict->cause, verdict->joint, action});
     if (action == FindingAction::relearn) {
         feed_forward_.relearn();
     } else if (action == FindingAction::compensate) {
@@ -288,7 +291,7 @@ JointVector ControlLoop::holding_torque() {
         where.position[joint] = damped(joint) ? feedback_.position()[joint] : where.position[joint];
     }
     JointVector torque = feed_forward_.holding(where);
-    if (!opposed(safe_stop_.cause(), actions_)) {
+    if (!opposed(safe_stop_.cause(), actions_.stop())) {
         torque += Eigen::Map<const Eigen::VectorXd>(observer_.lasting().data(), torque.size());
     }
     for (Eigen::Index joint = 0; joint < torque.size(); ++joint) {

@@ -65,12 +65,13 @@ struct LoopCounters {
 /// regular ticks that did not need it. It blends in the correction at the first reading after a gap. It acts
 /// for a few ticks only and does not change the loop's gain and phase while ticks are regular.
 ///
-/// A contact (LoopConfig::on_contact) pauses the motion. The command changes, by at most a torque limit per
-/// `stop_time_s`, to the nominal gravity torque at the measured position, and for `hold` that of the gains
-/// about the stopped reference. Observer, learned torque and friction add nothing. After the end of the
-/// contact `yield` brakes the arm with the velocity gain. `calm_s` after the end of the contact the observer
-/// starts again at zero, and the motion continues (PausableTask). A contact that lasts for
-/// `longest_contact_s` ends in the safe stop: somebody may be caught by the arm.
+/// A contact (LoopConfig::on_contact) ends the motion on its path (PausableTask); the loop never continues it
+/// by itself. The command changes, by at most a torque limit per `stop_time_s`, to the gravity torque of the
+/// nominal body and the compensated offsets at the measured position, and for `hold` that of the gains about
+/// the stopped reference. Observer, learned torque and friction add nothing. `yield` has no torque of the
+/// gains during the contact, and that of the velocity gain after it. `calm_s` after the end of the contact
+/// the reference moves to the measured position, and the arm holds there, until a contact lets it yield
+/// again. While it yields there is no following error.
 ///
 /// Stopping: every joint receives a reference that brakes from its present position and velocity to rest
 /// within `stop_time_s`. The command changes, by at most a torque limit per `stop_time_s`, to the sum of
@@ -100,7 +101,6 @@ class ControlLoop {
     static constexpr double brake_timeout_s = 1;
     static constexpr double give_up_s = 1;
     static constexpr double calm_s = 0.5;
-    static constexpr double longest_contact_s = 2.5; ///< before the detector takes it for a change of the arm
 
     ControlLoop(LoopConfig config, FeedForward feed_forward, std::unique_ptr<Task> task);
 
@@ -111,8 +111,10 @@ class ControlLoop {
     StopCause cause() const noexcept { return safe_stop_.cause(); }
     /// Joint (from 0) that caused overspeed, torque_limit or frozen_encoder.
     Eigen::Index stopped_by() const noexcept { return watch_.joint(); }
-    /// Reactions to findings and contacts except `report`; the first 64.
-    const std::vector<TakenAction>& actions() const noexcept { return actions_; }
+    /// Reactions to findings and contacts except `report`; the first 64, and the one that stops the loop.
+    const std::vector<TakenAction>& actions() const noexcept { return actions_.list(); }
+    /// Reaction that stops the loop; empty: none.
+    const std::optional<TakenAction>& stopping_action() const noexcept { return actions_.stop(); }
     /// Returns whether the program should close the arm's brakes; stays true.
     bool brake_requested() const noexcept { return brake_tick_.has_value(); }
     /// Returns whether the torque has ended: in StopMode::limp, after the brakes had time to close.
@@ -146,12 +148,14 @@ class ControlLoop {
     void follow();
     /// Reacts to the monitor's findings, once per change and cause.
     void act();
-    /// Adds to the list of reactions.
-    void note(Cause cause, int joint, FindingAction action);
-    /// Begins or ends the reaction to a contact.
+    /// Time since the beginning of the motion.
+    double time_s() const noexcept { return config_.period_s * static_cast<double>(tick_); }
+    /// Begins the reaction to a contact.
     void meet_contact();
-    /// Returns the next reference: that of the task, or the arm's position while it yields.
-    Reference next_reference();
+    /// Begins to yield at a contact, and ends that after it.
+    void yield(bool contact);
+    /// Holds the arm at its measured position from now on.
+    void rest_here();
     /// Returns the torque during a contact.
     JointVector compliant_torque();
     /// Returns `torque`, limited to a change of a torque limit per `stop_time_s` since the last command.
@@ -198,10 +202,11 @@ class ControlLoop {
     std::optional<std::uint64_t> stopped_tick_, brake_tick_;
     std::uint64_t position_tick_ = 0; ///< tick of the last sample
     bool told_ = false;               ///< whether a stop was requested
-    bool touched_ = false;            ///< the motion is paused because of a contact
+    bool touched_ = false;            ///< a contact has ended the motion
+    bool yields_ = false;             ///< the arm may be pushed
     double calm_for_s_ = 0;           ///< since the end of the contact
-    double contact_for_s_ = 0;        ///< since the begin of the contact
-    std::vector<TakenAction> actions_;
+    Reference rest_;                  ///< where the arm holds after it has yielded; empty before
+    TakenActions actions_;
     std::size_t acted_number_ = 0;    ///< number of the last change with a reaction …
     Cause acted_on_ = Cause::unknown; ///< … and its cause
     LoopCounters counters_;

@@ -106,4 +106,14 @@ bool FindingActions::any() const noexcept {
     return std::ranges::any_of(actions_, [](FindingAction one) { return one != FindingAction::report; });
 }
 
+void TakenActions::add(const TakenAction& action) {
+    const bool stops = action.action == FindingAction::stop && !stop_;
+    if (stops) {
+        stop_ = action;
+    }
+    if (taken_.size() < most || stops) {
+        taken_.push_back(action);
+    }
+}
+
 } // namespace dfdyn::tools

@@ -4,7 +4,9 @@
 #include "dfdyn/monitor/cause.hpp"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +18,8 @@ enum class FindingAction : std::uint8_t {
     relearn,    ///< resets the learner's covariance to the prior, so that it quickly follows new measurements
     compensate, ///< adds the estimated offset to the nominal torque
     stop,       ///< stops the loop, see StopCause::finding
-    hold,       ///< of a contact: stops on the path, with gravity torque and feedback; continues after it
-    yield,      ///< of a contact: gravity torque alone; returns to the path after it
+    hold,       ///< of a contact: stops on the path and stays there, with gravity torque and feedback
+    yield,      ///< of a contact: gravity torque alone; holds after it where the arm is then
 };
 
 const char* name(FindingAction action) noexcept;
@@ -57,6 +59,24 @@ struct TakenAction {
     Cause cause = Cause::unknown;
     int joint = -1; ///< from 0; -1: no particular joint
     FindingAction action = FindingAction::report;
+};
+
+/// Reactions of a loop: the first 64, and the one that stops it.
+class TakenActions {
+  public:
+    TakenActions() { taken_.reserve(most + 1); }
+
+    void add(const TakenAction& action);
+
+    const std::vector<TakenAction>& list() const noexcept { return taken_; }
+    /// Returns the first reaction that stops the loop, whatever followed it; empty: none.
+    const std::optional<TakenAction>& stop() const noexcept { return stop_; }
+
+  private:
+    static constexpr std::size_t most = 64;
+
+    std::vector<TakenAction> taken_;
+    std::optional<TakenAction> stop_;
 };
 
 } // namespace dfdyn::tools

@@ -31,6 +31,12 @@ class JointWatch {
     void read(const JointVector& position, const JointVector& reference, const PositionFeedback& feedback,
               const std::vector<bool>& missing);
 
+    /// Adds `distance` to the references so far, so that a moved reference is no motion that a joint missed.
+    void move_reference(const JointVector& distance) {
+        lowest_ += distance;
+        highest_ += distance;
+    }
+
     /// Evaluates the speed after the feedback has used the reading, and the previous tick's command.
     void move(const PositionFeedback& feedback, const JointVector& command);
 

@@ -11,7 +11,6 @@ PausableTask::PausableTask(std::unique_ptr<Task> task, double period_s)
 
 Reference PausableTask::next() {
     Reference reference = on_path();
-    add_distance(reference);
     step_rate();
     phase_ += rate_;
     if (phase_ >= 1) {
@@ -21,37 +20,9 @@ Reference PausableTask::next() {
     return reference;
 }
 
-void PausableTask::pause() {
-    pausing_ = true;
-    if (distance_.size() > 0) {
-        distance_ *= 1 - smooth_step(since_s_, return_s_).value;
-        since_s_ = return_s_ = 0; // the distance stays
-    }
-}
-
-void PausableTask::resume(const JointVector& position) {
-    constexpr double seconds_per_rad = 4; // peak of the polynomial's rate: 1.875 / duration
-    pausing_ = false;
-    rate_ = acceleration_ = 0;
-    distance_ = JointVector();
-    distance_ = position - on_path().position;
-    since_s_ = 0;
-    return_s_ = std::max(continue_s, seconds_per_rad * distance_.cwiseAbs().maxCoeff());
-}
-
 void PausableTask::step_rate() {
     const double before = rate_;
-    if (pausing_) {
-        rate_ = std::max(rate_ - period_s_ / pause_s, 0.0);
-    } else if (return_s_ > 0) {
-        since_s_ += period_s_;
-        rate_ = smooth_step(since_s_, return_s_).value;
-        if (since_s_ >= return_s_) {
-            rate_ = 1;
-            return_s_ = 0;
-            distance_ = JointVector();
-        }
-    }
+    rate_ = pausing_ ? std::max(rate_ - period_s_ / pause_s, 0.0) : rate_;
     acceleration_ = (rate_ - before) / period_s_;
 }
 
@@ -67,16 +38,6 @@ Reference PausableTask::on_path() const {
     return {from * before_.position + to * after_.position + from_rate * before_.velocity +
                 to_rate * after_.velocity,
             rate_ * velocity, rate_ * rate_ * acceleration + acceleration_ * velocity};
-}
-
-void PausableTask::add_distance(Reference& reference) const {
-    if (distance_.size() == 0) {
-        return;
-    }
-    const SmoothStep step = return_s_ > 0 ? smooth_step(since_s_, return_s_) : SmoothStep{0, 0, 0};
-    reference.position += (1 - step.value) * distance_;
-    reference.velocity -= step.rate * distance_;
-    reference.acceleration -= step.acceleration * distance_;
 }
 
 } // namespace dfdyn::tools

@@ -63,7 +63,9 @@ bool PositionFeedback::plausible(Eigen::Index joint, std::int64_t tick, double p
         return true;
     }
     const double time_s = period_s_ * static_cast<double>(tick - newest_tick_[j]);
-    const double surprise = reference.position[joint] - position - error_at(joint, tick);
+    // without the fading of error_at, which at a high rate would be an acceleration
+    const double expected = reading_error_[joint] + bounded_rate(joint) * time_s;
+    const double surprise = reference.position[joint] - position - expected;
     return std::abs(surprise) <= bounds_.acceleration[joint] * time_s * time_s + 4 * filter_.noise_bound;
 }
 
@@ -86,6 +88,13 @@ void PositionFeedback::observe(int ticks_ago, const JointVector& position, const
     if (position_.size() > 0 || std::ranges::all_of(held_, [](int held) { return held > 0; })) {
         position_ = newest_;
     }
+}
+
+void PositionFeedback::move_reference(const JointVector& distance) {
+    for (std::size_t i = 0; i < reference_.size(); ++i) {
+        reference_[i] += distance[static_cast<Eigen::Index>(i) / window_];
+    }
+    reading_error_ += distance;
 }
 
 double PositionFeedback::error_at(Eigen::Index joint, std::int64_t tick) const noexcept {

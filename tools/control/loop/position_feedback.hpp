@@ -50,6 +50,10 @@ class PositionFeedback {
     void observe(int ticks_ago, const JointVector& position, const Reference& reference,
                  const std::vector<bool>* missing = nullptr);
 
+    /// Adds `distance` to the references of the readings so far: a reference that was moved is no reading
+    /// that jumped.
+    void move_reference(const JointVector& distance);
+
     /// Returns the feedback torque, N·m.
     JointVector torque() const;
 

@@ -45,7 +45,7 @@ void print_loop(std::ostream& out, const ControlLoop& loop) {
         << counters.coasted << " of them without position; " << counters.limited << " at a torque limit; "
         << name(loop.state()) << " (" << name(loop.cause());
     if (loop.cause() == StopCause::finding) {
-        out << ": " << described(loop.actions().back());
+        out << ": " << described(*loop.stopping_action());
     } else if (loop.cause() >= StopCause::overspeed) {
         out << " of joint " << loop.stopped_by() + 1;
     }

@@ -276,8 +276,8 @@ std::vector<double> comparable_peaks(const std::array<std::vector<double>, block
     return peaks;
 }
 
-/// Returns the factor from the mean of `count` exponential values to the 60 % quantile of its distribution,
-/// by the approximation of Wilson and Hilferty (1931).
+/// Returns the factor from the mean of `count` exponential values to the upper 60 % confidence limit of the
+/// mean, by the approximation of Wilson and Hilferty (1931).
 double upper_mean(std::size_t count) {
     constexpr double deviation = 0.2533; // of the normal distribution's 40 % quantile
     const double part = 1.0 / (9 * static_cast<double>(count));

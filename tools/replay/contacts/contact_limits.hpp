@@ -23,10 +23,10 @@ namespace dfdyn::tools {
 /// accelerations are usual up to their 99.5 % quantile.
 ///
 /// Then all limits are scaled to the excess that is exceeded `contact_rate_per_hour` times, from an
-/// exponential tail of its largest values in each second (of fewer than ten peaks, the 60 % quantile of its
-/// mean), times 1.08 for motions that the training did not have. The shares and factors were chosen on the
-/// UR5 recordings No5 to No9 and one simulated UR5; which blocks are left out, with a TX40 in sight. Cost:
-/// nine ticks per row.
+/// exponential tail of its largest values in each second (of fewer than ten peaks, with the upper 60 %
+/// confidence limit of the mean), times 1.08 for motions that the training did not have. The shares and
+/// factors were chosen on the UR5 recordings No5 to No9 and one simulated UR5; which blocks are left out,
+/// with a TX40 in sight. Cost: nine ticks per row.
 ContactModel measure_contact_limits(const TrainedModel& model, std::span<const Recording> recordings);
 
 } // namespace dfdyn::tools

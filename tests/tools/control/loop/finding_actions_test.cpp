@@ -144,4 +144,29 @@ TEST_CASE("a change with the action stop stops the loop within four seconds and 
     CHECK(outcome.end_s < 44);
 }
 
+TEST_CASE("a noted stop is kept whatever is noted after it") {
+    TakenActions actions;
+    CHECK_FALSE(actions.stop());
+    actions.add({1, Cause::friction, 0, FindingAction::stop});
+    actions.add({1, Cause::contact, 1, FindingAction::hold}); // in the same tick
+    actions.add({1, Cause::contact, 1, FindingAction::stop});
+    REQUIRE(actions.stop());
+    CHECK(actions.stop()->cause == Cause::friction);
+    CHECK(actions.list().size() == 3);
+    for (int i = 0; i < 100; ++i) {
+        actions.add({2, Cause::contact, 1, FindingAction::yield});
+    }
+    CHECK(actions.list().size() == 64);
+}
+
+TEST_CASE("a stop is in a full list of reactions, too") {
+    TakenActions actions;
+    for (int i = 0; i < 100; ++i) {
+        actions.add({2, Cause::friction, 1, FindingAction::relearn});
+    }
+    actions.add({3, Cause::bias, 0, FindingAction::stop});
+    CHECK(actions.list().size() == 65);
+    CHECK(actions.stop()->cause == Cause::bias);
+}
+
 } // namespace finding_actions_test

@@ -122,4 +122,19 @@ TEST_CASE("a reading that would need an impossible acceleration is reported as i
     CHECK_FALSE(loop.regular());
 }
 
+TEST_CASE("a reference that is moved is no reading that jumped") {
+    PositionFeedback loop = after(20);
+    const double rate = loop.error_rate()[0];
+    const JointVector distance = JointVector::Constant(2, 0.3);
+    loop.move_reference(distance);
+    CHECK(loop.error()[0] == Approx(0.31));
+    Reference moved = reference(20);
+    moved.position += distance;
+    loop.advance();
+    loop.observe(0, position(20), moved);
+    CHECK(loop.regular());
+    CHECK(loop.error()[0] == Approx(0.31));
+    CHECK(loop.error_rate()[0] == Approx(rate).margin(1e-9));
+}
+
 } // namespace position_feedback_test
