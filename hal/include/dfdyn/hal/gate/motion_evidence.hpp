@@ -52,16 +52,22 @@ class MotionEvidence {
         }
     };
 
-    /// Whether a motion that was seen shortly before, trusted or not, may lead to this reading.
+    /// Returns whether a motion that was seen shortly before, trusted or not, may lead to this reading. One
+    /// that itself began at the encoder's zero does not explain why the readings are there.
     [[nodiscard]] constexpr bool is_expected(const EncoderReading& reading) const noexcept {
         const auto leads = [&](const MotionRun& before, std::int64_t longest_ns) {
             return !before.empty() && reading.stamp_ns - before.last().stamp_ns <= longest_ns &&
                    tolerance_.reaches(before.last(), reading) &&
                    comparison_.reaches_after_silence(before, reading);
         };
+        const auto untrusted_leads = [&](const MotionRun& before, std::int64_t longest_ns) {
+            return leads(before, longest_ns) &&
+                   !begins_at_zero(before.first(), before.begin_line(0, config_.period_ns));
+        };
         const std::int64_t short_ns = 3 * config_.max_age_ns;
-        return leads(trusted_, short_ns) || leads(refused_, short_ns) || leads(candidate_.run(), short_ns) ||
-               leads(candidate_.other(), short_ns) || leads(candidate_.before(), 2 * short_ns);
+        return leads(trusted_, short_ns) || untrusted_leads(refused_, short_ns) ||
+               untrusted_leads(candidate_.run(), short_ns) || untrusted_leads(candidate_.other(), short_ns) ||
+               untrusted_leads(candidate_.before(), 2 * short_ns);
     }
 
     /// Returns true if the last trusted reading is recent.
@@ -82,11 +88,11 @@ class MotionEvidence {
         return trusted_.leads_to(reading, tolerance_, longest_s());
     }
 
-    /// Whether the velocity limit allows what the acceleration limit does not, from one reading to the next:
-    /// an impact, or a clock that was set by a few milliseconds.
+    /// Returns whether the velocity limit allows what the acceleration limit does not, from one reading to
+    /// the next: an impact, or a clock that was set by a few milliseconds.
     [[nodiscard]] constexpr bool jumped_little() const noexcept {
-        return !zero_lost_ && recently(trusted_.last().stamp_ns, refused_.first().stamp_ns) &&
-               tolerance_.reaches(trusted_.last(), refused_.first());
+        return !zero_lost_ && tolerance_.reaches(trusted_.last(), refused_.first()) &&
+               refused_.first().stamp_ns - trusted_.last().stamp_ns <= 2 * config_.period_ns;
     }
 
     /// Whether the readings that are refused are those of an encoder that has lost its zero, not of a fault
