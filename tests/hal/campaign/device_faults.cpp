@@ -21,7 +21,7 @@ void zero_positions(FaultSite& site) {
     const std::size_t joint = site.pick_joint();
     site.change([&](Sent& sent) {
         if (site.has_position(sent, joint)) {
-            sent.frozen = true;
+            sent.uninformative = true;
             site.show_position(sent, joint, site.arm.zero_rad[joint]);
         }
     });
@@ -38,7 +38,7 @@ void restart_absolute(FaultSite& site) {
     silent.remove([&](const Sent& sent) { return site.is_joint(sent, joint); });
     zero.change([&](Sent& sent) {
         if (site.has_position(sent, joint)) {
-            sent.frozen = true;
+            sent.uninformative = true;
             site.show_position(sent, joint, site.arm.zero_rad[joint]);
         }
     });
@@ -51,9 +51,8 @@ void restart_incremental(FaultSite& site) {
         return site.is_joint(sent, joint) && sent.true_ns >= site.begin_ns && sent.true_ns < back_ns;
     });
     std::optional<double> begin_rad;
-    for (Sent& sent : site.traffic) {
-        const bool begun = begin_rad.has_value() || !sent.other_sender;
-        if (site.has_position(sent, joint) && sent.true_ns >= back_ns && begun) {
+    for (Sent& sent : site.traffic) { // of a second sender the encoder is another one
+        if (site.has_position(sent, joint) && !sent.other_sender && sent.true_ns >= back_ns) {
             const double now_rad = sent.shown[joint].position_rad;
             begin_rad = begin_rad.value_or(now_rad);
             site.show_position(sent, joint, now_rad - *begin_rad + site.arm.zero_rad[joint]);
@@ -70,7 +69,7 @@ void freeze_encoder(FaultSite& site) {
     if (site.wait_for_motion(joint, least_rad_s)) {
         site.change([&](Sent& sent) {
             if (site.has_position(sent, joint)) {
-                sent.frozen = kept_rad.has_value();
+                sent.uninformative = kept_rad.has_value();
                 kept_rad = kept_rad.value_or(sent.shown[joint].position_rad);
                 site.show_position(sent, joint, *kept_rad);
             }

@@ -37,7 +37,9 @@ struct Claim {
     hal::ValueOrigin origin;
 };
 
-/// Compares the values of one kind of arm with the truth.
+/// Compares the values of one kind of arm with the truth. A frame that is `uninformative` ends no time
+/// without a right reading, even where its position happens to be the true one: a receiver learns nothing
+/// from zeros of a device that has no position yet, or from a position that is repeated.
 class Judge {
   public:
     Judge(const CampaignArm& arm, const Truth& truth, const hal::MotionLimits& limits,

@@ -49,8 +49,8 @@ JointSight::JointSight(const FaultSite& site, std::size_t joint) {
               .stamp_ns = sent.frame.stamp_ns,
               .time_ns = time_ns,
               .error_rad = error,
-              .right = !sent.frozen && is_between(shown, site.truth.position(joint, t - late_s),
-                                                  site.truth.position(joint, t), 1e-7)});
+              .right = !sent.uninformative && is_between(shown, site.truth.position(joint, t - late_s),
+                                                         site.truth.position(joint, t), 1e-7)});
     }
     std::ranges::stable_sort(blind_, {}, &Blind::time_ns);
 }

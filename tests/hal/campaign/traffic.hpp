@@ -31,11 +31,11 @@ struct Sent {
     std::size_t unit = 0; ///< board, from 0
     std::size_t part = 0; ///< which frame of the board or of the wrench, from 0
     int cycle = 0;
-    wire::Joints shown{};      ///< by a frame of joints
-    std::int64_t clock_ns = 0; ///< by which the clock of the stamps had been set
-    bool corrupted = false;    ///< a bit of its data is flipped
-    bool frozen = false;       ///< it repeats a position, or has none yet, which says nothing of the joint
-    bool other_sender = false; ///< of a second sender: not of the joint's own encoder
+    wire::Joints shown{};       ///< by a frame of joints
+    std::int64_t clock_ns = 0;  ///< by which the clock of the stamps had been set
+    bool corrupted = false;     ///< a bit of its data is flipped
+    bool uninformative = false; ///< its position is an old one, or none yet: it says nothing of the joint
+    bool other_sender = false;  ///< of a second sender: not of the joint's own encoder
 };
 using Traffic = std::vector<Sent>;
 

@@ -131,6 +131,17 @@ TEST_CASE("an impact changes the velocity at once and is followed after ten read
     CHECK(last == Reason::ok);
 }
 
+TEST_CASE(
+    "a jump within the velocity limit is believed in the end only if no more than one reading was lost") {
+    for (const int lost : {0, 1, 2, 5}) {
+        CAPTURE(lost);
+        MotionGate gate = ready_gate();
+        const double jump_rad = 8e-3 * (lost + 1);
+        const Reason last = follow(gate, 20 + lost, 900, jump_rad);
+        CHECK(last == (lost < 2 ? Reason::ok : Reason::position_lost));
+    }
+}
+
 TEST_CASE("a frozen encoder is refused while the joint cannot have stopped; a joint at rest is not") {
     MotionGate gate = ready_gate();
     for (int tick = 20; tick < 500; ++tick) {

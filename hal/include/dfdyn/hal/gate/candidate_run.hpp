@@ -24,14 +24,14 @@ class CandidateRun {
         }
         const bool recent = !run_.empty() && comparison.near(run_.last().stamp_ns, reading.stamp_ns);
         const bool other_goes_on = comparison.continues(other_, reading);
-        if (recent && !(other_goes_on && other_.readings() + other_.zeros() >= enough)) {
+        if (recent && !(other_goes_on && other_.readings() + other_.zeros() >= min_other_readings)) {
             other_ = other_goes_on ? other_ : MotionRun();
             other_.extend(reading, tolerance);
             return Step::is_off;
         }
         const bool repeats = run_.first().position_rad == run_.last().position_rad; // shows nothing
         const bool apart = recent && !repeats && !tolerance.reaches(run_.last(), reading);
-        contradicted_ = contradicted_ || (apart && run_.readings() + run_.zeros() >= enough);
+        contradicted_ = contradicted_ || (apart && run_.readings() + run_.zeros() >= min_run_readings);
         before_ = run_.empty() ? before_ : run_;
         run_ = other_goes_on ? other_ : MotionRun();
         other_ = {};
@@ -64,7 +64,8 @@ class CandidateRun {
     [[nodiscard]] constexpr bool contradicted() const noexcept { return contradicted_; }
 
   private:
-    static constexpr int enough = 2; ///< readings of a run that are no accident, and one more
+    static constexpr int min_other_readings = 2; ///< of the other run before the one that replaces the run
+    static constexpr int min_run_readings = 2;   ///< of a run that its successor contradicts
 
     MotionRun run_;
     MotionRun before_; ///< the last run that ended

@@ -172,8 +172,8 @@ class MotionGate : private MotionEvidence {
         return follow(reading, disturbed_ ? Reason::position_jump : Reason::qualifying);
     }
 
-    /// Whether a reading belongs to those that are refused, in whichever turn: tightly while they are recent,
-    /// after a silence if it can. Takes it.
+    /// Returns whether a reading belongs to those that are refused, in whichever turn: tightly while they are
+    /// recent, after a silence if it can. Takes it.
     constexpr bool still_lost(EncoderReading reading) noexcept {
         unwrap_near(reading, refused_.last().position_rad);
         if (refused_time_known_ && comparison_.near(refused_.last().stamp_ns, reading.stamp_ns)) {

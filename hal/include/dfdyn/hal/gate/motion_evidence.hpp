@@ -52,16 +52,22 @@ class MotionEvidence {
         }
     };
 
-    /// Whether a motion that was seen shortly before, trusted or not, may lead to this reading.
+    /// Returns whether a motion that was seen shortly before, trusted or not, may lead to this reading. One
+    /// that itself began at the encoder's zero does not explain why the readings are there.
     [[nodiscard]] constexpr bool is_expected(const EncoderReading& reading) const noexcept {
         const auto leads = [&](const MotionRun& before, std::int64_t longest_ns) {
             return !before.empty() && reading.stamp_ns - before.last().stamp_ns <= longest_ns &&
                    tolerance_.reaches(before.last(), reading) &&
                    comparison_.reaches_after_silence(before, reading);
         };
+        const auto untrusted_leads = [&](const MotionRun& before, std::int64_t longest_ns) {
+            return leads(before, longest_ns) &&
+                   !begins_at_zero(before.first(), before.begin_line(0, config_.period_ns));
+        };
         const std::int64_t short_ns = 3 * config_.max_age_ns;
-        return leads(trusted_, short_ns) || leads(refused_, short_ns) || leads(candidate_.run(), short_ns) ||
-               leads(candidate_.other(), short_ns) || leads(candidate_.before(), 2 * short_ns);
+        return leads(trusted_, short_ns) || untrusted_leads(refused_, short_ns) ||
+               untrusted_leads(candidate_.run(), short_ns) || untrusted_leads(candidate_.other(), short_ns) ||
+               untrusted_leads(candidate_.before(), 2 * short_ns);
     }
 
     /// Returns true if the last trusted reading is recent.
@@ -82,15 +88,15 @@ class MotionEvidence {
         return trusted_.leads_to(reading, tolerance_, longest_s());
     }
 
-    /// Whether the velocity limit allows what the acceleration limit does not, from one reading to the next:
-    /// an impact, or a clock that was set by a few milliseconds.
+    /// Returns whether the velocity limit allows what the acceleration limit does not, from one reading to
+    /// the next: an impact, or a clock that was set by a few milliseconds.
     [[nodiscard]] constexpr bool jumped_little() const noexcept {
-        return !zero_lost_ && recently(trusted_.last().stamp_ns, refused_.first().stamp_ns) &&
-               tolerance_.reaches(trusted_.last(), refused_.first());
+        return !zero_lost_ && tolerance_.reaches(trusted_.last(), refused_.first()) &&
+               refused_.first().stamp_ns - trusted_.last().stamp_ns <= 2 * config_.period_ns;
     }
 
-    /// Whether the readings that are refused are those of an encoder that has lost its zero, not of a fault
-    /// that passes: they began at the device's zero, or are very many.
+    /// Returns whether the readings that are refused are those of an encoder that has lost its zero, not of a
+    /// fault that passes: they began at the device's zero, or are very many.
     [[nodiscard]] constexpr bool has_lost_zero() const noexcept {
         return zero_lost_ || refused_.readings() >= most_readings();
     }
@@ -119,23 +125,23 @@ class MotionEvidence {
     /// The run that is not decided yet.
     [[nodiscard]] constexpr const MotionRun& run() const noexcept { return candidate_.run(); }
 
-    /// Whether a silence ends a run of an encoder that counts from its zero, too short to be judged.
+    /// Returns whether a silence ends a run of an encoder that counts from its zero, too short to be judged.
     [[nodiscard]] constexpr bool broke_off_at_zero(const EncoderReading& reading) const noexcept {
-        constexpr int enough = 3;
-        return !trusted_.empty() && run().readings() >= enough &&
+        constexpr int min_readings = 3;
+        return !trusted_.empty() && run().readings() >= min_readings &&
                !comparison_.near(run().last().stamp_ns, reading.stamp_ns) &&
                begins_at_zero(run().first(), run().begin_line(0, config_.period_ns)) &&
                !comes_from_trusted(run(), expected_);
     }
 
-    /// Whether a run that begins with this reading may be of a frozen encoder.
+    /// Returns whether a run that begins with this reading may be of a frozen encoder.
     [[nodiscard]] constexpr bool may_be_frozen(const EncoderReading& first) const noexcept {
         const bool recent = comparison_.near(trusted_.last().stamp_ns, first.stamp_ns);
         return !trusted_.empty() && (recent || trusted_.moves(tolerance_)) &&
                (!stood_at(first) || trusted_.repeats(first, tolerance_));
     }
 
-    /// Whether the joint was at rest at the last trusted reading, and is still there.
+    /// Returns whether the joint was at rest at the last trusted reading, and is still there.
     [[nodiscard]] constexpr bool stood_at(const EncoderReading& reading) const noexcept {
         return !trusted_.moves(tolerance_) &&
                magnitude(reading.position_rad - trusted_.last().position_rad) <= 2 * reading.step_rad;
@@ -164,7 +170,7 @@ class MotionEvidence {
         return (!time_known_ || connects(trusted_, run)) && (expected || !restarted_at_zero(run));
     }
 
-    /// Whether a joint can have come from the end of one run to the begin of the next.
+    /// Returns whether a joint can have come from the end of one run to the begin of the next.
     [[nodiscard]] constexpr bool connects(const MotionRun& before, const MotionRun& run) const noexcept {
         const std::int64_t disturbed_ns = disturbed_ || lost() ? config_.max_age_ns : 0;
         if (comparison_.near(before.last().stamp_ns + disturbed_ns, run.first().stamp_ns)) {
@@ -174,16 +180,16 @@ class MotionEvidence {
                comparison_.reaches_after_silence(before, run.first());
     }
 
-    /// Whether a run is still of the encoder whose readings are refused: a small jump, or a clock that was
-    /// set by a few milliseconds, does not bring its zero back.
+    /// Returns whether a run is still of the encoder whose readings are refused: a small jump, or a clock
+    /// that was set by a few milliseconds, does not bring its zero back.
     [[nodiscard]] constexpr bool goes_on_from_refused(const MotionRun& run) const noexcept {
         const bool small_jump = comparison_.near(refused_.last().stamp_ns, run.first().stamp_ns) &&
                                 tolerance_.reaches(refused_.last(), run.first());
         return small_jump || connects(refused_, run);
     }
 
-    /// Whether the motion of the joint leads to this reading within the time in which frames are left out
-    /// while the clock is set.
+    /// Returns whether the motion of the joint leads to this reading within the time in which frames are left
+    /// out while the clock is set.
     [[nodiscard]] constexpr bool comes_while_clock_is_set(const EncoderReading& to) const noexcept {
         const MotionLine line = trusted_.end_line(0, config_.period_ns);
         const double way = line.velocity * clock_s;
@@ -192,7 +198,7 @@ class MotionEvidence {
         return line.span_s > 0 && off >= std::min(way, 0.0) - error && off <= std::max(way, 0.0) + error;
     }
 
-    /// Whether a run begins where an encoder does that was switched on.
+    /// Returns whether a run begins where an encoder does that was switched on.
     [[nodiscard]] constexpr bool begins_at_zero(const EncoderReading& first,
                                                 const MotionLine& begin) const noexcept {
         const bool hidden = !time_known_ && !comes_while_clock_is_set(first);
@@ -200,8 +206,8 @@ class MotionEvidence {
                               hidden ? clock_s : 0);
     }
 
-    /// Whether a run after a silence begins at the device's zero; a joint that stood there before may stand
-    /// there still.
+    /// Returns whether a run after a silence begins at the device's zero; a joint that stood there before may
+    /// stand there still.
     [[nodiscard]] constexpr bool restarted_at_zero(const MotionRun& run) const noexcept {
         constexpr double fastest_boot_s = 0.02;
         const bool long_enough =

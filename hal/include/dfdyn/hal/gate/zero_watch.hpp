@@ -55,14 +55,15 @@ class ZeroWatch {
     [[nodiscard]] constexpr const MotionRun& counted() const noexcept { return counted_; }
 
   private:
-    static constexpr int enough = 5; ///< readings that are no accident
+    static constexpr int min_counted_readings = 5; ///< that show an encoder which counts from its zero
 
-    /// Whether a run goes on from the readings that began at the zero: it is of them, or its line leads back
-    /// to the first or the last of them.
+    /// Returns whether a run goes on from the readings that began at the zero: it is of them, or its line
+    /// leads back to the first or the last of them.
     [[nodiscard]] constexpr bool goes_on(const EncoderReading& first, const MotionLine& begin,
                                          double trusted_velocity) const noexcept {
         const bool within = first.stamp_ns >= counted_.first().stamp_ns &&
-                            first.stamp_ns <= counted_.last().stamp_ns && counted_.readings() >= enough;
+                            first.stamp_ns <= counted_.last().stamp_ns &&
+                            counted_.readings() >= min_counted_readings;
         return within || leads_back(first, begin, trusted_velocity, counted_.first()) ||
                leads_back(first, begin, trusted_velocity, counted_.last());
     }
@@ -79,14 +80,14 @@ class ZeroWatch {
                (begin.span_s <= 0 || magnitude(back_rad) <= tolerance_.error(begin, since_s, first.step_rad));
     }
 
-    /// Whether the readings that are followed began closer to the zero than this one.
+    /// Returns whether the readings that are followed began closer to the zero than this one.
     [[nodiscard]] constexpr bool follows_better(const EncoderReading& reading) const noexcept {
         if (counted_.empty()) {
             return false;
         }
         const double since_s = seconds_between(counted_.last().stamp_ns, reading.stamp_ns);
         const bool closer = magnitude(counted_.first().from_zero_rad) < magnitude(reading.from_zero_rad);
-        return since_s >= 0 && since_s <= memory_s && (closer || counted_.readings() >= enough);
+        return since_s >= 0 && since_s <= memory_s && (closer || counted_.readings() >= min_counted_readings);
     }
 
     /// How far from the zero a joint is after `since_s` and the time until its first reading.
