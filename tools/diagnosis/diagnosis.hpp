@@ -134,7 +134,8 @@ struct DiagnosisWork {
     /// T x m: outputs of the extended model of the whole recording, as `measured`; plain least squares beside
     /// the body of the robot's file where that is better
     Eigen::MatrixXd extended = {};
-    bool gains_known = true; ///< torques were measured, or the torque constants of currents are given
+    Eigen::MatrixXd moving_fit = {}; ///< T x m: plain least squares of the moving rows, as `measured`
+    bool gains_known = true;         ///< torques were measured, or the torque constants of currents are given
 };
 
 /// Returns whether the recording could answer: there are effects to choose from, and a model can be made.

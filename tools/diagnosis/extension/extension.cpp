@@ -79,13 +79,12 @@ void take_least_squares(Extension& extension, const DiagnosisWork& work) {
     const DiagnosisSignals& signals = *work.signals;
     const Eigen::VectorXd stacked =
         stacked_regressor(extension.robot, extension.kind, signals.measured.motion) * extension.bodies;
-    const Eigen::MatrixXd rigid = unstacked(stacked, signals.outputs());
+    const TextbookFit fit =
+        textbook_fit(signals, work.measured, unstacked(stacked, signals.outputs()), signals.rows());
     for (std::size_t output = 0; output < chosen.size(); ++output) {
         if (chosen[output]) {
             const auto at = static_cast<Eigen::Index>(output);
-            const MovingFit fit =
-                fit_moving_rows(signals, work.measured.col(at), rigid.col(at), at, work.gains_known);
-            take_least_squares(extension, work, at, fit.values);
+            take_least_squares(extension, work, at, fit.coefficients.col(at));
         }
     }
 }

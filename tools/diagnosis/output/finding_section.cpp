@@ -59,7 +59,7 @@ PageChart evidence_chart(const DiagnosisWork& work, const Finding& finding, std:
     const Eigen::VectorXd share = finding.share.segment(over.first, over.count);
     Eigen::VectorXd left = work.rest.col(finding.output);
     if (finding.by_least_squares) {
-        left = work.measured.col(finding.output) - work.extended.col(finding.output);
+        left = work.measured.col(finding.output) - work.moving_fit.col(finding.output);
     }
     const Eigen::VectorXd error = share + left.segment(over.first, over.count);
     XyChart chart;

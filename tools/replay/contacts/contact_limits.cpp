@@ -276,10 +276,10 @@ std::vector<double> comparable_peaks(const std::array<std::vector<double>, block
     return peaks;
 }
 
-/// Returns the factor from the mean of `count` exponential values to the upper 60 % confidence limit of the
+/// Returns the factor from the mean of `count` exponential values to the upper 90 % confidence limit of the
 /// mean, by the approximation of Wilson and Hilferty (1931).
 double upper_mean(std::size_t count) {
-    constexpr double deviation = 0.2533; // of the normal distribution's 40 % quantile
+    constexpr double deviation = 1.2816; // of the normal distribution's 10 % quantile
     const double part = 1.0 / (9 * static_cast<double>(count));
     return std::pow(1 - part - deviation * std::sqrt(part), -3);
 }
