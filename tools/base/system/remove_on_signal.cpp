@@ -38,7 +38,9 @@ extern "C" void remove_files_and_end(int signal_number) {
     remove_armed(::unlink);
     while (remove_armed(::rmdir)) { // a folder becomes empty when the folders in it are removed
     }
-    // SA_RESETHAND has restored the default action; delivered when this handler returns
+    // Not SA_RESETHAND: it restores the default action before the handler runs, and a second signal at that
+    // moment ends the program with its files. This one is delivered when the handler returns.
+    std::signal(signal_number, SIG_DFL);
     std::raise(signal_number);
 }
 
@@ -48,7 +50,6 @@ void handle_unless_taken(int signal_number) {
         return;
     }
     action.sa_handler = remove_files_and_end;
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
     sigfillset(&action.sa_mask);
     ::sigaction(signal_number, &action, nullptr);
 }
