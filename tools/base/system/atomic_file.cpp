@@ -5,15 +5,12 @@
 #include "tools/base/system/remove_on_signal.hpp"
 #include "tools/base/text/text.hpp"
 
-#include <array>
 #include <cerrno>
 #include <climits>
-#include <csignal>
 #include <fcntl.h>
 #include <locale>
 #include <optional>
 #include <ostream>
-#include <streambuf>
 #include <string>
 #include <sys/stat.h>
 #include <unistd.h>
