@@ -12,7 +12,6 @@
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <optional>
 
 namespace dfdyn::tools {
 
@@ -146,14 +145,10 @@ auto in_motion(int motion) {
     return [motion](const Deviation& one) { return one.motion == motion; };
 }
 
-/// Returns the larger one of a figure of the trained model's pass and of the median over all passes. Some
-/// held-out blocks have a motion that the others do not determine: their errors are not those of the model.
-double typical(const std::vector<double>& of_passes, std::optional<double> trained) {
-    return std::max(median(of_passes), trained.value_or(0));
-}
-
-/// Returns which passes have at most `most_median` times the trained model's median deviation of a joint.
-std::array<bool, block_count + 1> determined_passes(const Deviations& deviations) {
+/// Returns the deviations of the passes with at most `most_median` times the trained model's median deviation
+/// of a joint. Some held-out blocks have a motion that the others do not determine: their errors are not
+/// those of the model.
+Deviations of_determined_passes(const Deviations& deviations) {
     std::array<std::vector<double>, block_count + 1> sizes;
     for (const Deviation& one : deviations) {
         sizes[one.pass].push_back(one.size);
@@ -163,16 +158,16 @@ std::array<bool, block_count + 1> determined_passes(const Deviations& deviations
     for (std::size_t pass = 0; pass <= block_count; ++pass) {
         determined[pass] = !sizes[pass].empty() && median(sizes[pass]) <= most_median * trained;
     }
-    return determined;
+    Deviations result;
+    std::ranges::copy_if(deviations, std::back_inserter(result),
+                         [&](const Deviation& one) { return determined[one.pass]; });
+    return result;
 }
 
-/// Returns the quantile of `value(deviation)` over those of determined passes that `chosen` accepts; 0 if
-/// there are few.
+/// Returns the quantile of `value(deviation)` over those that `chosen` accepts; 0 if there are few.
 template <class Value, class Chosen>
-double typical_quantile(const Deviations& deviations, Value value, Chosen chosen, double share) {
-    const std::array<bool, block_count + 1> determined = determined_passes(deviations);
-    const std::vector<double> values = values_of(
-        deviations, value, [&](const Deviation& one) { return determined[one.pass] && chosen(one); });
+double quantile_of(const Deviations& deviations, Value value, Chosen chosen, double share) {
+    const std::vector<double> values = values_of(deviations, value, chosen);
     return values.size() < fewest_values ? 0 : quantile(values, share);
 }
 
@@ -193,7 +188,7 @@ Envelope envelope_with(const Deviations& deviations, double relative, double flo
         return std::sqrt(std::max(one.size * one.size - explained * explained, 0.0));
     };
     for (int motion = 0; motion < joint_motion_count; ++motion) {
-        const double tail = typical_quantile(deviations, unexplained, in_motion(motion), envelope_share);
+        const double tail = quantile_of(deviations, unexplained, in_motion(motion), envelope_share);
         envelope.limit[static_cast<std::size_t>(motion)] = std::max(tail, floor);
     }
     envelope.limit[0] = std::max(envelope.limit[0], standing_share * envelope.limit[1]);
@@ -202,12 +197,13 @@ Envelope envelope_with(const Deviations& deviations, double relative, double flo
 
 /// Returns the envelope with the smallest geometric mean of its limits.
 Envelope tightest_envelope(const Deviations& deviations, double least) {
+    const Deviations determined = of_determined_passes(deviations);
     const double floor =
-        std::max(typical_quantile(deviations, &Deviation::size, in_any_motion, floor_share), least);
+        std::max(quantile_of(determined, &Deviation::size, in_any_motion, floor_share), least);
     Envelope tightest;
     double smallest = std::numeric_limits<double>::infinity();
     for (const double relative : relative_choices) {
-        const Envelope envelope = envelope_with(deviations, relative, floor);
+        const Envelope envelope = envelope_with(determined, relative, floor);
         double sum = 0;
         for (const Deviation& one : deviations) {
             sum += std::log(envelope.at(one));
@@ -253,24 +249,23 @@ std::array<std::vector<double>, block_count + 1> excess_peaks(std::span<const Pr
     return peaks;
 }
 
-/// Returns the peaks of all passes in descending order. Those of passes with a larger median than is typical
-/// are scaled to it.
+/// Returns the peaks of the trained model's pass and of all others with enough of them, in descending order.
+/// Those of passes with a larger median than the trained model and half of the passes are scaled to it.
 std::vector<double> comparable_peaks(const std::array<std::vector<double>, block_count + 1>& passes) {
+    std::vector<std::span<const double>> counted;
     std::vector<double> medians;
     for (const std::vector<double>& pass : passes) {
         if (pass.size() >= fewest_peaks || &pass == &passes.back()) {
+            counted.emplace_back(pass);
             medians.push_back(pass.empty() ? 0 : median(pass));
         }
     }
-    const double usual = typical(medians, medians.back());
+    const double usual = std::max(median(medians), medians.back());
     std::vector<double> peaks;
-    for (const std::vector<double>& pass : passes) {
-        if (pass.size() >= fewest_peaks || &pass == &passes.back()) {
-            const double own = pass.empty() ? usual : median(pass);
-            const double factor = own > usual ? usual / own : 1;
-            std::ranges::transform(pass, std::back_inserter(peaks),
-                                   [factor](double peak) { return factor * peak; });
-        }
+    for (std::size_t i = 0; i < counted.size(); ++i) {
+        const double factor = medians[i] > usual ? usual / medians[i] : 1;
+        std::ranges::transform(counted[i], std::back_inserter(peaks),
+                               [factor](double peak) { return factor * peak; });
     }
     std::ranges::sort(peaks, std::greater{});
     return peaks;
