@@ -51,10 +51,10 @@ struct Finding {
     /// of the low-frequency error of this output, without and with the effect
     double rms_before = 0, rms_after = 0;
     Eigen::VectorXd share; ///< T: contribution to this output
+    Eigen::VectorXd rest;  ///< T: residual of this output, all causes of the same fit taken off
     std::string evidence;
     std::vector<OtherCause> indistinguishable, alternatives;
     std::string confirm;
-    bool by_least_squares = false;                      ///< found by plain least squares, not by the search
     double margin_to_nothing = 0, margin_to_others = 0; ///< log-odds behind the confidence
 };
 
@@ -134,8 +134,7 @@ struct DiagnosisWork {
     /// T x m: outputs of the extended model of the whole recording, as `measured`; plain least squares beside
     /// the body of the robot's file where that is better
     Eigen::MatrixXd extended = {};
-    Eigen::MatrixXd moving_fit = {}; ///< T x m: plain least squares of the moving rows, as `measured`
-    bool gains_known = true;         ///< torques were measured, or the torque constants of currents are given
+    bool gains_known = true; ///< torques were measured, or the torque constants of currents are given
 };
 
 /// Returns whether the recording could answer: there are effects to choose from, and a model can be made.

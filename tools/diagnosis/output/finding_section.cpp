@@ -57,11 +57,7 @@ PageChart evidence_chart(const DiagnosisWork& work, const Finding& finding, std:
     const ExplainingVariable over = explaining_variable(*work.signals, finding, finding.share);
     const Eigen::VectorXd x = over.value.segment(over.first, over.count);
     const Eigen::VectorXd share = finding.share.segment(over.first, over.count);
-    Eigen::VectorXd left = work.rest.col(finding.output);
-    if (finding.by_least_squares) {
-        left = work.measured.col(finding.output) - work.moving_fit.col(finding.output);
-    }
-    const Eigen::VectorXd error = share + left.segment(over.first, over.count);
+    const Eigen::VectorXd error = share + finding.rest.segment(over.first, over.count);
     XyChart chart;
     const std::string& output = work.diagnosis.output_names[static_cast<std::size_t>(finding.output)];
     chart.title =

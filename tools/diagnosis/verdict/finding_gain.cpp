@@ -46,6 +46,7 @@ bool Gains::tell(Finding& finding, const Eigen::MatrixXd& contribution) const {
         band.clear();
     }
     finding.share = contribution.col(finding.output);
+    finding.rest = rest_.col(finding.output);
     finding.evidence = "the error of " + output_names_[static_cast<std::size_t>(finding.output)] + " " +
                        effect_named(finding.effect).evidence + ": with it the error" + band + " falls from " +
                        rounded_text(finding.rms_before) + " to " + rounded_text(finding.rms_after);

@@ -44,7 +44,6 @@ Finding finding_of(const DiagnosisWork& work, const Effect& effect, const Moving
     finding.confidence = calibrated_confidence(finding, static_cast<double>(work.signals->rows()) /
                                                             work.signals->measured.rate_hz);
     finding.confirm = confirmation(finding);
-    finding.by_least_squares = true;
     return finding;
 }
 
@@ -97,16 +96,16 @@ void name_by_least_squares(DiagnosisWork& work) {
     Diagnosis& diagnosis = work.diagnosis;
     diagnosis.textbook = MatrixXd::Zero(5, signals.outputs());
     work.extended = signals.nominal + work.explanation.model(signals);
-    work.moving_fit = MatrixXd(signals.rows(), signals.outputs());
     const MatrixXd all_rows =
         textbook_fit(signals, work.measured, signals.nominal, signals.rows()).prediction;
+    MatrixXd left = work.measured; // least squares and pushes will be taken off
     std::vector<std::pair<Index, MovingFit>> better;
     for (Index output = 0; output < signals.outputs(); ++output) {
         const auto number = static_cast<std::size_t>(output);
         MovingFit fit = fit_moving_rows(signals, work.measured.col(output), signals.nominal.col(output),
                                         output, work.gains_known);
         diagnosis.textbook.col(output) = fit.values;
-        work.moving_fit.col(output) = fit.columns * fit.values;
+        left.col(output) -= fit.columns * fit.values;
         if (diagnosis.by_least_squares[number]) {
             work.extended.col(output) = all_rows.col(output);
             if (!signals.wrench() && !signals.hardly_moves(number) && fit.blocks >= fewest_blocks) {
@@ -114,7 +113,6 @@ void name_by_least_squares(DiagnosisWork& work) {
             }
         }
     }
-    MatrixXd left = work.measured - work.moving_fit;
     for (const StandingContact& push : work.pushes) {
         left.col(static_cast<Index>(push.joint)) -= push.share;
     }
