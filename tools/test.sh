@@ -10,14 +10,14 @@ log_dir=build/logs
 
 # All but the header that make_ur5_model.sh writes.
 all_sources() {
-    find firmware_lib hal tools tests '(' -name '*.hpp' -o -name '*.cpp' ')' ! -name ur5_model.hpp -print0
+    find firmware_lib hal tools examples tests '(' -name '*.hpp' -o -name '*.cpp' ')' ! -name ur5_model.hpp -print0
 }
 
 install_packages() { tools/install_packages.sh test; }
 
 check_style() {
     all_sources | xargs -0 clang-format --dry-run --Werror
-    find .ci cmake tools tests firmware_lib hal '(' -name '*.sh' -o -path .ci/run ')' -print0 | xargs -0 shellcheck
+    find .ci cmake tools examples tests firmware_lib hal '(' -name '*.sh' -o -path .ci/run ')' -print0 | xargs -0 shellcheck
 }
 
 # build PRESET [TARGET...]
@@ -65,7 +65,7 @@ analyse() {
     run-clang-tidy -quiet -p build/clang -j "$jobs" "$PWD/($1)/.*"
 }
 # tools/model/run_time has all of the firmware's headers.
-analyse_firmware() { analyse 'firmware_lib|hal|tools/model/run_time'; }
+analyse_firmware() { analyse 'firmware_lib|hal|examples|tools/model/run_time'; }
 analyse_others() { analyse 'tools|tests'; }
 
 steps=(

@@ -21,7 +21,7 @@ if [[ -z $compiler ]] || ! "$compiler" -fsanitize=realtime -x c++ - -o "$scratch
     exit 77 # skipped
 fi
 
-awk -v table=samples -f firmware_lib/examples/ur5_tables.awk tests/data/ur5_kufieta/Movement_No6_Acc_slow_Verify_Model.csv >"$scratch/ur5_samples.hpp"
+awk -v table=samples -f examples/ur5/ur5_tables.awk tests/data/ur5_kufieta/Movement_No6_Acc_slow_Verify_Model.csv >"$scratch/ur5_samples.hpp"
 compile=("$compiler" -std=c++20 -O1 -Wfunction-effects -Werror=function-effects -fsanitize=realtime -DNDEBUG
     -I. "-I$scratch" "-I$families" -Ifirmware_lib/include -Ihal/include tests/realtime/realtime.cpp)
 if "${compile[@]}" -DDFDYN_MUST_NOT_COMPILE -fsyntax-only 2>"$scratch/refused.txt"; then

@@ -4,8 +4,8 @@
 // RealtimeSanitizer stops the program at such a call at run time. With the argument `block` the program does
 // what must be detected.
 #include "dfdyn/dfdyn.hpp"
-#include "firmware_lib/examples/ur5_model.hpp"
-#include "firmware_lib/examples/ur5_ticks.hpp"
+#include "examples/01_embed/ur5_ticks.hpp"
+#include "examples/ur5/ur5_model.hpp"
 #include "tests/firmware_lib/support/test_model.hpp"
 #include "tests/hal/fuzz/assemblies.hpp"
 

@@ -60,7 +60,7 @@ struct Cost {
 ///
 /// The bytes of stack that depend on sizes are the data that the code keeps there. The constants added to
 /// them were measured with g++ 12 -O3 on the Cortex-M and rounded up;
-/// firmware_lib/examples/cortex_m/parts.cpp checks every part against them. The frame that an interrupt
+/// tests/cortex_m/images/parts.cpp checks every part against them. The frame that an interrupt
 /// pushes is not included.
 inline constexpr std::int64_t frame_bytes = 128;
 

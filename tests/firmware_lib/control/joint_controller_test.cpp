@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The controller that users copy, without some of its measurements.
-#include "firmware_lib/examples/simulated_joints.hpp"
+#include "examples/03_control_loop/simulated_joints.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>

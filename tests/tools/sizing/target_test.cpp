@@ -18,7 +18,7 @@ namespace target_test {
 
 using namespace dfdyn::tools;
 
-/// The model of `firmware_lib/examples/cortex_m/benchmark.cpp`: NP, DFR(10, 3), six outputs, forgetting.
+/// The model of `tests/cortex_m/images/benchmark.cpp`: NP, DFR(10, 3), six outputs, forgetting.
 TrainedModel benchmark_model(int joints, int columns) {
     TrainedModel model = dfdyn::tests::sized_model(joints, 6, 10, 3, columns / 2);
     model.forgetting_factor = 0.9995;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "../ur5/ur5_model.hpp" // constants, in flash
 #include "dfdyn/control/disturbance_observer.hpp"
 #include "dfdyn/control/feed_forward.hpp"
 #include "dfdyn/control/learned_torque.hpp"
 #include "dfdyn/control/loop_margin.hpp"
-#include "ur5_model.hpp" // constants, in flash
 
 #include <algorithm>
 #include <cmath>
