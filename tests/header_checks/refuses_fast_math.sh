@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # refuses_fast_math.sh COMPILER INCLUDE_DIRS HEADER...: fails if a translation unit that includes one of these headers compiles
-# with flags under which the library would silently be wrong (dfdyn/strict_math.hpp). INCLUDE_DIRS are the folders of the headers,
+# with flags under which the library would silently be wrong (dfdyn/core/strict_math.hpp). INCLUDE_DIRS are the folders of the headers,
 # separated by colons. A header without floating-point numbers need not be rejected.
 set -euo pipefail
 
@@ -14,7 +14,7 @@ bad=0
 
 # message FLAG...: the compiler's messages for a translation unit that contains only the check.
 message() {
-    echo '#include "dfdyn/strict_math.hpp"' >"$scratch/unit.cpp"
+    echo '#include "dfdyn/core/strict_math.hpp"' >"$scratch/unit.cpp"
     "$compiler" -std=c++20 "${include_dirs[@]/#/-I}" -w "$@" -fsyntax-only "$scratch/unit.cpp" 2>&1 || true
 }
 
@@ -29,7 +29,7 @@ expect() {
         outcome="says otherwise of"
     fi
     if [[ $outcome != "$wanted" ]]; then
-        echo "dfdyn/strict_math.hpp $outcome $*: $said"
+        echo "dfdyn/core/strict_math.hpp $outcome $*: $said"
         bad=1
     fi
 }
@@ -61,7 +61,7 @@ if ! perl -e '
     sub reaches {
         my ($header) = @_;
         return $reaches{$header} if defined $reaches{$header};
-        $reaches{$header} = $header eq "dfdyn/strict_math.hpp";
+        $reaches{$header} = $header eq "dfdyn/core/strict_math.hpp";
         $text{$header} = text_of($header);
         for my $next ($text{$header} =~ /^#include "(dfdyn\/[^"]+)"/gm) {
             $reaches{$header} ||= reaches($next);
@@ -69,7 +69,7 @@ if ! perl -e '
         return $reaches{$header};
     }
     my @without = grep { !reaches($_) && $text{$_} =~ /\b(float|double|Scalar|isfinite)\b/ } @headers;
-    print "$_: does not include dfdyn/strict_math.hpp\n" for @without;
+    print "$_: does not include dfdyn/core/strict_math.hpp\n" for @without;
     exit(@headers == 0 || @without > 0);
 ' "$(IFS=:; echo "${include_dirs[*]}")" "$@"; then
     bad=1

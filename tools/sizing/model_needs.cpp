@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/sizing/model_needs.hpp"
 
-#include "dfdyn/lag_window.hpp"
+#include "dfdyn/core/lag_window.hpp"
 #include "dfdyn/learner/ud_covariance.hpp"
 #include "tools/base/numerics/dynamic_storage.hpp"
 #include "tools/base/text/number.hpp"

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/budget.hpp"
+#include "dfdyn/core/budget.hpp"
+#include "dfdyn/core/sample_clock.hpp"
+#include "dfdyn/core/snapshot.hpp"
+#include "dfdyn/core/state_sequence.hpp"
+#include "dfdyn/core/status.hpp"
 #include "dfdyn/innovation_gate.hpp"
 #include "dfdyn/input/input_identity.hpp"
 #include "dfdyn/model.hpp"
-#include "dfdyn/sample_clock.hpp"
-#include "dfdyn/snapshot.hpp"
-#include "dfdyn/state_sequence.hpp"
-#include "dfdyn/status.hpp"
 #include "dfdyn/structure/regression.hpp"
 
 #include <algorithm>

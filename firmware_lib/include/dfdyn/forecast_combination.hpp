@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/budget.hpp"
-#include "dfdyn/snapshot.hpp"
-#include "dfdyn/storage.hpp"
+#include "dfdyn/core/budget.hpp"
+#include "dfdyn/core/snapshot.hpp"
+#include "dfdyn/core/storage.hpp"
 
 #include <algorithm>
 #include <cstddef>

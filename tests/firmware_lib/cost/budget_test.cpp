@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dfdyn/budget.hpp"
+#include "dfdyn/core/budget.hpp"
 
 #include "tests/support/catch.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dfdyn/status.hpp"
+#include "dfdyn/core/status.hpp"
 
 #include "tests/support/catch.hpp"
 

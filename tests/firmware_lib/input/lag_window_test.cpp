@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dfdyn/lag_window.hpp"
+#include "dfdyn/core/lag_window.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dfdyn/sample_clock.hpp"
+#include "dfdyn/core/sample_clock.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/seed.hpp"

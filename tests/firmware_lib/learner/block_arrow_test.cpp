@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Model SPK by its block-arrow structure equals the dense solution of all its unknowns.
-#include "dfdyn/snapshot.hpp"
+#include "dfdyn/core/snapshot.hpp"
 
 #include "tests/firmware_lib/learner/arrow_problem.hpp"
 #include "tests/support/catch.hpp"

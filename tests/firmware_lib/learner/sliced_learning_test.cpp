@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Learning in slices equals learning at once, bit for bit.
-#include "dfdyn/budget.hpp"
+#include "dfdyn/core/budget.hpp"
 
 #include "tests/firmware_lib/support/learner_under_test.hpp"
 #include "tests/support/catch.hpp"

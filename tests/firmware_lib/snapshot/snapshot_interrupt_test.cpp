@@ -2,7 +2,7 @@
 // Snapshots during ticks: a timer signal interrupts the copy at any instruction, as an interrupt does on a
 // microcontroller, or a thread ticks on another core. A replay of the same ticks then gives every state that
 // the estimator had; an accepted snapshot must be one of them.
-#include "dfdyn/snapshot_writer.hpp"
+#include "dfdyn/core/snapshot_writer.hpp"
 
 #include "tests/firmware_lib/support/test_model.hpp"
 #include "tests/support/catch.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dfdyn/snapshot.hpp"
+#include "dfdyn/core/snapshot.hpp"
 
 #include "tests/support/catch.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dfdyn/snapshot_writer.hpp"
+#include "dfdyn/core/snapshot_writer.hpp"
 
 #include "tests/firmware_lib/support/test_model.hpp"
 #include "tests/support/allocation_guard.hpp"

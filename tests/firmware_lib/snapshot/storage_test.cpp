@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dfdyn/storage.hpp"
+#include "dfdyn/core/storage.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tools/base/numerics/dynamic_storage.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The order and the counts of measurements. No times are checked.
-#include "dfdyn/vector.hpp"
+#include "dfdyn/core/vector.hpp"
 #include "tools/bench/timing/floor.hpp"
 #include "tools/bench/timing/interleaved.hpp"
 

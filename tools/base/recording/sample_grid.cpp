@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/base/recording/sample_grid.hpp"
 
-#include "dfdyn/sample_clock.hpp"
+#include "dfdyn/core/sample_clock.hpp"
 #include "tools/base/numerics/quantile.hpp"
 #include "tools/base/text/error.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/bench/timing/floor.hpp"
 
-#include "dfdyn/vector.hpp"
+#include "dfdyn/core/vector.hpp"
 #include "tools/base/numerics/dynamic_storage.hpp"
 
 namespace dfdyn::tools {

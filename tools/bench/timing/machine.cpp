@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/bench/timing/machine.hpp"
 
-#include "dfdyn/vector.hpp"
+#include "dfdyn/core/vector.hpp"
 #include "tools/base/numerics/quantile.hpp"
 #include "tools/base/text/number.hpp"
 #include "tools/build_flags.hpp"

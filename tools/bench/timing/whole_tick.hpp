@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/budget.hpp"
+#include "dfdyn/core/budget.hpp"
 #include "tools/bench/timing/keep.hpp"
 #include "tools/bench/timing/regression_task.hpp"
 

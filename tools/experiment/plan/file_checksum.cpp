@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/experiment/plan/file_checksum.hpp"
 
-#include "dfdyn/snapshot.hpp"
+#include "dfdyn/core/snapshot.hpp"
 #include "tools/base/system/read_file.hpp"
 #include "tools/base/text/text.hpp"
 

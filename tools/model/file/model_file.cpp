@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/model/file/model_file.hpp"
 
+#include "dfdyn/core/snapshot.hpp"
 #include "dfdyn/monitor/contact_detector.hpp"
-#include "dfdyn/snapshot.hpp"
 #include "tools/base/system/read_file.hpp"
 #include "tools/base/text/error.hpp"
 #include "tools/base/text/json_reader.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/budget.hpp"
-#include "dfdyn/status.hpp"
+#include "dfdyn/core/budget.hpp"
+#include "dfdyn/core/status.hpp"
 #include "tools/model/model.hpp"
 
 #include <chrono>

@@ -3,8 +3,8 @@
 
 // For those who have Eigen in their loop: views of the library's numbers as Eigen's matrices, without a copy.
 // A view is valid as long as what it views. The library itself does not need Eigen.
+#include "dfdyn/core/storage.hpp"
 #include "dfdyn/learner/learner.hpp"
-#include "dfdyn/storage.hpp"
 
 #include <Eigen/Core>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "dfdyn/control/reference.hpp"
+#include "dfdyn/core/strict_math.hpp"
 #include "dfdyn/forecast_combination.hpp"
-#include "dfdyn/strict_math.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/storage.hpp"
+#include "dfdyn/core/storage.hpp"
 
 namespace dfdyn {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/budget.hpp"
+#include "dfdyn/core/budget.hpp"
+#include "dfdyn/core/storage.hpp"
 #include "dfdyn/features/cos_sin.hpp"
-#include "dfdyn/storage.hpp"
 
 #include <cstdint>
 

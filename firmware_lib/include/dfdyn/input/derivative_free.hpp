@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/budget.hpp"
-#include "dfdyn/lag_window.hpp"
+#include "dfdyn/core/budget.hpp"
+#include "dfdyn/core/lag_window.hpp"
 #include "dfdyn/sample.hpp"
 
 namespace dfdyn {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/budget.hpp"
+#include "dfdyn/core/budget.hpp"
+#include "dfdyn/core/lag_window.hpp"
 #include "dfdyn/input/adaptive_window.hpp"
-#include "dfdyn/lag_window.hpp"
 #include "dfdyn/sample.hpp"
 
 namespace dfdyn {

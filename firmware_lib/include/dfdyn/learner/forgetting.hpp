@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/budget.hpp"
+#include "dfdyn/core/budget.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/vector.hpp"
+#include "dfdyn/core/vector.hpp"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/budget.hpp"
-#include "dfdyn/storage.hpp"
+#include "dfdyn/core/budget.hpp"
+#include "dfdyn/core/storage.hpp"
 
 #include <concepts>
 #include <cstdint>

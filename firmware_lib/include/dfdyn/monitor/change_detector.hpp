@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/budget.hpp"
+#include "dfdyn/core/budget.hpp"
+#include "dfdyn/core/storage.hpp"
 #include "dfdyn/monitor/block_noise.hpp"
 #include "dfdyn/monitor/excursion_tail.hpp"
 #include "dfdyn/monitor/output_block.hpp"
 #include "dfdyn/monitor/standstill_range.hpp"
-#include "dfdyn/storage.hpp"
 
 #include <cmath>
 #include <cstdint>

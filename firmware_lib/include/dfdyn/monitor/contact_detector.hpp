@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/core/storage.hpp"
 #include "dfdyn/monitor/joint_deviation.hpp"
-#include "dfdyn/storage.hpp"
 
 #include <algorithm>
 #include <cmath>

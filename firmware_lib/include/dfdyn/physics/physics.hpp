@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/checksum.hpp"
+#include "dfdyn/core/checksum.hpp"
 #include "dfdyn/input/input_identity.hpp"
 #include "dfdyn/physics/effects.hpp"
 #include "dfdyn/physics/rigid_body.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "dfdyn/core/strict_math.hpp"
 #include "dfdyn/hal/reason.hpp"
-#include "dfdyn/strict_math.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/extent.hpp"
+#include "dfdyn/core/extent.hpp"
 #include "dfdyn/hal/assembly/track.hpp"
 #include "dfdyn/hal/device/decoded.hpp"
 #include "dfdyn/hal/gate/frozen.hpp"

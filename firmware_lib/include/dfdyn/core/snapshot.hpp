@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/checksum.hpp"
-#include "dfdyn/strict_math.hpp"
+#include "dfdyn/core/checksum.hpp"
+#include "dfdyn/core/strict_math.hpp"
 
 #include <algorithm>
 #include <cmath>

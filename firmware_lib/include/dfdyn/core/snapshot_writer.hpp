@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/snapshot.hpp"
-#include "dfdyn/state_sequence.hpp"
+#include "dfdyn/core/snapshot.hpp"
+#include "dfdyn/core/state_sequence.hpp"
 
 namespace dfdyn {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dfdyn/strict_math.hpp"
+#include "dfdyn/core/strict_math.hpp"
 
 namespace dfdyn {
 
