@@ -21,6 +21,8 @@
 #include "dfdyn/input/standard.hpp"
 #include "dfdyn/learner/ud_covariance.hpp"
 #include "dfdyn/model.hpp"
+#include "dfdyn/monitor/contact_detector.hpp"
+#include "dfdyn/monitor/monitor.hpp"
 #include "dfdyn/physics/effects.hpp"
 #include "dfdyn/physics/physics.hpp"
 #include "dfdyn/physics/rigid_body.hpp"

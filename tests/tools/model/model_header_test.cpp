@@ -7,6 +7,7 @@
 #include "tools/model/header/header_text.hpp"
 #include "tools/model/header/model_header.hpp"
 #include "tools/model/inputs/input_description.hpp"
+#include "tools/model/run_time/contact_constants.hpp"
 #include "tools/model/run_time/host_estimator.hpp"
 #include "tools/model/run_time/host_model.hpp"
 
@@ -160,6 +161,20 @@ TEST_CASE("the header has the amplitude of the features to the last bit") {
     const auto host = make_host_constants<HostNonparametric>(model, false);
     CHECK(model_to_header(model, "m").find(".amplitude = " + literal(host->constants.features.amplitude)) !=
           std::string::npos);
+}
+
+TEST_CASE("the header has the limits of contacts that the program uses, if the model has them") {
+    DFDYN_SEEDED_ENGINE(engine);
+    TrainedModel model = small_model(engine, InputKind::DF);
+    CHECK(model_to_header(model, "m").find("contact_limits") == std::string::npos);
+    model.contact = {
+        .limit = {1, 2, 3, 4, 5, 6.1}, .usual = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6}, .speed = {0.7, 8}};
+    const std::string header = model_to_header(model, "m");
+    for (const dfdyn::ContactLimits<float>& joint : contact_constants(model.contact)) {
+        CHECK(header.find("{.limit = " + array(joint.limit) + ", .usual = " + array(joint.usual) +
+                          ", .relative = " + literal(joint.relative) + ", .speed = " + literal(joint.speed) +
+                          ", .acceleration = " + literal(joint.acceleration) + "}") != std::string::npos);
+    }
 }
 
 TEST_CASE("hostile names do not escape from their comment") {

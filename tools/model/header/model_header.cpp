@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/model/header/model_header.hpp"
 
+#include "tools/base/text/number.hpp"
 #include "tools/model/header/header_text.hpp"
 #include "tools/model/header/physics_header.hpp"
+#include "tools/model/run_time/contact_constants.hpp"
 #include "tools/model/run_time/host_model.hpp"
 #include "tools/model/structure.hpp"
 
@@ -134,6 +136,24 @@ std::string constants_text(const TrainedModel& model) {
            extrapolation_constants(model, constants) + "};\n\n";
 }
 
+std::string contact_text(const ContactModel& contact) {
+    const std::vector<ContactLimits<float>> joints = contact_constants(contact);
+    if (joints.empty()) {
+        return "";
+    }
+    std::string text = "/// For a dfdyn::ContactDetector, with " + number_text(contact_rate_per_hour) +
+                       " false contacts per hour.\n" +
+                       "inline constexpr dfdyn::ContactLimits<float> contact_limits[] = {";
+    const char* separator = "\n";
+    for (const ContactLimits<float>& joint : joints) {
+        text += separator + ("    {.limit = " + array(joint.limit)) + ", .usual = " + array(joint.usual) +
+                ", .relative = " + literal(joint.relative) + ", .speed = " + literal(joint.speed) +
+                ", .acceleration = " + literal(joint.acceleration) + "}";
+        separator = ",\n";
+    }
+    return text + "};\n\n";
+}
+
 } // namespace
 
 std::string to_identifier(const std::string& stem) {
@@ -161,7 +181,7 @@ std::string model_to_header(const TrainedModel& model, const std::string& name_s
                              [&]<class Model>(std::type_identity<Model> /*type*/) {
                                  return constants_text<Model>(model);
                              })
-           << "} // namespace " << name_space << "\n";
+           << contact_text(model.contact) << "} // namespace " << name_space << "\n";
     return header.str();
 }
 

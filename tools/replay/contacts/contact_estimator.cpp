@@ -2,6 +2,7 @@
 #include "tools/replay/contacts/contact_estimator.hpp"
 
 #include "tools/base/text/error.hpp"
+#include "tools/model/run_time/contact_constants.hpp"
 #include "tools/model/run_time/estimator_decorator.hpp"
 
 #include <algorithm>
@@ -12,7 +13,6 @@ namespace dfdyn::tools {
 
 namespace {
 
-constexpr float unlimited = 1e30F;
 constexpr double least_scale = 0.2; // of limits at a high rate
 
 void set_errors(const MeasuredSample& sample, const Tick& tick, std::span<float> error) {
@@ -103,30 +103,14 @@ class Watched final : public EstimatorDecorator<ContactEstimator> {
     bool during_ = false;
 };
 
-std::vector<ContactLimits<float>> limits_of(const ContactModel& contact) {
-    std::vector<ContactLimits<float>> limits(contact.limit.size() / joint_motion_count);
-    for (std::size_t i = 0; i < contact.limit.size(); ++i) {
-        ContactLimits<float>& joint = limits[i / joint_motion_count];
-        joint.limit[i % joint_motion_count] = static_cast<float>(contact.limit[i]);
-        joint.usual[i % joint_motion_count] = static_cast<float>(contact.usual[i]);
-    }
-    for (std::size_t k = 0; k < limits.size(); ++k) {
-        limits[k].relative = contact.relative.empty() ? 0 : static_cast<float>(contact.relative[k]);
-        limits[k].speed = contact.speed.empty() ? unlimited : static_cast<float>(contact.speed[k]);
-        limits[k].acceleration =
-            contact.acceleration.empty() ? unlimited : static_cast<float>(contact.acceleration[k]);
-    }
-    return limits;
-}
-
 } // namespace
 
 ContactWatch::ContactWatch(const ContactModel& contact)
-    : limits_(limits_of(contact)),
+    : limits_(contact_constants(contact)),
       detector_(Extent<dynamic>{static_cast<int>(limits_.size())}, limits_.data()) {}
 
 ContactModel unlimited_contact(std::size_t joints) {
-    return {std::vector<double>(joints * joint_motion_count, unlimited),
+    return {std::vector<double>(joints * joint_motion_count, no_contact_limit),
             std::vector<double>(joints * joint_motion_count, 0)};
 }
 

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Detects a push during the recorded motion, from positions and motor currents. A current that a push would
+// cause is added to that of one joint.
+#include "instruction_counter.hpp"
+#include "report.hpp"
+#include "ur5_model.hpp" // constants and limits, in flash
+#include "ur5_ticks.hpp"
+
+#include <algorithm>
+
+namespace {
+
+using Estimator = dfdyn::Estimator<ur5_model::Model>;
+
+constexpr int joints = 6;
+constexpr int pushed_joint = 1;
+constexpr float push_A = 2;
+constexpr int first_pushed = 150; // ticks of 8 ms
+constexpr int last_pushed = 180;
+
+Estimator estimator(ur5_model::constants);
+dfdyn::ContactDetector<float, joints> detector({}, ur5_model::contact_limits);
+
+/// The detector's cost in instructions.
+std::uint32_t largest = 0;
+std::uint32_t sum = 0;
+
+/// Returns true during a contact. The learner rests while one is suspected: a push is no property of the arm.
+bool contact(const Estimator::Sample& sample) {
+    const dfdyn::Budget budget{detector.suspected() ? 0 : Estimator::cost().learn};
+    const auto estimate = estimator.tick(sample, budget);
+    const std::uint32_t begin = instruction_counter();
+    if (estimate.status.predicted()) {
+        detector.tick(sample.time_ns, sample.position.data(), estimate.innovation.data(),
+                      estimate.prediction.data());
+    } else {
+        detector.interrupt();
+    }
+    const std::uint32_t spent = instruction_counter() - begin;
+    largest = std::max(largest, spent);
+    sum += spent;
+    return detector.contact();
+}
+
+} // namespace
+
+int application() {
+    start_instruction_counter();
+    int tick = 0;
+    int contacts = 0;
+    int found_after = 0; // ticks
+    bool before = false;
+    for (const Ur5Sample& recorded : ur5_samples) {
+        auto sample = read_sensors<Estimator::Sample>(recorded);
+        sample.output[pushed_joint] += tick >= first_pushed && tick < last_pushed ? push_A : 0.0F;
+        const bool now = contact(sample);
+        if (now && !before) {
+            ++contacts;
+            found_after = tick - first_pushed;
+        }
+        before = now;
+        ++tick;
+    }
+    report(DFDYN_CORE ": contacts found ", static_cast<std::uint32_t>(contacts), "");
+    report(", at joint ", static_cast<std::uint32_t>(detector.joint() + 1), "");
+    report(", ticks of 8 ms after the push began ", static_cast<std::uint32_t>(found_after), "");
+    report("; instructions of the detector per tick: mean ", sum / static_cast<std::uint32_t>(tick), "");
+    report(", most ", largest, "");
+    report("; its state ", sizeof(detector), " bytes\n");
+    const bool in_time = found_after > 0 && found_after <= 12;
+    return contacts == 1 && detector.joint() == pushed_joint && in_time ? 0 : 1;
+}
